@@ -1,0 +1,1 @@
+"""The commands `ros2` and `daidalos`."""

@@ -1,0 +1,1 @@
+"""Hardware interfaces, controllers and the manager that runs them."""

@@ -1,0 +1,1 @@
+"""Robots and worlds as data: URDF, xacro, SDF and meshes, and forward kinematics."""

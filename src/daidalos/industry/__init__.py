@@ -1,0 +1,1 @@
+"""Welding, servoing, grinding, RAPID, calibration and lighting."""

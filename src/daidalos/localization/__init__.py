@@ -1,0 +1,1 @@
+"""Finding a robot's pose in a known map."""

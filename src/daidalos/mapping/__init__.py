@@ -1,0 +1,1 @@
+"""Grids, scan matching, pose graphs and map files."""

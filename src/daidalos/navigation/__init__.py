@@ -1,0 +1,1 @@
+"""Costmaps, planners, controllers, smoothers and behaviours of a mobile robot."""

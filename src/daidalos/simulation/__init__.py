@@ -1,0 +1,1 @@
+"""The world on MuJoCo, with its sensors and plugins."""

@@ -1,0 +1,1 @@
+"""The browser studio's server and page."""
