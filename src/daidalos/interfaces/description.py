@@ -98,10 +98,8 @@ def _members(interface: Interface) -> tuple[Field, ...]:
         return interface.fields or (Field(FieldType("uint8"), "structure_needs_at_least_one_member"),)
     if isinstance(interface, Service):
         names = ("request_message", "response_message", "event_message")
-        return tuple(
-            Field(FieldType(m.name), n) for n, m in zip(names, interface.messages, strict=True)
-        )
-    parts = {
+        return tuple(Field(FieldType(m.name), n) for n, m in zip(names, interface.messages, strict=True))
+    parts: dict[str, Message | Service] = {
         "goal": interface.goal,
         "result": interface.result,
         "feedback": interface.feedback,

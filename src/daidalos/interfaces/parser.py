@@ -102,7 +102,7 @@ def _parse_message(name: str, lines: list[str], first: int, source: str, package
             item = _parse_line(code, note, package)
         except InterfaceError as error:
             raise InterfaceError(f"{source}:{number}: {error}") from None
-        if any(item.name == other.name for other in (*fields, *constants)):
+        if item.name in {other.name for other in fields} | {other.name for other in constants}:
             raise InterfaceError(f"{source}:{number}: '{item.name}' is defined twice")
         if isinstance(item, Constant):
             constants.append(item)

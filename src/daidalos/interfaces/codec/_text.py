@@ -1,0 +1,130 @@
+"""Writing source text of codec functions: names, indentation, runs of fixed-size values.
+
+In the generated code ``m`` is the message, ``out`` the list of buffers being collected, ``p`` the current
+offset when it is known only at run time, ``buf`` the bytes being read and ``view`` their memoryview.
+"""
+
+from __future__ import annotations
+
+import struct
+from dataclasses import dataclass, field
+from typing import Any
+
+from daidalos.interfaces.message import Message
+
+FORMATS = {
+    "bool": "?", "byte": "c", "char": "B", "uint8": "B", "int8": "b", "int16": "h", "uint16": "H",
+    "int32": "i", "uint32": "I", "int64": "q", "uint64": "Q", "float32": "f", "float64": "d",
+}  # fmt: skip
+SIZES = {name: struct.calcsize("<" + code) for name, code in FORMATS.items()}
+_INLINE_LIMIT = 48
+"""Messages with at most this many values are written into their parent's code instead of being called."""
+HEADER = 4
+
+
+@dataclass(frozen=True)
+class Variant:
+    """Byte order ('<' or '>') and bytes a character of wide strings takes."""
+
+    order: str = "<"
+    wide: int = 4
+
+
+def fixed_size(kind: type[Message]) -> tuple[int, int] | None:
+    """Return (size, alignment) of a message whose every instance has the same layout, else None."""
+    offset, alignment = 0, 1
+    if not kind._FIELDS:
+        return None
+    for _, base, many, size, _ in kind._FIELDS:
+        if many not in ("single", "array") or base in ("string", "wstring"):
+            return None
+        inner = fixed_size(base) if not isinstance(base, str) else (SIZES[base], SIZES[base])
+        if inner is None:
+            return None
+        if inner[0] % inner[1]:
+            return None  # neighbours in an array would not repeat
+        offset += -offset % inner[1] + inner[0] * (size if many == "array" else 1)
+        alignment = max(alignment, inner[1])
+    return offset, alignment
+
+
+def _weight(kind: type[Message]) -> int:
+    """Count the values that inlining the message would write out."""
+    return sum(1 if isinstance(base, str) else _weight(base) for _, base, *_ in kind._FIELDS)
+
+
+class Names:
+    """Objects that generated code refers to, each under one name."""
+
+    def __init__(self, root: type[Message]) -> None:
+        self.scope: dict[str, Any] = {"Root": root}
+        self._known: dict[Any, str] = {}
+
+    def of(self, key: Any, value: Any, prefix: str) -> str:
+        name = self._known.get(key)
+        if name is None:
+            name = f"{prefix}{len(self._known)}"
+            self._known[key] = name
+            self.scope[name] = value
+        return name
+
+    def kind(self, message_type: type[Message]) -> str:
+        return self.of(message_type, message_type, "C")
+
+
+@dataclass
+class Run:
+    """Consecutive values of fixed size that one struct call handles."""
+
+    items: list[tuple[str, int, int]] = field(default_factory=list)
+    """(format, alignment, size) of each value."""
+    expressions: list[str] = field(default_factory=list)
+
+    def layout(self, order: str, start: int) -> tuple[str, int]:
+        """Return the struct format and the size when the run starts at offset `start`."""
+        text, offset = order, start
+        for code, alignment, size in self.items:
+            pad = -offset % alignment
+            text += ("x" * pad) + code
+            offset += pad + size
+        return text, offset - start
+
+    def structs(self, order: str, shift: int = 0) -> tuple[struct.Struct, ...]:
+        """Return the eight structs for offsets 0 to 7; `shift` is what offsets are counted from."""
+        return tuple(struct.Struct(self.layout(order, start - shift)[0]) for start in range(8))
+
+
+class Generator:
+    """Text with indentation, fresh names, and the offset as far as it is known."""
+
+    def __init__(self, root: type[Message], variant: Variant) -> None:
+        self.root = root
+        self.variant = variant
+        self.names = Names(root)
+        self.lines: list[str] = []
+        self.indent = 1
+        self.counter = 0
+        self.functions: dict[type[Message], str] = {}
+        self.pending: list[type[Message]] = []
+        self.run = Run()
+        self.static: int | None = 0
+
+    def emit(self, text: str) -> None:
+        self.lines.append("    " * self.indent + text)
+
+    def fresh(self, prefix: str) -> str:
+        self.counter += 1
+        return f"{prefix}{self.counter}"
+
+    def function(self, kind: type[Message]) -> str:
+        """Return the name of the function for a nested message that is not inlined."""
+        if kind not in self.functions:
+            self.functions[kind] = f"nested{len(self.functions)}"
+            self.pending.append(kind)
+        return self.functions[kind]
+
+    def inlined(self, kind: type[Message]) -> bool:
+        return _weight(kind) <= _INLINE_LIMIT
+
+    def finish(self, head: list[str]) -> tuple[str, dict[str, Any]]:
+        return "\n".join([*head, *self.lines]) + "\n", self.names.scope

@@ -1,0 +1,113 @@
+"""Finding interface definitions by name in `share` folders."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from functools import cache
+from pathlib import Path
+
+from daidalos.interfaces.definition import Action, Interface, Message
+from daidalos.interfaces.parser import parse_file
+
+KINDS = ("msg", "srv", "action")
+BUILT_IN = Path(__file__).resolve().parent.parent / "share"
+
+
+class InterfaceNotFound(LookupError):
+    """No definition has this name."""
+
+
+class Library:
+    """The interface definitions under some ``share`` folders, earlier folders first.
+
+    Parameters
+    ----------
+    shares
+        Folders that hold ``<package>/<msg|srv|action>/<Name>.<msg|srv|action>``.
+    """
+
+    def __init__(self, shares: Iterable[Path] = (BUILT_IN,)) -> None:
+        self._shares = tuple(shares)
+        self._parsed: dict[Path, Interface] = {}
+
+    def packages(self) -> list[str]:
+        """Return the names of the packages that define an interface, sorted."""
+        names = {
+            folder.parent.name
+            for share in self._shares
+            for kind in KINDS
+            for folder in share.glob(f"*/{kind}")
+            if any(folder.glob(f"*.{kind}"))
+        }
+        return sorted(names)
+
+    def names(self, package: str) -> list[str]:
+        """Return the full names of a package's interfaces, sorted within each kind."""
+        for share in self._shares:
+            found = list(_files(share / package))
+            if found:
+                return [f"{package}/{path.suffix[1:]}/{path.stem}" for path in found]
+        return []
+
+    def path(self, name: str) -> Path:
+        """Return the file that defines ``package/kind/Name``.
+
+        Raises
+        ------
+        InterfaceNotFound
+            When there is none.
+        """
+        package, kind, short = name.split("/")
+        for share in self._shares:
+            path = share / package / kind / f"{short}.{kind}"
+            if path.is_file():
+                return path
+        raise InterfaceNotFound(f"no definition of '{name}'")
+
+    def get(self, name: str) -> Interface:
+        """Return the definition of ``package/kind/Name``, also of parts such as ``pkg/srv/X_Request``.
+
+        Raises
+        ------
+        InterfaceNotFound
+            When there is none.
+        """
+        base, part = _split(name)
+        path = self.path(base)
+        if path not in self._parsed:
+            self._parsed[path] = parse_file(path, base.split("/")[0])
+        interface = self._parsed[path]
+        if not part:
+            return interface
+        for other in _parts(interface):
+            if other.name == name:
+                return other
+        raise InterfaceNotFound(f"'{base}' has no part '{part}'")
+
+
+def _files(package: Path) -> Iterator[Path]:
+    for kind in KINDS:
+        yield from sorted((package / kind).glob(f"*.{kind}"))
+
+
+def _split(name: str) -> tuple[str, str]:
+    """Split ``pkg/srv/X_Request`` into ``pkg/srv/X`` and ``Request``; messages have no parts."""
+    package, kind, short = name.split("/")
+    if kind == "msg":
+        return name, ""
+    base, _, part = short.partition("_")
+    return f"{package}/{kind}/{base}", part
+
+
+def _parts(interface: Interface) -> Iterator[Interface]:
+    if isinstance(interface, Message):
+        return
+    yield from interface.messages
+    if isinstance(interface, Action):
+        yield from (interface.send_goal, interface.get_result)
+
+
+@cache
+def built_in() -> Library:
+    """Return the library of the definitions that come with this package."""
+    return Library()
