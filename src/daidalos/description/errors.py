@@ -1,0 +1,27 @@
+"""The error that bad robot and world descriptions raise."""
+
+from __future__ import annotations
+
+
+class DescriptionError(Exception):
+    """A description that can not be used, with the place that is wrong.
+
+    Parameters
+    ----------
+    message : str
+        What is wrong and what was expected.
+    source : str
+        The file or other origin, as the user knows it; empty when unknown.
+    line : int
+        Line in `source`, counted from 1; 0 when unknown.
+    element : str
+        The element as it appears, such as ``<joint name="elbow">``; empty when none.
+    """
+
+    def __init__(self, message: str, source: str = "", line: int = 0, element: str = "") -> None:
+        place = f"{source}:{line}" if source and line else source
+        super().__init__(": ".join(part for part in (place, element, message) if part))
+        self.message = message
+        self.source = source
+        self.line = line
+        self.element = element

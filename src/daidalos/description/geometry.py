@@ -1,0 +1,129 @@
+"""The shapes that URDF and SDF know, all in metres and in their own frame."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from daidalos.description.pose import Vector
+
+
+@dataclass(frozen=True)
+class Box:
+    """A box centred on its frame."""
+
+    size: Vector
+
+
+@dataclass(frozen=True)
+class Sphere:
+    """A sphere centred on its frame."""
+
+    radius: float
+
+
+@dataclass(frozen=True)
+class Cylinder:
+    """A cylinder along z, centred on its frame."""
+
+    radius: float
+    length: float
+
+
+@dataclass(frozen=True)
+class Capsule:
+    """A cylinder along z of `length` with a half sphere on each end, centred on its frame."""
+
+    radius: float
+    length: float
+
+
+@dataclass(frozen=True)
+class Ellipsoid:
+    """An ellipsoid centred on its frame, with its three half axes."""
+
+    radii: Vector
+
+
+@dataclass(frozen=True)
+class Cone:
+    """A cone along z, its tip up, its frame in the middle between tip and base."""
+
+    radius: float
+    length: float
+
+
+@dataclass(frozen=True)
+class Plane:
+    """A plane through its frame's origin; infinite for collision, `size` is what one sees of it."""
+
+    normal: Vector = (0.0, 0.0, 1.0)
+    size: tuple[float, float] = (1.0, 1.0)
+
+
+@dataclass(frozen=True)
+class Mesh:
+    """Triangles from a file.
+
+    Parameters
+    ----------
+    uri : str
+        As written in the description.
+    path : Path or None
+        The file that `uri` means here; None when its package or model is not known.
+    scale : tuple of 3 floats
+        Applied in the mesh's own frame; a negative number mirrors.
+    submesh : str
+        Take only this part of the file; empty for all of it.
+    center : bool
+        Move the part's centre to the frame's origin.
+    where : str
+        The place in the description, for errors.
+    """
+
+    uri: str
+    path: Path | None = None
+    scale: Vector = (1.0, 1.0, 1.0)
+    submesh: str = ""
+    center: bool = False
+    where: str = field(default="", compare=False)
+
+
+@dataclass(frozen=True)
+class Heightmap:
+    """A terrain from a grey image or elevation file, centred on `position`.
+
+    Parameters
+    ----------
+    uri, path, where : str, Path or None, str
+        As in `Mesh`.
+    size : tuple of 3 floats
+        Extent in x and y, and height of the brightest over the darkest value.
+    position : tuple of 3 floats
+        Offset of the terrain in its frame.
+    texture : str
+        The diffuse image's uri, empty when none.
+    """
+
+    uri: str
+    path: Path | None
+    size: Vector
+    position: Vector = (0.0, 0.0, 0.0)
+    texture: str = ""
+    where: str = field(default="", compare=False)
+
+
+@dataclass(frozen=True)
+class Polyline:
+    """Closed outlines in the x-y plane, filled by the even-odd rule and raised by `height` along z."""
+
+    outlines: tuple[tuple[tuple[float, float], ...], ...]
+    height: float
+
+
+@dataclass(frozen=True)
+class Empty:
+    """No shape at all (SDF's ``<empty/>``)."""
+
+
+Geometry = Box | Sphere | Cylinder | Capsule | Ellipsoid | Cone | Plane | Mesh | Heightmap | Polyline | Empty

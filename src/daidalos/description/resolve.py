@@ -1,0 +1,92 @@
+"""What the addresses of meshes and models mean on this machine: package://, model://, file:// and paths."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from urllib.parse import unquote, urlparse
+from urllib.request import url2pathname
+
+PackageResolver = Callable[[str], Path | str | None]
+"""Takes a package's name, returns its share directory, or None when there is no such package."""
+
+_MODEL_PATH_VARIABLES = (
+    "GZ_SIM_RESOURCE_PATH",
+    "IGN_GAZEBO_RESOURCE_PATH",
+    "GAZEBO_MODEL_PATH",
+    "GAZEBO_RESOURCE_PATH",
+    "SDF_PATH",
+)
+
+
+def resolve_uri(
+    uri: str,
+    base: Path | None = None,
+    packages: PackageResolver | None = None,
+    model_path: Sequence[Path] = (),
+) -> Path | None:
+    """Find the file or folder that an address means.
+
+    Parameters
+    ----------
+    uri : str
+        ``package://name/path``, ``model://name/path``, ``file://path``, an absolute path, or a path
+        relative to `base`.
+    base : Path or None
+        Folder of the file that holds `uri`.
+    packages : callable or None
+        Share directory of a package.
+    model_path : sequence of Path
+        Folders that hold models.
+
+    Returns
+    -------
+    Path or None
+        An existing path, or None.
+    """
+    scheme, separator, rest = uri.partition("://")
+    if not separator:
+        candidates = _relative(uri, base, model_path)
+    elif scheme == "file":
+        candidates = _file(uri, rest, base, model_path)
+    elif scheme in ("package", "model"):
+        candidates = _named(scheme, unquote(rest), packages, model_path)
+    else:
+        return None
+    return next((path for path in candidates if path.exists()), None)
+
+
+def default_model_path() -> tuple[Path, ...]:
+    """Return the folders that Gazebo's environment variables name, and the user's own models."""
+    folders = [
+        Path(folder)
+        for variable in _MODEL_PATH_VARIABLES
+        for folder in os.environ.get(variable, "").split(os.pathsep)
+        if folder
+    ]
+    return (*folders, Path.home() / ".gazebo" / "models")
+
+
+def _relative(uri: str, base: Path | None, model_path: Sequence[Path]) -> list[Path]:
+    path = Path(uri)
+    if path.is_absolute():
+        return [path]
+    folders = [] if base is None else [base]
+    return [folder / path for folder in (*folders, *model_path)]
+
+
+def _file(uri: str, rest: str, base: Path | None, model_path: Sequence[Path]) -> list[Path]:
+    if rest.startswith("/"):
+        return [Path(url2pathname(urlparse(uri).path))]
+    return _relative(unquote(rest), base, model_path)
+
+
+def _named(
+    scheme: str, rest: str, packages: PackageResolver | None, model_path: Sequence[Path]
+) -> list[Path]:
+    name, _, inside = rest.partition("/")
+    share = packages(name) if packages is not None else None
+    in_package = [] if share is None else [Path(share) / inside]
+    in_models = [folder / rest for folder in model_path]
+    return in_package + in_models if scheme == "package" else in_models + in_package

@@ -1,0 +1,55 @@
+"""What every part of the SDF reader needs to know while it reads a file."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+from daidalos.description.markup import Element
+from daidalos.description.resolve import PackageResolver, resolve_uri
+
+BUILT_IN_MODELS = Path(__file__).parent / "models"
+
+
+@dataclass(frozen=True)
+class Context:
+    """Where names lead to, and what was odd so far.
+
+    Parameters
+    ----------
+    version : tuple of 2 ints
+        SDF version of the file being read.
+    folder : Path
+        Folder of the file being read.
+    packages : callable or None
+        Share directory of a package.
+    model_path : sequence of Path
+        Folders that hold models.
+    skip_missing : bool
+        An include that can not be found becomes a warning.
+    warnings : list of str
+        Shared by all files of one world.
+    including : tuple of Path
+        Files whose includes are being read, to find loops.
+    """
+
+    version: tuple[int, int]
+    folder: Path
+    packages: PackageResolver | None = None
+    model_path: Sequence[Path] = ()
+    skip_missing: bool = False
+    warnings: list[str] = field(default_factory=list)
+    including: tuple[Path, ...] = ()
+
+    def find(self, uri: str) -> Path | None:
+        """Return the file or folder that `uri` means, or None."""
+        return resolve_uri(uri, self.folder, self.packages, (*self.model_path, BUILT_IN_MODELS))
+
+    def inside(self, file: Path, version: tuple[int, int]) -> Context:
+        """Return the context for an included file."""
+        return replace(self, folder=file.parent, version=version, including=(*self.including, file))
+
+    def warn(self, element: Element, message: str) -> None:
+        """Note something odd about an element."""
+        self.warnings.append(f"{element.where}: {element.label}: {message}")

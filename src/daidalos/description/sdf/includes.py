@@ -1,0 +1,117 @@
+"""SDF's ``<include>``: finds the model that an address means and reads it with the include's changes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from daidalos.description.errors import DescriptionError
+from daidalos.description.link import Light
+from daidalos.description.markup import Element, parse_markup
+from daidalos.description.pose import Pose
+from daidalos.description.sdf.context import Context
+from daidalos.description.sdf.frames import RelativePose, read_pose
+from daidalos.description.sdf.links import read_light, read_plugin
+from daidalos.description.world import Model
+
+NEWEST = (1, 11)
+
+
+@dataclass(frozen=True)
+class Included:
+    """What an include brought, and where its pose puts it; `content` is None when it was skipped."""
+
+    content: Model | Light | None
+    pose: RelativePose
+
+
+def read_include(
+    element: Element, context: Context, read_model: Callable[[Element, Context], Model]
+) -> Included:
+    """Read ``<include>``; name, pose, static and plugins written in it win over those of the file."""
+    uri = element.text_of("uri")
+    if not uri:
+        raise element.error("<uri> is missing or empty")
+    found = context.find(uri)
+    if found is None:
+        if context.skip_missing:
+            context.warn(element, f"{uri} not found, left out")
+            return Included(None, RelativePose())
+        raise element.error(f"{uri} not found; {_searched(uri, context)}")
+    file = model_file(found, element)
+    if file in context.including:
+        raise element.error(f"{uri} includes itself")
+    content, written = _read_file(file, context, read_model)
+    pose = read_pose(element) if element.first("pose") is not None else written
+    if isinstance(content, Light):
+        return Included(replace(content, name=element.text_of("name", default=content.name)), pose)
+    model = replace(
+        content,
+        name=element.text_of("name", default=content.name),
+        static=element.flag_of("static", default=content.static),
+        placement_frame=element.text_of("placement_frame", default=content.placement_frame),
+        plugins=(*content.plugins, *(read_plugin(child) for child in element.all("plugin"))),
+    )
+    return Included(model, pose)
+
+
+def model_file(found: Path, element: Element) -> Path:
+    """Return the file to read: `found` itself, or what its ``model.config`` names for the newest SDF."""
+    if not found.is_dir():
+        return found
+    config = found / "model.config"
+    if not config.is_file():
+        config = found / "manifest.xml"
+    if not config.is_file():
+        if (found / "model.sdf").is_file():
+            return found / "model.sdf"
+        raise element.error(f"{found} holds neither model.config nor model.sdf")
+    choices = parse_markup(config.read_bytes(), str(config)).all("sdf")
+    if not choices:
+        raise DescriptionError("<sdf> is missing, expected the name of the model's file", str(config))
+    best = max(choices, key=lambda choice: _rank(read_version(choice)))
+    file = found / best.text.strip()
+    if not file.is_file():
+        raise best.error(f"no such file {file}")
+    return file
+
+
+def read_version(element: Element) -> tuple[int, int]:
+    """Return the ``version`` attribute as two numbers; the newest when there is none."""
+    words = element.attribute("version", "").split(".")
+    if len(words) < 2 or not all(word.isdigit() for word in words[:2]):
+        return NEWEST
+    return int(words[0]), int(words[1])
+
+
+def _rank(version: tuple[int, int]) -> tuple[bool, tuple[int, int]]:
+    return version <= NEWEST, version
+
+
+def _read_file(
+    file: Path, context: Context, read_model: Callable[[Element, Context], Model]
+) -> tuple[Model | Light, RelativePose]:
+    root = parse_markup(file.read_bytes(), str(file))
+    if root.tag == "robot":
+        from daidalos.description.gazebo import model_from_robot
+        from daidalos.description.urdf import read_robot
+
+        return model_from_robot(read_robot(root, context.packages)), RelativePose()
+    inside = context.inside(file, read_version(root))
+    model = root.first("model")
+    if model is not None:
+        return read_model(model, inside), read_pose(model)
+    light = root.first("light")
+    if light is not None:
+        return read_light(light, Pose()), read_pose(light)
+    raise root.error("expected <model> or <light>")
+
+
+def _searched(uri: str, context: Context) -> str:
+    if uri.startswith(("http://", "https://")):
+        return "models are not downloaded, put it into a folder of GZ_SIM_RESOURCE_PATH"
+    if uri.startswith(("model://", "package://")):
+        folders = ", ".join(str(folder) for folder in context.model_path) or "no folder"
+        return f"looked in {folders} (set GZ_SIM_RESOURCE_PATH or GAZEBO_MODEL_PATH)"
+    return f"looked beside {context.folder}"

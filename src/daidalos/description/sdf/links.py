@@ -1,0 +1,198 @@
+"""SDF's ``<link>`` and what is on it: inertial, collisions with their surface, visuals, sensors, lights."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from daidalos.description.link import (
+    Collision,
+    Inertial,
+    Light,
+    Link,
+    Plugin,
+    Sensor,
+    Surface,
+    Visual,
+)
+from daidalos.description.markup import Element
+from daidalos.description.pose import Pose
+from daidalos.description.sdf.context import Context
+from daidalos.description.sdf.geometry import read_geometry
+from daidalos.description.sdf.materials import read_color, read_material
+
+Placer = Callable[[Element], Pose]
+"""Takes an element with a ``<pose>``, returns that pose in the frame of the link that carries it."""
+
+
+def read_link(element: Element, context: Context, pose: Pose, place: Placer) -> Link:
+    """Read a link.
+
+    Parameters
+    ----------
+    element : Element
+        ``<link>``.
+    context : Context
+    pose : Pose
+        The link in its model, resolved.
+    place : callable
+        Resolves the poses of what is on the link.
+    """
+    inertial = element.first("inertial")
+    decay = element.first("velocity_decay") or Element("velocity_decay")
+    self_collide = element.first("self_collide")
+    return Link(
+        name=element.name(),
+        pose=pose,
+        inertial=_inertial(inertial or Element("inertial"), place),
+        visuals=tuple(_visual(child, context, place) for child in element.all("visual")),
+        collisions=tuple(_collision(child, context, place) for child in element.all("collision")),
+        sensors=tuple(read_sensor(child, place) for child in element.all("sensor")),
+        lights=tuple(read_light(child, place(child)) for child in element.all("light")),
+        gravity=element.flag_of("gravity", default=True),
+        kinematic=element.flag_of("kinematic", default=False),
+        self_collide=None if self_collide is None else self_collide.flag(),
+        wind=element.flag_of("enable_wind", default=False),
+        linear_damping=decay.number_of("linear", default=0.0),
+        angular_damping=decay.number_of("angular", default=0.0),
+        where=element.where,
+    )
+
+
+def read_sensor(element: Element, place: Placer) -> Sensor:
+    """Read what all sensors share; the rest stays in `Sensor.element`."""
+    rate = element.number_of("update_rate", default=0.0)
+    if rate < 0:
+        raise element.error(f"<update_rate> should not be negative, got {rate:g}")
+    return Sensor(
+        name=element.name(),
+        type=element.attribute("type"),
+        element=element,
+        pose=place(element),
+        update_rate=rate,
+        topic=element.text_of("topic"),
+        always_on=element.flag_of("always_on", default=True),
+        visualize=element.flag_of("visualize", default=False),
+        plugins=tuple(read_plugin(child) for child in element.all("plugin")),
+    )
+
+
+def read_plugin(element: Element) -> Plugin:
+    """Read a plugin's name and file; its parameters stay in `Plugin.element`."""
+    return Plugin(element.attribute("name", ""), element.attribute("filename", ""), element)
+
+
+def read_light(element: Element, pose: Pose) -> Light:
+    """Read a lamp that stands in the world or on a link."""
+    fade = element.first("attenuation") or Element("attenuation")
+    spot = element.first("spot") or Element("spot")
+    x, y, z = element.vector_of("direction", size=3, default=(0.0, 0.0, -1.0))
+    return Light(
+        name=element.attribute("name", ""),
+        type=element.attribute("type", "point"),
+        pose=pose,
+        diffuse=read_color(element, "diffuse") or (1.0, 1.0, 1.0, 1.0),
+        specular=read_color(element, "specular") or (0.1, 0.1, 0.1, 1.0),
+        direction=(x, y, z),
+        attenuation_range=fade.number_of("range", default=10.0),
+        attenuation_constant=fade.number_of("constant", default=1.0),
+        attenuation_linear=fade.number_of("linear", default=1.0),
+        attenuation_quadratic=fade.number_of("quadratic", default=0.0),
+        intensity=element.number_of("intensity", default=1.0),
+        cast_shadows=element.flag_of("cast_shadows", default=False),
+        on=element.flag_of("light_on", default=True),
+        spot_inner_angle=spot.number_of("inner_angle", default=0.0),
+        spot_outer_angle=spot.number_of("outer_angle", default=0.0),
+        spot_falloff=spot.number_of("falloff", default=0.0),
+    )
+
+
+def _inertial(element: Element, place: Placer) -> Inertial:
+    """Read mass properties; what is missing is one, as SDF says."""
+    mass = element.number_of("mass", default=1.0)
+    if mass < 0:
+        raise element.error(f"mass should not be negative, got {mass:g}")
+    moments = element.first("inertia") or Element("inertia")
+    xx, xy, xz, yy, yz, zz = (
+        moments.number_of(key, default=1.0 if key in ("ixx", "iyy", "izz") else 0.0)
+        for key in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
+    )
+    return Inertial(mass, place(element), (xx, xy, xz, yy, yz, zz))
+
+
+def _visual(element: Element, context: Context, place: Placer) -> Visual:
+    flags = element.number_of("visibility_flags", default=float(0xFFFFFFFF))
+    return Visual(
+        geometry=read_geometry(element, context),
+        pose=place(element),
+        material=read_material(element.first("material")),
+        name=element.attribute("name", ""),
+        transparency=element.number_of("transparency", default=0.0),
+        cast_shadows=element.flag_of("cast_shadows", default=True),
+        visibility_flags=int(flags),
+        label=_label(element),
+    )
+
+
+def _label(element: Element) -> int | None:
+    """Return the class that a segmentation camera sees (gz's Label system on a visual)."""
+    for plugin in element.all("plugin"):
+        if "label" in plugin.attribute("filename", "").lower():
+            return plugin.integer_of("label", default=0)
+    return None
+
+
+def _collision(element: Element, context: Context, place: Placer) -> Collision:
+    surface = element.first("surface")
+    return Collision(
+        geometry=read_geometry(element, context),
+        pose=place(element),
+        surface=Surface() if surface is None else _surface(surface),
+        name=element.attribute("name", ""),
+        laser_retro=element.number_of("laser_retro", default=0.0),
+        where=element.where,
+    )
+
+
+def _surface(element: Element) -> Surface:
+    friction = _below(element, "friction", "ode")
+    bullet = _below(element, "friction", "bullet")
+    torsional = _below(element, "friction", "torsional")
+    contact = _below(element, "contact")
+    stiffness = _below(element, "contact", "ode")
+    bounce = _below(element, "bounce")
+    return Surface(
+        mu=_optional(friction, "mu", _optional(bullet, "friction")),
+        mu2=_optional(friction, "mu2", _optional(bullet, "friction2")),
+        slip1=_optional(friction, "slip1"),
+        slip2=_optional(friction, "slip2"),
+        torsional=_optional(torsional, "coefficient"),
+        patch_radius=torsional.number_of("patch_radius", default=0.0),
+        kp=_optional(stiffness, "kp"),
+        kd=_optional(stiffness, "kd"),
+        restitution=bounce.number_of("restitution_coefficient", default=0.0),
+        restitution_threshold=bounce.number_of("threshold", default=0.0),
+        collide=not contact.flag_of("collide_without_contact", default=False),
+        bitmask=_bitmask(contact),
+    )
+
+
+def _bitmask(contact: Element) -> int:
+    element = contact.first("collide_bitmask")
+    if element is None:
+        return 0xFFFF
+    try:
+        return int(element.text.strip(), 0)
+    except ValueError:
+        raise element.error(f"expected an integer, got {element.text.strip()!r}") from None
+
+
+def _below(element: Element, *tags: str) -> Element:
+    """Return the element at the end of a path of tags; an empty one when it is not there."""
+    for tag in tags:
+        element = element.first(tag) or Element(tag, source=element.source, line=element.line)
+    return element
+
+
+def _optional(element: Element, tag: str, otherwise: float | None = None) -> float | None:
+    child = element.first(tag)
+    return otherwise if child is None else child.number()

@@ -1,0 +1,42 @@
+"""SDF's ``<material>``: colours, textures and the names of Gazebo's material scripts."""
+
+from __future__ import annotations
+
+from daidalos.description.link import Material, Rgba
+from daidalos.description.markup import Element
+from daidalos.description.named_colors import named_color
+
+
+def read_material(element: Element | None) -> Material | None:
+    """Read a material; None when there is none."""
+    if element is None:
+        return None
+    script = element.first("script") or Element("script")
+    name = script.text_of("name", default=element.text.strip())
+    named = named_color(name)
+    return Material(
+        name=name,
+        color=read_color(element, "diffuse") or named,
+        ambient=read_color(element, "ambient") or named,
+        specular=read_color(element, "specular"),
+        emissive=read_color(element, "emissive"),
+        texture=_texture(element),
+    )
+
+
+def read_color(element: Element, tag: str) -> Rgba | None:
+    """Read a colour of three or four numbers; None when there is none."""
+    child = element.first(tag)
+    if child is None or not child.text.strip():
+        return None
+    if len(child.text.replace(",", " ").split()) == 3:
+        red, green, blue = child.vector(3)
+        return red, green, blue, 1.0
+    red, green, blue, alpha = child.vector(4)
+    return red, green, blue, alpha
+
+
+def _texture(element: Element) -> str:
+    pbr = element.first("pbr") or Element("pbr")
+    workflow = pbr.first("metal", "specular")
+    return "" if workflow is None else workflow.text_of("albedo_map")

@@ -1,0 +1,164 @@
+"""SDF's ``<model>``: reads a model with its nested ones and flattens them into it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from daidalos.description.joint import Joint
+from daidalos.description.link import Link, Plugin
+from daidalos.description.markup import Element
+from daidalos.description.pose import Pose
+from daidalos.description.sdf.context import Context
+from daidalos.description.sdf.frames import FrameGraph, RelativePose, read_pose
+from daidalos.description.sdf.includes import read_include
+from daidalos.description.sdf.joints import read_joint
+from daidalos.description.sdf.links import read_link, read_plugin
+from daidalos.description.world import Model
+
+ROOT = "__model__"
+
+
+def read_model(element: Element, context: Context) -> Model:
+    """Read a ``<model>``; its pose is as written, for the scope around it to resolve.
+
+    Raises
+    ------
+    DescriptionError
+        When something in it is wrong; names file, line and element.
+    """
+    return _ModelReader(element, context).model()
+
+
+def place_nested(graph: FrameGraph, model: Model, pose: RelativePose, element: Element) -> None:
+    """Add a model and everything named in it to the frames of the scope that holds it."""
+    if model.placement_frame:
+        if model.placement_frame not in model.frames:
+            raise element.error(f"placement_frame {model.placement_frame!r} is not in the model")
+        placed = model.frames[model.placement_frame]
+        pose = RelativePose(pose.pose @ placed.inverse, pose.relative_to)
+    graph.add(model.name, pose, graph.root, element)
+    for name, frame in model.frames.items():
+        graph.add(f"{model.name}::{name}", RelativePose(frame), model.name, element)
+
+
+class _ModelReader:
+    def __init__(self, element: Element, context: Context) -> None:
+        self._element = element
+        self._context = context
+        self._graph = FrameGraph(ROOT)
+        self._attached: dict[str, str] = {}
+        self._nested: list[tuple[Model, bool]] = []
+
+    def model(self) -> Model:
+        element = self._element
+        self._read_nested()
+        self._place_links_and_frames()
+        links = {link.name: link for link in map(self._link, element.all("link"))}
+        joints = {joint.name: joint for joint in map(self._joint, element.all("joint"))}
+        plugins = [read_plugin(child) for child in element.all("plugin")]
+        for nested, merged in self._nested:
+            prefix = "" if merged else f"{nested.name}::"
+            place = self._graph.pose(nested.name, element)
+            links |= {prefix + n: _moved(link, prefix, place) for n, link in nested.links.items()}
+            joints |= {prefix + n: _renamed(joint, prefix, place) for n, joint in nested.joints.items()}
+            plugins += [_scoped(plugin, prefix) for plugin in nested.plugins]
+        _check_mimics(element, joints)
+        return Model(
+            name=element.name(),
+            pose=read_pose(element).pose,
+            links=links,
+            joints=joints,
+            frames={name: self._graph.pose(name, element) for name in self._graph.names()},
+            static=element.flag_of("static", default=False),
+            self_collide=element.flag_of("self_collide", default=False),
+            wind=element.flag_of("enable_wind", default=False),
+            plugins=tuple(plugins),
+            placement_frame=element.attribute("placement_frame", ""),
+            source=element.source,
+        )
+
+    def _read_nested(self) -> None:
+        for child in self._element.all("model", "include"):
+            merged = False
+            if child.tag == "include":
+                included = read_include(child, self._context, read_model)
+                if not isinstance(included.content, Model):
+                    continue
+                model, pose = included.content, included.pose
+                merged = child.attribute("merge", "false") in ("true", "1")
+            else:
+                model, pose = read_model(child, self._context), read_pose(child)
+            self._nested.append((model, merged))
+            place_nested(self._graph, model, pose, child)
+            self._attached |= {f"{model.name}::{name}": f"{model.name}::{name}" for name in model.links}
+            if merged:
+                for name in model.frames:
+                    self._graph.add(name, RelativePose(), f"{model.name}::{name}", child)
+                self._attached |= {name: name for name in model.links}
+
+    def _place_links_and_frames(self) -> None:
+        for child in self._element.all("link"):
+            self._graph.add(child.name(), read_pose(child), ROOT, child)
+            self._attached[child.name()] = child.name()
+        for child in self._element.all("frame"):
+            attached_to = child.attribute("attached_to", "")
+            self._graph.add(child.name(), read_pose(child), attached_to or ROOT, child)
+            if attached_to:
+                self._attached[child.name()] = attached_to
+        for child in self._element.all("joint"):
+            end = child.require("child")
+            name = end.text.strip() or end.text_of("link_name")
+            self._graph.add(child.name(), read_pose(child), name, child)
+            self._attached[child.name()] = name
+
+    def _link_of(self, name: str, element: Element) -> str:
+        """Follow frames and joints to the link that carries them."""
+        seen: list[str] = []
+        while self._attached.get(name, "") != name:
+            if name in seen:
+                raise element.error(f"{name!r} is attached to itself")
+            if name not in self._attached:
+                known = ", ".join(link for link, target in self._attached.items() if link == target)
+                raise element.error(f"there is no link {name!r}; known are {known or 'none'}")
+            seen.append(name)
+            name = self._attached[name]
+        return name
+
+    def _link(self, element: Element) -> Link:
+        name = element.name()
+
+        def place(child: Element) -> Pose:
+            return self._graph.place(read_pose(child), name, child)
+
+        return read_link(element, self._context, self._graph.pose(name, element), place)
+
+    def _joint(self, element: Element) -> Joint:
+        return read_joint(element, self._context, self._graph.pose, self._link_of, ROOT)
+
+
+def _moved(link: Link, prefix: str, place: Pose) -> Link:
+    return replace(link, name=prefix + link.name, pose=place @ link.pose)
+
+
+def _renamed(joint: Joint, prefix: str, place: Pose) -> Joint:
+    mimic = joint.mimic and replace(joint.mimic, joint=prefix + joint.mimic.joint)
+    to_world = joint.parent == "world"
+    return replace(
+        joint,
+        name=prefix + joint.name,
+        parent="world" if to_world else prefix + joint.parent,
+        child=prefix + joint.child,
+        origin=place @ joint.origin if to_world else joint.origin,
+        mimic=mimic,
+    )
+
+
+def _scoped(plugin: Plugin, prefix: str) -> Plugin:
+    scope = "::".join(part for part in (prefix.removesuffix("::"), plugin.scope) if part)
+    return replace(plugin, scope=scope)
+
+
+def _check_mimics(element: Element, joints: dict[str, Joint]) -> None:
+    for joint in joints.values():
+        if joint.mimic is not None and joint.mimic.joint not in joints:
+            raise element.error(f"joint {joint.name!r} mimics {joint.mimic.joint!r}, which does not exist")

@@ -1,0 +1,176 @@
+"""SDF's ``<world>``: models, lights, physics, scene and what else a world holds."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from daidalos.description.joint import Joint
+from daidalos.description.link import Light
+from daidalos.description.markup import Element
+from daidalos.description.pose import Pose
+from daidalos.description.sdf.context import Context
+from daidalos.description.sdf.frames import FrameGraph, RelativePose, read_pose
+from daidalos.description.sdf.includes import read_include
+from daidalos.description.sdf.joints import read_joint
+from daidalos.description.sdf.links import read_light, read_plugin
+from daidalos.description.sdf.materials import read_color
+from daidalos.description.sdf.models import place_nested, read_model
+from daidalos.description.world import (
+    Atmosphere,
+    Model,
+    Physics,
+    Scene,
+    SphericalCoordinates,
+    World,
+)
+
+ROOT = "world"
+
+
+def read_world(element: Element, context: Context) -> World:
+    """Read a ``<world>``.
+
+    Raises
+    ------
+    DescriptionError
+        When something in it is wrong; names file, line and element.
+    """
+    return _WorldReader(element, context).world()
+
+
+class _WorldReader:
+    def __init__(self, element: Element, context: Context) -> None:
+        self._element = element
+        self._context = context
+        self._graph = FrameGraph(ROOT)
+        self._models: list[tuple[Model, Element]] = []
+        self._lights: list[tuple[Light, RelativePose, Element]] = []
+
+    def world(self) -> World:
+        element, base = self._element, World()
+        self._read_contents()
+        physics = _default_physics(element)
+        return World(
+            name=element.attribute("name", base.name),
+            models=tuple(self._placed(model, child) for model, child in self._models),
+            lights=tuple(
+                replace(light, pose=self._graph.place(pose, ROOT, child))
+                for light, pose, child in self._lights
+            ),
+            joints={joint.name: joint for joint in map(self._joint, element.all("joint"))},
+            frames={name: self._graph.pose(name, element) for name in self._graph.names()},
+            physics=_physics(physics),
+            gravity=_vector(physics if physics.first("gravity") else element, "gravity", base.gravity),
+            magnetic_field=_vector(
+                physics if physics.first("magnetic_field") else element, "magnetic_field", base.magnetic_field
+            ),
+            wind=_vector(element.first("wind") or element, "linear_velocity", base.wind),
+            scene=_scene(element.first("scene")),
+            atmosphere=_atmosphere(element.first("atmosphere")),
+            spherical_coordinates=_spherical_coordinates(element.first("spherical_coordinates")),
+            plugins=tuple(read_plugin(child) for child in element.all("plugin")),
+            source=element.source,
+            warnings=tuple(self._context.warnings),
+        )
+
+    def _read_contents(self) -> None:
+        """Read everything that has a pose; poses are resolved when all names are known."""
+        for child in self._element.children:
+            if child.tag == "model":
+                self._add_model(read_model(child, self._context), read_pose(child), child)
+            elif child.tag == "light":
+                self._lights.append((read_light(child, Pose()), read_pose(child), child))
+            elif child.tag == "include":
+                self._add_included(child)
+            elif child.tag == "frame":
+                default = child.attribute("attached_to", "") or ROOT
+                self._graph.add(child.name(), read_pose(child), default, child)
+            elif child.tag == "joint":
+                self._graph.add(child.name(), read_pose(child), child.text_of("child"), child)
+
+    def _add_included(self, element: Element) -> None:
+        included = read_include(element, self._context, read_model)
+        if isinstance(included.content, Light):
+            self._lights.append((included.content, included.pose, element))
+        elif included.content is not None:
+            self._add_model(included.content, included.pose, element)
+
+    def _add_model(self, model: Model, pose: RelativePose, element: Element) -> None:
+        """Add a model; as in Gazebo, a second one of the same name gets a number."""
+        taken = {other.name for other, _ in self._models}
+        if model.name in taken:
+            number = next(i for i in range(len(taken) + 1) if f"{model.name}_{i}" not in taken)
+            self._context.warn(element, f"the name {model.name!r} is taken, called {model.name}_{number}")
+            model = replace(model, name=f"{model.name}_{number}")
+        self._models.append((model, element))
+        place_nested(self._graph, model, pose, element)
+
+    def _placed(self, model: Model, element: Element) -> Model:
+        return replace(model, pose=self._graph.pose(model.name, element))
+
+    def _joint(self, element: Element) -> Joint:
+        return read_joint(element, self._context, self._graph.pose, self._link_of, ROOT)
+
+    def _link_of(self, name: str, element: Element) -> str:
+        if not any(name == f"{model.name}::{link}" for model, _ in self._models for link in model.links):
+            raise element.error(f"there is no link {name!r}; expected model::link")
+        return name
+
+
+def _default_physics(element: Element) -> Element:
+    choices = element.all("physics")
+    marked = [choice for choice in choices if choice.attribute("default", "") in ("true", "1")]
+    return (marked or choices or [Element("physics")])[0]
+
+
+def _physics(element: Element) -> Physics:
+    base = Physics()
+    step = element.number_of("max_step_size", default=base.max_step_size)
+    if not 0 < step <= 1:
+        child = element.first("max_step_size") or element
+        raise child.error(f"expected a step between 0 and 1 s, got {step:g}")
+    return Physics(
+        max_step_size=step,
+        real_time_factor=element.number_of("real_time_factor", default=base.real_time_factor),
+        real_time_update_rate=element.number_of("real_time_update_rate", default=base.real_time_update_rate),
+    )
+
+
+def _vector(element: Element, tag: str, default: tuple[float, float, float]) -> tuple[float, float, float]:
+    x, y, z = element.vector_of(tag, size=3, default=default)
+    return x, y, z
+
+
+def _scene(element: Element | None) -> Scene:
+    base = Scene()
+    if element is None:
+        return base
+    return Scene(
+        ambient=read_color(element, "ambient") or base.ambient,
+        background=read_color(element, "background") or base.background,
+        shadows=element.flag_of("shadows", default=base.shadows),
+        grid=element.flag_of("grid", default=base.grid),
+        sky=element.first("sky") is not None,
+    )
+
+
+def _atmosphere(element: Element | None) -> Atmosphere:
+    base = Atmosphere()
+    if element is None:
+        return base
+    return Atmosphere(
+        temperature=element.number_of("temperature", default=base.temperature),
+        temperature_gradient=element.number_of("temperature_gradient", default=base.temperature_gradient),
+        pressure=element.number_of("pressure", default=base.pressure),
+    )
+
+
+def _spherical_coordinates(element: Element | None) -> SphericalCoordinates | None:
+    if element is None:
+        return None
+    return SphericalCoordinates(
+        latitude=element.number_of("latitude_deg", default=0.0),
+        longitude=element.number_of("longitude_deg", default=0.0),
+        elevation=element.number_of("elevation", default=0.0),
+        heading=element.number_of("heading_deg", default=0.0),
+    )

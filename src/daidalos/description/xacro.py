@@ -1,0 +1,204 @@
+"""Xacro files, expanded by the `xacro` package itself, with each element's file and line kept.
+
+xacro offers no way to ask where an element came from and finds packages only through an installed
+ROS index. Both are supplied here while it runs: its parser marks every ordinary element with its
+origin, and its ``$(find)`` asks the caller's resolver first.
+"""
+
+from __future__ import annotations
+
+import math
+import threading
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from types import TracebackType
+from typing import TYPE_CHECKING, Any
+from xml.dom import expatbuilder, minidom
+from xml.parsers import expat
+
+from daidalos.description.errors import DescriptionError
+from daidalos.description.markup import Element
+
+if TYPE_CHECKING:
+    from daidalos.description.resolve import PackageResolver
+
+_ORIGIN = "daidalos-origin"
+_LOCK = threading.Lock()  # xacro keeps its state in module variables
+
+
+def load_xacro(
+    path: Path | str,
+    mappings: Mapping[str, str] | None = None,
+    resolve: PackageResolver | None = None,
+) -> str:
+    """Expand a xacro file to XML text.
+
+    Parameters
+    ----------
+    path : Path or str
+    mappings : mapping or None
+        Values for its ``<xacro:arg>``.
+    resolve : callable or None
+        Share directory of a package, for ``$(find package)``.
+
+    Returns
+    -------
+    str
+        The description without macros.
+
+    Raises
+    ------
+    DescriptionError
+        When the file or one that it includes is missing, malformed or uses what is not defined.
+    """
+    return '<?xml version="1.0"?>\n' + expand(path, mappings, resolve).to_text()
+
+
+def expand(
+    path: Path | str,
+    mappings: Mapping[str, str] | None = None,
+    resolve: PackageResolver | None = None,
+) -> Element:
+    """Expand a xacro file to elements that name the file and line they were written on.
+
+    Parameters, errors: as `load_xacro`.
+    """
+    path = Path(path)
+    if not path.is_file():
+        raise DescriptionError("no such file", str(path))
+    import xacro
+
+    with _LOCK, _supplied(xacro, resolve) as files:
+        xacro.init_stacks(str(path))
+        try:
+            document = xacro.parse(None, str(path))
+            _define_m_pi(document)
+            xacro.process_doc(document, mappings=dict(mappings or {}), verbosity=0)
+        except expat.ExpatError as problem:
+            reason = expat.ErrorString(problem.code)
+            source = str(xacro.filestack[-1])
+            raise DescriptionError(f"not well-formed XML: {reason}", source, problem.lineno) from None
+        except Exception as problem:
+            # xacro evaluates what the user wrote, so that anything can be raised from there.
+            raise _error(problem, xacro, files) from None
+        finally:
+            xacro.substitution_args_context["arg"] = {}
+        return _element(document.documentElement, files, str(path), 1)
+
+
+@contextmanager
+def _supplied(xacro: Any, resolve: PackageResolver | None) -> Iterator[list[str]]:
+    """Put our parser and package finder into xacro; yields the list of files that were read."""
+    from xacro import substitution_args
+
+    files: list[str] = []
+    parse, find = xacro.parse, substitution_args._eval_find
+
+    def parse_marked(text: Any, filename: str | None = None) -> Any:
+        if text is not None:
+            return parse(text, filename)
+        path = Path(xacro.root_dir) / str(filename)
+        try:
+            body = path.read_bytes()
+        except OSError as problem:
+            xacro.filestack.pop()
+            raise xacro.XacroException(f"{problem.strerror}: {path}", exc=problem) from None
+        files.append(str(path))
+        return _parse_marked(body, len(files) - 1)
+
+    def find_package(name: str) -> str:
+        share = None if resolve is None else resolve(name)
+        if share is not None:
+            return str(share)
+        try:
+            return str(find(name))
+        except (ImportError, LookupError):
+            raise DescriptionError(f"package {name!r} not found") from None
+
+    xacro.parse, substitution_args._eval_find = parse_marked, find_package
+    try:
+        yield files
+    finally:
+        xacro.parse, substitution_args._eval_find = parse, find
+
+
+def _parse_marked(body: bytes, file_index: int) -> minidom.Document:
+    """Read a document, each element with its origin.
+
+    xacro takes an attribute on one of its own tags for a macro's parameter, and copies of elements
+    lose what is not an attribute: hence both ways of keeping it.
+    """
+    builder: Any = expatbuilder.ExpatBuilderNS()
+    start_element = builder.start_element_handler
+
+    def start_marked(name: str, attributes: list[str]) -> None:
+        start_element(name, attributes)
+        node = builder.curNode
+        node.daidalos_origin = f"{file_index}:{builder.getParser().CurrentLineNumber}"
+        if not node.tagName.startswith("xacro:"):
+            node.setAttribute(_ORIGIN, node.daidalos_origin)
+
+    builder.start_element_handler = start_marked
+    document: minidom.Document = builder.parseString(body)
+    return document
+
+
+def _define_m_pi(document: minidom.Document) -> None:
+    """Let files use ``M_PI`` without defining it, as descriptions from ROS 1 do; their own value wins."""
+    root = document.documentElement
+    assert root is not None
+    definition = document.createElement("xacro:property")
+    definition.setAttribute("name", "M_PI")
+    definition.setAttribute("value", repr(math.pi))
+    root.insertBefore(definition, root.firstChild)
+
+
+def _error(problem: BaseException, xacro: Any, files: list[str]) -> DescriptionError:
+    """Say what went wrong, where, and in which macro."""
+    words = " ".join(str(problem).split()) or type(problem).__name__
+    cause: BaseException | None = problem
+    while cause is not None:
+        if isinstance(cause, DescriptionError):
+            words = cause.message
+        elif isinstance(cause, OSError):
+            words = f"{cause.strerror}: {cause.filename}"
+        cause = getattr(cause, "exc", None)
+    words = words[:1].lower() + words[1:] if words[:2].istitle() else words
+    source, line = _innermost_origin(problem.__traceback__, files)
+    stack = xacro.macrostack or []
+    macro = f"<xacro:{stack[-1].body.getAttribute('name')}>" if stack else ""
+    return DescriptionError(words, source or str(xacro.filestack[-1]), line, macro)
+
+
+def _innermost_origin(trace: TracebackType | None, files: list[str]) -> tuple[str, int]:
+    """Return file and line of the last element that xacro had in hand."""
+    source, line = "", 0
+    while trace is not None:
+        for name in ("elt", "node"):
+            node = trace.tb_frame.f_locals.get(name)
+            origin = getattr(node, "daidalos_origin", "")
+            if not origin and isinstance(node, minidom.Element):
+                origin = node.getAttribute(_ORIGIN)
+            if origin:
+                index, _, number = origin.partition(":")
+                source, line = files[int(index)], int(number)
+                break
+        trace = trace.tb_next
+    return source, line
+
+
+def _element(node: minidom.Element, files: list[str], source: str, line: int) -> Element:
+    """Turn xacro's result into our elements; what xacro made itself takes its parent's origin."""
+    attributes = dict(node.attributes.items())
+    origin = attributes.pop(_ORIGIN, "")
+    if origin:
+        index, _, number = origin.partition(":")
+        source, line = files[int(index)], int(number)
+    element = Element(node.tagName, attributes, source=source, line=line)
+    for child in node.childNodes:
+        if child.nodeType == child.ELEMENT_NODE:
+            element.children.append(_element(child, files, source, line))
+        elif child.nodeType in (child.TEXT_NODE, child.CDATA_SECTION_NODE):
+            element.text += child.data
+    return element
