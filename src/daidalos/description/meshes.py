@@ -1,0 +1,210 @@
+"""Triangles: of mesh files (kept in memory once read) and of every other shape."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daidalos.description.errors import DescriptionError
+from daidalos.description.geometry import (
+    Box,
+    Capsule,
+    Cone,
+    Cylinder,
+    Ellipsoid,
+    Geometry,
+    Mesh,
+    Polyline,
+    Sphere,
+)
+
+_FORMATS = ("stl", "dae", "obj", "gltf", "glb", "ply", "off")
+
+
+@dataclass(frozen=True, eq=False)
+class TriangleMesh:
+    """Triangles in the frame of a shape.
+
+    Parameters
+    ----------
+    vertices : array (n, 3)
+        [m].
+    faces : array (m, 3) of int32
+        Rows of `vertices`, counter-clockwise seen from outside.
+    """
+
+    vertices: NDArray[np.float64]
+    faces: NDArray[np.int32]
+
+
+def triangles_of(geometry: Geometry, segments: int = 48) -> TriangleMesh:
+    """Return the surface of a shape as triangles.
+
+    Parameters
+    ----------
+    geometry : Geometry
+        Any closed shape; a plane, a heightmap and an empty shape have no closed surface.
+    segments : int
+        Sides of what is round.
+
+    Returns
+    -------
+    TriangleMesh
+
+    Raises
+    ------
+    DescriptionError
+        When a mesh file is missing or can not be read.
+    TypeError
+        When the shape has no closed surface.
+    """
+    if isinstance(geometry, Mesh):
+        return load_mesh(geometry)
+    maker = _MAKERS.get(type(geometry))
+    if maker is None:
+        raise TypeError(f"a {type(geometry).__name__} has no closed surface")
+    made = maker(geometry, segments)
+    return TriangleMesh(np.asarray(made.vertices, dtype=np.float64), np.asarray(made.faces, dtype=np.int32))
+
+
+def load_mesh(mesh: Mesh) -> TriangleMesh:
+    """Read a mesh's file with its scale, part and centring applied.
+
+    A mirrored scale turns the triangles round, so that they still look outwards.
+
+    Raises
+    ------
+    DescriptionError
+        When the file is not found, is no mesh or lacks the part.
+    """
+    if mesh.path is None:
+        raise DescriptionError(f"mesh {mesh.uri} not found", mesh.where)
+    whole = _read(mesh.path, mesh.submesh, mesh.path.stat().st_mtime_ns, mesh.where)
+    scale = np.array(mesh.scale)
+    vertices, faces = whole.vertices, whole.faces
+    if mesh.center and len(vertices):
+        vertices = vertices - (vertices.min(axis=0) + vertices.max(axis=0)) / 2
+    if np.prod(scale) < 0:
+        faces = faces[:, ::-1]
+    return TriangleMesh(vertices * scale, np.ascontiguousarray(faces))
+
+
+@lru_cache(maxsize=256)
+def _read(path: Path, submesh: str, _modified: int, where: str) -> TriangleMesh:
+    """Read all triangles of a file in its own units, or those of one part."""
+    import trimesh
+
+    kind = path.suffix.lower().lstrip(".")
+    if kind not in _FORMATS:
+        raise DescriptionError(f"mesh {path}: {kind or 'no'} format; known are {', '.join(_FORMATS)}", where)
+    try:
+        scene = trimesh.load_scene(path, file_type=kind)
+    except Exception as problem:
+        # The readers of the formats raise whatever their file's content leads them to.
+        reason = " ".join(str(problem).split()) or type(problem).__name__
+        raise DescriptionError(f"mesh {path} can not be read: {reason}", where) from None
+    parts = [part for name, part in _parts(scene) if not submesh or submesh in name]
+    if submesh and not parts:
+        raise DescriptionError(f"mesh {path} has no part {submesh!r}", where)
+    if not parts:
+        raise DescriptionError(f"mesh {path} holds no triangles", where)
+    whole = trimesh.util.concatenate(parts)
+    whole.merge_vertices(merge_tex=True, merge_norm=True)
+    return TriangleMesh(np.asarray(whole.vertices, dtype=np.float64), np.asarray(whole.faces, dtype=np.int32))
+
+
+def _parts(scene: Any) -> list[tuple[tuple[str, str], Any]]:
+    """Return every instance in a scene, by node and geometry name, placed in the scene's frame."""
+    parts = []
+    for node in scene.graph.nodes_geometry:
+        transform, name = scene.graph[node]
+        part = scene.geometry[name]
+        if hasattr(part, "faces") and len(part.faces):
+            placed = part.copy()
+            placed.apply_transform(transform)
+            parts.append(((str(node), str(name)), placed))
+    return parts
+
+
+def _box(shape: Box, _: int) -> Any:
+    import trimesh
+
+    return trimesh.creation.box(extents=shape.size)
+
+
+def _sphere(shape: Sphere, segments: int) -> Any:
+    import trimesh
+
+    return trimesh.creation.uv_sphere(radius=shape.radius, count=(segments // 2 + 1, segments))
+
+
+def _ellipsoid(shape: Ellipsoid, segments: int) -> Any:
+    sphere = _sphere(Sphere(1.0), segments)
+    sphere.apply_scale(shape.radii)
+    return sphere
+
+
+def _cylinder(shape: Cylinder, segments: int) -> Any:
+    import trimesh
+
+    return trimesh.creation.cylinder(radius=shape.radius, height=shape.length, sections=segments)
+
+
+def _capsule(shape: Capsule, segments: int) -> Any:
+    import trimesh
+
+    capsule = trimesh.creation.capsule(
+        radius=shape.radius, height=shape.length, count=(segments // 2, segments)
+    )
+    capsule.apply_translation(-capsule.bounds.mean(axis=0))
+    return capsule
+
+
+def _cone(shape: Cone, segments: int) -> Any:
+    import trimesh
+
+    cone = trimesh.creation.cone(radius=shape.radius, height=shape.length, sections=segments)
+    cone.apply_translation((0, 0, -shape.length / 2))
+    return cone
+
+
+def _polyline(shape: Polyline, _: int) -> Any:
+    """Extrude the outlines; further outlines are holes where they lie inside an earlier one."""
+    import shapely
+    import trimesh
+
+    area = shapely.Polygon()
+    for outline in shape.outlines:
+        area = area.symmetric_difference(shapely.Polygon(outline).buffer(0))
+    polygons = getattr(area, "geoms", [area])
+    parts = [_extrude(polygon, shape.height) for polygon in polygons if polygon.area > 0]
+    return trimesh.util.concatenate(parts)
+
+
+def _extrude(polygon: Any, height: float) -> Any:
+    """Raise a polygon with holes; the flat ends are its constrained triangulation."""
+    import shapely
+    import trimesh
+
+    triangles = shapely.constrained_delaunay_triangles(shapely.geometry.polygon.orient(polygon))
+    corners = np.array([t.exterior.coords[:3] for t in triangles.geoms], dtype=np.float64)[:, :, :2]
+    vertices, index = np.unique(corners.reshape(-1, 2), axis=0, return_inverse=True)
+    faces = index.reshape(-1, 3)
+    return trimesh.creation.extrude_triangulation(vertices, faces, height=height)
+
+
+_MAKERS: dict[type, Callable[[Any, int], Any]] = {
+    Box: _box,
+    Sphere: _sphere,
+    Ellipsoid: _ellipsoid,
+    Cylinder: _cylinder,
+    Capsule: _capsule,
+    Cone: _cone,
+    Polyline: _polyline,
+}
