@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ast
 import math
 import re
 from pathlib import Path
@@ -29,10 +28,11 @@ class InterfaceError(ValueError):
 _TYPE = re.compile(
     r"(?P<base>[A-Za-z][\w/]*)(?:<=(?P<bound>\d+))?(?P<array>\[(?P<upto><=)?(?P<size>\d*)\])?$"
 )
-_FIELD_NAME = re.compile(r"[a-z](?:_?[a-z0-9]+)*$")
-_CONSTANT_NAME = re.compile(r"[A-Z](?:_?[A-Z0-9]+)*$")
+_FIELD_NAME = re.compile(r"[a-z][a-z0-9]*(?:_[a-z0-9]+)*$")
+_CONSTANT_NAME = re.compile(r"[A-Z][A-Z0-9]*(?:_[A-Z0-9]+)*$")
 _NAME = re.compile(r"[A-Z][A-Za-z0-9]*$")
 _FLOAT32_MAX = 3.4028234663852886e38
+_ESCAPES = {"n": "\n", "t": "\t", "r": "\r"}
 
 
 def parse_file(path: Path, package: str) -> Interface:
@@ -46,7 +46,11 @@ def parse_file(path: Path, package: str) -> Interface:
     kind = path.suffix.lstrip(".")
     if kind not in {"msg", "srv", "action"}:
         raise InterfaceError(f"{path}: expected a .msg, .srv or .action file")
-    return parse(path.read_text(encoding="utf-8"), package, kind, path.stem, str(path))
+    try:
+        text = path.read_text(encoding="utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise InterfaceError(f"{path}: byte {error.start} is no UTF-8") from None
+    return parse(text, package, kind, path.stem, str(path))
 
 
 def parse(text: str, package: str, kind: str, name: str, source: str = "<text>") -> Interface:
@@ -112,24 +116,26 @@ def _parse_message(name: str, lines: list[str], first: int, source: str, package
 
 
 def _split_comment(line: str) -> tuple[str, str | None]:
-    """Split a line into its code and its comment, minding quoted '#'."""
-    quote = ""
+    """Split a line into its code and its comment, minding quoted '#'; quotes within words are none."""
+    quote, escaped = "", False
     for i, char in enumerate(line):
-        if quote:
-            if char == quote and line[i - 1] != "\\":
-                quote = ""
-        elif char in "'\"":
+        if escaped:
+            escaped = False
+        elif quote:
+            escaped = char == "\\"
+            quote = "" if char == quote else quote
+        elif char in "'\"" and line[i - 1 : i] in {"", " ", "\t", "=", ",", "["}:
             quote = char
         elif char == "#":
             return line[:i].strip(), line[i + 1 :].strip()
-    if quote and "#" in line:  # an apostrophe in a comment, not a quoted string
+    if quote and "#" in line:  # not closed: no quoted string
         return line[: line.index("#")].strip(), line[line.index("#") + 1 :].strip()
     return line.strip(), None
 
 
 def _parse_line(code: str, comment: str, package: str) -> Field | Constant:
-    type_text, _, rest = code.partition(" ")
-    rest = rest.strip()
+    type_text, *others = code.split(maxsplit=1)
+    rest = others[0] if others else ""
     field_type = _parse_type(type_text, package)
     if not rest:
         raise InterfaceError(f"'{code}' has a type but no name")
@@ -220,7 +226,7 @@ def _parse_value(field_type: FieldType, text: str) -> bool | int | float | str:
             raise InterfaceError(f"{text} is out of range for float32")
         return value
     try:
-        number = int(text, 0)
+        number = int(text) if text.lstrip("+-").isdigit() else int(text, 0)
     except ValueError:
         raise InterfaceError(f"'{text}' is no {base}") from None
     low, high = INTEGER_RANGES[base]
@@ -231,10 +237,9 @@ def _parse_value(field_type: FieldType, text: str) -> bool | int | float | str:
 
 def _parse_string(field_type: FieldType, text: str) -> str:
     if len(text) >= 2 and text[0] == text[-1] and text[0] in "'\"":
-        try:
-            text = str(ast.literal_eval(text))
-        except (SyntaxError, ValueError):
-            text = text[1:-1]
+        if re.search(rf"(?<!\\){text[0]}", text[1:-1]):
+            raise InterfaceError(f"the string {text} has a quote inside that needs a backslash")
+        text = re.sub(r"\\([\\'\"ntr])", lambda match: _ESCAPES.get(match[1], match[1]), text[1:-1])
     elif text[:1] in {"'", '"'}:
         raise InterfaceError(f"the string {text} is not closed")
     if field_type.string_bound is not None and len(text) > field_type.string_bound:
