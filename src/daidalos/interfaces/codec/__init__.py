@@ -154,7 +154,12 @@ def codec_of(message_type: type[Message], wide: int = 4) -> Codec:
     key = (message_type, wide)
     codec = _CODECS.get(key)
     if codec is None:
-        codec = _CODECS.setdefault(key, Codec(message_type, wide))
+        plain = (message_type, 4)
+        if wide == 4 or _has_wide_strings(message_type):
+            codec = Codec(message_type, wide)
+        else:
+            codec = _CODECS.setdefault(plain, Codec(message_type))
+        codec = _CODECS.setdefault(key, codec)
     return codec
 
 

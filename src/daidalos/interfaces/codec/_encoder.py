@@ -157,7 +157,7 @@ class Encoder(Generator):
             self.strings(values)
             return
         layout = None if isinstance(base, str) else fixed_size(base)
-        if layout and layout[0] and layout[0] % layout[1] == 0:
+        if layout:
             self.repeated(base, values, *layout)
             return
         item = self.fresh("e")

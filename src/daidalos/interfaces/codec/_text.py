@@ -31,20 +31,23 @@ class Variant:
 
 
 def fixed_size(kind: type[Message]) -> tuple[int, int] | None:
-    """Return (size, alignment) of a message whose every instance has the same layout, else None."""
-    offset, alignment = 0, 1
-    if not kind._FIELDS:
-        return None
+    """Return (size, alignment) of a message whose instances all have one layout wherever they start, else None.
+
+    CDR aligns values, not messages. The layout is the same everywhere only if the first value is among those of
+    the greatest alignment and the size is a multiple of it, so that neighbours in an array repeat.
+    """
+    offset, alignment, first = 0, 1, 0
     for _, base, many, size, _ in kind._FIELDS:
         if many not in ("single", "array") or base in ("string", "wstring"):
             return None
-        inner = fixed_size(base) if not isinstance(base, str) else (SIZES[base], SIZES[base])
+        inner = (SIZES[base], SIZES[base]) if isinstance(base, str) else fixed_size(base)
         if inner is None:
             return None
-        if inner[0] % inner[1]:
-            return None  # neighbours in an array would not repeat
         offset += -offset % inner[1] + inner[0] * (size if many == "array" else 1)
         alignment = max(alignment, inner[1])
+        first = first or inner[1]
+    if not kind._FIELDS or first != alignment or offset % alignment:
+        return None
     return offset, alignment
 
 

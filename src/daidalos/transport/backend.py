@@ -1,0 +1,156 @@
+"""What a middleware must do for a session: the contract of zenoh, DDS and in-process backends.
+
+A backend carries bytes between processes and keeps the graph informed of what others declare. Delivery within
+the process, matching by QoS and decoding are the session's, so that they are alike everywhere.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from daidalos.transport.graph import EndpointInfo, EndpointKind, Graph, NodeInfo
+from daidalos.transport.qos import Qos
+
+
+@dataclass(frozen=True, slots=True)
+class SampleInfo:
+    """What is known of a sample beside its data; stamps are Unix time in nanoseconds."""
+
+    source_ns: int
+    received_ns: int
+    sequence: int
+    gid: bytes
+
+
+@dataclass(frozen=True, slots=True)
+class RequestId:
+    """Identifies a service request: the client's gid and its count of requests."""
+
+    client: bytes
+    sequence: int
+
+
+class WirePublisher(ABC):
+    """Sends a topic's samples to other processes."""
+
+    @abstractmethod
+    def put(self, parts: list[Any], sequence: int, stamp_ns: int) -> None:
+        """Send one sample, given as buffers to be concatenated."""
+
+    @abstractmethod
+    def close(self) -> None:
+        """Stop publishing."""
+
+
+class WireSubscription(ABC):
+    """Receives a topic's samples from other processes.
+
+    Samples are handed on as the backend's own objects, so that the receiving thread does next to nothing; the
+    thread that takes them asks for their bytes.
+    """
+
+    @abstractmethod
+    def data(self, sample: Any) -> bytes:
+        """Return a sample's bytes."""
+
+    @abstractmethod
+    def info(self, sample: Any, received_ns: int) -> SampleInfo:
+        """Return what is known of a sample."""
+
+    @abstractmethod
+    def close(self) -> None:
+        """Stop receiving."""
+
+
+class WireService(ABC):
+    """Receives a service's requests from other processes and answers them."""
+
+    @abstractmethod
+    def request(self, item: Any) -> tuple[bytes, RequestId, int]:
+        """Return a request's bytes, its identity and its source stamp."""
+
+    @abstractmethod
+    def reply(self, request: RequestId, data: bytes) -> None:
+        """Answer a request; a client that is gone is ignored."""
+
+    @abstractmethod
+    def close(self) -> None:
+        """Stop serving."""
+
+
+class WireClient(ABC):
+    """Sends a service's requests to another process."""
+
+    @abstractmethod
+    def send(self, data: bytes, sequence: int, stamp_ns: int) -> None:
+        """Send a request; the answer is handed to the callback given at declaration."""
+
+    @abstractmethod
+    def response(self, item: Any) -> tuple[bytes, int, int]:
+        """Return an answer's bytes, the sequence number of its request and its source stamp."""
+
+    @abstractmethod
+    def close(self) -> None:
+        """Stop; answers still outstanding are dropped."""
+
+
+class Backend(ABC):
+    """One middleware's membership in a domain."""
+
+    identifier: str
+    """Such as ``rmw_zenoh_cpp``."""
+    wide: int
+    """Bytes that a character of a wide string takes on this wire."""
+
+    @abstractmethod
+    def start(self, graph: Graph) -> None:
+        """Join; from now on tell `graph` of what other processes declare and undeclare."""
+
+    @abstractmethod
+    def close(self) -> None:
+        """Leave; everything still declared is undeclared."""
+
+    @abstractmethod
+    def settle(self, timeout_s: float) -> bool:
+        """Wait until every peer known to be there has told of itself; False when time ran out."""
+
+    @abstractmethod
+    def identify(
+        self, kind: EndpointKind, node: NodeInfo, name: str, type_name: str, type_hash: str, qos: Qos
+    ) -> tuple[str, bytes]:
+        """Return a new endpoint's key in the graph and its gid."""
+
+    @abstractmethod
+    def new_node(self, name: str, namespace: str, enclave: str) -> NodeInfo:
+        """Return the description of a new node of ours."""
+
+    @abstractmethod
+    def declare_node(self, node: NodeInfo) -> Callable[[], None]:
+        """Tell others of a node of ours; the result undoes it."""
+
+    @abstractmethod
+    def declare_publisher(
+        self, key: str, endpoint: EndpointInfo, on_matched: Callable[[bool], None]
+    ) -> WirePublisher:
+        """Declare a publisher; `on_matched` is told when listeners elsewhere come (True) and are gone."""
+
+    @abstractmethod
+    def declare_subscription(
+        self, key: str, endpoint: EndpointInfo, on_sample: Callable[[Any], None]
+    ) -> WireSubscription:
+        """Declare a subscription; `on_sample` is called on the receiving thread."""
+
+    @abstractmethod
+    def declare_service(
+        self, key: str, endpoint: EndpointInfo, on_request: Callable[[Any], None]
+    ) -> WireService:
+        """Declare a service; `on_request` is called on the receiving thread."""
+
+    @abstractmethod
+    def declare_client(
+        self, key: str, endpoint: EndpointInfo, on_response: Callable[[Any], None]
+    ) -> WireClient:
+        """Declare a client; `on_response` is called on the receiving thread."""

@@ -1,0 +1,107 @@
+"""Publishing: to subscriptions of this process as snapshots, to others as bytes, and only to who listens."""
+
+from __future__ import annotations
+
+import itertools
+import time
+from collections import deque
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from daidalos.interfaces.codec import Codec
+from daidalos.transport.backend import WirePublisher
+from daidalos.transport.graph import EndpointInfo
+
+if TYPE_CHECKING:
+    from daidalos.transport.subscription import Subscription
+
+
+class Publisher:
+    """One publisher of a node; made by `Session.create_publisher`.
+
+    Attributes
+    ----------
+    endpoint
+        How the graph knows it.
+    """
+
+    def __init__(self, endpoint: EndpointInfo, codec: Codec) -> None:
+        self.endpoint = endpoint
+        self._codec = codec
+        self._type = codec.message_type
+        self._gid = endpoint.gid
+        self._next_sequence = itertools.count(1).__next__
+        self._targets: tuple[Subscription, ...] = ()
+        self._wire: WirePublisher | None = None
+        self._heard = False
+        qos = endpoint.qos
+        self._latched = qos.transient_local
+        self._history: deque[tuple[Any, ...]] = deque(maxlen=qos.limit if self._latched else 0)
+        self._undo: Callable[[], None] | None = None
+
+    def publish(self, message: Any) -> None:
+        """Send a message, or its CDR bytes, to everyone who listens.
+
+        Raises
+        ------
+        TypeError
+            When `message` is neither of the publisher's type nor bytes.
+        CdrError
+            When a field holds what its type cannot.
+        """
+        if message.__class__ is not self._type and not isinstance(message, self._type):
+            if not isinstance(message, (bytes, bytearray, memoryview)):
+                raise TypeError(f"Expected {self._type}, got {type(message)}")
+            self._publish_bytes(bytes(message))
+            return
+        heard = self._heard
+        if self._targets or heard or self._latched:
+            sequence, stamp = self._next_sequence(), time.time_ns()
+            if self._latched:
+                self._history.append((self._codec.snapshot(message), stamp, sequence, self._gid))
+            for subscription in self._targets:
+                subscription.accept_local((self._codec.snapshot(message), stamp, sequence, self._gid))
+            if heard and self._wire is not None:
+                self._wire.put(self._codec.parts(message), sequence, stamp)
+
+    def _publish_bytes(self, data: bytes) -> None:
+        sequence, stamp = self._next_sequence(), time.time_ns()
+        if self._latched:
+            self._history.append((self._codec.decode(data), stamp, sequence, self._gid))
+        for subscription in self._targets:
+            subscription.accept_local((self._codec.decode(data), stamp, sequence, self._gid))
+        if self._heard and self._wire is not None:
+            self._wire.put([data], sequence, stamp)
+
+    def replay(self, subscription: Subscription) -> None:
+        """Give a subscription of this process the samples that were kept for late comers."""
+        for message, *rest in list(self._history):
+            subscription.accept_local((self._codec.snapshot(message), *rest))
+
+    def close(self) -> None:
+        """Leave the graph; publishing afterwards reaches nobody."""
+        undo, self._undo = self._undo, None
+        if undo:
+            undo()
+
+    # The session's side.
+
+    def attach(self, wire: WirePublisher, undo: Callable[[], None]) -> None:
+        """Connect to the middleware; `undo` ends that."""
+        self._wire, self._undo = wire, undo
+        if self._latched:
+            self._heard = True  # the middleware keeps the samples for who comes later
+
+    def set_heard(self, heard: bool) -> None:
+        """Note whether anyone listens in another process."""
+        self._heard = heard or self._latched
+
+    def set_targets(self, targets: tuple[Subscription, ...]) -> None:
+        """Note the subscriptions of this process that get every sample."""
+        self._targets = targets
+
+    def detach(self) -> None:
+        """Forget the middleware and all listeners."""
+        wire, self._wire, self._heard, self._targets = self._wire, None, False, ()
+        if wire:
+            wire.close()

@@ -1,0 +1,110 @@
+"""Quality of service: policies, and which publisher satisfies which subscription."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import IntEnum
+
+INFINITE_NS = 2**63 - 1
+"""A duration that never ends, in nanoseconds."""
+DEFAULT_DEPTH = 42
+"""Depth that zenoh's ROS middleware takes where none is given."""
+
+
+class Reliability(IntEnum):
+    """Whether samples may be lost; the values are rmw's."""
+
+    SYSTEM_DEFAULT = 0
+    RELIABLE = 1
+    BEST_EFFORT = 2
+    UNKNOWN = 3
+    BEST_AVAILABLE = 4
+
+
+class Durability(IntEnum):
+    """Whether late subscriptions get earlier samples; the values are rmw's."""
+
+    SYSTEM_DEFAULT = 0
+    TRANSIENT_LOCAL = 1
+    VOLATILE = 2
+    UNKNOWN = 3
+    BEST_AVAILABLE = 4
+
+
+class History(IntEnum):
+    """How many samples are kept; the values are rmw's."""
+
+    SYSTEM_DEFAULT = 0
+    KEEP_LAST = 1
+    KEEP_ALL = 2
+    UNKNOWN = 3
+
+
+class Liveliness(IntEnum):
+    """How a publisher shows that it is alive; the values are rmw's."""
+
+    SYSTEM_DEFAULT = 0
+    AUTOMATIC = 1
+    MANUAL_BY_NODE = 2
+    MANUAL_BY_TOPIC = 3
+    UNKNOWN = 4
+    BEST_AVAILABLE = 5
+
+
+class Policy(IntEnum):
+    """Names of the policies, with rmw's values (bits)."""
+
+    INVALID = 1
+    DURABILITY = 2
+    DEADLINE = 4
+    LIVELINESS = 8
+    RELIABILITY = 16
+    HISTORY = 32
+    LIFESPAN = 64
+    DEPTH = 128
+    LIVELINESS_LEASE_DURATION = 256
+
+
+@dataclass(frozen=True, slots=True)
+class Qos:
+    """A resolved profile: no "system default" is left. Durations are in nanoseconds."""
+
+    reliability: Reliability = Reliability.RELIABLE
+    durability: Durability = Durability.VOLATILE
+    history: History = History.KEEP_LAST
+    depth: int = 10
+    deadline_ns: int = INFINITE_NS
+    lifespan_ns: int = INFINITE_NS
+    liveliness: Liveliness = Liveliness.AUTOMATIC
+    liveliness_lease_ns: int = INFINITE_NS
+
+    @property
+    def reliable(self) -> bool:
+        """Whether samples must not be lost."""
+        return self.reliability is Reliability.RELIABLE
+
+    @property
+    def transient_local(self) -> bool:
+        """Whether late subscriptions get earlier samples."""
+        return self.durability is Durability.TRANSIENT_LOCAL
+
+    @property
+    def limit(self) -> int | None:
+        """How many samples a queue holds, or None for any number."""
+        return None if self.history is History.KEEP_ALL else max(self.depth, 1)
+
+
+def incompatibilities(offered: Qos, requested: Qos) -> list[Policy]:
+    """Return the policies by which a publisher cannot serve a subscription (DDS 1.4, 2.2.3)."""
+    found = []
+    if requested.reliable and not offered.reliable:
+        found.append(Policy.RELIABILITY)
+    if requested.transient_local and not offered.transient_local:
+        found.append(Policy.DURABILITY)
+    if offered.deadline_ns > requested.deadline_ns:
+        found.append(Policy.DEADLINE)
+    if requested.liveliness is Liveliness.MANUAL_BY_TOPIC and offered.liveliness is Liveliness.AUTOMATIC:
+        found.append(Policy.LIVELINESS)
+    elif offered.liveliness_lease_ns > requested.liveliness_lease_ns:
+        found.append(Policy.LIVELINESS)
+    return found

@@ -1,0 +1,212 @@
+"""A process's membership in a ROS graph: makes publishers, subscriptions, services and clients and matches them."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from typing import Any
+
+from daidalos.interfaces.codec import codec_of
+from daidalos.transport.backend import Backend
+from daidalos.transport.client import Client
+from daidalos.transport.graph import EndpointInfo, EndpointKind, Graph, NodeInfo
+from daidalos.transport.publisher import Publisher
+from daidalos.transport.qos import Qos, incompatibilities
+from daidalos.transport.service import Service
+from daidalos.transport.subscription import Subscription
+
+
+def _nothing() -> None:
+    """Stand in for a callback that nobody gave."""
+
+
+class Session:
+    """Nodes and endpoints of this process in one domain of one middleware.
+
+    Parameters
+    ----------
+    backend
+        Carries what crosses the process's border.
+
+    Attributes
+    ----------
+    graph
+        Everything known of the domain, ours included.
+    """
+
+    def __init__(self, backend: Backend) -> None:
+        self.backend = backend
+        self.graph = Graph()
+        self._lock = threading.RLock()
+        self._publishers: dict[str, set[Publisher]] = {}
+        self._subscriptions: dict[str, set[Subscription]] = {}
+        self._services: dict[str, list[Service]] = {}
+        self._clients: dict[str, set[Client]] = {}
+        self._stop_listening = self.graph.listen(self._on_graph_change)
+        backend.start(self.graph)
+
+    def close(self) -> None:
+        """Leave the graph with everything that was made here."""
+        self._stop_listening()
+        with self._lock:
+            groups = (self._publishers, self._subscriptions, self._services, self._clients)
+            members: list[Any] = [one for group in groups for many in group.values() for one in many]
+        for member in members:
+            member.close()
+        self.backend.close()
+
+    def create_node(
+        self, name: str, namespace: str, enclave: str = "/"
+    ) -> tuple[NodeInfo, Callable[[], None]]:
+        """Join as a node; returns its description and what removes it."""
+        node = self.backend.new_node(name, namespace, enclave)
+        undeclare = self.backend.declare_node(node)
+        self.graph.add_node(node)
+
+        def remove() -> None:
+            self.graph.remove_node(node.key)
+            undeclare()
+
+        return node, remove
+
+    def create_publisher(self, node: NodeInfo, topic: str, message_type: Any, qos: Qos) -> Publisher:
+        """Publish messages of a class on a topic."""
+        key, endpoint = self._endpoint(EndpointKind.PUBLISHER, node, topic, message_type, qos)
+        publisher = Publisher(endpoint, codec_of(message_type, self.backend.wide))
+        wire = self.backend.declare_publisher(key, endpoint, publisher.set_heard)
+        publisher.attach(wire, lambda: self._remove(key, self._publishers, publisher))
+        with self._lock:
+            self._publishers.setdefault(topic, set()).add(publisher)
+            self._match_topic(topic)
+        self.graph.add_endpoint(key, endpoint)
+        return publisher
+
+    def create_subscription(
+        self, node: NodeInfo, topic: str, message_type: Any, qos: Qos, on_ready: Callable[[], None] = _nothing
+    ) -> Subscription:
+        """Receive messages of a class from a topic; `on_ready` is called when one was queued."""
+        key, endpoint = self._endpoint(EndpointKind.SUBSCRIPTION, node, topic, message_type, qos)
+        subscription = Subscription(endpoint, codec_of(message_type, self.backend.wide), on_ready)
+        self._refuse_incompatible(subscription)
+        with self._lock:
+            self._subscriptions.setdefault(topic, set()).add(subscription)
+            self._match_topic(topic)
+            if qos.transient_local:
+                for publisher in self._publishers.get(topic, ()):
+                    if _compatible(publisher.endpoint, endpoint):
+                        publisher.replay(subscription)
+        wire = self.backend.declare_subscription(key, endpoint, subscription.accept)
+        subscription.attach(wire, lambda: self._remove(key, self._subscriptions, subscription))
+        self.graph.add_endpoint(key, endpoint)
+        return subscription
+
+    def create_service(
+        self, node: NodeInfo, name: str, service_type: Any, qos: Qos, on_ready: Callable[[], None] = _nothing
+    ) -> Service:
+        """Serve a service; `on_ready` is called when a request was queued."""
+        key, endpoint = self._endpoint(EndpointKind.SERVICE, node, name, service_type, qos)
+        wide = self.backend.wide
+        request, response = codec_of(service_type.Request, wide), codec_of(service_type.Response, wide)
+        service = Service(endpoint, request, response, on_ready)
+        wire = self.backend.declare_service(key, endpoint, service.accept)
+        service.attach(wire, lambda: self._remove(key, self._services, service))
+        with self._lock:
+            self._services.setdefault(name, []).append(service)
+            self._match_service(name)
+        self.graph.add_endpoint(key, endpoint)
+        return service
+
+    def create_client(
+        self, node: NodeInfo, name: str, service_type: Any, qos: Qos, on_ready: Callable[[], None] = _nothing
+    ) -> Client:
+        """Call a service; `on_ready` is called when a response was queued."""
+        key, endpoint = self._endpoint(EndpointKind.CLIENT, node, name, service_type, qos)
+        wide = self.backend.wide
+        request, response = codec_of(service_type.Request, wide), codec_of(service_type.Response, wide)
+        client = Client(endpoint, request, response, on_ready)
+        wire = self.backend.declare_client(key, endpoint, client.accept)
+        client.attach(wire, lambda: self._remove(key, self._clients, client))
+        with self._lock:
+            self._clients.setdefault(name, set()).add(client)
+            self._match_service(name)
+        self.graph.add_endpoint(key, endpoint)
+        return client
+
+    def server_is_ready(self, client: Client) -> bool:
+        """Tell whether somebody serves what the client calls."""
+        if client.has_local_server:
+            return True
+        mine = client.endpoint
+        return any(
+            _same_type(mine, other)
+            for other in self.graph.endpoints(EndpointKind.SERVICE, name=mine.name)
+        )
+
+    def counterparts(self, endpoint: EndpointInfo) -> list[EndpointInfo]:
+        """Return the endpoints that an endpoint of a topic exchanges samples with."""
+        if endpoint.kind is EndpointKind.PUBLISHER:
+            others = self.graph.endpoints(EndpointKind.SUBSCRIPTION, name=endpoint.name)
+            return [other for other in others if _compatible(endpoint, other)]
+        others = self.graph.endpoints(EndpointKind.PUBLISHER, name=endpoint.name)
+        return [other for other in others if _compatible(other, endpoint)]
+
+    def _endpoint(
+        self, kind: EndpointKind, node: NodeInfo, name: str, interface: Any, qos: Qos
+    ) -> tuple[str, EndpointInfo]:
+        type_name, type_hash = interface._TYPE_NAME, interface._TYPE_HASH
+        key, gid = self.backend.identify(kind, node, name, type_name, type_hash, qos)
+        return key, EndpointInfo(kind, node, name, type_name, type_hash, qos, gid)
+
+    def _remove(self, key: str, group: dict[str, Any], member: Any) -> None:
+        name = member.endpoint.name
+        with self._lock:
+            members = group.get(name)
+            if members and member in members:
+                members.remove(member)
+                if not members:
+                    del group[name]
+            if group is self._publishers or group is self._subscriptions:
+                self._match_topic(name)
+            else:
+                self._match_service(name)
+        member.detach()
+        self.graph.remove_endpoint(key)
+
+    def _match_topic(self, topic: str) -> None:
+        """Tell every publisher of ours which subscriptions of ours it serves."""
+        subscriptions = self._subscriptions.get(topic, ())
+        for publisher in self._publishers.get(topic, ()):
+            publisher.set_targets(
+                tuple(other for other in subscriptions if _compatible(publisher.endpoint, other.endpoint))
+            )
+
+    def _match_service(self, name: str) -> None:
+        """Tell every client of ours which service of ours answers it."""
+        services = self._services.get(name, ())
+        for client in self._clients.get(name, ()):
+            matching = (one for one in services if _same_type(one.endpoint, client.endpoint))
+            client.set_server(next(matching, None))
+
+    def _on_graph_change(self, added: bool, what: NodeInfo | EndpointInfo) -> None:
+        if isinstance(what, EndpointInfo) and what.kind is EndpointKind.PUBLISHER:
+            with self._lock:
+                for subscription in self._subscriptions.get(what.name, ()):
+                    self._refuse_incompatible(subscription)
+
+    def _refuse_incompatible(self, subscription: Subscription) -> None:
+        """Keep out what publishers of other processes send against our QoS; the wire may not check it."""
+        mine = subscription.endpoint
+        publishers = self.graph.endpoints(EndpointKind.PUBLISHER, name=mine.name)
+        subscription.refuse(
+            frozenset(one.gid for one in publishers if incompatibilities(one.qos, mine.qos))
+        )
+
+
+def _same_type(one: EndpointInfo, other: EndpointInfo) -> bool:
+    """Tell whether two endpoints mean the same type; a peer that states no hash is believed."""
+    hashes = {one.type_hash, other.type_hash} - {""}
+    return one.type_name == other.type_name and len(hashes) <= 1
+
+
+def _compatible(publisher: EndpointInfo, subscription: EndpointInfo) -> bool:
+    return _same_type(publisher, subscription) and not incompatibilities(publisher.qos, subscription.qos)

@@ -1,0 +1,67 @@
+"""Sessions shared by everything in this process that is in the same domain of the same middleware."""
+
+from __future__ import annotations
+
+import atexit
+import os
+import threading
+
+from daidalos.transport.backend import Backend
+from daidalos.transport.environment import Environment, EnvironmentVariableError
+from daidalos.transport.session import Session
+
+_lock = threading.Lock()
+_sessions: dict[tuple[int, Environment], tuple[Session, int]] = {}
+
+MIDDLEWARES = ("rmw_zenoh_cpp", "rmw_daidalos_inprocess")
+
+
+def acquire(environment: Environment) -> Session:
+    """Return the process's session for this environment, opened if need be; `release` it once for each call.
+
+    Raises
+    ------
+    EnvironmentVariableError
+        When ``RMW_IMPLEMENTATION`` names a middleware that is not available.
+    """
+    key = (os.getpid(), environment)
+    with _lock:
+        session, users = _sessions.get(key) or (Session(_backend(environment)), 0)
+        _sessions[key] = (session, users + 1)
+        return session
+
+
+def release(environment: Environment) -> None:
+    """Give a session back; the last one to do so closes it."""
+    key = (os.getpid(), environment)
+    with _lock:
+        session, users = _sessions.pop(key)
+        if users > 1:
+            _sessions[key] = (session, users - 1)
+            return
+    session.close()
+
+
+def _backend(environment: Environment) -> Backend:
+    match environment.middleware:
+        case "rmw_zenoh_cpp":
+            from daidalos.transport.zenoh.backend import ZenohBackend
+
+            return ZenohBackend(environment)
+        case "rmw_daidalos_inprocess":
+            from daidalos.transport.inprocess import InProcessBackend
+
+            return InProcessBackend()
+    raise EnvironmentVariableError(
+        f"RMW_IMPLEMENTATION is '{environment.middleware}', which is not available; use one of {', '.join(MIDDLEWARES)}"
+    )
+
+
+@atexit.register
+def _close_all() -> None:
+    """Leave the graph in good order when the process ends without having done so."""
+    with _lock:
+        mine = [session for (process, _), (session, _) in _sessions.items() if process == os.getpid()]
+        _sessions.clear()
+    for session in mine:
+        session.close()

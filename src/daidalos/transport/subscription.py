@@ -1,0 +1,158 @@
+"""Subscribing: a queue that the receiving threads fill and the thread that runs callbacks empties."""
+
+from __future__ import annotations
+
+import logging
+import threading
+import time
+from collections import deque
+from collections.abc import Callable
+from typing import Any
+
+from daidalos.interfaces.codec import CdrError, Codec
+from daidalos.transport.backend import SampleInfo, WireSubscription
+from daidalos.transport.graph import EndpointInfo
+
+_LOGGER = logging.getLogger(__name__)
+_PATIENCE_S = 0.005
+_FAST_NS = 1_000_000
+
+
+class Subscription:
+    """One subscription of a node; made by `Session.create_subscription`.
+
+    The queue holds samples as they came: ``(message, stamp, sequence, gid)`` from this process, where the
+    message is this subscription's own copy, or ``(None, sample, received_ns)`` from another, still encoded.
+
+    Attributes
+    ----------
+    endpoint
+        How the graph knows it.
+    on_ready
+        Called after a sample was queued, on the thread that queued it.
+    """
+
+    def __init__(self, endpoint: EndpointInfo, codec: Codec, on_ready: Callable[[], None]) -> None:
+        self.endpoint = endpoint
+        self.on_ready = on_ready
+        self._codec = codec
+        self._queue: deque[tuple[Any, ...]] = deque(maxlen=endpoint.qos.limit)
+        self._limit = endpoint.qos.limit if endpoint.qos.reliable else None
+        self._wire: WireSubscription | None = None
+        self._undo: Callable[[], None] | None = None
+        self._refused: frozenset[bytes] = frozenset()
+        self._filter: Callable[[SampleInfo], bool] | None = None
+        self._last_take = 0
+        self._take_interval = _FAST_NS * 10
+        self._space = threading.Event()
+
+    def __len__(self) -> int:
+        return len(self._queue)
+
+    def take(self) -> tuple[Any, tuple[Any, ...]] | None:
+        """Return the oldest message, with the queue's entry that `info` understands; None when there is none.
+
+        A sample that cannot be decoded is logged and passed over.
+        """
+        while True:
+            try:
+                item = self._queue.popleft()
+            except IndexError:
+                return None
+            self._note_take()
+            if item[0] is not None:
+                return item[0], item
+            wire = self._wire
+            if wire is None:
+                return None
+            try:
+                return self._codec.decode(wire.data(item[1])), item
+            except CdrError as error:
+                _LOGGER.error("dropped a message on '%s': %s", self.endpoint.name, error)
+
+    def take_raw(self) -> tuple[bytes, tuple[Any, ...]] | None:
+        """Return the oldest message as CDR bytes, with its entry; None when there is none."""
+        try:
+            item = self._queue.popleft()
+        except IndexError:
+            return None
+        self._note_take()
+        if item[0] is not None:
+            return self._codec.encode(item[0]), item
+        return (self._wire.data(item[1]), item) if self._wire else None
+
+    def info(self, item: tuple[Any, ...]) -> SampleInfo:
+        """Return what is known of a taken sample beside its data."""
+        if item[0] is not None or self._wire is None:
+            _, stamp, sequence, gid = item
+            return SampleInfo(stamp, stamp, sequence, gid)
+        return self._wire.info(item[1], item[2])
+
+    def accept_local(self, item: tuple[Any, ...]) -> None:
+        """Queue a sample of this process."""
+        self._queue.append(item)
+        self.on_ready()
+
+    def accept(self, sample: Any) -> None:
+        """Queue a sample of another process."""
+        item = (None, sample, time.time_ns())
+        if self._refused or self._filter:
+            wire = self._wire
+            if wire is None:
+                return
+            info = wire.info(sample, item[2])
+            if info.gid in self._refused or (self._filter and not self._filter(info)):
+                return
+        if self._limit is not None and len(self._queue) >= self._limit:
+            self._wait_for_space()
+        self._queue.append(item)
+        self.on_ready()
+
+    def _note_take(self) -> None:
+        """Measure how fast the queue is emptied, and let a waiting receiver go on."""
+        if self._limit is None:
+            return
+        now = time.monotonic_ns()
+        self._take_interval += (now - self._last_take - self._take_interval) >> 3
+        self._last_take = now
+        if not self._space.is_set():
+            self._space.set()
+
+    def _wait_for_space(self) -> None:
+        """Hold the sender back for a moment when the queue is full but is being emptied fast.
+
+        This is what makes a reliable stream lose nothing at full speed. A slow callback, however, must not
+        hold up other topics of the same peer: then the oldest sample is dropped, as ROS 2 does.
+        """
+        if self._take_interval > _FAST_NS:
+            return
+        self._space.clear()
+        if len(self._queue) >= self._limit and not self._space.wait(_PATIENCE_S):  # type: ignore[operator]
+            self._take_interval = _FAST_NS * 10
+
+    def close(self) -> None:
+        """Leave the graph and drop what is queued."""
+        undo, self._undo = self._undo, None
+        if undo:
+            undo()
+
+    # The session's side.
+
+    def attach(self, wire: WireSubscription, undo: Callable[[], None]) -> None:
+        """Connect to the middleware; `undo` ends that."""
+        self._wire, self._undo = wire, undo
+
+    def refuse(self, gids: frozenset[bytes]) -> None:
+        """Note the publishers whose samples must not be delivered: their QoS does not satisfy ours."""
+        self._refused = gids
+
+    def set_filter(self, accept: Callable[[SampleInfo], bool] | None) -> None:
+        """Ask `accept` of every sample of another process whether it may be queued."""
+        self._filter = accept
+
+    def detach(self) -> None:
+        """Forget the middleware and the queue."""
+        wire, self._wire = self._wire, None
+        self._queue.clear()
+        if wire:
+            wire.close()

@@ -1,0 +1,1 @@
+"""ROS 2 over zenoh, in rmw_zenoh's wire format."""

@@ -1,0 +1,226 @@
+"""The zenoh backend: one session, its tokens in the graph, and the graph from others' tokens."""
+
+from __future__ import annotations
+
+import contextlib
+import itertools
+import os
+import secrets
+import socket
+import sys
+import threading
+import time
+from collections.abc import Callable
+from typing import Any
+
+import zenoh
+from zenoh.handlers import Callback
+
+from daidalos.transport.backend import (
+    Backend,
+    WireClient,
+    WirePublisher,
+    WireService,
+    WireSubscription,
+)
+from daidalos.transport.environment import DiscoveryRange, Environment
+from daidalos.transport.graph import EndpointInfo, EndpointKind, Graph, NodeInfo
+from daidalos.transport.qos import Qos
+from daidalos.transport.zenoh import keys
+from daidalos.transport.zenoh.config import ROUTER_PORT, session_config
+from daidalos.transport.zenoh.registry import Peer, Registry
+from daidalos.transport.zenoh.wires import (
+    ZenohClient,
+    ZenohPublisher,
+    ZenohService,
+    ZenohSubscription,
+)
+
+_SOCKET_PATH_LIMIT = 100
+"""Longest path of a Unix socket that every system takes."""
+
+
+class ZenohBackend(Backend):
+    """Membership in a domain through a zenoh peer session."""
+
+    identifier = "rmw_zenoh_cpp"
+    wide = 2
+
+    def __init__(self, environment: Environment) -> None:
+        self._environment = environment
+        self._domain = environment.domain
+        self._number = itertools.count().__next__
+        self._registry = Registry(self._domain)
+        self._peers: set[str] = set()
+        self._linked = threading.Condition()
+        self._own: set[bytes] = set()
+
+    def start(self, graph: Graph) -> None:
+        """Open the session, known to and connected with every other on this machine."""
+        self._graph = graph
+        with self._registry.locked():
+            peers = [] if self._environment.discovery is DiscoveryRange.OFF else self._registry.peers()
+            self._session_id = _new_session_id()
+            listen = self._listen_endpoints()
+            endpoints = [endpoint for peer in peers for endpoint in peer.endpoints]
+            config = session_config(self._environment, self._session_id, listen, endpoints)
+            self._session = zenoh.open(config)
+            self._session_id = str(self._session.zid())
+            self._peers = {peer.session for peer in peers}
+            self._registry.register(Peer(self._session_id, tuple(listen)))
+        self._links = self._session.info.declare_transport_events_listener(
+            Callback(self._on_transport, indirect=False)
+        )
+        self._tokens = self._session.liveliness().declare_subscriber(
+            keys.tokens(self._domain), Callback(self._on_token, indirect=False), history=True
+        )
+
+    def _listen_endpoints(self) -> list[str]:
+        """Return where peers of this machine find us: a socket file that no other process will ever have."""
+        if sys.platform == "win32":
+            with socket.socket() as probe:
+                probe.bind(("127.0.0.1", 0))
+                return [f"tcp/127.0.0.1:{probe.getsockname()[1]}"]
+        path = self._registry.folder / f"{self._session_id}.sock"
+        if len(os.fsencode(path)) > _SOCKET_PATH_LIMIT:
+            raise OSError(
+                f"the runtime folder's path is too long for a socket: {path.parent}; set XDG_RUNTIME_DIR to a shorter one"
+            )
+        return [f"unixsock-stream/{path}"]
+
+    def close(self) -> None:
+        """Close the session; its tokens go with it."""
+        self._registry.unregister()
+        self._session.close()
+        socket_file = self._registry.folder / f"{self._session_id}.sock"
+        for leftover in (socket_file, socket_file.with_suffix(".sock.lock")):
+            leftover.unlink(missing_ok=True)
+
+    def settle(self, timeout_s: float) -> bool:
+        """Wait until the sessions that were alive at our start are connected and have told of themselves."""
+        deadline = time.monotonic() + timeout_s
+        router = _port_answers(ROUTER_PORT)
+
+        def connected() -> bool:
+            there = {str(zid) for zid in self._session.info.peers_zid()}
+            routers = list(self._session.info.routers_zid())
+            return (not router or bool(routers)) and self._alive() <= there
+
+        with self._linked:
+            complete = self._linked.wait_for(connected, timeout_s)
+        left = max(deadline - time.monotonic(), 0.05)
+        for reply in self._session.liveliness().get(keys.tokens(self._domain), timeout=left):
+            if reply.ok is not None:
+                self._add(str(reply.ok.key_expr))
+        return complete
+
+    def _alive(self) -> set[str]:
+        """Return which of the peers known at our start still live."""
+        with self._registry.locked():
+            return self._peers & {peer.session for peer in self._registry.peers()}
+
+    def _on_transport(self, event: Any) -> None:
+        with self._linked:
+            self._linked.notify_all()
+
+    def _on_token(self, sample: zenoh.Sample) -> None:
+        token = str(sample.key_expr)
+        if sample.kind == zenoh.SampleKind.PUT:
+            self._add(token)
+        elif keys.session_of(token) != self._session_id:
+            self._graph.remove_endpoint(token)
+            self._graph.remove_node(token)
+
+    def _add(self, token: str) -> None:
+        if keys.session_of(token) == self._session_id:
+            return  # what is ours the session notes itself, at once
+        what = keys.parse_token(token)
+        if isinstance(what, NodeInfo):
+            self._graph.add_node(what)
+        elif what is not None:
+            self._graph.add_endpoint(token, what)
+
+    def new_node(self, name: str, namespace: str, enclave: str) -> NodeInfo:
+        """Return the description of a new node of ours."""
+        number = self._number()
+        token = keys.node_token(self._domain, self._session_id, number, name, namespace, enclave)
+        return NodeInfo(token, name, namespace, enclave)
+
+    def declare_node(self, node: NodeInfo) -> Callable[[], None]:
+        """Declare the node's token."""
+        return self._declare_token(node.key)
+
+    def _declare_token(self, token: str) -> Callable[[], None]:
+        declared = self._session.liveliness().declare_token(token)
+        return lambda: _undeclare(declared)
+
+    def identify(
+        self, kind: EndpointKind, node: NodeInfo, name: str, type_name: str, type_hash: str, qos: Qos
+    ) -> tuple[str, bytes]:
+        """Return a new endpoint's token and the gid made from it."""
+        token = keys.endpoint_token(node, self._number(), kind, name, type_name, type_hash, qos)
+        return token, keys.gid_of(token)
+
+    def _data_key(self, endpoint: EndpointInfo) -> str:
+        return keys.data_key(self._domain, endpoint.name, endpoint.type_name, endpoint.type_hash)
+
+    def declare_publisher(
+        self, key: str, endpoint: EndpointInfo, on_matched: Callable[[bool], None]
+    ) -> WirePublisher:
+        """Declare a publisher and its token."""
+        self._own.add(endpoint.gid)
+        wire = ZenohPublisher(self._session, self._data_key(endpoint), endpoint, on_matched)
+        wire.on_close = self._closer(key, endpoint)
+        return wire
+
+    def declare_subscription(
+        self, key: str, endpoint: EndpointInfo, on_sample: Callable[[Any], None]
+    ) -> WireSubscription:
+        """Declare a subscription and its token."""
+        wire = ZenohSubscription(self._session, self._data_key(endpoint), endpoint, on_sample, self._own)
+        wire.on_close = self._closer(key, endpoint)
+        return wire
+
+    def declare_service(
+        self, key: str, endpoint: EndpointInfo, on_request: Callable[[Any], None]
+    ) -> WireService:
+        """Declare a queryable and its token."""
+        wire = ZenohService(self._session, self._data_key(endpoint), on_request)
+        wire.on_close = self._closer(key, endpoint)
+        return wire
+
+    def declare_client(
+        self, key: str, endpoint: EndpointInfo, on_response: Callable[[Any], None]
+    ) -> WireClient:
+        """Declare a querier and its token."""
+        wire = ZenohClient(self._session, self._data_key(endpoint), endpoint, on_response)
+        wire.on_close = self._closer(key, endpoint)
+        return wire
+
+    def _closer(self, key: str, endpoint: EndpointInfo) -> Callable[[], None]:
+        """Declare an endpoint's token; return what takes it back."""
+        undeclare = self._declare_token(key)
+
+        def close() -> None:
+            self._own.discard(endpoint.gid)
+            undeclare()
+
+        return close
+
+
+def _new_session_id() -> str:
+    """Return a random zenoh id; zenoh writes none with a leading zero."""
+    first = "123456789abcdef"
+    return secrets.choice(first) + secrets.token_hex(16)[1:]
+
+
+def _port_answers(port: int) -> bool:
+    """Tell whether somebody listens on a port of this machine."""
+    with socket.socket() as probe:
+        probe.settimeout(0.2)
+        return probe.connect_ex(("127.0.0.1", port)) == 0
+
+
+def _undeclare(entity: Any) -> None:
+    with contextlib.suppress(zenoh.ZError):  # the session may have been closed before
+        entity.undeclare()

@@ -1,0 +1,125 @@
+"""The configuration of a zenoh session, from the environment as rmw_zenoh reads it."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import sys
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+import zenoh
+
+from daidalos.transport.environment import DiscoveryRange, Environment, EnvironmentVariableError
+
+ROUTER_PORT = 7447
+_SHM_FOLDER = Path("/dev/shm")
+_SHM_NEEDED = 256 * 2**20
+"""Free shared memory, in bytes, below which it is left alone: a full /dev/shm kills who writes to it."""
+_MINUTE_MS = 60_000
+
+
+def session_config(
+    environment: Environment, session: str, listen: Iterable[str], peers: Iterable[str]
+) -> zenoh.Config:
+    """Return the configuration of a session.
+
+    Parameters
+    ----------
+    environment
+        Discovery range and static peers.
+    session
+        Its zenoh id, 32 hexadecimal digits.
+    listen
+        Where it listens.
+    peers
+        The endpoints of live sessions on this machine.
+
+    Raises
+    ------
+    EnvironmentVariableError
+        When ``ZENOH_SESSION_CONFIG_URI`` or ``ZENOH_CONFIG_OVERRIDE`` cannot be used.
+    """
+    file = os.environ.get("ZENOH_SESSION_CONFIG_URI")
+    config = _from_file(file) if file else zenoh.Config()
+    settings = _transport_settings()
+    settings["id"] = session
+    if not file:
+        settings |= _network_settings(environment, list(listen), list(peers))
+    for key, value in settings.items():
+        config.insert_json5(key, json.dumps(value))
+    _override(config, os.environ.get("ZENOH_CONFIG_OVERRIDE", ""))
+    return config
+
+
+def _from_file(uri: str) -> zenoh.Config:
+    try:
+        return zenoh.Config.from_file(uri.removeprefix("file://"))
+    except zenoh.ZError as error:
+        raise EnvironmentVariableError(f"ZENOH_SESSION_CONFIG_URI is '{uri}': {error}") from None
+
+
+def _network_settings(environment: Environment, listen: list[str], peers: list[str]) -> dict[str, Any]:
+    reach = environment.discovery
+    connect = [] if reach is DiscoveryRange.OFF else [*peers, f"tcp/localhost:{ROUTER_PORT}"]
+    connect += [_peer_endpoint(peer) for peer in environment.static_peers]
+    open_to_all = reach is DiscoveryRange.SUBNET or environment.static_peers
+    return {
+        "mode": "peer",
+        "listen/endpoints": [*listen, "tcp/[::]:0" if open_to_all else "tcp/localhost:0"],
+        "listen/exit_on_failure": False,
+        "connect/endpoints": connect,
+        "connect/exit_on_failure": False,
+        # Opening never waits for peers: they are connected to in the background, again and again.
+        "connect/timeout_ms": -1,
+        "connect/retry": {"period_init_ms": 100, "period_max_ms": 4000, "period_increase_factor": 2},
+        "scouting/delay": 0,
+        "scouting/multicast/enabled": reach is DiscoveryRange.SUBNET,
+        "scouting/gossip/enabled": reach is not DiscoveryRange.OFF,
+    }
+
+
+def _peer_endpoint(peer: str) -> str:
+    """Return where a static peer's router listens: ``host`` or ``host:port``, IPv6 in brackets, or an endpoint."""
+    if "/" in peer:
+        return peer
+    has_port = peer.rpartition(":")[2].isdigit() and (peer.count(":") == 1 or "]:" in peer)
+    return f"tcp/{peer}" if has_port else f"tcp/{peer}:{ROUTER_PORT}"
+
+
+def _transport_settings() -> dict[str, Any]:
+    return {
+        "timestamping/enabled": True,
+        "queries_default_timeout": 10 * _MINUTE_MS,
+        "transport/link/tx/lease": _MINUTE_MS,
+        "transport/link/tx/keep_alive": 2,
+        # A peer that is stopped (Ctrl-Z, a debugger) must not stop those who publish to it for long: its link
+        # is closed, and made again when it goes on.
+        "transport/link/tx/queue/congestion_control/block/wait_before_close": 1_000_000,
+        "transport/shared_memory/enabled": shared_memory_usable(),
+    }
+
+
+def shared_memory_usable() -> bool:
+    """Tell whether large messages may go through shared memory here."""
+    if sys.platform == "win32":
+        return False
+    if not _SHM_FOLDER.is_dir():
+        return sys.platform == "darwin"
+    return shutil.disk_usage(_SHM_FOLDER).free >= _SHM_NEEDED
+
+
+def _override(config: zenoh.Config, text: str) -> None:
+    """Apply ``key=value;key=value``, where a value is JSON5."""
+    for item in filter(None, (part.strip() for part in text.split(";"))):
+        key, separator, value = item.partition("=")
+        try:
+            if not separator:
+                raise ValueError("no '='")
+            config.insert_json5(key.strip(), value.strip())
+        except (ValueError, zenoh.ZError) as error:
+            raise EnvironmentVariableError(
+                f"ZENOH_CONFIG_OVERRIDE: '{item}' cannot be applied ({error}), expected key=value"
+            ) from None

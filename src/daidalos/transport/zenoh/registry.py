@@ -1,0 +1,115 @@
+"""The sessions that are alive on this machine, as files in the user's runtime folder.
+
+A session holds a lock on its file for as long as its process lives, so the entries of processes that died, in
+whatever way, are known from those that live. A session opens under the registry's lock: of two that start at the
+same time, the later one finds the earlier one listening.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import IO
+
+
+@dataclass(frozen=True)
+class Peer:
+    """A live session: its zenoh id and where it listens."""
+
+    session: str
+    endpoints: tuple[str, ...]
+
+
+def runtime_folder() -> Path:
+    """Return the folder for files that live as long as processes do, made if it is missing; only we may read it."""
+    base = os.environ.get("XDG_RUNTIME_DIR")
+    if base and os.access(base, os.W_OK):
+        folder = Path(base) / "daidalos"
+    else:
+        user = os.getuid() if hasattr(os, "getuid") else os.environ.get("USERNAME", "user")
+        folder = Path(tempfile.gettempdir()) / f"daidalos-{user}"
+    folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+    return folder
+
+
+class Registry:
+    """The live sessions of one domain."""
+
+    def __init__(self, domain: int, folder: Path | None = None) -> None:
+        self.folder = (folder or runtime_folder()) / "zenoh" / str(domain)
+        self.folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+        self._entry: IO[bytes] | None = None
+        self._data: Path | None = None
+
+    @contextmanager
+    def locked(self) -> Iterator[None]:
+        """Hold the registry: nobody else reads or registers meanwhile."""
+        with (self.folder / "registry.lock").open("ab") as file:
+            _lock(file, wait=True)
+            yield
+
+    def peers(self) -> list[Peer]:
+        """Return the live sessions, ours excepted, and remove what dead ones left; call while `locked`."""
+        found = []
+        for lock in sorted(self.folder.glob("*.alive")):
+            data = lock.with_suffix(".json")
+            if self._data == data:
+                continue
+            try:
+                if _is_free(lock):
+                    data.unlink(missing_ok=True)
+                    lock.unlink(missing_ok=True)
+                    lock.with_suffix(".sock").unlink(missing_ok=True)
+                    lock.with_suffix(".sock.lock").unlink(missing_ok=True)
+                    continue
+                found.append(Peer(lock.stem, tuple(json.loads(data.read_text(encoding="utf-8")))))
+            except (OSError, ValueError):
+                continue  # it went away, or is not yet written, while we looked
+        return found
+
+    def register(self, peer: Peer) -> None:
+        """Enter our session; the entry lives as long as this process or until `unregister`."""
+        self._entry = (self.folder / f"{peer.session}.alive").open("ab")
+        _lock(self._entry, wait=False)
+        self._data = self.folder / f"{peer.session}.json"
+        self._data.write_text(json.dumps(peer.endpoints), encoding="utf-8")
+
+    def unregister(self) -> None:
+        """Remove our entry."""
+        entry, data, self._entry, self._data = self._entry, self._data, None, None
+        if entry is None or data is None:
+            return
+        data.unlink(missing_ok=True)
+        if sys.platform == "win32":
+            entry.close()
+        data.with_suffix(".alive").unlink(missing_ok=True)
+        entry.close()
+
+
+def _is_free(path: Path) -> bool:
+    """Tell whether nobody holds the lock on a file."""
+    with path.open("ab") as file:
+        try:
+            _lock(file, wait=False)
+        except OSError:
+            return False
+    return True
+
+
+def _lock(file: IO[bytes], *, wait: bool) -> None:
+    """Lock a file until it is closed; without `wait`, OSError when somebody else holds it."""
+    if sys.platform == "win32":
+        import msvcrt
+
+        file.seek(0)
+        msvcrt.locking(file.fileno(), msvcrt.LK_LOCK if wait else msvcrt.LK_NBLCK, 1)
+    else:
+        import fcntl
+
+        fcntl.flock(file, fcntl.LOCK_EX | (0 if wait else fcntl.LOCK_NB))

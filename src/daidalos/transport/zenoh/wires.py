@@ -1,0 +1,234 @@
+"""Publisher, subscription, service and client over zenoh."""
+
+from __future__ import annotations
+
+import contextlib
+import struct
+from collections.abc import Callable
+from typing import Any
+
+import zenoh
+from zenoh import ext
+from zenoh.handlers import Callback
+
+from daidalos.transport.backend import (
+    RequestId,
+    SampleInfo,
+    WireClient,
+    WirePublisher,
+    WireService,
+    WireSubscription,
+)
+from daidalos.transport.graph import EndpointInfo
+from daidalos.transport.qos import History, Qos
+
+_ATTACHMENT = struct.Struct("<qqB16s")
+"""Sequence number, source time in ns, length of the gid, gid."""
+_GID_LENGTH = 16
+_HEARTBEAT_S = 0.5
+_QUERY_TIMEOUT_S = 600.0
+_UNLIMITED_S = 10 * 365 * 86400.0
+
+
+def _attachment(sequence: int, stamp_ns: int, gid: bytes) -> bytes:
+    return _ATTACHMENT.pack(sequence, stamp_ns, _GID_LENGTH, gid)
+
+
+def _read_attachment(attachment: Any) -> tuple[int, int, bytes]:
+    """Return (sequence, source time, gid); zeros where a foreign sender attached none of ours."""
+    data = attachment.to_bytes() if attachment is not None else b""
+    if len(data) != _ATTACHMENT.size:
+        return 0, 0, bytes(_GID_LENGTH)
+    sequence, stamp, _, gid = _ATTACHMENT.unpack(data)
+    return sequence, stamp, gid
+
+
+class _Wire:
+    """What all wires share: entities to undeclare, in order, and the token to take back."""
+
+    on_close: Callable[[], None]
+
+    def _close(self, *entities: Any) -> None:
+        self.on_close()
+        for entity in entities:
+            with contextlib.suppress(zenoh.ZError):  # the session may have been closed before
+                entity.undeclare()
+
+
+class ZenohPublisher(_Wire, WirePublisher):
+    """Puts samples; with transient-local durability through zenoh's advanced publisher, which keeps them."""
+
+    def __init__(
+        self,
+        session: zenoh.Session,
+        key: str,
+        endpoint: EndpointInfo,
+        on_matched: Callable[[bool], None],
+    ) -> None:
+        self._gid = endpoint.gid
+        qos = endpoint.qos
+        # Reliable means that nothing is lost on the way; best effort never waits.
+        congestion = zenoh.CongestionControl.BLOCK if qos.reliable else zenoh.CongestionControl.DROP
+        reliability = zenoh.Reliability.RELIABLE if qos.reliable else zenoh.Reliability.BEST_EFFORT
+        self._matching: Any = None
+        if qos.transient_local:
+            heartbeat = ext.MissDetectionConfig(heartbeat=None, sporadic_heartbeat=_HEARTBEAT_S)
+            self._publisher: Any = ext.declare_advanced_publisher(
+                session,
+                key,
+                congestion_control=congestion,
+                reliability=reliability,
+                cache=ext.CacheConfig(max_samples=_cache_size(qos)),
+                sample_miss_detection=heartbeat if qos.reliable else None,
+                publisher_detection=True,
+            )
+        else:
+            self._publisher = session.declare_publisher(
+                key,
+                congestion_control=congestion,
+                reliability=reliability,
+                allowed_destination=zenoh.Locality.REMOTE,
+            )
+            self._matching = self._publisher.declare_matching_listener(
+                Callback(lambda status: on_matched(status.matching), indirect=False)
+            )
+            on_matched(self._publisher.matching_status.matching)
+
+    def put(self, parts: list[Any], sequence: int, stamp_ns: int) -> None:
+        """Send one sample."""
+        data = parts[0] if len(parts) == 1 else b"".join(parts)
+        self._publisher.put(data, attachment=_attachment(sequence, stamp_ns, self._gid))
+
+    def close(self) -> None:
+        """Undeclare."""
+        self._close(*([self._matching] if self._matching is not None else []), self._publisher)
+
+
+class ZenohSubscription(_Wire, WireSubscription):
+    """Receives samples on zenoh's thread, which only queues them."""
+
+    def __init__(
+        self,
+        session: zenoh.Session,
+        key: str,
+        endpoint: EndpointInfo,
+        on_sample: Callable[[Any], None],
+        own: set[bytes],
+    ) -> None:
+        qos = endpoint.qos
+        if qos.transient_local:
+
+            def accept(sample: zenoh.Sample) -> None:
+                if _read_attachment(sample.attachment)[2] not in own:  # ours were delivered within the process
+                    on_sample(sample)
+
+            self._subscriber: Any = ext.declare_advanced_subscriber(
+                session,
+                key,
+                Callback(accept, indirect=False),
+                history=ext.HistoryConfig(detect_late_publishers=True, max_samples=_cache_size(qos)),
+                recovery=ext.RecoveryConfig(periodic_queries=None, heartbeat=True) if qos.reliable else None,
+                subscriber_detection=True,
+            )
+        else:
+            self._subscriber = session.declare_subscriber(
+                key, Callback(on_sample, indirect=False), allowed_origin=zenoh.Locality.REMOTE
+            )
+
+    def data(self, sample: Any) -> bytes:
+        """Return the sample's bytes."""
+        payload: bytes = sample.payload.to_bytes()
+        return payload
+
+    def info(self, sample: Any, received_ns: int) -> SampleInfo:
+        """Return what the attachment says."""
+        sequence, stamp, gid = _read_attachment(sample.attachment)
+        return SampleInfo(stamp, received_ns, sequence, gid)
+
+    def close(self) -> None:
+        """Undeclare."""
+        self._close(self._subscriber)
+
+
+class ZenohService(_Wire, WireService):
+    """Answers queries; a query is held until its reply is sent."""
+
+    def __init__(self, session: zenoh.Session, key: str, on_request: Callable[[Any], None]) -> None:
+        self._key = key
+        self._queries: dict[RequestId, zenoh.Query] = {}
+        self._queryable = session.declare_queryable(
+            key, Callback(on_request, indirect=False), complete=True, allowed_origin=zenoh.Locality.REMOTE
+        )
+
+    def request(self, item: Any) -> tuple[bytes, RequestId, int]:
+        """Return the request's bytes, its identity and its source stamp."""
+        sequence, stamp, gid = _read_attachment(item.attachment)
+        identity = RequestId(gid, sequence)
+        self._queries[identity] = item
+        payload = item.payload
+        return payload.to_bytes() if payload is not None else b"", identity, stamp
+
+    def reply(self, request: RequestId, data: bytes) -> None:
+        """Send the reply and let go of the query, which tells the client that no more will come."""
+        query = self._queries.pop(request, None)
+        if query is None:
+            return
+        with contextlib.suppress(zenoh.ZError), query:  # the client may be gone
+            attachment = _attachment(request.sequence, _now_ns(), request.client)
+            query.reply(self._key, data, attachment=attachment)
+
+    def close(self) -> None:
+        """Undeclare; requests that wait for an answer get none."""
+        self._close(self._queryable)
+        self._queries.clear()
+
+
+class ZenohClient(_Wire, WireClient):
+    """Sends queries."""
+
+    def __init__(
+        self,
+        session: zenoh.Session,
+        key: str,
+        endpoint: EndpointInfo,
+        on_response: Callable[[Any], None],
+    ) -> None:
+        self._gid = endpoint.gid
+        self._callback = Callback(on_response, indirect=False)
+        waits_for_result = endpoint.name.endswith("/_action/get_result")
+        self._querier = session.declare_querier(
+            key,
+            target=zenoh.QueryTarget.ALL_COMPLETE,
+            consolidation=zenoh.ConsolidationMode.NONE,
+            timeout=_UNLIMITED_S if waits_for_result else _QUERY_TIMEOUT_S,
+            congestion_control=zenoh.CongestionControl.BLOCK,
+            allowed_destination=zenoh.Locality.REMOTE,
+        )
+
+    def send(self, data: bytes, sequence: int, stamp_ns: int) -> None:
+        """Send one request."""
+        self._querier.get(
+            self._callback, payload=data, attachment=_attachment(sequence, stamp_ns, self._gid)
+        )
+
+    def response(self, item: Any) -> tuple[bytes, int, int]:
+        """Return the answer's bytes, its request's sequence number and its source stamp."""
+        sample = item.ok
+        if sample is None:
+            return b"", 0, 0
+        sequence, stamp, _ = _read_attachment(sample.attachment)
+        return sample.payload.to_bytes(), sequence, stamp
+
+    def close(self) -> None:
+        """Undeclare."""
+        self._close(self._querier)
+
+
+def _cache_size(qos: Qos) -> int:
+    return 2**31 if qos.history is History.KEEP_ALL else max(qos.depth, 1)
+
+
+def _now_ns() -> int:
+    import time
+
+    return time.time_ns()
