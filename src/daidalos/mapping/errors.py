@@ -1,0 +1,57 @@
+"""What can be wrong with the files of this layer: a base for all errors, a class for each kind of file."""
+
+from pathlib import Path
+
+
+class MappingError(Exception):
+    """Something about mapping failed; the message is one line for the person who gave the input."""
+
+
+class MapFileError(MappingError):
+    """A map file can not be read or written.
+
+    Attributes
+    ----------
+    path : Path
+        The YAML file or the image.
+    field : str or None
+        The field of the YAML file or the part of the image.
+    """
+
+    def __init__(self, path: Path, field: str | None, problem: str) -> None:
+        where = f"{path}: {field}" if field else str(path)
+        super().__init__(f"{where}: {problem}")
+        self.path = path
+        self.field = field
+
+
+class LogError(MappingError):
+    """A bag can not be read, or what is needed is not in it.
+
+    Attributes
+    ----------
+    path : Path
+        The bag.
+    """
+
+    def __init__(self, path: Path, problem: str) -> None:
+        super().__init__(f"{path}: {problem}")
+        self.path = path
+
+
+class RelationsError(MappingError):
+    """A file of ground-truth relations can not be used.
+
+    Attributes
+    ----------
+    path : Path
+        The file.
+    line : int or None
+        Number of the line, from 1.
+    """
+
+    def __init__(self, path: Path, line: int | None, problem: str) -> None:
+        where = f"{path}:{line}" if line is not None else str(path)
+        super().__init__(f"{where}: {problem}")
+        self.path = path
+        self.line = line

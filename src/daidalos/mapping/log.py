@@ -1,0 +1,216 @@
+"""Logs of real robots: laser scans and odometry out of a bag, as arrays."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daidalos.mapping import pose2
+from daidalos.mapping.errors import LogError
+from daidalos.mapping.evaluation import poses_at
+from daidalos.mapping.scan import LaserScanData
+
+Array = NDArray[np.float64]
+Stamps = NDArray[np.int64]
+
+LASER_SCAN = "sensor_msgs/msg/LaserScan"
+ODOMETRY = "nav_msgs/msg/Odometry"
+TRANSFORMS = "tf2_msgs/msg/TFMessage"
+
+LATEST_ODOMETRY = 200_000_000
+"""How long [ns] before the first or after the last odometry a scan may be for that odometry to be used."""
+
+
+@dataclass(frozen=True)
+class Log:
+    """Scans with the odometry at their times.
+
+    Attributes
+    ----------
+    stamps_ns : ndarray of int64, shape (n,)
+        Times of the scans [ns], not decreasing.
+    scans : list of LaserScanData
+        The scans, with the sensor's pose on the robot.
+    odometry : ndarray, shape (n, 3)
+        Pose (x, y, yaw) of the base in the odometry frame at those times.
+    scan_topic, odometry_source : str
+        Where they come from.
+    """
+
+    stamps_ns: Stamps
+    scans: list[LaserScanData]
+    odometry: Array
+    scan_topic: str
+    odometry_source: str
+
+
+def read_log(path: str | Path, *, scan_topic: str | None = None, odom_topic: str | None = None) -> Log:
+    """Read the scans and the odometry of a bag (MCAP or sqlite3, a folder or a single file).
+
+    Odometry comes from `nav_msgs/Odometry` messages or, where there are none, from odom -> base in /tf.
+
+    Parameters
+    ----------
+    path : str or Path
+        The bag.
+    scan_topic, odom_topic : str, optional
+        Topics to read; by default the only ones of their type, or `/scan` and `/odom`.
+
+    Raises
+    ------
+    LogError
+        When the bag can not be read or lacks scans or odometry.
+    """
+    bag = Path(path)
+    if not bag.exists():
+        raise LogError(bag, "no such file or folder")
+    from rosbags.highlevel import AnyReader
+    from rosbags.typesys import Stores, get_typestore
+
+    try:
+        with AnyReader([bag], default_typestore=get_typestore(Stores.ROS2_JAZZY)) as reader:
+            return _collect(bag, reader, scan_topic, odom_topic)
+    except LogError:
+        raise
+    except Exception as error:  # A damaged bag fails anywhere in the libraries that parse it, with any error.
+        reason = " ".join(str(error).split()) or type(error).__name__
+        raise LogError(bag, f"not a readable bag: {reason}") from error
+
+
+def _collect(bag: Path, reader: Any, scan_topic: str | None, odom_topic: str | None) -> Log:
+    topics = {connection.topic: connection.msgtype for connection in reader.connections}
+    scan_topic = _choose(bag, topics, LASER_SCAN, scan_topic, "/scan")
+    if scan_topic is None:
+        raise LogError(bag, f"no scans: expected a topic of type {LASER_SCAN}, found {_listed(topics)}")
+    odom_topic = _choose(bag, topics, ODOMETRY, odom_topic, "/odom")
+    wanted = {scan_topic, odom_topic, "/tf", "/tf_static"}
+    scans: list[Any] = []
+    odometry: list[Any] = []
+    transforms: list[Any] = []
+    into: dict[str, Callable[[Any], None]] = {
+        LASER_SCAN: scans.append,
+        ODOMETRY: odometry.append,
+        TRANSFORMS: lambda message: transforms.extend(message.transforms),
+    }
+    connections = [c for c in reader.connections if c.topic in wanted and c.msgtype in into]
+    for connection, _, raw in reader.messages(connections=connections):
+        into[connection.msgtype](reader.deserialize(raw, connection.msgtype))
+    if not scans:
+        raise LogError(bag, f"no messages on {scan_topic}")
+    scans.sort(key=lambda message: _stamp(message.header))
+    source, stamps, poses, base = _odometry(bag, odometry, transforms, odom_topic)
+    mounts = _mounts(transforms, base)
+    times = np.array([_stamp(message.header) for message in scans], dtype=np.int64)
+    covered = (times >= stamps[0] - LATEST_ODOMETRY) & (times <= stamps[-1] + LATEST_ODOMETRY)
+    if not covered.any():
+        raise LogError(
+            bag, f"no scan on {scan_topic} has odometry at its time: {source} covers another period"
+        )
+    kept = [_scan(bag, message, mounts) for message, use in zip(scans, covered, strict=True) if use]
+    return Log(times[covered], kept, poses_at(stamps, poses, times[covered]), scan_topic, source)
+
+
+def _choose(bag: Path, topics: dict[str, str], kind: str, asked: str | None, usual: str) -> str | None:
+    """Take the topic that was asked for, else the usual one, else the only one of its type."""
+    if asked is not None:
+        if topics.get(asked) != kind:
+            found = f"it is {topics[asked]}" if asked in topics else f"the bag has {_listed(topics)}"
+            raise LogError(bag, f"no topic {asked} of type {kind}: {found}")
+        return asked
+    candidates = sorted(topic for topic, found in topics.items() if found == kind)
+    if usual in candidates:
+        return usual
+    if len(candidates) > 1:
+        raise LogError(bag, f"several topics of type {kind}, name one: {', '.join(candidates)}")
+    return candidates[0] if candidates else None
+
+
+def _listed(topics: dict[str, str]) -> str:
+    return ", ".join(f"{topic} ({kind})" for topic, kind in sorted(topics.items())) or "no topics"
+
+
+def _odometry(
+    bag: Path, messages: list[Any], transforms: list[Any], odom_topic: str | None
+) -> tuple[str, Stamps, Array, str]:
+    """Where odometry comes from, its stamps and poses, and the name of the base's frame."""
+    if messages:
+        source = str(odom_topic)
+        base = messages[0].child_frame_id or "base_link"
+        stamped = [(_stamp(message.header), _planar(message.pose.pose)) for message in messages]
+    else:
+        moving = [t for t in transforms if _frame(t.header.frame_id) == "odom"]
+        if not moving:
+            raise LogError(
+                bag, f"no odometry: expected a topic of type {ODOMETRY} or a transform from odom in /tf"
+            )
+        base = moving[0].child_frame_id
+        source = f"/tf odom -> {_frame(base)}"
+        stamped = [
+            (_stamp(t.header), _planar_transform(t.transform)) for t in moving if t.child_frame_id == base
+        ]
+    stamped.sort(key=lambda item: item[0])
+    stamps = np.array([stamp for stamp, _ in stamped], dtype=np.int64)
+    poses = np.array([pose for _, pose in stamped])
+    if not np.isfinite(poses).all():
+        raise LogError(bag, f"odometry from {source} has poses that are no numbers")
+    return source, stamps, poses, _frame(base)
+
+
+def _mounts(transforms: Sequence[Any], base: str) -> dict[str, Array]:
+    """Pose (x, y, yaw) on the base of every frame that transforms tie to it."""
+    children: dict[str, dict[str, Array]] = {}
+    for t in transforms:
+        parent, child = _frame(t.header.frame_id), _frame(t.child_frame_id)
+        children.setdefault(parent, {}).setdefault(child, np.array(_planar_transform(t.transform)))
+    mounts = {base: np.zeros(3)}
+    waiting = [base]
+    while waiting:
+        parent = waiting.pop()
+        for child, pose in children.get(parent, {}).items():
+            if child not in mounts:
+                mounts[child] = pose2.compose(mounts[parent], pose)
+                waiting.append(child)
+    return mounts
+
+
+def _scan(bag: Path, message: Any, mounts: dict[str, Array]) -> LaserScanData:
+    frame = _frame(message.header.frame_id)
+    # Without any transforms the scanner is taken to sit at the base; with some, its own must be there.
+    mount = mounts.get(frame) if len(mounts) > 1 else np.zeros(3)
+    if mount is None:
+        raise LogError(
+            bag, f"no transform from the base to the frame {frame!r} of the scans in /tf_static or /tf"
+        )
+    return LaserScanData(
+        message.ranges,
+        message.angle_min,
+        message.angle_increment,
+        message.range_min,
+        message.range_max,
+        message.time_increment,
+        (float(mount[0]), float(mount[1]), float(mount[2])),
+    )
+
+
+def _stamp(header: Any) -> int:
+    return int(header.stamp.sec) * 10**9 + int(header.stamp.nanosec)
+
+
+def _frame(name: str) -> str:
+    """ROS 1 wrote frames with a leading slash."""
+    return name.lstrip("/")
+
+
+def _planar(pose: Any) -> tuple[float, float, float]:
+    return (pose.position.x, pose.position.y, _yaw(pose.orientation))
+
+
+def _planar_transform(transform: Any) -> tuple[float, float, float]:
+    return (transform.translation.x, transform.translation.y, _yaw(transform.rotation))
+
+
+def _yaw(q: Any) -> float:
+    return float(np.arctan2(2.0 * (q.w * q.z + q.x * q.y), 1.0 - 2.0 * (q.y * q.y + q.z * q.z)))

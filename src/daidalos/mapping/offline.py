@@ -1,0 +1,67 @@
+"""From a recorded log to a map and a trajectory, as fast as the machine allows."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daidalos.mapping import pose2
+from daidalos.mapping.grid import OccupancyGrid
+from daidalos.mapping.log import Log
+from daidalos.mapping.slam import Slam, SlamConfig
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class LogMap:
+    """What a log became.
+
+    Attributes
+    ----------
+    grid : OccupancyGrid
+        The map.
+    poses : ndarray, shape (n, 3)
+        Pose (x, y, yaw) of the base in the map at each scan of the log.
+    key_scans, closures : int
+        Number of scans that make up the map, and of recognised places.
+    """
+
+    grid: OccupancyGrid
+    poses: Array
+    key_scans: int
+    closures: int
+
+
+def map_log(
+    log: Log, config: SlamConfig | None = None, progress: Callable[[int], None] = lambda done: None
+) -> LogMap:
+    """Run SLAM over a log, matching every scan, and refine all poses at the end.
+
+    Parameters
+    ----------
+    log : Log
+        Scans and odometry.
+    config : SlamConfig, optional
+        Parameters; `match_every_scan` is always on.
+    progress : callable
+        Called with the number of scans done.
+    """
+    slam = Slam(replace(config or SlamConfig(), match_every_scan=True, minimum_time_interval=0.0))
+    poses = np.empty((len(log.scans), 3))
+    keys = np.empty(len(log.scans), dtype=np.int64)
+    on_key = np.zeros((len(log.scans), 3))
+    for index, scan in enumerate(log.scans):
+        poses[index] = slam.add_scan(int(log.stamps_ns[index]), scan, log.odometry[index]).pose
+        keys[index] = slam.key_count - 1
+        if slam.key_count:
+            on_key[index] = pose2.between(slam.key_pose(keys[index]), poses[index])
+        progress(index + 1)
+    if slam.key_count:
+        slam.finish()
+        # Key scans have moved since; what was found relative to them still holds.
+        mapped = keys >= 0
+        poses[mapped] = pose2.compose(slam.key_poses[keys[mapped]], on_key[mapped])
+    closures = sum(edge.closure for edge in slam.edges)
+    return LogMap(slam.grid(), poses, slam.key_count, closures)

@@ -1,0 +1,58 @@
+"""Poses in the plane: arrays whose last axis is (x [m], y [m], yaw [rad]), composed as elements of SE(2)."""
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Array = NDArray[np.float64]
+
+
+def wrap(angle: ArrayLike) -> Array:
+    """Bring angles into [-pi, pi)."""
+    return (np.asarray(angle, dtype=np.float64) + np.pi) % (2.0 * np.pi) - np.pi
+
+
+def compose(first: ArrayLike, second: ArrayLike) -> Array:
+    """Pose of C in A from the pose of B in A and the pose of C in B; the leading axes broadcast."""
+    a = np.asarray(first, dtype=np.float64)
+    b = np.asarray(second, dtype=np.float64)
+    cosine, sine = np.cos(a[..., 2]), np.sin(a[..., 2])
+    x = a[..., 0] + cosine * b[..., 0] - sine * b[..., 1]
+    y = a[..., 1] + sine * b[..., 0] + cosine * b[..., 1]
+    return np.stack([x, y, wrap(a[..., 2] + b[..., 2])], axis=-1)
+
+
+def between(first: ArrayLike, second: ArrayLike) -> Array:
+    """Pose of B in A from the poses of A and B in one frame; the leading axes broadcast."""
+    a = np.asarray(first, dtype=np.float64)
+    b = np.asarray(second, dtype=np.float64)
+    cosine, sine = np.cos(a[..., 2]), np.sin(a[..., 2])
+    dx, dy = b[..., 0] - a[..., 0], b[..., 1] - a[..., 1]
+    x = cosine * dx + sine * dy
+    y = -sine * dx + cosine * dy
+    return np.stack([x, y, wrap(b[..., 2] - a[..., 2])], axis=-1)
+
+
+def inverse(pose: ArrayLike) -> Array:
+    """Pose of A in B from the pose of B in A."""
+    return between(pose, np.zeros(3))
+
+
+def transform_points(pose: ArrayLike, points: Array) -> Array:
+    """Points (n, 2) given in the frame of a pose, in the frame the pose is given in."""
+    x, y, yaw = (float(value) for value in np.asarray(pose, dtype=np.float64))
+    cosine, sine = np.cos(yaw), np.sin(yaw)
+    rotation = np.array([[cosine, -sine], [sine, cosine]])
+    moved: Array = points @ rotation.T + (x, y)
+    return moved
+
+
+def interpolate(start: ArrayLike, end: ArrayLike, share: ArrayLike) -> Array:
+    """Pose on the straight line from start to end, yaw along the shorter arc; share 0 is start, 1 is end."""
+    a = np.asarray(start, dtype=np.float64)
+    b = np.asarray(end, dtype=np.float64)
+    s = np.asarray(share, dtype=np.float64)[..., None]
+    step = b - a
+    step[..., 2] = wrap(step[..., 2])
+    between_them = a + s * step
+    between_them[..., 2] = wrap(between_them[..., 2])
+    return between_them

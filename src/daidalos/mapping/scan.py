@@ -1,0 +1,216 @@
+"""Laser scans: from the ranges of one sweep to points with normals in the frame of the robot's base."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daidalos.mapping.compilation import compiled
+
+Array = NDArray[np.float64]
+
+SPACING = 0.03
+"""Least distance [m] of points in a row for matching: a near wall must not outweigh a far one."""
+
+LINE_TOLERANCE = 0.05
+"""Largest rms distance [m] of a point's neighbours from their line for the point to have a normal."""
+
+
+@dataclass(frozen=True)
+class LaserScanData:
+    """One sweep of a planar lidar, as `sensor_msgs/LaserScan` carries it.
+
+    Attributes
+    ----------
+    ranges : ndarray, shape (n,)
+        Distances [m]; NaN, infinities, zeros and what is outside of [range_min, range_max] are no
+        measurements.
+    angle_min, angle_increment : float
+        Direction of the first beam and step between beams [rad] in the sensor's frame.
+    range_min, range_max : float
+        Valid distances [m].
+    time_increment : float
+        Time between beams [s]; 0 where unknown.
+    sensor_pose : tuple of float
+        Pose (x, y, yaw) of the sensor in the frame of the base.
+    """
+
+    ranges: NDArray[np.floating]
+    angle_min: float
+    angle_increment: float
+    range_min: float = 0.0
+    range_max: float = np.inf
+    time_increment: float = 0.0
+    sensor_pose: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True)
+class Cloud:
+    """The points of one scan in the frame of the base, at the time of its first beam.
+
+    Attributes
+    ----------
+    points : ndarray, shape (n, 2)
+        Where beams ended [m], thinned for matching.
+    normals : ndarray, shape (n, 2)
+        Unit normals of the surface towards the sensor; zero where the surroundings of a point are no line.
+    ends : ndarray, shape (m, 2)
+        Where all beams ended, for drawing.
+    cleared : ndarray, shape (k, 2)
+        Ends of beams that measured farther than the largest range that is used, cut to that range.
+    origin : ndarray, shape (2,)
+        Position of the sensor.
+    """
+
+    points: Array
+    normals: Array
+    ends: Array
+    cleared: Array
+    origin: Array
+
+
+def to_cloud(
+    scan: LaserScanData, max_range: float, twist: tuple[float, float, float] = (0.0, 0.0, 0.0)
+) -> Cloud:
+    """Turn ranges into points with normals.
+
+    Parameters
+    ----------
+    scan : LaserScanData
+        The sweep.
+    max_range : float
+        Largest distance [m] at which an end point is used; longer beams only show free space up to there.
+    twist : tuple of float
+        Velocity (x [m/s], y [m/s], yaw [rad/s]) of the base in its own frame during the sweep; with a known
+        `time_increment` every beam is moved to where it would have ended had the robot stood still.
+
+    Returns
+    -------
+    Cloud
+        Points, normals and cleared ends in the frame of the base at the first beam.
+    """
+    ranges = np.array(scan.ranges, dtype=np.float64)
+    pose = np.array(scan.sensor_pose, dtype=np.float64)
+    ends, normals, cleared = _ends_and_normals(
+        ranges,
+        float(scan.angle_min),
+        float(scan.angle_increment),
+        float(scan.range_min),
+        float(scan.range_max),
+        float(max_range),
+        pose,
+        np.array(twist, dtype=np.float64),
+        float(scan.time_increment),
+    )
+    kept = _thin(ends)
+    return Cloud(ends[kept], normals[kept], ends, cleared, pose[:2].copy())
+
+
+@compiled
+def _ends_and_normals(
+    ranges: Array,
+    angle_min: float,
+    angle_increment: float,
+    range_min: float,
+    range_max: float,
+    max_range: float,
+    sensor: Array,
+    twist: Array,
+    time_increment: float,
+) -> tuple[Array, Array, Array]:
+    count = ranges.shape[0]
+    points = np.empty((count, 2))
+    reach = np.empty(count)
+    cleared = np.empty((count, 2))
+    hits = 0
+    misses = 0
+    for i in range(count):
+        distance = ranges[i]
+        if not (distance > 0.0 and range_min <= distance <= range_max and distance < np.inf):
+            continue
+        hit = distance <= max_range
+        if not hit:
+            distance = max_range
+        angle = sensor[2] + angle_min + i * angle_increment
+        x = sensor[0] + distance * np.cos(angle)
+        y = sensor[1] + distance * np.sin(angle)
+        elapsed = i * time_increment
+        if elapsed > 0.0:
+            yaw = twist[2] * elapsed
+            cosine, sine = np.cos(yaw), np.sin(yaw)
+            x, y = cosine * x - sine * y + twist[0] * elapsed, sine * x + cosine * y + twist[1] * elapsed
+        if hit:
+            points[hits, 0] = x
+            points[hits, 1] = y
+            reach[hits] = distance
+            hits += 1
+        else:
+            cleared[misses, 0] = x
+            cleared[misses, 1] = y
+            misses += 1
+    points = points[:hits].copy()
+    normals = _normals(points, reach[:hits], abs(angle_increment), sensor)
+    return points, normals, cleared[:misses].copy()
+
+
+@compiled
+def _normals(points: Array, reach: Array, increment: float, sensor: Array) -> Array:
+    """Fit a total least squares line to each point's neighbours along the sweep and take its normal."""
+    count = points.shape[0]
+    normals = np.zeros((count, 2))
+    for i in range(count):
+        radius = max(0.1, 3.5 * reach[i] * increment)
+        first = _end_of_surface(points, i, -1, radius)
+        last = _end_of_surface(points, i, 1, radius)
+        number = last - first + 1
+        if number < 3:
+            continue
+        mx = points[first : last + 1, 0].mean()
+        my = points[first : last + 1, 1].mean()
+        xx = xy = yy = 0.0
+        for j in range(first, last + 1):
+            dx, dy = points[j, 0] - mx, points[j, 1] - my
+            xx += dx * dx
+            xy += dx * dy
+            yy += dy * dy
+        half = 0.5 * (xx - yy)
+        root = np.sqrt(half * half + xy * xy)
+        across = 0.5 * (xx + yy) - root
+        along = 0.5 * (xx + yy) + root
+        if across > number * LINE_TOLERANCE**2 or across > 0.2 * along:
+            continue
+        direction = 0.5 * np.arctan2(2.0 * xy, xx - yy)
+        nx, ny = -np.sin(direction), np.cos(direction)
+        if nx * (sensor[0] - points[i, 0]) + ny * (sensor[1] - points[i, 1]) < 0.0:
+            nx, ny = -nx, -ny
+        normals[i, 0] = nx
+        normals[i, 1] = ny
+    return normals
+
+
+@compiled
+def _end_of_surface(points: Array, start: int, step: int, radius: float) -> int:
+    """Last index in one direction along the sweep that is within the radius and reached without a jump."""
+    i = start
+    while 0 <= i + step < points.shape[0]:
+        gap = np.hypot(points[i + step, 0] - points[i, 0], points[i + step, 1] - points[i, 1])
+        away = np.hypot(points[i + step, 0] - points[start, 0], points[i + step, 1] - points[start, 1])
+        if gap > radius or away > radius:
+            break
+        i += step
+    return i
+
+
+@compiled
+def _thin(points: Array) -> NDArray[np.int64]:
+    """Keep the indices of points that are apart from the one kept before."""
+    kept = np.empty(points.shape[0], np.int64)
+    count = 0
+    for i in range(points.shape[0]):
+        if count > 0:
+            last = kept[count - 1]
+            if np.hypot(points[i, 0] - points[last, 0], points[i, 1] - points[last, 1]) < SPACING:
+                continue
+        kept[count] = i
+        count += 1
+    return kept[:count].copy()

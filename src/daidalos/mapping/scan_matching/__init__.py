@@ -1,0 +1,1 @@
+"""The pose of a scan among points: correlation for the neighbourhood, point to line for the millimetres."""
