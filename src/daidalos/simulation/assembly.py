@@ -1,0 +1,92 @@
+"""Makes the sensors and plugins that a model's description asks for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+from daidalos.description.link import Plugin as PluginDescription
+from daidalos.description.link import Sensor as SensorDescription
+from daidalos.description.world import Model
+from daidalos.simulation.component import Component, Setting
+from daidalos.simulation.plugins.base import Parameters, SensorPlugin
+from daidalos.simulation.registry import is_built_in, plugin_class, sensor_class
+from daidalos.simulation.sensors.base import Sensor
+
+
+def make_components(model: Model, setting: Callable[[str], Setting]) -> list[Component]:
+    """Make a model's components: plugins first, so that sensors see what they did.
+
+    Parameters
+    ----------
+    model : Model
+    setting : callable
+        Takes a component's name in the model, returns its setting.
+
+    Returns
+    -------
+    list of Component
+        What is not known is left out with a warning.
+
+    Raises
+    ------
+    DescriptionError
+        When a plugin or sensor is known and its parameters are wrong.
+    """
+    components: list[Component] = []
+    for plugin in model.plugins:
+        components += _plugin(plugin, setting(plugin.name))
+    for link, joint, sensor in _sensors(model):
+        components += _sensor(sensor, link, joint, setting(f"{joint or link}::{sensor.name}"))
+    return components
+
+
+def _plugin(plugin: PluginDescription, setting: Setting) -> Iterator[Component]:
+    if is_built_in(plugin.filename):
+        return
+    cls = plugin_class(plugin.filename)
+    if cls is None:
+        setting.warn(_unknown(plugin))
+    elif issubclass(cls, SensorPlugin):
+        setting.warn(f"{plugin.element.where}: plugin {plugin.name!r} belongs inside a <sensor>, left out")
+    else:
+        yield from cls.make(plugin, setting)
+
+
+def _sensors(model: Model) -> Iterator[tuple[str, str, SensorDescription]]:
+    """Yield each sensor with the link that carries it and the joint that it sits in."""
+    for link in model.links.values():
+        for sensor in link.sensors:
+            yield link.name, "", sensor
+    for joint in model.joints.values():
+        for sensor in joint.sensors:
+            yield joint.child, joint.name, sensor
+
+
+def _sensor(description: SensorDescription, link: str, joint: str, setting: Setting) -> Iterator[Component]:
+    cls = sensor_class(description.type)
+    if cls is None:
+        setting.warn(
+            f"{description.element.where}: sensor {description.name!r} is of unknown type "
+            f"{description.type!r}, left out"
+        )
+        return
+    sensor = cls(description, link, setting, joint)
+    for plugin in description.plugins:
+        _configure(sensor, plugin, setting)
+    yield sensor
+
+
+def _configure(sensor: Sensor, plugin: PluginDescription, setting: Setting) -> None:
+    if is_built_in(plugin.filename):
+        return
+    cls = plugin_class(plugin.filename)
+    if cls is None:
+        setting.warn(_unknown(plugin))
+    elif issubclass(cls, SensorPlugin):
+        cls().configure(sensor, Parameters(plugin, setting))
+    else:
+        setting.warn(f"{plugin.element.where}: plugin {plugin.name!r} does not belong inside a <sensor>")
+
+
+def _unknown(plugin: PluginDescription) -> str:
+    return f"{plugin.element.where}: plugin {plugin.name!r} ({plugin.filename}) is not known, left out"

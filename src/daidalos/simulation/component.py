@@ -1,0 +1,98 @@
+"""The contract of everything that acts in the simulation at its own rate: sensors and plugins."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from daidalos.description.world import Model, World
+from daidalos.simulation.samples import Sample
+
+if TYPE_CHECKING:
+    from daidalos.simulation.conversion.build import ModelBuild
+    from daidalos.simulation.instance import Instance
+
+
+@dataclass(frozen=True)
+class Setting:
+    """Where a component finds itself when it is made.
+
+    Parameters
+    ----------
+    model : Model
+        Its description.
+    model_name : str
+        Its name in the simulation.
+    namespace : str
+        Relative topics go below it.
+    world : World
+        The description of the world around it.
+    stream : callable
+        Makes its random numbers, which derive from the simulation's seed and its name, from the start.
+    warn : callable
+        Takes a line for the user.
+    """
+
+    model: Model
+    model_name: str
+    namespace: str
+    world: World
+    stream: Callable[[], np.random.Generator]
+    warn: Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class Subscription:
+    """A topic that a component listens to: the command's class and who takes it."""
+
+    type: type
+    take: Callable[[Any], None]
+
+
+class Component:
+    """Something that acts when it is due and may say something then.
+
+    Attributes
+    ----------
+    period : float
+        Seconds between two updates; 0 acts in every step.
+    memory : object
+        Everything that changes while it runs. It is copied when the simulation's state is saved and
+        made anew by `start` when the simulation is reset.
+    random : numpy Generator
+        Its own stream.
+    """
+
+    period: float = 0.0
+    memory: Any = None
+
+    def __init__(self, setting: Setting) -> None:
+        self.setting = setting
+        self.random = setting.stream()
+
+    def start(self) -> Any:
+        """Return the memory that it starts with; called once it is bound, and on reset."""
+        return None
+
+    def prepare(self, build: ModelBuild) -> None:
+        """Add what it needs to the model before that is compiled: actuators, kinds of wheels."""
+
+    def bind(self, instance: Instance) -> None:
+        """Look up what it needs in the compiled model; called again whenever models come or go."""
+
+    def update(self, now_ns: int) -> Iterable[Sample]:
+        """Act, at a simulated time in nanoseconds, and return what there is to say."""
+        raise NotImplementedError
+
+    @property
+    def publications(self) -> Mapping[str, type[Sample]]:
+        """Topics that its samples may have, with their classes."""
+        return {}
+
+    @property
+    def subscriptions(self) -> Mapping[str, Subscription]:
+        """Topics that it takes commands from."""
+        return {}

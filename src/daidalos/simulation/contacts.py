@@ -1,0 +1,149 @@
+"""What touches what: a reading of all contacts now, and a watch over one model."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from daidalos.simulation.instance import Instance
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Contact:
+    """Two collisions that touch in k points.
+
+    Parameters
+    ----------
+    model1, link1, collision1, model2, link2, collision2 : str
+        Names as in the descriptions.
+    positions : array (k, 3)
+        In the world [m].
+    normals : array (k, 3)
+        Unit vectors from the first to the second.
+    forces : array (k, 3)
+        On the second, in world axes [N].
+    depths : array (k,)
+        How far they overlap [m].
+    """
+
+    model1: str
+    link1: str
+    collision1: str
+    model2: str
+    link2: str
+    collision2: str
+    positions: Array
+    normals: Array
+    forces: Array
+    depths: Array
+
+
+@dataclass(frozen=True)
+class Touch:
+    """Something that a watched model has touched.
+
+    Parameters
+    ----------
+    link : str
+        Of the watched model.
+    other_model, other_link : str
+    first_ns, last_ns : int
+        Simulated times at which it was first and last seen.
+    """
+
+    link: str
+    other_model: str
+    other_link: str
+    first_ns: int
+    last_ns: int
+
+
+def read_contacts(model: Any, data: Any, instances: Iterable[Instance]) -> list[Contact]:
+    """Return all contacts, grouped by pairs of collisions. Contact forces must be up to date."""
+    names = _geom_names(model, instances)
+    grouped: dict[tuple[int, int], list[int]] = {}
+    for index in range(data.ncon):
+        pair = data.contact.geom[index]
+        grouped.setdefault((int(pair[0]), int(pair[1])), []).append(index)
+    return [
+        _contact(model, data, names[first], names[second], rows)
+        for (first, second), rows in grouped.items()
+        if first in names and second in names
+    ]
+
+
+class ContactMonitor:
+    """Remembers what a model touches.
+
+    Parameters
+    ----------
+    instance : Instance
+        The model that is watched.
+    ignore : frozenset of str
+        Models that do not count.
+    """
+
+    def __init__(self, instance: Instance, ignore: frozenset[str]) -> None:
+        self.instance = instance
+        self._ignore = ignore
+        self._touches: dict[tuple[str, str, str], Touch] = {}
+
+    @property
+    def touches(self) -> tuple[Touch, ...]:
+        """What was touched so far, in the order of first contact."""
+        return tuple(self._touches.values())
+
+    def bind(self, model: Any, instances: Iterable[Instance]) -> None:
+        """Take the geoms of a newly compiled model."""
+        self._names = _geom_names(model, instances)
+        self._mine = np.zeros(model.ngeom, dtype=bool)
+        self._counts = np.zeros(model.ngeom, dtype=bool)
+        for geom, (name, _, _) in self._names.items():
+            self._mine[geom] = name == self.instance.name
+            self._counts[geom] = name != self.instance.name and name not in self._ignore
+
+    def look(self, data: Any, now_ns: int) -> None:
+        """Note the contacts of the step that was just made."""
+        first, second = data.contact.geom.T
+        here = (self._mine[first] & self._counts[second]) | (self._mine[second] & self._counts[first])
+        for index in np.flatnonzero(here & (data.contact.dist < 0)):
+            mine, other = int(first[index]), int(second[index])
+            if not self._mine[mine]:
+                mine, other = other, mine
+            _, link, _ = self._names[mine]
+            key = (link, *self._names[other][:2])
+            begun = self._touches[key].first_ns if key in self._touches else now_ns
+            self._touches[key] = Touch(*key, begun, now_ns)
+
+
+def _geom_names(model: Any, instances: Iterable[Instance]) -> dict[int, tuple[str, str, str]]:
+    """Return model, link and collision of each geom."""
+    return {
+        model.geom(geom).id: (instance.name, info.link, info.collision)
+        for instance in instances
+        for geom, info in instance.build.geoms.items()
+    }
+
+
+def _contact(
+    model: Any, data: Any, first: tuple[str, str, str], second: tuple[str, str, str], rows: list[int]
+) -> Contact:
+    frames = data.contact.frame[rows].reshape(-1, 3, 3)
+    forces = np.zeros((len(rows), 6))
+    for place, row in enumerate(rows):
+        mujoco.mj_contactForce(model, data, row, forces[place])
+    return Contact(
+        *first,
+        *second,
+        positions=data.contact.pos[rows].copy(),
+        normals=frames[:, 0].copy(),
+        forces=np.einsum("kij,ki->kj", frames, forces[:, :3]),
+        depths=-data.contact.dist[rows],
+    )

@@ -1,0 +1,79 @@
+"""Meshes inside MuJoCo's specification: shared between models, removed when nobody uses them."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any
+
+import mujoco
+import numpy as np
+
+from daidalos.description.meshes import TriangleMesh
+from daidalos.simulation.conversion.convex import content_key, convex_parts
+
+MAX_HULL_VERTICES = 64
+
+
+@dataclass(frozen=True)
+class Solid:
+    """A mesh as the simulation holds it.
+
+    Parameters
+    ----------
+    parts : tuple of str
+        Names of convex meshes that collide.
+    surface : str
+        Name of the true triangles, for rays; empty when the one part has the same shape.
+    """
+
+    parts: tuple[str, ...]
+    surface: str
+
+
+class Assets:
+    """Adds meshes to a specification, each content once.
+
+    Parameters
+    ----------
+    spec : MjSpec
+    """
+
+    def __init__(self, spec: Any) -> None:
+        self._spec = spec
+        self._users: Counter[str] = Counter()
+        self._taken: list[str] = []
+
+    def solid(self, mesh: TriangleMesh) -> Solid:
+        """Return a mesh's convex parts and, where they differ from it, its true surface."""
+        key = content_key(mesh)
+        parts, concave = convex_parts(mesh, key)
+        names = tuple(self._take(f"{key}:{i}", part) for i, part in enumerate(parts))
+        return Solid(names, self._take(key, mesh) if concave else "")
+
+    def taken(self) -> tuple[str, ...]:
+        """Return what was taken since the last call; to be released together."""
+        taken, self._taken = tuple(self._taken), []
+        return taken
+
+    def release(self, names: Iterable[str]) -> None:
+        """Remove what nobody else uses."""
+        self._users.subtract(names)
+        for name in [name for name, users in self._users.items() if users <= 0]:
+            del self._users[name]
+            self._spec.delete(self._spec.mesh(name))
+
+    def _take(self, name: str, mesh: TriangleMesh) -> str:
+        if not self._users[name]:
+            self._spec.add_mesh(
+                name=name,
+                uservert=np.ascontiguousarray(mesh.vertices, dtype=np.float32).ravel(),
+                userface=np.ascontiguousarray(mesh.faces, dtype=np.int32).ravel(),
+                # Bodies bring their own inertia; this kind compiles for open meshes too.
+                inertia=mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL,
+                maxhullvert=MAX_HULL_VERTICES,
+            )
+        self._users[name] += 1
+        self._taken.append(name)
+        return name

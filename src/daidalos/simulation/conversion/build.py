@@ -1,0 +1,337 @@
+"""Puts a described model into MuJoCo's specification: bodies, joints, geoms, couplings."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import mujoco
+
+from daidalos.description.errors import DescriptionError
+from daidalos.description.joint import Joint, JointType
+from daidalos.description.link import Collision, Link, Surface
+from daidalos.description.pose import Pose
+from daidalos.description.world import Model
+from daidalos.simulation.conversion.assets import Assets
+from daidalos.simulation.conversion.contact import set_surface
+from daidalos.simulation.conversion.geometry import add_geoms, add_wheel
+from daidalos.simulation.conversion.inertia import principal_inertia, smallest_inertia
+from daidalos.simulation.conversion.joints import add_joints
+from daidalos.simulation.conversion.wheels import is_caster, is_wheel
+
+ASSUMED_DENSITY = 200.0
+"""Of links that should move but have no mass [kg/m^3]."""
+
+
+_COUPLING_SOLREF = (0.004, 1.0)
+
+
+@dataclass(frozen=True)
+class GeomInfo:
+    """What a geom stands for."""
+
+    link: str
+    collision: str
+    laser_retro: float
+
+
+@dataclass(eq=False)
+class ModelBuild:
+    """A model while it is put together; plugins add what they need to it.
+
+    Attributes
+    ----------
+    spec : MjSpec
+    model : Model
+    name : str
+        The model's name in the simulation.
+    bodies : dict
+        Link to body (MjsBody).
+    roots : list
+        Bodies to delete when the model goes.
+    joints : dict
+        Joint to the names of MuJoCo's joints.
+    free : dict
+        Link to the name of its free joint.
+    geoms : dict
+        Name of a geom to what it stands for.
+    assets : tuple of str
+        Meshes to release when the model goes.
+    """
+
+    spec: Any
+    model: Model
+    name: str
+    bodies: dict[str, Any] = field(default_factory=dict)
+    roots: list[Any] = field(default_factory=list)
+    joints: dict[str, list[str]] = field(default_factory=dict)
+    free: dict[str, str] = field(default_factory=dict)
+    geoms: dict[str, GeomInfo] = field(default_factory=dict)
+    assets: tuple[str, ...] = ()
+
+    def scoped(self, name: str) -> str:
+        """Return the simulation's name for a link or joint of the model."""
+        return f"{self.name}::{name}"
+
+    def add_velocity_servo(self, joint: str, gain: float, torque: float, rotor: float = 0.0) -> str:
+        """Add an actuator that holds a joint's speed, and return its name.
+
+        Parameters
+        ----------
+        joint : str
+        gain : float
+            Torque per error of speed [N m s/rad].
+        torque : float
+            Largest torque [N m]; infinite for no limit.
+        rotor : float
+            Inertia of the motor's rotor, seen from the joint [kg m^2]. The contact solver does not know
+            of the implicit part of a servo: without a rotor as heavy as what a wheel drives, the wheel
+            would slip while the speed changes.
+        """
+        self.spec.joint(self.joints[joint][0]).armature = rotor
+        actuator = self.spec.add_actuator(
+            name=f"{self.scoped(joint)}::velocity",
+            trntype=mujoco.mjtTrn.mjTRN_JOINT,
+            target=self.joints[joint][0],
+        )
+        actuator.set_to_velocity(kv=gain)
+        if torque != float("inf"):
+            actuator.forcelimited = mujoco.mjtLimited.mjLIMITED_TRUE
+            actuator.forcerange = [-torque, torque]
+        return str(actuator.name)
+
+    def remove(self) -> None:
+        """Take the model out of the specification; what refers to its bodies goes with them."""
+        for body in self.roots:
+            self.spec.delete(body)
+        self.roots.clear()
+
+
+def add_model(
+    spec: Any, assets: Assets, model: Model, name: str, pose: Pose, warn: Callable[[str], None]
+) -> ModelBuild:
+    """Add a model to a specification.
+
+    Parameters
+    ----------
+    spec : MjSpec
+    assets : Assets
+        Of the same specification.
+    model : Model
+    name : str
+        In the simulation.
+    pose : Pose
+        Of the model's frame in the world.
+    warn : callable
+        Takes a line for each thing that is left out or changed.
+
+    Returns
+    -------
+    ModelBuild
+        Nothing of it is left in the specification when an error is raised.
+    """
+    build = ModelBuild(spec, model, name)
+    try:
+        _Builder(build, assets, pose, warn).run()
+    except Exception:
+        build.remove()
+        assets.release(assets.taken())
+        raise
+    build.assets = assets.taken()
+    return build
+
+
+class _Builder:
+    def __init__(self, build: ModelBuild, assets: Assets, pose: Pose, warn: Callable[[str], None]) -> None:
+        self._build = build
+        self._model = build.model
+        self._assets = assets
+        self._pose = pose
+        self._warn = warn
+        self._above: dict[str, Joint] = {}
+        for joint in self._model.joints.values():
+            self._above.setdefault(joint.child, joint)
+        self._below: dict[str, list[Joint]] = {}
+        for joint in self._above.values():
+            self._below.setdefault(joint.parent, []).append(joint)
+        self._solid_without_mass: set[str] = set()
+        self._empty_without_mass: set[str] = set()
+
+    def run(self) -> None:
+        self._find_weightless()
+        if self._model.static:
+            self._add_static()
+        else:
+            self._add_moving()
+            self._exclude_self_collisions()
+            self._couple_mimics()
+
+    # Bodies
+
+    def _add_static(self) -> None:
+        """Add one mocap body for the model, so that it can be moved as a whole and collide there."""
+        base = self._base()
+        for link in self._model.links.values():
+            self._add_link(base, link, link.pose)
+
+    def _add_moving(self) -> None:
+        in_world = self._below.get("world", [])
+        if in_world:
+            base = self._base()
+            for joint in in_world:
+                self._add_branch(base, joint)
+        for link in self._model.links.values():
+            joint_above = self._above.get(link.name)
+            if joint_above is None or joint_above.type is JointType.FLOATING:
+                self._add_free(link)
+
+    def _base(self) -> Any:
+        body = self._body(self._build.spec.worldbody, self._build.name, self._pose)
+        body.mocap = True
+        self._build.roots.append(body)
+        return body
+
+    def _add_free(self, link: Link) -> None:
+        world = self._build.spec.worldbody
+        body = self._add_link(world, link, self._pose @ link.pose)
+        self._build.roots.append(body)
+        name = f"{self._build.scoped(link.name)}::free"
+        body.add_freejoint(name=name)
+        self._build.free[link.name] = name
+        self._add_children(link)
+
+    def _add_branch(self, parent: Any, joint: Joint) -> None:
+        if joint.type is JointType.FLOATING:
+            return
+        link = self._model.links[joint.child]
+        body = self._add_link(parent, link, joint.origin @ joint.anchor.inverse)
+        self._build.joints[joint.name] = add_joints(body, joint, self._build.scoped(joint.name))
+        self._add_children(link)
+
+    def _add_children(self, link: Link) -> None:
+        for joint in self._below.get(link.name, []):
+            self._add_branch(self._build.bodies[link.name], joint)
+
+    def _add_link(self, parent: Any, link: Link, pose: Pose) -> Any:
+        body = self._body(parent, self._build.scoped(link.name), pose)
+        self._build.bodies[link.name] = body
+        if not link.gravity:
+            body.gravcomp = 1.0
+        self._set_inertia(body, link)
+        for index, collision in enumerate(link.collisions):
+            self._add_collision(body, link, collision, index)
+        return body
+
+    def _body(self, parent: Any, name: str, pose: Pose) -> Any:
+        x, y, z, w = pose.orientation
+        return parent.add_body(name=name, pos=list(pose.position), quat=[w, x, y, z])
+
+    # Mass
+
+    def _set_inertia(self, body: Any, link: Link) -> None:
+        if link.name in self._empty_without_mass:
+            inertia = smallest_inertia()
+        elif link.inertial is not None and link.inertial.mass > 0 and not self._model.static:
+            inertia = principal_inertia(link.inertial)
+        else:
+            return
+        if inertia.changed:
+            self._warn(f"{link.where}: link {link.name!r}: {inertia.changed}")
+        x, y, z, w = inertia.orientation
+        body.explicitinertial = True
+        body.mass = inertia.mass
+        body.ipos = list(inertia.position)
+        body.iquat = [w, x, y, z]
+        body.inertia = list(inertia.moments)
+
+    def _find_weightless(self) -> None:
+        """Find the links that move although neither they nor what is fixed to them has any mass."""
+        for link in self._model.links.values():
+            above = self._above.get(link.name)
+            if self._model.static or (above is not None and above.type is JointType.FIXED):
+                continue
+            group = self._fixed_group(link)
+            if any(part.inertial is not None and part.inertial.mass > 0 for part in group):
+                continue
+            solid = {part.name for part in group if part.collisions}
+            if solid:
+                self._solid_without_mass |= solid
+                self._warn(
+                    f"{link.where}: link {link.name!r} moves but has no mass; "
+                    f"assumed {ASSUMED_DENSITY:g} kg/m^3 for its collisions"
+                )
+            else:
+                self._empty_without_mass.add(link.name)
+
+    def _fixed_group(self, link: Link) -> list[Link]:
+        group = [link]
+        for joint in self._below.get(link.name, []):
+            if joint.type is JointType.FIXED:
+                group += self._fixed_group(self._model.links[joint.child])
+        return group
+
+    # Collisions
+
+    def _add_collision(self, body: Any, link: Link, collision: Collision, index: int) -> None:
+        joint = self._above.get(link.name)
+        try:
+            if is_wheel(joint, collision):
+                disc: Any = collision.geometry
+                geoms = add_wheel(body, disc.radius, disc.length, collision.pose)
+            else:
+                geoms = add_geoms(body, collision.geometry, collision.pose, self._assets)
+        except DescriptionError as problem:
+            self._warn(f"{problem}; the collision is left out")
+            return
+        surface = replace(collision.surface, mu=0.0, mu2=0.0) if is_caster(joint, link) else collision.surface
+        for number, geom in enumerate(geoms):
+            self._finish_geom(geom, link, collision, surface, f"{index}.{number}")
+
+    def _finish_geom(
+        self, geom: Any, link: Link, collision: Collision, surface: Surface, number: str
+    ) -> None:
+        geom.name = f"{self._build.scoped(link.name)}::{number}"
+        set_surface(geom, surface)
+        if link.name in self._solid_without_mass:
+            geom.mass, geom.density = float("nan"), ASSUMED_DENSITY
+        if not surface.collide:
+            geom.contype = geom.conaffinity = 0
+        name = collision.name or f"collision_{number.partition('.')[0]}"
+        self._build.geoms[geom.name] = GeomInfo(link.name, name, collision.laser_retro)
+
+    def _exclude_self_collisions(self) -> None:
+        """Keep links of the model from touching each other unless both are told to."""
+        solid = [link for link in self._model.links.values() if link.collisions]
+        for link, other in itertools.combinations(solid, 2):
+            if not (self._touches_own(link) and self._touches_own(other)):
+                first, second = self._build.scoped(link.name), self._build.scoped(other.name)
+                self._build.spec.add_exclude(name=f"{first}|{second}", bodyname1=first, bodyname2=second)
+
+    def _touches_own(self, link: Link) -> bool:
+        return self._model.self_collide if link.self_collide is None else link.self_collide
+
+    # Couplings
+
+    def _couple_mimics(self) -> None:
+        """Tie each mimic joint to the one it follows."""
+        for joint in self._model.joints.values():
+            if joint.mimic is None or not self._build.joints.get(joint.name):
+                continue
+            leader = self._build.joints.get(joint.mimic.joint)
+            if leader:
+                follower = self._build.joints[joint.name][0]
+                self._couple(follower, leader[0], joint.mimic.offset, joint.mimic.multiplier)
+
+    def _couple(self, follower: str, leader: str, offset: float, multiplier: float) -> None:
+        """Hold follower = offset + multiplier * leader."""
+        coupling = self._build.spec.add_equality(
+            name=f"{follower}~{leader}",
+            type=mujoco.mjtEq.mjEQ_JOINT,
+            objtype=mujoco.mjtObj.mjOBJ_JOINT,
+            name1=follower,
+            name2=leader,
+        )
+        coupling.data[:5] = (offset, multiplier, 0.0, 0.0, 0.0)
+        coupling.solref[:2] = _COUPLING_SOLREF

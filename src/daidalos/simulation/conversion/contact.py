@@ -1,0 +1,49 @@
+"""Friction and stiffness of contacts: from SDF's surfaces to MuJoCo's geoms.
+
+ODE, which SDF's numbers are written for, takes the smaller friction of two surfaces; MuJoCo takes the
+larger one, or that of the geom with the higher priority. Giving a geom the higher priority the less
+friction it has makes MuJoCo take the smaller one as well.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from daidalos.description.link import Surface
+
+DEFAULT_FRICTION = 1.0
+MAX_FRICTION = 2.0
+"""Descriptions write 100 or 1e5 for "does not slip"; the contact solver converges badly with those."""
+
+SOLREF = (0.004, 1.0)
+"""Time constant [s] and damping ratio of contacts: stiff enough that wheels do not creep."""
+
+_FRICTIONLESS = 1e-3
+
+
+def set_surface(geom: Any, surface: Surface) -> None:
+    """Set friction, stiffness and what a geom collides with.
+
+    Parameters
+    ----------
+    geom : MjsGeom
+    surface : Surface
+        Two directions of friction become their mean, since a geom has only one coefficient.
+    """
+    friction = friction_of(surface)
+    geom.priority = round(1000 * (MAX_FRICTION - friction))
+    geom.solref[:2] = SOLREF
+    geom.margin = 0.0
+    if friction < _FRICTIONLESS:
+        geom.condim = 1
+        return
+    torsional = (surface.torsional or 0.0) * surface.patch_radius
+    geom.condim = 4 if torsional > 0 else 3
+    geom.friction[:] = (friction, min(torsional, 1.0), 0.0)
+
+
+def friction_of(surface: Surface) -> float:
+    """Return the Coulomb coefficient that the simulator uses for a surface."""
+    mu = DEFAULT_FRICTION if surface.mu is None else surface.mu
+    mu2 = mu if surface.mu2 is None else surface.mu2
+    return max(0.0, (min(mu, MAX_FRICTION) + min(mu2, MAX_FRICTION)) / 2)

@@ -1,0 +1,143 @@
+"""From the shapes of descriptions to MuJoCo's geoms: one small function per shape.
+
+Geoms are sorted into groups: those of `SOLID` collide and are seen by rays, those of `SEEN` are only
+seen, those of `TOUCHED` only collide.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import mujoco
+import numpy as np
+
+from daidalos.description.geometry import (
+    Box,
+    Capsule,
+    Cone,
+    Cylinder,
+    Ellipsoid,
+    Empty,
+    Geometry,
+    Mesh,
+    Plane,
+    Polyline,
+    Sphere,
+)
+from daidalos.description.meshes import triangles_of
+from daidalos.description.pose import Pose, quaternion_between
+from daidalos.simulation.conversion.assets import Assets
+
+SOLID, SEEN, TOUCHED = 0, 1, 3
+RAY_GROUPS = np.array([1, 1, 0, 0, 0, 0], dtype=np.uint8)
+"""For ``mj_multiRay``: which groups stop a ray."""
+
+_Type = mujoco.mjtGeom
+
+
+def add_geoms(body: Any, geometry: Geometry, pose: Pose, assets: Assets) -> list[Any]:
+    """Add the geoms of a collision shape to a body.
+
+    Parameters
+    ----------
+    body : MjsBody
+    geometry : Geometry
+    pose : Pose
+        In the body.
+    assets : Assets
+        Takes meshes and heightmaps.
+
+    Returns
+    -------
+    list of MjsGeom
+        None for an empty shape. They weigh nothing; the body's inertia is given.
+
+    Raises
+    ------
+    DescriptionError
+        When a mesh or image is missing or can not be read.
+    """
+    if isinstance(geometry, Empty):
+        return []
+    return _ADDERS[type(geometry)](body, geometry, pose, assets)
+
+
+def add_wheel(body: Any, radius: float, width: float, pose: Pose) -> list[Any]:
+    """Add a wheel along z: an ellipsoid touches the ground in one point, a cylinder is what one sees.
+
+    A cylinder touches with a line of points that rub against each other in a turn.
+    """
+    rolling = _add(body, _Type.mjGEOM_ELLIPSOID, (radius, radius, width / 2), pose)
+    rolling.group = TOUCHED
+    seen = _add(body, _Type.mjGEOM_CYLINDER, (radius, width / 2, 0.0), pose)
+    _only_seen(seen)
+    return [rolling, seen]
+
+
+def _add(body: Any, kind: Any, size: tuple[float, float, float], pose: Pose) -> Any:
+    x, y, z, w = pose.orientation
+    return body.add_geom(
+        type=kind, size=list(size), pos=list(pose.position), quat=[w, x, y, z], mass=0.0, group=SOLID
+    )
+
+
+def _only_seen(geom: Any) -> None:
+    geom.group, geom.contype, geom.conaffinity = SEEN, 0, 0
+
+
+def _box(body: Any, shape: Box, pose: Pose, _: Assets) -> list[Any]:
+    x, y, z = shape.size
+    return [_add(body, _Type.mjGEOM_BOX, (x / 2, y / 2, z / 2), pose)]
+
+
+def _sphere(body: Any, shape: Sphere, pose: Pose, _: Assets) -> list[Any]:
+    return [_add(body, _Type.mjGEOM_SPHERE, (shape.radius, 0.0, 0.0), pose)]
+
+
+def _cylinder(body: Any, shape: Cylinder, pose: Pose, _: Assets) -> list[Any]:
+    return [_add(body, _Type.mjGEOM_CYLINDER, (shape.radius, shape.length / 2, 0.0), pose)]
+
+
+def _capsule(body: Any, shape: Capsule, pose: Pose, _: Assets) -> list[Any]:
+    return [_add(body, _Type.mjGEOM_CAPSULE, (shape.radius, shape.length / 2, 0.0), pose)]
+
+
+def _ellipsoid(body: Any, shape: Ellipsoid, pose: Pose, _: Assets) -> list[Any]:
+    return [_add(body, _Type.mjGEOM_ELLIPSOID, shape.radii, pose)]
+
+
+def _plane(body: Any, shape: Plane, pose: Pose, _: Assets) -> list[Any]:
+    turned = pose @ Pose(orientation=quaternion_between((0.0, 0.0, 1.0), shape.normal))
+    return [_add(body, _Type.mjGEOM_PLANE, (0.0, 0.0, 1.0), turned)]
+
+
+def _mesh(body: Any, shape: Mesh | Cone | Polyline, pose: Pose, assets: Assets) -> list[Any]:
+    """Add a mesh: convex parts that collide, and the true triangles that rays hit where they differ."""
+    solid = assets.solid(triangles_of(shape))
+    geoms = []
+    for name in solid.parts:
+        geom = _add(body, _Type.mjGEOM_MESH, (0.0, 0.0, 0.0), pose)
+        geom.meshname = name
+        geoms.append(geom)
+    if solid.surface:
+        for geom in geoms:
+            geom.group = TOUCHED
+        seen = _add(body, _Type.mjGEOM_MESH, (0.0, 0.0, 0.0), pose)
+        seen.meshname = solid.surface
+        _only_seen(seen)
+        geoms.append(seen)
+    return geoms
+
+
+_ADDERS: dict[type, Callable[[Any, Any, Pose, Assets], list[Any]]] = {
+    Box: _box,
+    Sphere: _sphere,
+    Cylinder: _cylinder,
+    Capsule: _capsule,
+    Ellipsoid: _ellipsoid,
+    Cone: _mesh,
+    Polyline: _mesh,
+    Plane: _plane,
+    Mesh: _mesh,
+}

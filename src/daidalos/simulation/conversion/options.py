@@ -1,0 +1,45 @@
+"""From a world's physics to MuJoCo's options."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import mujoco
+
+from daidalos.description.world import Physics, World
+
+LARGEST_STEP_NS = 1_000_000
+"""Longer steps are cut into parts: contacts this stiff need 1 ms."""
+
+
+def physics_step(physics: Physics) -> tuple[int, int]:
+    """Return the world's step in nanoseconds and how many parts of it are simulated one by one."""
+    step_ns = max(1000, round(physics.max_step_size * 1e9))
+    parts = math.ceil(step_ns / LARGEST_STEP_NS)
+    return step_ns // parts * parts, parts
+
+
+def set_options(spec: Any, world: World, timestep: float) -> None:
+    """Set how the world is integrated.
+
+    With implicit integration of velocity servos, elliptic friction cones and a high ratio of friction
+    to normal impedance, wheels roll true; see the tests for how true.
+
+    Parameters
+    ----------
+    spec : MjSpec
+    world : World
+    timestep : float
+        [s].
+    """
+    spec.modelname = world.name
+    spec.compiler.degree = False
+    spec.compiler.autolimits = True
+    option = spec.option
+    option.timestep = timestep
+    option.gravity = list(world.gravity)
+    option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
+    option.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
+    option.impratio = 10.0
+    option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_AUTORESET)

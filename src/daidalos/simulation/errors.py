@@ -1,0 +1,40 @@
+"""The errors of the simulator."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+
+class SimulationError(Exception):
+    """Something can not be simulated; the message says what and why."""
+
+
+class UnknownNameError(SimulationError):
+    """There is no model, link or joint of this name; says which there are.
+
+    Parameters
+    ----------
+    kind : str
+        ``model``, ``link`` or ``joint``.
+    name : str
+    known : iterable of str
+    """
+
+    def __init__(self, kind: str, name: str, known: Iterable[str]) -> None:
+        self.kind = kind
+        self.name = name
+        self.known = tuple(known)
+        super().__init__(f"there is no {kind} {name!r}; known are {', '.join(self.known) or 'none'}")
+
+
+class NameTakenError(SimulationError):
+    """A model of this name is there already.
+
+    Parameters
+    ----------
+    name : str
+    """
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+        super().__init__(f"a model {name!r} is in the simulation already")

@@ -1,0 +1,221 @@
+"""A model in the running simulation: names of its links and joints as places in MuJoCo's arrays."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from daidalos.description.pose import Pose
+from daidalos.simulation.conversion.build import ModelBuild
+from daidalos.simulation.errors import SimulationError, UnknownNameError
+
+if TYPE_CHECKING:
+    from daidalos.simulation.component import Component
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Physics:
+    """MuJoCo's model and data, and what brings derived quantities up to date with the state.
+
+    Parameters
+    ----------
+    model, data : MjModel, MjData
+    refresh_positions : callable
+        Poses of bodies and geoms.
+    refresh : callable
+        Everything: velocities, accelerations, contacts and their forces.
+    heard : callable
+        Tells whether anyone listens to a topic.
+    """
+
+    model: Any
+    data: Any
+    refresh_positions: Callable[[], None]
+    refresh: Callable[[], None]
+    heard: Callable[[str], bool]
+
+
+@dataclass(frozen=True)
+class LinkView:
+    """A link in the arrays."""
+
+    physics: Physics
+    body: int
+
+    @property
+    def pose(self) -> Pose:
+        """The link in the world, now."""
+        self.physics.refresh_positions()
+        data = self.physics.data
+        x, y, z = (float(value) for value in data.xpos[self.body])
+        qw, qx, qy, qz = (float(value) for value in data.xquat[self.body])
+        return Pose((x, y, z), (qx, qy, qz, qw))
+
+    @property
+    def rotation(self) -> Array:
+        """Rotation (3, 3) of the link in the world, now."""
+        self.physics.refresh_positions()
+        rotation: Array = self.physics.data.xmat[self.body].reshape(3, 3)
+        return rotation
+
+    def velocity(self) -> tuple[Array, Array]:
+        """Return linear velocity of the link's origin and angular velocity, in world axes."""
+        self.physics.refresh()
+        motion = np.zeros(6)
+        mujoco.mj_objectVelocity(
+            self.physics.model, self.physics.data, mujoco.mjtObj.mjOBJ_XBODY, self.body, motion, 0
+        )
+        return motion[3:], motion[:3]
+
+    def inertial_motion(self) -> tuple[Array, Array, Array]:
+        """Return what an inertial sensor at the link's origin feels, in the link's axes.
+
+        Returns
+        -------
+        rate : array (3,)
+            Turn rate [rad/s].
+        force : array (3,)
+            Acceleration less gravity [m/s^2].
+        spin_up : array (3,)
+            Angular acceleration [rad/s^2].
+        """
+        self.physics.refresh()
+        model, data = self.physics.model, self.physics.data
+        mujoco.mj_rnePostConstraint(model, data)
+        motion, change = np.zeros(6), np.zeros(6)
+        mujoco.mj_objectVelocity(model, data, mujoco.mjtObj.mjOBJ_XBODY, self.body, motion, 1)
+        mujoco.mj_objectAcceleration(model, data, mujoco.mjtObj.mjOBJ_XBODY, self.body, change, 1)
+        return motion[:3], change[3:], change[:3]
+
+
+@dataclass(frozen=True)
+class JointView:
+    """A joint's first degree of freedom in the arrays."""
+
+    physics: Physics
+    name: str
+    qpos: int
+    dof: int
+
+    @property
+    def position(self) -> float:
+        """[rad] or [m]; turns are counted on."""
+        return float(self.physics.data.qpos[self.qpos])
+
+    @property
+    def velocity(self) -> float:
+        """[rad/s] or [m/s]."""
+        return float(self.physics.data.qvel[self.dof])
+
+    @property
+    def effort(self) -> float:
+        """Of the joint's actuators, in the last step [N m] or [N]."""
+        return float(self.physics.data.qfrc_actuator[self.dof])
+
+
+class Instance:
+    """A model in the simulation.
+
+    Parameters
+    ----------
+    build : ModelBuild
+    namespace : str
+        Relative topics of its components go below it.
+    components : list of Component
+    """
+
+    def __init__(self, build: ModelBuild, namespace: str, components: list[Component]) -> None:
+        self.build = build
+        self.model = build.model
+        self.name = build.name
+        self.namespace = namespace
+        self.components = components
+        self._physics: Physics | None = None
+
+    @property
+    def physics(self) -> Physics:
+        """MuJoCo's arrays, once the model is compiled."""
+        if self._physics is None:
+            raise SimulationError(f"model {self.name!r} is not compiled yet")
+        return self._physics
+
+    def bind(self, physics: Physics) -> None:
+        """Take the arrays of a newly compiled model; places in them may have changed."""
+        self._physics = physics
+        for component in self.components:
+            component.bind(self)
+
+    def heard(self, topic: str) -> bool:
+        """Tell whether anyone listens to a topic."""
+        return self.physics.heard(topic)
+
+    def link(self, name: str) -> LinkView:
+        """Return a link by its name in the description.
+
+        Raises
+        ------
+        UnknownNameError
+        """
+        if name not in self.build.bodies:
+            raise UnknownNameError("link", name, self.build.bodies)
+        return LinkView(self.physics, self.physics.model.body(self.build.scoped(name)).id)
+
+    def joint(self, name: str) -> JointView:
+        """Return a movable joint by its name in the description.
+
+        Raises
+        ------
+        UnknownNameError
+        """
+        if not self.build.joints.get(name):
+            raise UnknownNameError("joint", name, [n for n, added in self.build.joints.items() if added])
+        joint = self.physics.model.joint(self.build.joints[name][0])
+        return JointView(self.physics, name, int(joint.qposadr[0]), int(joint.dofadr[0]))
+
+    def actuator(self, name: str) -> int:
+        """Return the place of an actuator in MuJoCo's controls."""
+        return int(self.physics.model.actuator(name).id)
+
+    @property
+    def pose(self) -> Pose:
+        """The model's frame in the world, now; it moves with its first free link."""
+        root = next(iter(self.build.free), None)
+        if root is not None:
+            return self.link(root).pose @ self.model.links[root].pose.inverse
+        self.physics.refresh_positions()
+        if not self.build.roots:
+            return self.model.pose
+        return LinkView(self.physics, self.physics.model.body(self.name).id).pose
+
+    def set_pose(self, pose: Pose) -> None:
+        """Move the model as a whole; joints keep their positions, free links their places in it."""
+        change = pose @ self.pose.inverse
+        data, model = self.physics.data, self.physics.model
+        for link, joint in self.build.free.items():
+            address = int(model.joint(joint).qposadr[0])
+            moved = change @ self.link(link).pose
+            x, y, z, w = moved.orientation
+            data.qpos[address : address + 7] = (*moved.position, w, x, y, z)
+        mocap = model.body(self.name).mocapid[0] if self._has_base() else -1
+        if mocap >= 0:
+            x, y, z, w = pose.orientation
+            data.mocap_pos[mocap] = pose.position
+            data.mocap_quat[mocap] = (w, x, y, z)
+
+    def set_velocity(self, linear: Array, angular: Array) -> None:
+        """Give every free link of the model a velocity of its origin and a turn rate, in world axes."""
+        data, model = self.physics.data, self.physics.model
+        for link, joint in self.build.free.items():
+            address = int(model.joint(joint).dofadr[0])
+            data.qvel[address : address + 3] = linear
+            data.qvel[address + 3 : address + 6] = self.link(link).rotation.T @ angular
+
+    def _has_base(self) -> bool:
+        return any(body.mocap for body in self.build.roots)

@@ -1,0 +1,1 @@
+"""One file for each plugin; `base` holds their contract."""

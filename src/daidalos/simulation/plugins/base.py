@@ -1,0 +1,100 @@
+"""The contracts of plugins: those of a model or a world, and those inside a sensor."""
+
+from __future__ import annotations
+
+import re
+from abc import ABC, abstractmethod
+from collections.abc import Iterable
+from typing import ClassVar
+
+from daidalos.description.link import Plugin as Description
+from daidalos.description.markup import Element
+from daidalos.simulation.component import Component, Setting
+from daidalos.simulation.sensors.base import Sensor
+from daidalos.simulation.topics import absolute_topic, join_namespaces
+
+
+def library_name(filename: str) -> str:
+    """Return the name of a library without what platforms and versions add to it.
+
+    ``libgazebo_ros_imu.so`` becomes ``gazebo_ros_imu``; ``libignition-gazebo6-imu-system.so`` and
+    ``gz-sim8-imu-system`` become ``gz-sim-imu-system``.
+    """
+    name = filename.strip().replace("\\", "/").rpartition("/")[2]
+    name = re.sub(r"\.(so|dll|dylib)$", "", name).removeprefix("lib")
+    return re.sub(r"^(ignition-gazebo|gz-sim)\d*-", "gz-sim-", name)
+
+
+class Plugin(Component):
+    """Code that runs beside a model.
+
+    A subclass names the libraries that it stands in for: without ``lib`` in front and ``.so`` behind.
+    Adding a file with such a class to this folder adds the plugin; a package of the user's does the
+    same through the entry point group ``daidalos.plugins``.
+
+    Parameters
+    ----------
+    description : daidalos.description.link.Plugin
+    setting : Setting
+    """
+
+    names: ClassVar[tuple[str, ...]] = ()
+
+    def __init__(self, description: Description, setting: Setting) -> None:
+        super().__init__(setting)
+        self.description = description
+        self.parameters = Parameters(description, setting)
+
+    @classmethod
+    def make(cls, description: Description, setting: Setting) -> Iterable[Component]:
+        """Return what runs in the simulation for this plugin: itself, unless a subclass knows better."""
+        return (cls(description, setting),)
+
+
+class SensorPlugin(ABC):
+    """Code that decides how a sensor speaks to ROS: topic, frame, message."""
+
+    names: ClassVar[tuple[str, ...]] = ()
+
+    @abstractmethod
+    def configure(self, sensor: Sensor, parameters: Parameters) -> None:
+        """Change the sensor before it is used."""
+
+
+class Parameters:
+    """A plugin's parameters, in ROS 1's camelCase as in ROS 2's snake_case.
+
+    Parameters
+    ----------
+    description : daidalos.description.link.Plugin
+    setting : Setting
+    """
+
+    def __init__(self, description: Description, setting: Setting) -> None:
+        self.element: Element = description.element
+        self.library = library_name(description.filename)
+        self.scope = description.scope
+        ros = self.element.first("ros") or Element("ros")
+        inner = ros.text_of("namespace", default=self.element.text_of("robotNamespace", "robot_namespace"))
+        self.namespace = join_namespaces(setting.namespace, inner)
+        self._remappings: dict[str, str] = {}
+        for remapping in ros.all("remapping", "argument"):
+            name, separator, target = remapping.text.partition(":=")
+            if separator:
+                self._remappings[name.strip()] = target.strip()
+
+    def topic(self, name: str) -> str:
+        """Return the absolute topic for a name, remapped as ``<ros><remapping>`` says.
+
+        A private name (``~/out``) that is not remapped lies below the plugin's own name.
+        """
+        bare = name.removeprefix("~/")
+        for written in (name, f"~/{bare}", bare):
+            if written in self._remappings:
+                return absolute_topic(self._remappings[written].removeprefix("~/"), self.namespace)
+        own = self.element.attribute("name", "") if name.startswith("~/") else ""
+        return absolute_topic(f"{own}/{bare}" if own else bare, self.namespace)
+
+    def scoped(self, name: str) -> str:
+        """Return the model's name for a link or joint that a nested model's plugin mentions."""
+        return f"{self.scope}::{name}" if self.scope and name else name

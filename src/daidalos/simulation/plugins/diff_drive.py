@@ -1,0 +1,237 @@
+"""Differential drive: wheel speeds from a commanded velocity, odometry from the wheels."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daidalos.description.link import Plugin as Description
+from daidalos.description.pose import rotate
+from daidalos.simulation.component import Setting, Subscription
+from daidalos.simulation.conversion.build import ModelBuild
+from daidalos.simulation.instance import Instance, JointView, LinkView
+from daidalos.simulation.odometry import (
+    PlanarPose,
+    planar_covariance,
+    transform_of,
+    yaw_quaternion,
+)
+from daidalos.simulation.plugins.base import Plugin
+from daidalos.simulation.plugins.diff_drive_settings import read_settings
+from daidalos.simulation.samples import (
+    JointStateSample,
+    OdometrySample,
+    Sample,
+    TransformSample,
+    TwistCommand,
+)
+
+Array = NDArray[np.float64]
+
+SERVO_TIME = 0.005
+"""Time constant of the wheel servos [s]; the gain follows from it and the inertia that a wheel moves."""
+
+
+@dataclass
+class Motion:
+    """Where the drive is in its motion.
+
+    Parameters
+    ----------
+    command : array (2,)
+        Commanded speed ahead [m/s] and turn rate [rad/s].
+    allowed : array (2,)
+        The same within the limits.
+    rims : array (2,)
+        Speed of the left and right rims that the servos hold [m/s].
+    angles : array (2 * pairs,)
+        Wheel angles at the last update [rad].
+    pose : PlanarPose
+        By odometry.
+    stamp_ns : int
+        Of the last update.
+    """
+
+    command: Array
+    allowed: Array
+    rims: Array
+    angles: Array
+    pose: PlanarPose
+    stamp_ns: int
+
+
+class DiffDrive(Plugin):
+    """``libgazebo_ros_diff_drive.so`` of ROS 1 and 2, and gz's DiffDrive system."""
+
+    names = ("gazebo_ros_diff_drive", "gz-sim-diff-drive-system")
+    memory: Motion
+
+    def __init__(self, description: Description, setting: Setting) -> None:
+        super().__init__(description, setting)
+        self.settings = read_settings(self.parameters, setting)
+        for joint in (*self.settings.left, *self.settings.right):
+            if joint not in setting.model.joints:
+                known = ", ".join(setting.model.joints) or "none"
+                raise description.element.error(f"there is no joint {joint!r}; known are {known}")
+        self.period = self.settings.period
+
+    def prepare(self, build: ModelBuild) -> None:
+        """Add a speed servo to each wheel."""
+        settings = self.settings
+        mass = sum(link.inertial.mass for link in build.model.links.values() if link.inertial)
+        wheels = (*settings.left, *settings.right)
+        driven = mass * (settings.diameter / 2) ** 2 / len(wheels)
+        self._servos = [
+            build.add_velocity_servo(joint, 2 * driven / SERVO_TIME, settings.torque, rotor=driven)
+            for joint in wheels
+        ]
+
+    def bind(self, instance: Instance) -> None:
+        """Find the wheels, their servos and the base."""
+        settings = self.settings
+        self._instance = instance
+        self._controls = [instance.actuator(servo) for servo in self._servos]
+        self._wheels: list[JointView] = [instance.joint(j) for j in (*settings.left, *settings.right)]
+        self._sides = np.repeat((0, 1), (len(settings.left), len(settings.right)))
+        base = settings.base_frame if settings.base_frame in instance.build.bodies else None
+        self._base: LinkView = instance.link(base or next(iter(instance.build.bodies)))
+
+    def start(self) -> Motion:
+        """Stand still where the robot is, at the origin of the odometry frame."""
+        return Motion(
+            command=np.zeros(2),
+            allowed=np.zeros(2),
+            rims=np.zeros(2),
+            angles=self._angles(),
+            pose=PlanarPose(),
+            stamp_ns=-1,
+        )
+
+    @property
+    def publications(self) -> Mapping[str, type[Sample]]:
+        """Odometry, its transform and the wheels' states, as far as they are wanted."""
+        settings = self.settings
+        topics: dict[str, type[Sample]] = {
+            settings.odometry_topic: OdometrySample,
+            settings.tf_topic: TransformSample,
+            settings.joint_topic: JointStateSample,
+        }
+        return {topic: sample for topic, sample in topics.items() if topic}
+
+    @property
+    def subscriptions(self) -> Mapping[str, Subscription]:
+        """The commanded velocity."""
+        return {self.settings.command_topic: Subscription(TwistCommand, self._command)}
+
+    def update(self, now_ns: int) -> Iterable[Sample]:
+        """Measure the wheels, then give them their speeds for the time to come."""
+        motion = self.memory
+        elapsed = self.period or self._instance.physics.model.opt.timestep
+        if motion.stamp_ns >= 0:
+            elapsed = (now_ns - motion.stamp_ns) * 1e-9
+        motion.stamp_ns = now_ns
+        odometry = self._true_odometry(now_ns) if self.settings.truth else self._odometry(now_ns, elapsed)
+        self._drive(elapsed)
+        if self.settings.odometry_topic:
+            yield odometry
+        if self.settings.tf_topic:
+            yield transform_of(odometry, self.settings.tf_topic)
+            if self.settings.publish_wheels:
+                yield from self._wheel_transforms(now_ns)
+        if self.settings.joint_topic:
+            yield self._joint_states(now_ns)
+
+    def _command(self, command: TwistCommand) -> None:
+        self.memory.command = np.array((float(command.linear[0]), float(command.angular[2])))
+
+    def _drive(self, elapsed: float) -> None:
+        settings, motion = self.settings, self.memory
+        motion.allowed = np.array(
+            (
+                settings.linear.apply(motion.command[0], motion.allowed[0], elapsed),
+                settings.angular.apply(motion.command[1], motion.allowed[1], elapsed),
+            )
+        )
+        speed, turn = motion.allowed
+        wanted = np.array((speed - turn * settings.separation / 2, speed + turn * settings.separation / 2))
+        reach = settings.wheel_acceleration * elapsed
+        motion.rims = motion.rims + np.clip(wanted - motion.rims, -reach, reach)
+        speeds = motion.rims[self._sides] * 2 / settings.diameter
+        self._instance.physics.data.ctrl[self._controls] = speeds
+
+    def _odometry(self, now_ns: int, elapsed: float) -> OdometrySample:
+        settings, motion = self.settings, self.memory
+        angles = self._angles()
+        travel = (angles - motion.angles) * settings.diameter / 2
+        motion.angles = angles
+        travel = settings.encoder.measure(travel, self.random)
+        left, right = travel[self._sides == 0].mean(), travel[self._sides == 1].mean()
+        forward, turn = float((left + right) / 2), float((right - left) / settings.separation)
+        motion.pose = motion.pose.moved(forward, turn)
+        return self._sample(
+            now_ns,
+            np.array((motion.pose.x, motion.pose.y, 0.0)),
+            yaw_quaternion(motion.pose.yaw),
+            np.array((forward / elapsed, 0.0, 0.0)),
+            np.array((0.0, 0.0, turn / elapsed)),
+        )
+
+    def _true_odometry(self, now_ns: int) -> OdometrySample:
+        pose = self._base.pose
+        linear, angular = self._base.velocity()
+        back = pose.inverse.orientation
+        return self._sample(
+            now_ns,
+            np.array(pose.position),
+            np.array(pose.orientation),
+            np.array(rotate(back, tuple(linear))),
+            np.array(rotate(back, tuple(angular))),
+        )
+
+    def _sample(
+        self, now_ns: int, position: Array, orientation: Array, linear: Array, angular: Array
+    ) -> OdometrySample:
+        covariance = planar_covariance(*self.settings.covariance)
+        return OdometrySample(
+            stamp_ns=now_ns,
+            topic=self.settings.odometry_topic,
+            frame_id=self.settings.odometry_frame,
+            child_frame_id=self.settings.base_frame,
+            position=position,
+            orientation=orientation,
+            linear=linear,
+            angular=angular,
+            pose_covariance=covariance,
+            twist_covariance=covariance,
+        )
+
+    def _wheel_transforms(self, now_ns: int) -> Iterable[TransformSample]:
+        base = self._base.pose.inverse
+        for wheel in self._wheels:
+            joint = self.setting.model.joints[wheel.name]
+            pose = base @ self._instance.link(joint.child).pose
+            yield TransformSample(
+                stamp_ns=now_ns,
+                topic=self.settings.tf_topic,
+                frame_id=self.settings.base_frame,
+                child_frame_id=joint.child,
+                translation=np.array(pose.position),
+                rotation=np.array(pose.orientation),
+            )
+
+    def _joint_states(self, now_ns: int) -> JointStateSample:
+        return JointStateSample(
+            stamp_ns=now_ns,
+            topic=self.settings.joint_topic,
+            frame_id="",
+            names=tuple(wheel.name for wheel in self._wheels),
+            positions=self._angles(),
+            velocities=np.array([wheel.velocity for wheel in self._wheels]),
+            efforts=np.array([wheel.effort for wheel in self._wheels]),
+        )
+
+    def _angles(self) -> Array:
+        return np.array([wheel.position for wheel in self._wheels])

@@ -1,0 +1,203 @@
+"""What a differential drive's parameters say, in Gazebo classic's, ROS 2's and gz's names."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+from daidalos.simulation.component import Setting
+from daidalos.simulation.odometry import EncoderError
+from daidalos.simulation.plugins.base import Parameters
+from daidalos.simulation.topics import absolute_topic, frame
+
+
+@dataclass(frozen=True)
+class Limits:
+    """Bounds on a velocity and its change [m/s, m/s^2] or [rad/s, rad/s^2]."""
+
+    slowest: float = -math.inf
+    fastest: float = math.inf
+    deceleration: float = -math.inf
+    acceleration: float = math.inf
+
+    def apply(self, wanted: float, now: float, elapsed: float) -> float:
+        """Return the velocity that may follow `now` after `elapsed` seconds."""
+        allowed = min(max(wanted, self.slowest), self.fastest)
+        return min(max(allowed, now + self.deceleration * elapsed), now + self.acceleration * elapsed)
+
+
+@dataclass(frozen=True)
+class Settings:
+    """What the plugin's parameters say, whoever's dialect they are in.
+
+    Parameters
+    ----------
+    left, right : tuple of str
+        Joints of the wheels on each side.
+    separation, diameter : float
+        [m].
+    torque : float
+        Of each wheel [N m].
+    wheel_acceleration : float
+        Largest change of a wheel's rim speed [m/s^2]; infinite for none.
+    linear, angular : Limits
+        On the commanded velocity.
+    period : float
+        Between two updates [s].
+    command_topic, odometry_topic, tf_topic, joint_topic : str
+        Absolute; empty for what is not published.
+    odometry_frame, base_frame : str
+    encoder : EncoderError
+    truth : bool
+        Odometry from the true pose instead of from the wheels.
+    publish_wheels : bool
+        Transforms of the wheels on `tf_topic`.
+    covariance : tuple of 3 floats
+        Variances of x, y and yaw that the odometry claims.
+    """
+
+    left: tuple[str, ...]
+    right: tuple[str, ...]
+    separation: float
+    diameter: float
+    torque: float
+    period: float
+    command_topic: str
+    odometry_topic: str
+    tf_topic: str
+    joint_topic: str
+    odometry_frame: str
+    base_frame: str
+    wheel_acceleration: float = math.inf
+    linear: Limits = field(default_factory=Limits)
+    angular: Limits = field(default_factory=Limits)
+    encoder: EncoderError = field(default_factory=EncoderError)
+    truth: bool = False
+    publish_wheels: bool = False
+    covariance: tuple[float, float, float] = (1e-5, 1e-5, 1e-3)
+
+
+def read_settings(parameters: Parameters, setting: Setting) -> Settings:
+    """Read a differential drive's parameters.
+
+    Raises
+    ------
+    DescriptionError
+        When one is missing or makes no sense.
+    """
+    read = _read_gz if parameters.library.startswith("gz-sim-") else _read_classic
+    return read(parameters, setting)
+
+
+def _read_classic(parameters: Parameters, setting: Setting) -> Settings:
+    """Read the parameters of Gazebo classic's plugin, in ROS 1's or ROS 2's names."""
+    element = parameters.element
+    left = [e.text.strip() for e in element.all("leftJoint", "left_joint")]
+    right = [e.text.strip() for e in element.all("rightJoint", "right_joint")]
+    if not left or not right:
+        raise element.error("<left_joint> and <right_joint> are needed")
+    # ROS 1's plugin swaps the sides unless it is told that the robot is described the right way round.
+    is_ros1 = element.first("leftJoint") is not None
+    if is_ros1 and element.flag_of("legacyMode", default=True):
+        left, right = right, left
+        setting.warn(f"{element.where}: <legacyMode> is on: left and right wheels are swapped")
+    truth = element.flag_of("odometryTruth", "odometry_truth", default=False)
+    source = element.text_of("odometrySource", "odometry_source", default="encoder").lower()
+    if source in ("world", "1") and not truth:
+        setting.warn(
+            f"{element.where}: odometry comes from the wheels although <odometrySource> is {source}; "
+            "set <odometryTruth>true</odometryTruth> for the true pose"
+        )
+    publishes_tf = element.flag_of("publishOdomTF", "publish_odom_tf", default=True) and element.flag_of(
+        "publishTf", "publish_tf", default=True
+    )
+    odometry = parameters.topic(element.text_of("odometryTopic", "odometry_topic", default="odom"))
+    wheel_states = element.flag_of("publishWheelJointState", "publish_wheel_joint_state", default=False)
+    acceleration = element.number_of("wheelAcceleration", "max_wheel_acceleration", default=0.0)
+    rate = element.number_of("updateRate", "update_rate", default=100.0)
+    return Settings(
+        left=tuple(parameters.scoped(name) for name in left),
+        right=tuple(parameters.scoped(name) for name in right),
+        separation=_positive(parameters, 0.34, "wheelSeparation", "wheel_separation"),
+        diameter=_positive(parameters, 0.15, "wheelDiameter", "wheel_diameter"),
+        torque=_positive(parameters, 5.0, "wheelTorque", "torque", "max_wheel_torque"),
+        period=1.0 / rate if rate > 0 else 0.0,
+        command_topic=parameters.topic(element.text_of("commandTopic", "command_topic", default="cmd_vel")),
+        odometry_topic=odometry if element.flag_of("publish_odom", default=True) else "",
+        tf_topic=parameters.topic("/tf") if publishes_tf else "",
+        joint_topic=parameters.topic("joint_states") if wheel_states else "",
+        odometry_frame=frame(element.text_of("odometryFrame", "odometry_frame", default="odom")),
+        base_frame=frame(element.text_of("robotBaseFrame", "robot_base_frame", default="base_footprint")),
+        wheel_acceleration=acceleration if acceleration > 0 else math.inf,
+        encoder=_encoder(parameters),
+        truth=truth,
+        publish_wheels=element.flag_of("publishWheelTF", "publish_wheel_tf", default=False),
+        covariance=(
+            element.number_of("covariance_x", default=1e-5),
+            element.number_of("covariance_y", default=1e-5),
+            element.number_of("covariance_yaw", default=1e-3),
+        ),
+    )
+
+
+def _read_gz(parameters: Parameters, setting: Setting) -> Settings:
+    """Read the parameters of gz's system."""
+    element, name = parameters.element, setting.model_name
+    left = [parameters.scoped(e.text.strip()) for e in element.all("left_joint")]
+    right = [parameters.scoped(e.text.strip()) for e in element.all("right_joint")]
+    if not left or not right:
+        raise element.error("<left_joint> and <right_joint> are needed")
+    rate = element.number_of("odom_publish_frequency", default=50.0)
+    base = next(iter(setting.model.links), "base_link")
+    default = {"topic": "cmd_vel", "odom_topic": "odometry", "tf_topic": "tf"}
+    topics = {
+        tag: absolute_topic(element.text_of(tag, default=f"/model/{name}/{word}"), setting.namespace)
+        for tag, word in default.items()
+    }
+    return Settings(
+        left=tuple(left),
+        right=tuple(right),
+        separation=_positive(parameters, 1.0, "wheel_separation"),
+        diameter=2 * _positive(parameters, 0.2, "wheel_radius"),
+        torque=math.inf,
+        period=1.0 / rate if rate > 0 else 0.0,
+        command_topic=topics["topic"],
+        odometry_topic=topics["odom_topic"],
+        tf_topic=topics["tf_topic"],
+        joint_topic="",
+        odometry_frame=frame(element.text_of("frame_id", default=f"{name}/odom")),
+        base_frame=frame(element.text_of("child_frame_id", default=f"{name}/{base}")),
+        linear=_limits(parameters, "linear_"),
+        angular=_limits(parameters, "angular_"),
+        encoder=_encoder(parameters),
+    )
+
+
+def _limits(parameters: Parameters, kind: str) -> Limits:
+    """Read bounds; those without ``linear`` or ``angular`` in their name hold for both."""
+    element = parameters.element
+
+    def number(bound: str, what: str, default: float) -> float:
+        return element.number_of(f"{bound}_{kind}{what}", f"{bound}_{what}", default=default)
+
+    return Limits(
+        slowest=number("min", "velocity", -math.inf),
+        fastest=number("max", "velocity", math.inf),
+        deceleration=number("min", "acceleration", -math.inf),
+        acceleration=number("max", "acceleration", math.inf),
+    )
+
+
+def _encoder(parameters: Parameters) -> EncoderError:
+    element = parameters.element
+    noise = element.number_of("encoderNoise", "encoder_noise", default=0.0)
+    if noise < 0:
+        raise element.error("<encoderNoise> should not be negative")
+    return EncoderError(noise, element.number_of("encoderSlip", "encoder_slip", default=0.0))
+
+
+def _positive(parameters: Parameters, default: float, *tags: str) -> float:
+    value = parameters.element.number_of(*tags, default=default)
+    if value <= 0:
+        raise parameters.element.error(f"<{tags[-1]}> should be positive, got {value:g}")
+    return value

@@ -1,0 +1,68 @@
+"""Gazebo classic's IMU plugins."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+
+from daidalos.description.link import Plugin as PluginDescription
+from daidalos.description.link import Sensor as SensorDescription
+from daidalos.description.pose import Pose
+from daidalos.simulation.component import Component, Setting
+from daidalos.simulation.noise import Noise
+from daidalos.simulation.plugins.base import Parameters, Plugin, SensorPlugin
+from daidalos.simulation.sensors.base import Sensor
+from daidalos.simulation.sensors.imu import Imu
+from daidalos.simulation.topics import frame
+
+
+class ImuOfModel(Plugin):
+    """ROS 1's ``libgazebo_ros_imu.so``: an IMU on the link ``bodyName``, without a ``<sensor>``."""
+
+    names = ("gazebo_ros_imu",)
+
+    @classmethod
+    def make(cls, description: PluginDescription, setting: Setting) -> Iterable[Component]:
+        """Make the sensor itself."""
+        parameters = Parameters(description, setting)
+        element = description.element
+        link = parameters.scoped(element.text_of("bodyName", "body_name", "link_name"))
+        if link not in setting.model.links:
+            known = ", ".join(setting.model.links)
+            raise element.error(f"<bodyName> is {link!r}, expected one of the links {known}")
+        x, y, z = element.vector_of("xyzOffset", "xyzOffsets", size=3, default=(0.0, 0.0, 0.0))
+        rpy = element.vector_of("rpyOffset", "rpyOffsets", size=3, default=(0.0, 0.0, 0.0))
+        sensor = Imu(
+            SensorDescription(
+                name=description.name,
+                type="imu",
+                element=element,
+                pose=Pose.from_xyz_rpy((x, y, z), rpy),
+                update_rate=element.number_of("updateRate", "update_rate", default=0.0),
+            ),
+            link,
+            setting,
+        )
+        sensor.topic = parameters.topic(element.text_of("topicName", "topic_name", default="imu"))
+        sensor.frame_id = frame(element.text_of("frameName", "frame_name", default=sensor.frame_id))
+        stddev = element.number_of("gaussianNoise", "gaussian_noise", default=0.0)
+        if stddev > 0:
+            sensor.rate_noise = _at_least(sensor.rate_noise, stddev)
+            sensor.acceleration_noise = _at_least(sensor.acceleration_noise, stddev)
+        return (sensor,)
+
+
+class ImuOfSensor(SensorPlugin):
+    """``libgazebo_ros_imu_sensor.so``: topic and frame of an IMU sensor."""
+
+    names = ("gazebo_ros_imu_sensor",)
+
+    def configure(self, sensor: Sensor, parameters: Parameters) -> None:
+        """Take topic and frame."""
+        element = parameters.element
+        sensor.topic = parameters.topic(element.text_of("topicName", "topic_name", default="~/out"))
+        sensor.frame_id = frame(element.text_of("frameName", "frame_name", default=sensor.frame_id))
+
+
+def _at_least(noises: tuple[Noise, ...], stddev: float) -> tuple[Noise, ...]:
+    return tuple(replace(noise, stddev=max(noise.stddev, stddev)) for noise in noises)

@@ -1,0 +1,68 @@
+"""Joint state publisher: positions, speeds and efforts of joints as the simulation has them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping
+
+import numpy as np
+
+from daidalos.description.link import Plugin as Description
+from daidalos.simulation.component import Setting
+from daidalos.simulation.instance import Instance
+from daidalos.simulation.plugins.base import Plugin
+from daidalos.simulation.samples import JointStateSample, Sample
+from daidalos.simulation.topics import absolute_topic
+
+
+class JointStatePublisher(Plugin):
+    """``libgazebo_ros_joint_state_publisher.so`` of ROS 1 and 2, and gz's JointStatePublisher system."""
+
+    names = ("gazebo_ros_joint_state_publisher", "gz-sim-joint-state-publisher-system")
+
+    def __init__(self, description: Description, setting: Setting) -> None:
+        super().__init__(description, setting)
+        element, parameters = description.element, self.parameters
+        words = " ".join(child.text for child in element.all("jointName", "joint_name"))
+        self.joints = tuple(parameters.scoped(name) for name in re.split(r"[\s,]+", words) if name)
+        for joint in self.joints:
+            if joint not in setting.model.joints:
+                known = ", ".join(setting.model.joints) or "none"
+                raise element.error(f"there is no joint {joint!r}; known are {known}")
+        if parameters.library.startswith("gz-sim-"):
+            topic = f"/world/{setting.world.name}/model/{setting.model_name}/joint_state"
+            self.topic = absolute_topic(element.text_of("topic", default=topic), setting.namespace)
+            rate = element.number_of("update_rate", default=0.0)
+        else:
+            self.topic = parameters.topic(element.text_of("topicName", "topic_name", default="joint_states"))
+            rate = element.number_of("updateRate", "update_rate", default=100.0)
+        self.period = 1.0 / rate if rate > 0 else 0.0
+
+    @property
+    def publications(self) -> Mapping[str, type[Sample]]:
+        """One topic."""
+        return {self.topic: JointStateSample}
+
+    def bind(self, instance: Instance) -> None:
+        """Find the joints; without names all that move."""
+        self._instance = instance
+        names = self.joints or tuple(name for name, added in instance.build.joints.items() if added)
+        joints = [instance.joint(name) for name in names]
+        self._names = names
+        self._qpos = np.array([joint.qpos for joint in joints], dtype=np.intp)
+        self._dof = np.array([joint.dof for joint in joints], dtype=np.intp)
+
+    def update(self, now_ns: int) -> Iterable[Sample]:
+        """Read the joints."""
+        if not self._instance.heard(self.topic):
+            return
+        data = self._instance.physics.data
+        yield JointStateSample(
+            stamp_ns=now_ns,
+            topic=self.topic,
+            frame_id="",
+            names=self._names,
+            positions=data.qpos[self._qpos].copy(),
+            velocities=data.qvel[self._dof].copy(),
+            efforts=data.qfrc_actuator[self._dof].copy(),
+        )

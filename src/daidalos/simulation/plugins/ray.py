@@ -1,0 +1,54 @@
+"""Gazebo classic's lidar plugins: topic, frame and message of a ray sensor."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from daidalos.simulation.plugins.base import Parameters, SensorPlugin
+from daidalos.simulation.sensors.base import Sensor
+from daidalos.simulation.sensors.lidar import Lidar
+from daidalos.simulation.topics import frame
+
+
+class Laser(SensorPlugin):
+    """ROS 1's ``libgazebo_ros_laser.so``: scans on ``topicName``."""
+
+    names = ("gazebo_ros_laser", "gazebo_ros_gpu_laser")
+
+    def configure(self, sensor: Sensor, parameters: Parameters) -> None:
+        """Take topic, frame and noise."""
+        element = parameters.element
+        sensor.topic = parameters.topic(element.text_of("topicName", "topic_name", default="scan"))
+        sensor.frame_id = frame(element.text_of("frameName", "frame_name", default=sensor.frame_id))
+        if isinstance(sensor, Lidar):
+            sensor.as_points = False
+            stddev = element.number_of("gaussianNoise", "gaussian_noise", default=0.0)
+            if stddev > 0:
+                sensor.noise = replace(sensor.noise, stddev=stddev)
+
+
+class BlockLaser(SensorPlugin):
+    """ROS 1's ``libgazebo_ros_block_laser.so``: points on ``topicName``."""
+
+    names = ("gazebo_ros_block_laser",)
+
+    def configure(self, sensor: Sensor, parameters: Parameters) -> None:
+        """As `Laser`, in points."""
+        Laser().configure(sensor, parameters)
+        if isinstance(sensor, Lidar):
+            sensor.as_points = True
+
+
+class RaySensor(SensorPlugin):
+    """ROS 2's ``libgazebo_ros_ray_sensor.so``: scans or points on ``~/out``."""
+
+    names = ("gazebo_ros_ray_sensor",)
+
+    def configure(self, sensor: Sensor, parameters: Parameters) -> None:
+        """Take topic, frame and kind of message."""
+        element = parameters.element
+        sensor.topic = parameters.topic("~/out")
+        sensor.frame_id = frame(element.text_of("frame_name", default=sensor.frame_id))
+        if isinstance(sensor, Lidar):
+            kind = element.text_of("output_type", default="sensor_msgs/PointCloud2")
+            sensor.as_points = not kind.endswith("LaserScan")

@@ -1,0 +1,180 @@
+"""Everything that goes in and out of a simulation: samples of sensors and plugins, and commands to them.
+
+A shell maps each class here to one message type. Times are simulated nanoseconds, units are SI,
+quaternions are x, y, z, w, topics are absolute, frame ids are without a leading slash.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Sample:
+    """What a sensor or plugin says at one instant.
+
+    Parameters
+    ----------
+    stamp_ns : int
+        When it was measured.
+    topic : str
+        Where it goes, such as ``/scan``.
+    frame_id : str
+        The frame that its numbers are in.
+    """
+
+    stamp_ns: int
+    topic: str
+    frame_id: str
+
+
+@dataclass(frozen=True, eq=False)
+class LaserScanSample(Sample):
+    """One turn of a planar lidar.
+
+    Parameters
+    ----------
+    angle_min, angle_max, angle_increment : float
+        Of the rays about the frame's z axis, from its x axis [rad].
+    time_increment, scan_time : float
+        Between rays (0: all at once) and between scans [s].
+    range_min, range_max : float
+        [m].
+    ranges : array (n,) of float32
+        [m]; ``inf`` where nothing is in reach, ``-inf`` where something is nearer than `range_min`.
+    intensities : array (n,) of float32
+        The ``laser_retro`` of what was hit.
+    """
+
+    angle_min: float
+    angle_max: float
+    angle_increment: float
+    time_increment: float
+    scan_time: float
+    range_min: float
+    range_max: float
+    ranges: NDArray[np.float32]
+    intensities: NDArray[np.float32]
+
+
+@dataclass(frozen=True, eq=False)
+class PointCloudSample(Sample):
+    """Points in space, in rows (rings of a lidar, lines of a camera).
+
+    Parameters
+    ----------
+    points : array (rows, columns, 3) of float32
+        [m], in the frame; ``inf`` where nothing is in reach.
+    intensities : array (rows, columns) of float32
+        The ``laser_retro`` of what was hit.
+    """
+
+    points: NDArray[np.float32]
+    intensities: NDArray[np.float32]
+
+
+@dataclass(frozen=True, eq=False)
+class ImuSample(Sample):
+    """An inertial measurement.
+
+    Parameters
+    ----------
+    orientation : array (4,)
+        Of the frame in the world (x east, z up), or in what the sensor's settings name.
+    angular_velocity : array (3,)
+        [rad/s], in the frame.
+    linear_acceleration : array (3,)
+        Specific force [m/s^2], in the frame: +9.8 along z at rest on level ground.
+    orientation_covariance, angular_velocity_covariance, linear_acceleration_covariance : array (9,)
+        Row-major; of the noise that was added.
+    """
+
+    orientation: Array
+    angular_velocity: Array
+    linear_acceleration: Array
+    orientation_covariance: Array
+    angular_velocity_covariance: Array
+    linear_acceleration_covariance: Array
+
+
+@dataclass(frozen=True, eq=False)
+class OdometrySample(Sample):
+    """Pose and speed of a base in `frame_id`.
+
+    Parameters
+    ----------
+    child_frame_id : str
+        The base.
+    position : array (3,)
+        [m].
+    orientation : array (4,)
+    linear, angular : array (3,)
+        Velocity in the base's frame [m/s, rad/s].
+    pose_covariance, twist_covariance : array (36,)
+        Row-major over x, y, z and rotations about x, y, z.
+    """
+
+    child_frame_id: str
+    position: Array
+    orientation: Array
+    linear: Array
+    angular: Array
+    pose_covariance: Array
+    twist_covariance: Array
+
+
+@dataclass(frozen=True, eq=False)
+class TransformSample(Sample):
+    """Pose of `child_frame_id` in `frame_id`; its topic is ``/tf``.
+
+    Parameters
+    ----------
+    child_frame_id : str
+    translation : array (3,)
+        [m].
+    rotation : array (4,)
+    """
+
+    child_frame_id: str
+    translation: Array
+    rotation: Array
+
+
+@dataclass(frozen=True, eq=False)
+class JointStateSample(Sample):
+    """State of n joints.
+
+    Parameters
+    ----------
+    names : tuple of n strings
+    positions : array (n,)
+        [rad, m].
+    velocities : array (n,)
+        [rad/s, m/s].
+    efforts : array (n,)
+        Of their actuators [N m, N].
+    """
+
+    names: tuple[str, ...]
+    positions: Array
+    velocities: Array
+    efforts: Array
+
+
+@dataclass(frozen=True, eq=False)
+class TwistCommand:
+    """A wanted velocity in the frame of the base.
+
+    Parameters
+    ----------
+    linear, angular : array (3,)
+        [m/s, rad/s].
+    """
+
+    linear: Array = field(default_factory=lambda: np.zeros(3))
+    angular: Array = field(default_factory=lambda: np.zeros(3))

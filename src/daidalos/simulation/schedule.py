@@ -1,0 +1,82 @@
+"""When each component is due, in whole nanoseconds that do not drift."""
+
+from __future__ import annotations
+
+import heapq
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from daidalos.simulation.component import Component
+
+
+@dataclass(order=True)
+class _Entry:
+    due_ns: int
+    order: int
+    start_ns: int
+    count: int
+    period: float
+    component: Component
+
+
+class Schedule:
+    """Keeps components in the order in which they are due; ties go by the order of adding.
+
+    A component with a period is due at its start plus 1, 2, 3 ... periods, each rounded by itself, so
+    that 15 Hz stays 15 Hz. Without a period it is due after every step.
+    """
+
+    def __init__(self) -> None:
+        self._entries: list[_Entry] = []
+        self._order = 0
+
+    def add(self, component: Component, now_ns: int) -> None:
+        """Start a component's clock."""
+        entry = _Entry(0, self._order, now_ns, 0, component.period, component)
+        self._order += 1
+        _advance(entry, now_ns)
+        heapq.heappush(self._entries, entry)
+
+    def remove(self, components: list[Component]) -> None:
+        """Forget components."""
+        gone = {id(component) for component in components}
+        self._entries = [entry for entry in self._entries if id(entry.component) not in gone]
+        heapq.heapify(self._entries)
+
+    def restart(self, now_ns: int) -> None:
+        """Start every component's clock again."""
+        for entry in self._entries:
+            entry.start_ns, entry.count = now_ns, 0
+            _advance(entry, now_ns)
+        heapq.heapify(self._entries)
+
+    def next_due(self) -> int | None:
+        """Return when the next component is due; None when there is none."""
+        return self._entries[0].due_ns if self._entries else None
+
+    def due(self, now_ns: int) -> Iterator[Component]:
+        """Yield each component that is due by now and set its next time."""
+        while self._entries and self._entries[0].due_ns <= now_ns:
+            entry = self._entries[0]
+            _advance(entry, now_ns)
+            heapq.heapreplace(self._entries, entry)
+            yield entry.component
+
+    def save(self) -> dict[int, tuple[int, int, int]]:
+        """Return each component's clock, by identity of the component."""
+        return {id(e.component): (e.due_ns, e.start_ns, e.count) for e in self._entries}
+
+    def restore(self, clocks: dict[int, tuple[int, int, int]]) -> None:
+        """Set the clocks of the components that `save` knew."""
+        for entry in self._entries:
+            if id(entry.component) in clocks:
+                entry.due_ns, entry.start_ns, entry.count = clocks[id(entry.component)]
+        heapq.heapify(self._entries)
+
+
+def _advance(entry: _Entry, now_ns: int) -> None:
+    if entry.period <= 0:
+        entry.due_ns = now_ns + 1
+        return
+    entry.count += 1
+    entry.due_ns = entry.start_ns + round(entry.count * entry.period * 1e9)

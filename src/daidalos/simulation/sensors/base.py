@@ -1,0 +1,77 @@
+"""The contract of sensors."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, ClassVar
+
+from daidalos.description.link import Sensor as Description
+from daidalos.description.markup import Element
+from daidalos.description.pose import Pose
+from daidalos.simulation.component import Component, Setting
+from daidalos.simulation.samples import Sample
+from daidalos.simulation.topics import absolute_topic
+
+if TYPE_CHECKING:
+    from daidalos.simulation.instance import Instance, LinkView
+
+
+class Sensor(Component):
+    """A sensor on a link.
+
+    A subclass names the SDF types that it serves, reads its part of the description in `read` and says
+    in `measure` what it sees. Adding a file with such a class to this folder adds the sensor; a package
+    of the user's does the same through the entry point group ``daidalos.sensors``.
+
+    Parameters
+    ----------
+    description : daidalos.description.link.Sensor
+    link : str
+        The link that carries it.
+    setting : Setting
+    joint : str
+        The joint that it sits in; empty for a sensor on a link.
+
+    Attributes
+    ----------
+    topic : str
+        Absolute; a plugin may change it.
+    frame_id : str
+        The frame that samples name; the link, unless a plugin names another.
+    pose : Pose
+        In the link.
+    """
+
+    types: ClassVar[tuple[str, ...]] = ()
+    default_topic: ClassVar[str] = "data"
+
+    def __init__(self, description: Description, link: str, setting: Setting, joint: str = "") -> None:
+        super().__init__(setting)
+        self.name = description.name
+        self.link_name = link
+        self.joint_name = joint
+        self.pose: Pose = description.pose
+        self.period = 1.0 / description.update_rate if description.update_rate > 0 else 0.0
+        self.frame_id = description.element.text_of(
+            "gz_frame_id", "ignition_frame_id", default=link.rpartition("::")[2]
+        )
+        scope = f"{setting.model_name}/{link.replace('::', '/')}/{description.name}"
+        topic = description.topic or f"{scope}/{self.default_topic}"
+        self.topic = absolute_topic(topic, setting.namespace)
+        self.read(description.element)
+
+    def read(self, element: Element) -> None:
+        """Read what is special to this sensor from its element."""
+
+    def bind(self, instance: Instance) -> None:
+        """Find the link that carries the sensor."""
+        self.instance = instance
+        self.link: LinkView = instance.link(self.link_name)
+
+    def update(self, now_ns: int) -> Iterable[Sample]:
+        """Measure, unless nobody listens."""
+        return self.measure(now_ns) if self.instance.heard(self.topic) else ()
+
+    def measure(self, now_ns: int) -> Iterable[Sample]:
+        """Return what the sensor sees now."""
+        raise NotImplementedError

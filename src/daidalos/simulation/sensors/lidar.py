@@ -1,0 +1,196 @@
+"""Lidar: rays against the collision shapes of the world, in one plane or in several rings."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from daidalos.description.markup import Element
+from daidalos.description.pose import rotation_matrix
+from daidalos.simulation.conversion.geometry import RAY_GROUPS
+from daidalos.simulation.instance import Instance
+from daidalos.simulation.noise import read_noise
+from daidalos.simulation.samples import LaserScanSample, PointCloudSample, Sample
+from daidalos.simulation.sensors.base import Sensor
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Fan:
+    """Angles of rays in one direction [rad], evenly spread from the first to the last."""
+
+    first: float
+    last: float
+    count: int
+
+    @property
+    def step(self) -> float:
+        """Angle between neighbours [rad]."""
+        return (self.last - self.first) / (self.count - 1) if self.count > 1 else 0.0
+
+    @property
+    def angles(self) -> Array:
+        """All of them (count,)."""
+        return self.first + self.step * np.arange(self.count, dtype=np.float64)
+
+
+class Lidar(Sensor):
+    """A lidar that measures all its rays at one instant.
+
+    A ray that starts inside the robot's own shapes within the least range passes them; anything else
+    nearer than that is reported as minus infinity, and nothing within reach as infinity (REP 117).
+
+    Attributes
+    ----------
+    as_points : bool
+        Speak in points rather than ranges; so from the start when there is more than one ring.
+    """
+
+    types = ("ray", "lidar", "gpu_ray", "gpu_lidar")
+    default_topic = "scan"
+
+    def read(self, element: Element) -> None:
+        """Read angles, ranges and noise from ``<ray>`` or ``<lidar>``."""
+        settings = element.first("ray", "lidar") or Element("ray", source=element.source, line=element.line)
+        scan = settings.first("scan") or Element("scan", source=element.source, line=element.line)
+        self.horizontal = _fan(scan.first("horizontal"), 640, scan)
+        self.vertical = _fan(scan.first("vertical"), 1, scan)
+        limits = settings.first("range") or Element("range", source=element.source, line=element.line)
+        self.range_min = limits.number_of("min", default=0.08)
+        self.range_max = limits.number_of("max", default=10.0)
+        if not 0 <= self.range_min < self.range_max:
+            raise limits.error(f"expected 0 <= min < max, got {self.range_min:g} and {self.range_max:g}")
+        self.resolution = limits.number_of("resolution", default=0.0)
+        self.noise = read_noise(settings.first("noise"))
+        self.as_points = self.vertical.count > 1
+        self._directions = _directions(self.horizontal.angles, self.vertical.angles)
+
+    @property
+    def publications(self) -> Mapping[str, type[Sample]]:
+        """One topic."""
+        return {self.topic: PointCloudSample if self.as_points else LaserScanSample}
+
+    def bind(self, instance: Instance) -> None:
+        """Find the link and what each geom reflects."""
+        super().bind(instance)
+        model = instance.physics.model
+        self._reflection = np.zeros(model.ngeom + 1, dtype=np.float32)
+        self._own = np.zeros(model.ngeom + 1, dtype=bool)
+        for geom, info in instance.build.geoms.items():
+            place = model.geom(geom).id
+            self._reflection[place] = info.laser_retro
+            self._own[place] = True
+
+    def measure(self, now_ns: int) -> Iterable[Sample]:
+        """Cast all rays."""
+        ranges, geoms = self._cast()
+        far = np.isposinf(ranges)
+        seen = np.isfinite(ranges)
+        ranges[seen] = self.noise.apply(ranges[seen], self.random)
+        if self.resolution > 0:
+            ranges[seen] = np.round(ranges[seen] / self.resolution) * self.resolution
+        ranges[seen] = np.clip(ranges[seen], self.range_min, self.range_max)
+        intensities = np.where(far, np.float32(0.0), self._reflection[geoms])
+        yield (
+            self._points(now_ns, ranges, intensities)
+            if self.as_points
+            else self._scan(now_ns, ranges, intensities)
+        )
+
+    def _cast(self) -> tuple[Array, NDArray[np.int32]]:
+        """Return the true range of each ray and the geom that it hit (-1: none)."""
+        mount = self.link.pose @ self.pose
+        physics = self.instance.physics
+        rays = np.ascontiguousarray(self._directions @ rotation_matrix(mount.orientation).T)
+        origin = np.array(mount.position)
+        count = len(rays)
+        ranges, geoms = np.empty(count), np.empty(count, dtype=np.int32)
+        mujoco.mj_multiRay(
+            physics.model,
+            physics.data,
+            origin,
+            rays.ravel(),
+            RAY_GROUPS,
+            True,
+            self.link.body,
+            geoms,
+            ranges,
+            None,
+            count,
+            self.range_max,
+        )
+        ranges[geoms < 0] = np.inf
+        for row in np.flatnonzero(ranges < self.range_min):
+            if self._own[geoms[row]]:
+                ranges[row], geoms[row] = self._cast_past(origin, rays[row])
+            else:
+                ranges[row] = -np.inf
+        ranges[ranges > self.range_max] = np.inf
+        return ranges, geoms
+
+    def _cast_past(self, origin: Array, ray: Array) -> tuple[float, int]:
+        """Cast one ray that begins at the least range."""
+        physics = self.instance.physics
+        geom = np.empty(1, dtype=np.int32)
+        start = origin + self.range_min * ray
+        distance = mujoco.mj_ray(
+            physics.model, physics.data, start, ray, RAY_GROUPS, True, self.link.body, geom
+        )
+        return (math.inf, -1) if distance < 0 else (distance + self.range_min, int(geom[0]))
+
+    def _scan(self, now_ns: int, ranges: Array, intensities: NDArray[np.float32]) -> LaserScanSample:
+        return LaserScanSample(
+            stamp_ns=now_ns,
+            topic=self.topic,
+            frame_id=self.frame_id,
+            angle_min=self.horizontal.first,
+            angle_max=self.horizontal.last,
+            angle_increment=self.horizontal.step,
+            time_increment=0.0,
+            scan_time=self.period,
+            range_min=self.range_min,
+            range_max=self.range_max,
+            ranges=ranges[: self.horizontal.count].astype(np.float32),
+            intensities=intensities[: self.horizontal.count],
+        )
+
+    def _points(self, now_ns: int, ranges: Array, intensities: NDArray[np.float32]) -> PointCloudSample:
+        shape = (self.vertical.count, self.horizontal.count)
+        finite = np.where(np.isfinite(ranges), ranges, np.nan)
+        points = (self._directions * finite[:, None]).astype(np.float32)
+        points[np.isnan(points)] = np.inf
+        return PointCloudSample(
+            stamp_ns=now_ns,
+            topic=self.topic,
+            frame_id=self.frame_id,
+            points=points.reshape(*shape, 3),
+            intensities=intensities.reshape(shape),
+        )
+
+
+def _fan(element: Element | None, samples: int, scan: Element) -> Fan:
+    """Read the angles of one direction; ``resolution`` multiplies the number of samples (SDF)."""
+    if element is None:
+        return Fan(0.0, 0.0, 1)
+    asked = element.integer_of("samples", default=samples)
+    count = round(asked * element.number_of("resolution", default=1.0))
+    if count < 1:
+        raise element.error(f"expected at least one ray, got {asked} samples")
+    first = element.number_of("min_angle", default=0.0)
+    last = element.number_of("max_angle", default=0.0)
+    if last < first:
+        raise element.error(f"max_angle {last:g} is below min_angle {first:g}")
+    return Fan(first, last, count)
+
+
+def _directions(yaw: Array, pitch: Array) -> Array:
+    """Return unit vectors (rings * columns, 3), ring by ring from the lowest."""
+    up, turn = np.meshgrid(pitch, yaw, indexing="ij")
+    vectors = np.stack((np.cos(up) * np.cos(turn), np.cos(up) * np.sin(turn), np.sin(up)), axis=-1)
+    return vectors.reshape(-1, 3)
