@@ -1,0 +1,5 @@
+"""Describe the processes of a robot system, start them together, watch them and stop them in order."""
+
+from launch._lazy import attach_stub
+
+__getattr__, __dir__, __all__ = attach_stub(__name__, __file__)

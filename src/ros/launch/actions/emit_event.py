@@ -1,0 +1,39 @@
+"""The action that emits an event."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from ..action import Action
+from ..event import Event
+from ..utilities import is_a_subclass
+
+if TYPE_CHECKING:
+    from ..launch_context import LaunchContext
+
+
+class EmitEvent(Action):
+    """Emits an event.
+
+    Parameters
+    ----------
+    event
+        The event.
+    **kwargs
+        As for `Action`.
+    """
+
+    def __init__(self, *, event: Event, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+        if not is_a_subclass(event, Event):
+            raise RuntimeError(f"EmitEvent() expected an event instance, got '{event}' instead.")
+        self.__event = event
+
+    @property
+    def event(self) -> Event:
+        """The event."""
+        return self.__event
+
+    def execute(self, context: LaunchContext) -> None:
+        """Emit the event."""
+        context.emit_event_sync(self.event)

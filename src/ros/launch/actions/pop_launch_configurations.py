@@ -1,0 +1,21 @@
+"""The action that ends a scope of the launch configurations."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from ..action import Action
+
+if TYPE_CHECKING:
+    from ..launch_context import LaunchContext
+
+
+class PopLaunchConfigurations(Action):
+    """Brings back what `PushLaunchConfigurations` kept; parameters as for `Action`."""
+
+    def __init__(self, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+
+    def execute(self, context: LaunchContext) -> None:
+        """Bring the launch configurations back."""
+        context._pop_launch_configurations()

@@ -1,0 +1,21 @@
+"""The action that begins a scope of the environment."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from ..action import Action
+
+if TYPE_CHECKING:
+    from ..launch_context import LaunchContext
+
+
+class PushEnvironment(Action):
+    """Keeps it for `PopEnvironment`; parameters as for `Action`."""
+
+    def __init__(self, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+
+    def execute(self, context: LaunchContext) -> None:
+        """Keep the environment."""
+        context._push_environment()

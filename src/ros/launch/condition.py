@@ -1,0 +1,30 @@
+"""The base of all conditions."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from .launch_context import LaunchContext
+
+
+class Condition:
+    """A question that an action asks before it is executed.
+
+    Parameters
+    ----------
+    predicate
+        Answers the question for a launch context. None means yes.
+    """
+
+    def __init__(self, *, predicate: Callable[[LaunchContext], bool] | None = None) -> None:
+        self._predicate = predicate
+
+    def describe(self) -> str:
+        """Return a short text that tells this condition from others."""
+        return repr(self)
+
+    def evaluate(self, context: LaunchContext) -> bool:
+        """Answer the question now."""
+        return True if self._predicate is None else self._predicate(context)

@@ -1,0 +1,8 @@
+from .evaluate_condition_expression_impl import evaluate_condition_expression as evaluate_condition_expression
+from .if_condition import IfCondition as IfCondition
+from .invalid_condition_expression_error import (
+    InvalidConditionExpressionError as InvalidConditionExpressionError,
+)
+from .launch_configuration_equals import LaunchConfigurationEquals as LaunchConfigurationEquals
+from .launch_configuration_not_equals import LaunchConfigurationNotEquals as LaunchConfigurationNotEquals
+from .unless_condition import UnlessCondition as UnlessCondition

@@ -1,0 +1,1 @@
+from .executable import Executable as Executable

@@ -1,0 +1,12 @@
+"""A question about the name of an event."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from ..event import Event
+
+
+def event_named(name: str) -> Callable[[Event], bool]:
+    """Return a function that tells whether an event has this name."""
+    return lambda event: event.name == name

@@ -1,0 +1,14 @@
+"""Questions about events that concern actions."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from ..action import Action
+
+
+def matches_action(target_action: Action) -> Callable[[Action], bool]:
+    """Return a function that tells whether an action is `target_action`."""
+    return lambda action: action is target_action

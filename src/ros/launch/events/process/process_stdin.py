@@ -1,0 +1,24 @@
+"""The event of input for the standard input of a process."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from .process_io import ProcessIO
+
+
+class ProcessStdin(ProcessIO):
+    """A piece of input for the standard input of a process.
+
+    Parameters
+    ----------
+    text
+        The bytes.
+    **kwargs
+        As for `RunningProcessEvent`.
+    """
+
+    name = "launch.events.process.ProcessStdin"
+
+    def __init__(self, *, text: bytes, **kwargs: Any) -> None:
+        super().__init__(text=text, fd=0, **kwargs)

@@ -1,0 +1,33 @@
+"""The event that stops a launch."""
+
+from __future__ import annotations
+
+from ..event import Event
+
+
+class Shutdown(Event):
+    """The launch is to stop.
+
+    Parameters
+    ----------
+    reason
+        Why, for people.
+    due_to_sigint
+        Whether somebody pressed Ctrl-C.
+    """
+
+    name = "launch.events.Shutdown"
+
+    def __init__(self, *, reason: str = "reason not given", due_to_sigint: bool = False) -> None:
+        self.__reason = reason
+        self.__due_to_sigint = due_to_sigint
+
+    @property
+    def reason(self) -> str:
+        """Why the launch is to stop."""
+        return self.__reason
+
+    @property
+    def due_to_sigint(self) -> bool:
+        """Whether somebody pressed Ctrl-C."""
+        return self.__due_to_sigint

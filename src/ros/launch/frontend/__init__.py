@@ -1,0 +1,5 @@
+"""What launch files in markup (XML, YAML) are made of, and how extensions add to it."""
+
+from launch._lazy import attach_stub
+
+__getattr__, __dir__, __all__ = attach_stub(__name__, __file__)

@@ -1,0 +1,46 @@
+"""The folder of a launch's log files."""
+
+from __future__ import annotations
+
+import contextlib
+import datetime
+import os
+import socket
+
+
+def get_logging_directory() -> str:
+    """Return the folder below which each launch makes its own: $ROS_LOG_DIR, $ROS_HOME/log or ~/.ros/log."""
+    log_dir = os.environ.get("ROS_LOG_DIR")
+    if not log_dir:
+        ros_home = os.environ.get("ROS_HOME") or os.path.join("~", ".ros")
+        log_dir = os.path.join(ros_home, "log")
+    return os.path.normpath(os.path.expanduser(log_dir))
+
+
+def create_log_dir() -> str:
+    """Make the folder of this launch, let the link `latest` beside it point to it, and return its path."""
+    base = get_logging_directory()
+    now = datetime.datetime.now().strftime("%Y-%m-%d-%H-%M-%S-%f")
+    name = f"{now}-{socket.gethostname()}-{os.getpid()}"
+    folder = os.path.join(base, name)
+    number = 1
+    while True:
+        try:
+            os.makedirs(folder)
+            break
+        except FileExistsError:
+            number += 1
+            folder = os.path.join(base, f"{name}-{number}")
+    # A convenience only: not every file system has links, and another launch may do the same right now.
+    with contextlib.suppress(OSError):
+        _link_latest(base, folder)
+    return folder
+
+
+def _link_latest(base: str, folder: str) -> None:
+    link = os.path.join(base, "latest")
+    if os.path.lexists(link) and not os.path.islink(link):
+        return
+    fresh = f"{link}-{os.getpid()}"
+    os.symlink(os.path.basename(folder), fresh, target_is_directory=True)
+    os.replace(fresh, link)

@@ -1,0 +1,11 @@
+"""The type of one entity or several."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from .launch_description_entity import LaunchDescriptionEntity
+
+SomeEntitiesType = LaunchDescriptionEntity | Iterable[LaunchDescriptionEntity]
+
+SomeEntitiesType_types_tuple = (LaunchDescriptionEntity, Iterable)

@@ -1,0 +1,82 @@
+"""The substitution that compares two values."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ..frontend.expose import expose_substitution
+from ..some_substitutions_type import SomeSubstitutionsType
+from ..substitution import Substitution
+from ..utilities import normalize_to_list_of_substitutions, perform_substitutions
+from ._arguments import describe_text, expect_arguments
+
+if TYPE_CHECKING:
+    from ..launch_context import LaunchContext
+
+
+@expose_substitution("equals")
+class EqualsSubstitution(Substitution):
+    """'true' if two values are equal, else 'false'.
+
+    Texts that mean true or false are compared as such in any case, numbers as numbers, all else as text.
+    None is the same as no text.
+
+    Parameters
+    ----------
+    left, right
+        The values.
+    """
+
+    frontend_name = "equals"
+
+    def __init__(self, left: Any | Iterable[Any] | None, right: Any | Iterable[Any] | None) -> None:
+        self.__left = _as_substitutions(left)
+        self.__right = _as_substitutions(right)
+
+    @classmethod
+    def parse(cls, data: Sequence[SomeSubstitutionsType]) -> tuple[type[EqualsSubstitution], dict[str, Any]]:
+        """Read `$(equals left right)`."""
+        expect_arguments(cls.frontend_name, data, 2)
+        return cls, {"left": data[0], "right": data[1]}
+
+    @property
+    def left(self) -> list[Substitution]:
+        """The first value."""
+        return self.__left
+
+    @property
+    def right(self) -> list[Substitution]:
+        """The second value."""
+        return self.__right
+
+    def describe(self) -> str:
+        """Return the substitution in words."""
+        return f"{type(self).__name__}({describe_text(self.left)} {describe_text(self.right)})"
+
+    def perform(self, context: LaunchContext) -> str:
+        """Compare the values."""
+        equal = _equal(perform_substitutions(context, self.left), perform_substitutions(context, self.right))
+        return str(equal).lower()
+
+
+def _as_substitutions(value: Any) -> list[Substitution]:
+    if isinstance(value, Iterable) and not isinstance(value, str):
+        return [substitution for item in value for substitution in _as_substitutions(item)]
+    if isinstance(value, str | Path | Substitution):
+        return normalize_to_list_of_substitutions(value)
+    if value is None:
+        return normalize_to_list_of_substitutions("")
+    return normalize_to_list_of_substitutions(str(value).lower() if isinstance(value, bool) else str(value))
+
+
+def _equal(left: str, right: str) -> bool:
+    truths = ("true", "false")
+    if left.lower() in truths and right.lower() in truths:
+        return left.lower() == right.lower()
+    try:
+        return math.isclose(float(left), float(right))
+    except ValueError:
+        return left == right

@@ -1,0 +1,98 @@
+"""The substitutions that are the values of a loop's present round."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+from ..frontend.expose import expose_substitution
+from ..some_substitutions_type import SomeSubstitutionsType
+from ..substitution import Substitution
+from ..utilities import normalize_to_list_of_substitutions, perform_substitutions
+from ._arguments import describe_text, expect_arguments
+from .substitution_failure import SubstitutionFailure
+
+if TYPE_CHECKING:
+    from ..launch_context import LaunchContext
+
+
+@expose_substitution("for-var")
+class ForEachVar(Substitution):
+    """A value of the present round of a `ForEach` action.
+
+    Parameters
+    ----------
+    name
+        The value's name.
+    default_value
+        The value in rounds that do not have it. Without one, that is an error.
+    """
+
+    def __init__(
+        self, name: SomeSubstitutionsType, *, default_value: SomeSubstitutionsType | None = None
+    ) -> None:
+        self.__name = normalize_to_list_of_substitutions(name)
+        self.__default_value = (
+            None if default_value is None else normalize_to_list_of_substitutions(default_value)
+        )
+
+    @classmethod
+    def parse(cls, data: Sequence[SomeSubstitutionsType]) -> tuple[type[ForEachVar], dict[str, Any]]:
+        """Read `$(for-var name default)`."""
+        expect_arguments("for-var", data, 1, 2)
+        kwargs = {"name": data[0]}
+        if len(data) == 2:
+            kwargs["default_value"] = data[1]
+        return cls, kwargs
+
+    @classmethod
+    def get_local_arg_name(cls, name: str) -> str:
+        """Return the name under which the loop keeps the value in the context's locals."""
+        return f"{cls.__name__}__{name}"
+
+    @property
+    def name(self) -> list[Substitution]:
+        """The value's name."""
+        return self.__name
+
+    @property
+    def default_value(self) -> list[Substitution] | None:
+        """The value in rounds that do not have it."""
+        return self.__default_value
+
+    def describe(self) -> str:
+        """Return the substitution in words."""
+        return f"{type(self).__name__}({describe_text(self.name)})"
+
+    def perform(self, context: LaunchContext) -> str:
+        """Return the value."""
+        name = perform_substitutions(context, self.name)
+        variables = context.get_locals_as_dict()
+        key = self.get_local_arg_name(name)
+        if key in variables:
+            return str(variables[key])
+        if self.default_value is None:
+            raise SubstitutionFailure(
+                f"the loop has no value '{name}' in this round, and there is no default"
+            )
+        return perform_substitutions(context, self.default_value)
+
+
+@expose_substitution("index")
+class ForLoopIndex(ForEachVar):
+    """The index of the present round of a `ForLoop` action.
+
+    Parameters
+    ----------
+    name
+        The index's name.
+    """
+
+    def __init__(self, name: SomeSubstitutionsType) -> None:
+        super().__init__(name)
+
+    @classmethod
+    def parse(cls, data: Sequence[SomeSubstitutionsType]) -> tuple[type[ForEachVar], dict[str, Any]]:
+        """Read `$(index name)`."""
+        expect_arguments("index", data, 1)
+        return cls, {"name": data[0]}

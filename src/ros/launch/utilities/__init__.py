@@ -1,0 +1,5 @@
+"""Helpers that launch's own modules and its extensions share."""
+
+from launch._lazy import attach_stub
+
+__getattr__, __dir__, __all__ = attach_stub(__name__, __file__)

@@ -1,0 +1,30 @@
+"""The walk through a tree of entities."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from ..launch_description_entity import LaunchDescriptionEntity
+from ..launch_file_error import add_location
+
+if TYPE_CHECKING:
+    import asyncio
+
+    from ..launch_context import LaunchContext
+
+
+def visit_all_entities_and_collect_futures(
+    entity: LaunchDescriptionEntity, context: LaunchContext
+) -> list[tuple[LaunchDescriptionEntity, asyncio.Future[None]]]:
+    """Visit an entity and, depth first, all that it yields; return those that go on with their futures."""
+    pairs: list[tuple[LaunchDescriptionEntity, asyncio.Future[None]]] = []
+    try:
+        for sub_entity in entity.visit(context) or []:
+            pairs.extend(visit_all_entities_and_collect_futures(sub_entity, context))
+    except Exception as error:
+        add_location(error, *getattr(entity, "origin", (None, None)))
+        raise
+    future = entity.get_asyncio_future()
+    if future is not None:
+        pairs.append((entity, future))
+    return pairs

@@ -1,0 +1,1 @@
+from .xml_launch_description_source import XMLLaunchDescriptionSource as XMLLaunchDescriptionSource

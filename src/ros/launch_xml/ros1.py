@@ -1,0 +1,5 @@
+"""ROS1 placeholder."""
+
+
+def is_ros1(root):
+    return False

@@ -1,0 +1,1 @@
+from .yaml_launch_description_source import YAMLLaunchDescriptionSource as YAMLLaunchDescriptionSource
