@@ -1,0 +1,219 @@
+"""The costmap: a grid of costs between free (0) and lethal (254), with the map's geometry."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daidalos.navigation.errors import NavigationError
+
+Array = NDArray[np.float64]
+Costs = NDArray[np.uint8]
+
+FREE_SPACE = 0
+MAX_NON_OBSTACLE = 252
+INSCRIBED_INFLATED_OBSTACLE = 253
+LETHAL_OBSTACLE = 254
+NO_INFORMATION = 255
+
+
+class CostmapError(NavigationError):
+    """A costmap cannot be made or changed as asked."""
+
+
+@dataclass(frozen=True)
+class Window:
+    """Rectangle of cells: columns [left, right), rows [bottom, top)."""
+
+    left: int
+    bottom: int
+    right: int
+    top: int
+
+    @property
+    def empty(self) -> bool:
+        """Whether it holds no cell."""
+        return self.left >= self.right or self.bottom >= self.top
+
+    @property
+    def slices(self) -> tuple[slice, slice]:
+        """Index of these cells in an array of rows and columns."""
+        return slice(self.bottom, self.top), slice(self.left, self.right)
+
+
+class Costmap:
+    """Costs of square cells in a frame of their own.
+
+    Parameters
+    ----------
+    costs : ndarray of uint8, shape (height, width)
+        `costs[row, column]`; row 0 is at the origin and rows grow with y. 0 is free, 253 is a cell in which
+        the robot's centre means contact, 254 is an obstacle, 255 is unknown.
+    resolution : float
+        Edge of a cell [m].
+    origin : array_like, shape (2,)
+        Position [m] of the outer corner of cell (0, 0).
+
+    Raises
+    ------
+    CostmapError
+        The array is not a grid of uint8, or the resolution is not a positive number.
+    """
+
+    def __init__(self, costs: Costs, resolution: float, origin: tuple[float, float] | Array) -> None:
+        if costs.ndim != 2 or costs.dtype != np.uint8:
+            raise CostmapError(
+                f"costs must be a grid of uint8, not {costs.ndim} axes of {costs.dtype}; convert them first"
+            )
+        if not (math.isfinite(resolution) and resolution > 0.0):
+            raise CostmapError(f"resolution must be a positive length in metres, not {resolution}")
+        self.costs = np.ascontiguousarray(costs)
+        self.resolution = float(resolution)
+        self.origin: Array = np.array(origin, dtype=np.float64).reshape(2)
+
+    @classmethod
+    def filled(
+        cls,
+        width: int,
+        height: int,
+        resolution: float,
+        origin: tuple[float, float] | Array,
+        value: int = FREE_SPACE,
+    ) -> "Costmap":
+        """Make a costmap of one value; width and height are in cells."""
+        return cls(np.full((height, width), value, dtype=np.uint8), resolution, origin)
+
+    @property
+    def width(self) -> int:
+        """Number of columns."""
+        return int(self.costs.shape[1])
+
+    @property
+    def height(self) -> int:
+        """Number of rows."""
+        return int(self.costs.shape[0])
+
+    @property
+    def window(self) -> Window:
+        """All of its cells."""
+        return Window(0, 0, self.width, self.height)
+
+    def world_to_map(self, x: float, y: float) -> tuple[int, int]:
+        """Column and row of the cell that holds a point [m]; they may lie outside (see `holds`)."""
+        return (
+            math.floor((x - self.origin[0]) / self.resolution),
+            math.floor((y - self.origin[1]) / self.resolution),
+        )
+
+    def map_to_world(self, column: int, row: int) -> tuple[float, float]:
+        """Position [m] of the centre of a cell."""
+        return (
+            float(self.origin[0] + (column + 0.5) * self.resolution),
+            float(self.origin[1] + (row + 0.5) * self.resolution),
+        )
+
+    def holds(self, column: int, row: int) -> bool:
+        """Whether there is such a cell."""
+        return 0 <= column < self.width and 0 <= row < self.height
+
+    def cost_at(self, x: float, y: float) -> int:
+        """Cost of the cell at a point [m]; unknown (255) outside."""
+        column, row = self.world_to_map(x, y)
+        return int(self.costs[row, column]) if self.holds(column, row) else NO_INFORMATION
+
+    def window_of(self, bounds: "Bounds") -> Window:
+        """Cells that a rectangle [m] touches."""
+        if bounds.empty:
+            return Window(0, 0, 0, 0)
+        left, bottom = self.world_to_map(
+            _finite(bounds.min_x, self.origin[0]), _finite(bounds.min_y, self.origin[1])
+        )
+        right, top = self.world_to_map(
+            _finite(bounds.max_x, self.origin[0] + self.width * self.resolution),
+            _finite(bounds.max_y, self.origin[1] + self.height * self.resolution),
+        )
+        return Window(
+            min(max(left, 0), self.width),
+            min(max(bottom, 0), self.height),
+            min(max(right + 1, 0), self.width),
+            min(max(top + 1, 0), self.height),
+        )
+
+    def copy(self) -> "Costmap":
+        """Make one that shares nothing with this one."""
+        return Costmap(self.costs.copy(), self.resolution, self.origin.copy())
+
+    def cover(self, width: int, height: int, origin: tuple[float, float] | Array, value: int) -> None:
+        """Move and resize the grid over the world; cells keep their place to within half a cell.
+
+        Parameters
+        ----------
+        width, height : int
+            New size in cells.
+        origin : array_like, shape (2,)
+            New position [m] of the outer corner of cell (0, 0); at a whole number of cells from the present
+            one nothing is displaced.
+        value : int
+            Cost of cells that were not there before.
+        """
+        wanted = np.array(origin, dtype=np.float64).reshape(2)
+        right, up = (round(float(d)) for d in (wanted - self.origin) / self.resolution)
+        self.origin = wanted
+        if (right, up, width, height) == (0, 0, self.width, self.height):
+            return
+        moved = np.full((height, width), value, dtype=np.uint8)
+        rows = slice(max(up, 0), min(up + height, self.height))
+        columns = slice(max(right, 0), min(right + width, self.width))
+        if rows.start < rows.stop and columns.start < columns.stop:
+            moved[rows.start - up : rows.stop - up, columns.start - right : columns.stop - right] = (
+                self.costs[rows, columns]
+            )
+        self.costs = moved
+
+
+@dataclass(frozen=True)
+class Bounds:
+    """Rectangle of the world [m] that has to be put together anew; empty until something is included."""
+
+    min_x: float = math.inf
+    min_y: float = math.inf
+    max_x: float = -math.inf
+    max_y: float = -math.inf
+
+    @property
+    def empty(self) -> bool:
+        """Whether it holds nothing."""
+        return self.min_x > self.max_x or self.min_y > self.max_y
+
+    def including(self, other: "Bounds") -> "Bounds":
+        """Smallest rectangle that holds both."""
+        return Bounds(
+            min(self.min_x, other.min_x),
+            min(self.min_y, other.min_y),
+            max(self.max_x, other.max_x),
+            max(self.max_y, other.max_y),
+        )
+
+    def including_points(self, points: Array) -> "Bounds":
+        """Smallest rectangle that holds this one and points (n, 2)."""
+        if points.shape[0] == 0:
+            return self
+        low, high = points.min(axis=0), points.max(axis=0)
+        return self.including(Bounds(float(low[0]), float(low[1]), float(high[0]), float(high[1])))
+
+    def expanded(self, distance: float) -> "Bounds":
+        """Rectangle that is larger by a distance on every side; an empty one stays empty."""
+        if self.empty:
+            return self
+        return Bounds(
+            self.min_x - distance, self.min_y - distance, self.max_x + distance, self.max_y + distance
+        )
+
+
+EVERYWHERE = Bounds(-math.inf, -math.inf, math.inf, math.inf)
+"""Bounds of an update that leaves nothing out."""
+
+
+def _finite(value: float, otherwise: float) -> float:
+    return value if math.isfinite(value) else float(otherwise)

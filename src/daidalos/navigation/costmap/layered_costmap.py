@@ -1,0 +1,159 @@
+"""A costmap put together from layers, updated only where something changed."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daidalos.navigation.costmap.costmap import (
+    EVERYWHERE,
+    FREE_SPACE,
+    NO_INFORMATION,
+    Bounds,
+    Costmap,
+    CostmapError,
+    Window,
+)
+from daidalos.navigation.costmap.footprint import Footprint
+from daidalos.navigation.costmap.layers.inflation_layer import InflationLayer
+from daidalos.navigation.costmap.layers.layer import Layer
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class CostmapParameters:
+    """Parameters of a costmap, by their Nav2 names; lengths in metres."""
+
+    width: float = 5.0
+    height: float = 5.0
+    resolution: float = 0.1
+    origin_x: float = 0.0
+    origin_y: float = 0.0
+    rolling_window: bool = False
+    track_unknown_space: bool = False
+
+    def __post_init__(self) -> None:
+        if min(self.width, self.height, self.resolution) <= 0.0:
+            raise CostmapError(
+                "width, height and resolution must be positive lengths in metres, not "
+                f"{self.width}, {self.height} and {self.resolution}"
+            )
+
+
+class LayeredCostmap:
+    """Layers and the costmap that they make.
+
+    A rolling window keeps the robot in its middle; otherwise the costmap lies still, or follows the map of a
+    layer that has one.
+
+    Parameters
+    ----------
+    parameters : CostmapParameters
+        Size, resolution and place.
+    layers : sequence of Layer
+        From the lowest to the highest.
+    """
+
+    def __init__(self, parameters: CostmapParameters, layers: Sequence[Layer]) -> None:
+        self.parameters = parameters
+        self.layers = tuple(layers)
+        self.default = NO_INFORMATION if parameters.track_unknown_space else FREE_SPACE
+        self.costmap = Costmap.filled(
+            max(round(parameters.width / parameters.resolution), 1),
+            max(round(parameters.height / parameters.resolution), 1),
+            parameters.resolution,
+            (parameters.origin_x, parameters.origin_y),
+            self.default,
+        )
+        self._pending = EVERYWHERE
+        for layer in self.layers:
+            layer.match_size(self.costmap)
+
+    def update(self, robot_pose: Array, now: float) -> Window:
+        """Bring the costmap up to date.
+
+        Parameters
+        ----------
+        robot_pose : ndarray, shape (3,)
+            Pose (x, y, yaw) of the robot in the costmap's frame.
+        now : float
+            Time [s].
+
+        Returns
+        -------
+        Window
+            The cells that were put together anew.
+        """
+        moved = self._follow_robot(robot_pose) if self.parameters.rolling_window else self._follow_map()
+        bounds = EVERYWHERE if moved else self._pending
+        self._pending = Bounds()
+        for layer in self.layers:
+            bounds = layer.update_bounds(robot_pose, now, bounds)
+        window = self.costmap.window_of(bounds)
+        self.costmap.costs[window.slices] = self.default
+        for layer in self.layers:
+            layer.update_costs(self.costmap, window)
+        return window
+
+    def circumscribed_cost(self, footprint: Footprint) -> int:
+        """Smallest cost at the robot's centre at which some part of it may touch an obstacle, at least 1."""
+        costs = [
+            layer.cost_at(footprint.circumscribed_radius + self.costmap.resolution)
+            for layer in self.layers
+            if isinstance(layer, InflationLayer)
+        ]
+        return max([1, *costs])
+
+    def clear_entirely(self) -> None:
+        """Forget all that sensors saw (`ClearEntireCostmap`)."""
+        self._clear(self.costmap.window, inside=True)
+
+    def clear_around(self, robot_pose: Array, reset_distance: float) -> None:
+        """Forget what sensors saw in a square of an edge [m] around the robot (`ClearCostmapAroundRobot`)."""
+        self._clear(self._square(robot_pose, reset_distance), inside=True)
+
+    def clear_except(self, robot_pose: Array, reset_distance: float) -> None:
+        """Forget what sensors saw outside of a square around the robot (`ClearCostmapExceptRegion`)."""
+        self._clear(self._square(robot_pose, reset_distance), inside=False)
+
+    def _clear(self, window: Window, *, inside: bool) -> None:
+        for layer in self.layers:
+            if layer.clearable:
+                layer.clear(window, inside=inside)
+        self._pending = EVERYWHERE
+
+    def _square(self, robot_pose: Array, edge: float) -> Window:
+        x, y = float(robot_pose[0]), float(robot_pose[1])
+        return self.costmap.window_of(Bounds(x, y, x, y).expanded(0.5 * edge))
+
+    def _follow_robot(self, robot_pose: Array) -> bool:
+        """Put the robot into the middle; corners of cells stay on multiples of the resolution."""
+        costmap = self.costmap
+        half = 0.5 * costmap.resolution * np.array([costmap.width, costmap.height])
+        origin = np.floor((robot_pose[:2] - half) / costmap.resolution) * costmap.resolution
+        costmap.cover(costmap.width, costmap.height, origin, self.default)
+        for layer in self.layers:
+            layer.match_size(costmap)
+        return True
+
+    def _follow_map(self) -> bool:
+        """Take over size and place of the map where a layer has one; True where that changed something."""
+        for layer in self.layers:
+            extent = layer.extent
+            if extent is None:
+                continue
+            costmap = self.costmap
+            if extent.resolution != costmap.resolution:
+                self.costmap = Costmap.filled(
+                    extent.width, extent.height, extent.resolution, extent.origin, self.default
+                )
+            elif extent.costs.shape == costmap.costs.shape and np.array_equal(extent.origin, costmap.origin):
+                return False
+            else:
+                costmap.cover(extent.width, extent.height, extent.origin, self.default)
+            for other in self.layers:
+                other.match_size(self.costmap)
+            return True
+        return False

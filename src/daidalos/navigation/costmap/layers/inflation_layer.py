@@ -1,0 +1,212 @@
+"""Costs that fall off with the distance to the nearest obstacle."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daidalos.mapping.compilation import compiled
+from daidalos.navigation.costmap.costmap import (
+    FREE_SPACE,
+    INSCRIBED_INFLATED_OBSTACLE,
+    LETHAL_OBSTACLE,
+    MAX_NON_OBSTACLE,
+    NO_INFORMATION,
+    Bounds,
+    Costmap,
+    CostmapError,
+    Costs,
+    Window,
+)
+from daidalos.navigation.costmap.layers.layer import Layer
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class InflationLayerParameters:
+    """Parameters of the layer, by their Nav2 names; lengths in metres, the factor in 1/m."""
+
+    inflation_radius: float = 0.55
+    cost_scaling_factor: float = 10.0
+    inflate_unknown: bool = False
+    inflate_around_unknown: bool = False
+
+    def __post_init__(self) -> None:
+        if self.inflation_radius < 0.0 or self.cost_scaling_factor < 0.0:
+            raise CostmapError(
+                "inflation_radius and cost_scaling_factor must not be negative, not "
+                f"{self.inflation_radius} and {self.cost_scaling_factor}"
+            )
+
+
+class InflationLayer(Layer):
+    """Grows obstacles by the robot's inscribed radius and surrounds them with a slope.
+
+    A cell at distance d of an obstacle costs 253 up to the inscribed radius r, then `252 exp(-k (d - r))`
+    with k the cost scaling factor, up to the inflation radius. Distances are exact between the centres of
+    cells.
+
+    Parameters
+    ----------
+    inscribed_radius : float
+        Largest circle [m] around the base's origin inside of the robot.
+    parameters : InflationLayerParameters, optional
+        Reach and slope.
+    """
+
+    Parameters = InflationLayerParameters
+
+    def __init__(self, inscribed_radius: float, parameters: InflationLayerParameters | None = None) -> None:
+        self.inscribed_radius = inscribed_radius
+        self.parameters = parameters or InflationLayerParameters()
+        self._table: tuple[float, Costs] | None = None
+
+    def cost_at(self, distance: float) -> int:
+        """Cost at a distance [m] from an obstacle."""
+        if distance > self.parameters.inflation_radius:
+            return FREE_SPACE
+        if distance <= self.inscribed_radius:
+            return INSCRIBED_INFLATED_OBSTACLE
+        slope = math.exp(-self.parameters.cost_scaling_factor * (distance - self.inscribed_radius))
+        return int(MAX_NON_OBSTACLE * slope)
+
+    def update_bounds(self, robot_pose: Array, now: float, bounds: Bounds) -> Bounds:
+        """Ask for as much more as an obstacle reaches."""
+        return bounds.expanded(self.parameters.inflation_radius)
+
+    def update_costs(self, costmap: Costmap, window: Window) -> None:
+        """Raise the cells around obstacles; cells that cost more already stay."""
+        if window.empty or self.parameters.inflation_radius <= 0.0:
+            return
+        if self._table is None or self._table[0] != costmap.resolution:
+            self._table = (
+                costmap.resolution,
+                cost_of_squared_distance(self.parameters, self.inscribed_radius, costmap.resolution),
+            )
+        table = self._table[1]
+        inflate(
+            costmap.costs,
+            window.left,
+            window.bottom,
+            window.right,
+            window.top,
+            table,
+            self.parameters.inflate_unknown,
+            self.parameters.inflate_around_unknown,
+        )
+
+
+def cost_of_squared_distance(
+    parameters: InflationLayerParameters, inscribed_radius: float, resolution: float
+) -> Costs:
+    """Cost at every squared distance in cells, from 0 to the square of the inflation radius."""
+    reach = math.floor(parameters.inflation_radius / resolution + 1e-9)
+    distance = np.sqrt(np.arange(reach * reach + 1)) * resolution
+    slope = np.exp(-parameters.cost_scaling_factor * (distance - inscribed_radius))
+    costs: Costs = np.where(
+        distance <= inscribed_radius + 1e-9, INSCRIBED_INFLATED_OBSTACLE, MAX_NON_OBSTACLE * slope
+    ).astype(np.uint8)
+    costs[0] = LETHAL_OBSTACLE
+    return costs
+
+
+@compiled
+def inflate(
+    costs: Costs,
+    left: int,
+    bottom: int,
+    right: int,
+    top: int,
+    table: Costs,
+    inflate_unknown: bool,
+    around_unknown: bool,
+) -> None:
+    """Inflate a window of cells in place, seeing obstacles up to the table's reach outside of it.
+
+    Two passes of the exact squared distance transform, cut off at the reach: down and up every column, then
+    for each cell the best over the columns in reach of its row.
+    """
+    reach = int(math.sqrt(table.shape[0] - 1) + 0.5)
+    far = table.shape[0]
+    first = max(left - reach, 0)
+    last = min(right + reach, costs.shape[1])
+    lowest = max(bottom - reach, 0)
+    highest = min(top + reach, costs.shape[0])
+    vertical = _vertical_distances(costs, first, last, lowest, highest, bottom, top, reach, around_unknown)
+    squared = np.empty(right - left, dtype=np.int32)
+    for row in range(bottom, top):
+        line = vertical[row - bottom]
+        if not _squared_distances(line, left - first, reach, far, squared):
+            continue
+        for column in range(left, right):
+            d = squared[column - left]
+            if d >= far:
+                continue
+            cost = table[d]
+            old = costs[row, column]
+            if old == NO_INFORMATION:
+                if cost > FREE_SPACE if inflate_unknown else cost >= INSCRIBED_INFLATED_OBSTACLE:
+                    costs[row, column] = cost
+            elif cost > old:
+                costs[row, column] = cost
+
+
+@compiled
+def _vertical_distances(
+    costs: Costs,
+    first: int,
+    last: int,
+    lowest: int,
+    highest: int,
+    bottom: int,
+    top: int,
+    reach: int,
+    around_unknown: bool,
+) -> NDArray[np.int32]:
+    """Distance in cells to the nearest obstacle in the same column, reach + 1 if there is none."""
+    far = reach + 1
+    distances = np.empty((top - bottom, last - first), dtype=np.int32)
+    running = np.full(last - first, far, dtype=np.int32)
+    for row in range(lowest, top):
+        for column in range(first, last):
+            cost = costs[row, column]
+            if cost == LETHAL_OBSTACLE or (around_unknown and cost == NO_INFORMATION):
+                running[column - first] = 0
+            elif running[column - first] < far:
+                running[column - first] += 1
+            if row >= bottom:
+                distances[row - bottom, column - first] = running[column - first]
+    running[:] = far
+    for row in range(highest - 1, bottom - 1, -1):
+        for column in range(first, last):
+            cost = costs[row, column]
+            if cost == LETHAL_OBSTACLE or (around_unknown and cost == NO_INFORMATION):
+                running[column - first] = 0
+            elif running[column - first] < far:
+                running[column - first] += 1
+            if row < top and running[column - first] < distances[row - bottom, column - first]:
+                distances[row - bottom, column - first] = running[column - first]
+    return distances
+
+
+@compiled
+def _squared_distances(
+    line: NDArray[np.int32], start: int, reach: int, far: int, squared: NDArray[np.int32]
+) -> bool:
+    """Squared distance to the nearest obstacle along one row; False where the row has none in reach."""
+    squared[:] = far
+    found = False
+    for column in range(line.shape[0]):
+        height = line[column]
+        if height > reach:
+            continue
+        found = True
+        low = max(column - reach, start)
+        high = min(column + reach + 1, start + squared.shape[0])
+        for other in range(low, high):
+            d = (other - column) * (other - column) + height * height
+            if d < squared[other - start]:
+                squared[other - start] = d
+    return found

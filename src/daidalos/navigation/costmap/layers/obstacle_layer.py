@@ -1,0 +1,295 @@
+"""Obstacles that sensors see now: marked where a ray ends, cleared where it passed."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daidalos.mapping.compilation import compiled
+from daidalos.mapping.pose2 import compose
+from daidalos.mapping.scan import LaserScanData
+from daidalos.navigation.costmap.costmap import (
+    FREE_SPACE,
+    LETHAL_OBSTACLE,
+    NO_INFORMATION,
+    Bounds,
+    Costmap,
+    Costs,
+    Window,
+)
+from daidalos.navigation.costmap.footprint import Footprint, fill_polygon
+from daidalos.navigation.costmap.layers.layer import Layer
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class ObservationSource:
+    """Parameters of one sensor, by their Nav2 names; ranges in metres, times in seconds.
+
+    `inf_is_valid` is on by default, other than in Nav2: a ray that met nothing shows that its way is free,
+    and obstacles that have gone stay in the costmap for ever without it.
+    """
+
+    obstacle_max_range: float = 2.5
+    obstacle_min_range: float = 0.0
+    raytrace_max_range: float = 3.0
+    raytrace_min_range: float = 0.0
+    observation_persistence: float = 0.0
+    marking: bool = True
+    clearing: bool = True
+    inf_is_valid: bool = True
+
+
+@dataclass(frozen=True)
+class ObstacleLayerParameters:
+    """Parameters of the layer, by their Nav2 names."""
+
+    sources: Mapping[str, ObservationSource] = field(default_factory=lambda: {"scan": ObservationSource()})
+    footprint_clearing_enabled: bool = True
+    combination_method: int = 1
+
+
+@dataclass(frozen=True)
+class Observation:
+    """Rays of one sensor reading in the costmap's frame.
+
+    Attributes
+    ----------
+    origin : ndarray, shape (2,)
+        Where the rays start [m].
+    ends : ndarray, shape (n, 2)
+        Where they end [m].
+    hits : ndarray of bool, shape (n,)
+        Whether an obstacle ended them.
+    stamp : float
+        Time [s] of the reading.
+    """
+
+    origin: Array
+    ends: Array
+    hits: NDArray[np.bool_]
+    stamp: float
+
+    @classmethod
+    def from_scan(
+        cls, scan: LaserScanData, base_pose: Array, stamp: float, *, inf_is_valid: bool = True
+    ) -> "Observation":
+        """Rays of a laser scan taken with the robot's base at a pose (x, y, yaw) in the costmap's frame.
+
+        Ranges that are not a number, or outside of the sensor's limits, are left out; those that are infinite
+        are rays that end at the sensor's largest range without a hit.
+        """
+        ranges = np.asarray(scan.ranges, dtype=np.float64)
+        hits = np.isfinite(ranges) & (ranges >= scan.range_min) & (ranges <= scan.range_max)
+        hits &= ranges > 0.0
+        misses = np.isposinf(ranges) if inf_is_valid else np.zeros_like(hits)
+        used = hits | misses
+        sensor = compose(base_pose, np.asarray(scan.sensor_pose, dtype=np.float64))
+        farthest = scan.range_max if math.isfinite(scan.range_max) else 1e3
+        length = np.where(misses, farthest, ranges)[used]
+        angle = sensor[2] + scan.angle_min + scan.angle_increment * np.flatnonzero(used)
+        ends = sensor[:2] + length[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+        return cls(sensor[:2].copy(), ends, hits[used], stamp)
+
+
+class ObstacleLayer(Layer):
+    """What sensors saw, kept until a ray passes through it.
+
+    Parameters
+    ----------
+    footprint : Footprint
+        The robot; the cells that it stands on are free.
+    parameters : ObstacleLayerParameters, optional
+        Sensors and how they are used.
+    track_unknown_space : bool
+        Whether cells that no ray has touched say nothing, rather than free.
+    """
+
+    clearable = True
+
+    Parameters = ObstacleLayerParameters
+
+    def __init__(
+        self,
+        footprint: Footprint,
+        parameters: ObstacleLayerParameters | None = None,
+        *,
+        track_unknown_space: bool = True,
+    ) -> None:
+        self.footprint = footprint
+        self.parameters = parameters or ObstacleLayerParameters()
+        self.default = NO_INFORMATION if track_unknown_space else FREE_SPACE
+        self._seen: Costmap | None = None
+        self._buffers: dict[str, list[Observation]] = {name: [] for name in self.parameters.sources}
+        self._under_robot: Array | None = None
+
+    def add_observation(self, observation: Observation, source: str = "scan") -> None:
+        """Take a reading of one of the sources; it is used at the next update.
+
+        Raises
+        ------
+        KeyError
+            There is no source of that name.
+        """
+        self._buffers[source].append(observation)
+
+    def match_size(self, costmap: Costmap) -> None:
+        """Keep what was seen where the costmap still covers it."""
+        if self._seen is None or self._seen.resolution != costmap.resolution:
+            self._seen = Costmap.filled(
+                costmap.width, costmap.height, costmap.resolution, costmap.origin, self.default
+            )
+        else:
+            self._seen.cover(costmap.width, costmap.height, costmap.origin, self.default)
+
+    def update_bounds(self, robot_pose: Array, now: float, bounds: Bounds) -> Bounds:
+        """Trace the rays that came in, and ask for what they touched."""
+        if self._seen is None:
+            return bounds
+        readings = [
+            (self.parameters.sources[name], observation)
+            for name, buffer in self._buffers.items()
+            for observation in buffer
+        ]
+        for source, observation in readings:
+            if source.clearing:
+                bounds = bounds.including(_clear(self._seen, observation, source))
+        for source, observation in readings:
+            if source.marking:
+                bounds = bounds.including(_mark(self._seen, observation, source))
+        for name, buffer in self._buffers.items():
+            oldest = now - self.parameters.sources[name].observation_persistence
+            buffer[:] = [kept for kept in buffer if kept.stamp > oldest]
+        if self.parameters.footprint_clearing_enabled:
+            self._under_robot = self.footprint.at(robot_pose)
+            fill_polygon(self._seen, self._under_robot, FREE_SPACE)
+            bounds = bounds.including_points(self._under_robot)
+        return bounds
+
+    def update_costs(self, costmap: Costmap, window: Window) -> None:
+        """Put what was seen on top: the higher cost wins, and anything wins over unknown."""
+        if self._seen is None:
+            return
+        if self.parameters.footprint_clearing_enabled and self._under_robot is not None:
+            fill_polygon(costmap, self._under_robot, FREE_SPACE)
+        _combine(
+            costmap.costs[window.slices], self._seen.costs[window.slices], self.parameters.combination_method
+        )
+
+    def clear(self, keep: Window, *, inside: bool) -> None:
+        """Forget what was seen inside of a window of cells, or outside of it."""
+        if self._seen is None:
+            return
+        for buffer in self._buffers.values():
+            buffer.clear()
+        if inside:
+            self._seen.costs[keep.slices] = self.default
+        else:
+            kept = self._seen.costs[keep.slices].copy()
+            self._seen.costs[:] = self.default
+            self._seen.costs[keep.slices] = kept
+
+
+def _clear(seen: Costmap, observation: Observation, source: ObservationSource) -> Bounds:
+    """Free the cells that rays passed."""
+    if observation.ends.shape[0] == 0:
+        return Bounds()
+    reach = source.raytrace_max_range
+    clear_rays(
+        seen.costs,
+        seen.resolution,
+        seen.origin,
+        observation.origin,
+        observation.ends,
+        observation.hits,
+        source.raytrace_min_range,
+        reach,
+    )
+    x, y = (float(value) for value in observation.origin)
+    touched = Bounds().including_points(observation.ends)
+    return Bounds(
+        max(touched.min_x, x - reach),
+        max(touched.min_y, y - reach),
+        min(touched.max_x, x + reach),
+        min(touched.max_y, y + reach),
+    ).including(Bounds(x, y, x, y))
+
+
+def _mark(seen: Costmap, observation: Observation, source: ObservationSource) -> Bounds:
+    """Make the cells lethal in which rays ended on an obstacle near enough."""
+    away = observation.ends - observation.origin
+    distance = np.hypot(away[:, 0], away[:, 1])
+    near = (distance <= source.obstacle_max_range) & (distance >= source.obstacle_min_range)
+    points = observation.ends[near & observation.hits]
+    cells = np.floor((points - seen.origin) / seen.resolution).astype(np.int64)
+    inside = (cells >= 0).all(axis=1) & (cells < (seen.width, seen.height)).all(axis=1)
+    seen.costs[cells[inside, 1], cells[inside, 0]] = LETHAL_OBSTACLE
+    return Bounds().including_points(points)
+
+
+@compiled
+def clear_rays(
+    costs: Costs,
+    resolution: float,
+    grid_origin: Array,
+    start: Array,
+    ends: Array,
+    hits: NDArray[np.bool_],
+    min_range: float,
+    max_range: float,
+) -> None:
+    """Free every cell that a ray crosses between two distances from its start, but not the one it hit.
+
+    The cells are visited in order along each ray (Amanatides and Woo 1987), so none that it crosses is
+    missed.
+    """
+    sx = (start[0] - grid_origin[0]) / resolution
+    sy = (start[1] - grid_origin[1]) / resolution
+    height, width = costs.shape
+    for i in range(ends.shape[0]):
+        dx = (ends[i, 0] - grid_origin[0]) / resolution - sx
+        dy = (ends[i, 1] - grid_origin[1]) / resolution - sy
+        length = math.hypot(dx, dy)
+        if length <= 0.0:
+            continue
+        hit_column = math.floor(sx + dx) if hits[i] else -1
+        hit_row = math.floor(sy + dy) if hits[i] else -1
+        limit = min(max_range / resolution, length) / length
+        begin = min_range / resolution / length
+        if begin >= limit:
+            continue
+        x, y = sx + begin * dx, sy + begin * dy
+        column, row = math.floor(x), math.floor(y)
+        step_x, step_y = (1 if dx > 0.0 else -1), (1 if dy > 0.0 else -1)
+        next_x = (column + (1 if dx > 0.0 else 0) - sx) / dx if dx != 0.0 else np.inf
+        next_y = (row + (1 if dy > 0.0 else 0) - sy) / dy if dy != 0.0 else np.inf
+        along_x = abs(1.0 / dx) if dx != 0.0 else np.inf
+        along_y = abs(1.0 / dy) if dy != 0.0 else np.inf
+        while True:
+            if column == hit_column and row == hit_row:
+                break
+            if 0 <= column < width and 0 <= row < height:
+                costs[row, column] = FREE_SPACE
+            if min(next_x, next_y) > limit:
+                break
+            if next_x < next_y:
+                column += step_x
+                next_x += along_x
+            else:
+                row += step_y
+                next_y += along_y
+
+
+@compiled
+def _combine(below: Costs, above: Costs, method: int) -> None:
+    for row in range(below.shape[0]):
+        for column in range(below.shape[1]):
+            cost = above[row, column]
+            if cost == NO_INFORMATION:
+                continue
+            old = below[row, column]
+            if method == 0 or old == NO_INFORMATION or old < cost:
+                below[row, column] = cost

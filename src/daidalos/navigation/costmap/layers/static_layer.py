@@ -1,0 +1,99 @@
+"""The costs of a given map, from a map server or a SLAM that still lets it grow."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daidalos.mapping.grid import OccupancyGrid
+from daidalos.navigation.costmap.costmap import EVERYWHERE, Bounds, Costmap, CostmapError, Window
+from daidalos.navigation.costmap.layers.layer import Layer
+from daidalos.navigation.costmap.occupancy import from_occupancy
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class StaticLayerParameters:
+    """Parameters of the layer, by their Nav2 names."""
+
+    lethal_cost_threshold: int = 100
+    unknown_cost_value: int = -1
+    trinary_costmap: bool = True
+    track_unknown_space: bool = True
+
+
+class StaticLayer(Layer):
+    """Obstacles of a map; gives the costmap the map's size and place."""
+
+    Parameters = StaticLayerParameters
+
+    def __init__(self, parameters: StaticLayerParameters | None = None) -> None:
+        self.parameters = parameters or StaticLayerParameters()
+        self._map: Costmap | None = None
+        self._changed = Bounds()
+
+    def set_map(self, grid: OccupancyGrid) -> None:
+        """Take a map; only what differs from the last one is put together anew.
+
+        Raises
+        ------
+        CostmapError
+            The map has no cells or is turned.
+        """
+        x, y, yaw = grid.origin
+        if grid.data.size == 0:
+            raise CostmapError("the map has no cells")
+        if yaw != 0.0:
+            raise CostmapError(f"the map is turned by {yaw} rad, but a costmap follows the axes of its frame")
+        costs = from_occupancy(
+            grid.data,
+            lethal_cost_threshold=self.parameters.lethal_cost_threshold,
+            unknown_cost_value=self.parameters.unknown_cost_value,
+            trinary_costmap=self.parameters.trinary_costmap,
+            track_unknown_space=self.parameters.track_unknown_space,
+        )
+        latest = Costmap(costs, grid.resolution, (x, y))
+        self._changed = self._changed.including(_difference(self._map, latest))
+        self._map = latest
+
+    @property
+    def extent(self) -> Costmap | None:
+        """The map."""
+        return self._map
+
+    def update_bounds(self, robot_pose: Array, now: float, bounds: Bounds) -> Bounds:
+        """Ask for what changed between the last two maps."""
+        changed, self._changed = self._changed, Bounds()
+        return bounds.including(changed)
+
+    def update_costs(self, costmap: Costmap, window: Window) -> None:
+        """Copy the map, which lies below everything else."""
+        if self._map is None:
+            return
+        offset = (costmap.origin - self._map.origin) / costmap.resolution
+        right, up = round(float(offset[0])), round(float(offset[1]))
+        left, stop_column = max(window.left, -right), min(window.right, self._map.width - right)
+        bottom, stop_row = max(window.bottom, -up), min(window.top, self._map.height - up)
+        if left < stop_column and bottom < stop_row:
+            costmap.costs[bottom:stop_row, left:stop_column] = self._map.costs[
+                bottom + up : stop_row + up, left + right : stop_column + right
+            ]
+
+
+def _difference(before: Costmap | None, after: Costmap) -> Bounds:
+    """Rectangle that holds all cells whose cost differs."""
+    if (
+        before is None
+        or before.costs.shape != after.costs.shape
+        or before.resolution != after.resolution
+        or not np.array_equal(before.origin, after.origin)
+    ):
+        return EVERYWHERE
+    differs = before.costs != after.costs
+    rows, columns = np.flatnonzero(differs.any(axis=1)), np.flatnonzero(differs.any(axis=0))
+    if rows.size == 0:
+        return Bounds()
+    min_x, min_y = after.map_to_world(int(columns[0]), int(rows[0]))
+    max_x, max_y = after.map_to_world(int(columns[-1]), int(rows[-1]))
+    return Bounds(min_x, min_y, max_x, max_y)

@@ -1,0 +1,1 @@
+"""Ways from a pose to a goal over a costmap."""

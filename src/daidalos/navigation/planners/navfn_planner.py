@@ -1,0 +1,169 @@
+"""NavFn: a navigation function over the costmap, and the way down its gradient."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daidalos.navigation.costmap.costmap import (
+    INSCRIBED_INFLATED_OBSTACLE,
+    LETHAL_OBSTACLE,
+    MAX_NON_OBSTACLE,
+    NO_INFORMATION,
+    Costmap,
+)
+from daidalos.navigation.paths import with_headings
+from daidalos.navigation.planners.navigation_function import (
+    descend,
+    nearest_reached,
+    nearest_way_out,
+    propagate,
+)
+from daidalos.navigation.planners.planner import (
+    GlobalPlanner,
+    GoalOccupied,
+    GoalOutsideMap,
+    NoPath,
+    StartOccupied,
+    StartOutsideMap,
+)
+
+Array = NDArray[np.float64]
+Cell = tuple[int, int]
+
+COST_FACTOR = 0.8 / 50.0
+"""Cost of a step over a cell is 1 + this times the cell's cost, in units of a step over free ground.
+
+The proportion of Nav2's neutral cost (50) and cost factor (0.8), so that tuned inflation radii keep their
+effect.
+"""
+
+ESCAPE_RADIUS = 0.5
+"""How far [m] from a lethal start a free cell may be; localization is rarely farther off."""
+
+
+@dataclass(frozen=True)
+class NavfnPlannerParameters:
+    """Parameters of the planner, by their Nav2 names; the tolerance is in metres."""
+
+    tolerance: float = 0.5
+    use_astar: bool = False
+    allow_unknown: bool = True
+    use_final_approach_orientation: bool = False
+
+
+class NavfnPlanner(GlobalPlanner):
+    """Dijkstra's wavefront or A* over the cells, and a path that is not bound to them.
+
+    The wavefront solves the eikonal equation on the grid (upwind differences, Sethian 1996), so that its
+    value is the cost of the best path in any direction, and the path follows its gradient between the cells.
+    From a start inside of inflation the path takes the shortest way out. A goal that lies in an obstacle is
+    refused; one too near to an obstacle, or cut off, is replaced by the nearest cell within the tolerance
+    that can be reached.
+    """
+
+    Parameters = NavfnPlannerParameters
+
+    def __init__(self, parameters: NavfnPlannerParameters | None = None) -> None:
+        self.parameters = parameters or NavfnPlannerParameters()
+
+    def create_plan(self, costmap: Costmap, start: Array, goal: Array) -> Array:
+        """Find a path; see `GlobalPlanner.create_plan`."""
+        first = _cell(costmap, start)
+        last = _cell(costmap, goal)
+        if first is None:
+            raise StartOutsideMap(f"the robot at {_words(start)} is outside of the map, {_extent(costmap)}")
+        if last is None:
+            raise GoalOutsideMap(f"the goal {_words(goal)} is outside of the map, {_extent(costmap)}")
+        self._refuse_obstacles(costmap, last, goal)
+        step = self._step_costs()
+        entry = _way_out(costmap, first, step, start)
+        potential = self._potential(costmap, step, entry, last)
+        reached = (
+            last if np.isfinite(potential[last[1], last[0]]) else self._near(costmap, potential, last, goal)
+        )
+        cells = descend(potential, reached[0], reached[1], entry[0], entry[1])
+        points = costmap.origin + (cells + 0.5) * costmap.resolution
+        if reached == last:
+            points[-1] = goal[:2]
+        if entry == first:
+            points[0] = start[:2]
+        else:
+            points = np.concatenate([start[None, :2], points])
+        final = None if self.parameters.use_final_approach_orientation else float(goal[2])
+        return with_headings(points, final_heading=final, initial_heading=float(start[2]))
+
+    def _refuse_obstacles(self, costmap: Costmap, last: Cell, goal: Array) -> None:
+        cost = int(costmap.costs[last[1], last[0]])
+        if cost == LETHAL_OBSTACLE:
+            raise GoalOccupied(f"the goal {_words(goal)} is in an obstacle")
+        if cost == NO_INFORMATION and not self.parameters.allow_unknown:
+            raise GoalOccupied(f"the goal {_words(goal)} is in unknown space and allow_unknown is false")
+
+    def _potential(
+        self, costmap: Costmap, step: NDArray[np.float32], entry: Cell, last: Cell
+    ) -> NDArray[np.float32]:
+        """Navigation function from the entry, at least as far as the goal if it can be reached.
+
+        With A* the wavefront is bounded by the cost that the straight distance promises, which is raised
+        until the goal is reached. That keeps the wavefront's order and with it smooth paths, which sorting
+        cells by the promised total, as A* does on a graph, would not.
+        """
+        bound = 1.2 * math.hypot(entry[0] - last[0], entry[1] - last[1]) + 10.0
+        highest = 10.0 * bound if self.parameters.use_astar else 0.0
+        while bound < highest:
+            potential = propagate(costmap.costs, step, entry[0], entry[1], last[0], last[1], bound)
+            if np.isfinite(potential[last[1], last[0]]):
+                return potential
+            bound *= 1.6
+        return propagate(costmap.costs, step, entry[0], entry[1], last[0], last[1], math.inf)
+
+    def _step_costs(self) -> NDArray[np.float32]:
+        """Cost of a step over a cell of each value, in units of a step over free ground."""
+        step = (1.0 + COST_FACTOR * np.arange(256)).astype(np.float32)
+        step[INSCRIBED_INFLATED_OBSTACLE:] = np.inf
+        if self.parameters.allow_unknown:
+            step[NO_INFORMATION] = step[MAX_NON_OBSTACLE]
+        return step
+
+    def _near(self, costmap: Costmap, potential: NDArray[np.float32], last: Cell, goal: Array) -> Cell:
+        """Nearest cell to the goal that can be reached, within the tolerance."""
+        tolerance = self.parameters.tolerance
+        column, row = nearest_reached(potential, last[0], last[1], tolerance / costmap.resolution)
+        if column >= 0:
+            return column, row
+        within = f" and nothing within {tolerance} m of it can be reached" if tolerance > 0.0 else ""
+        if costmap.costs[last[1], last[0]] == INSCRIBED_INFLATED_OBSTACLE:
+            raise GoalOccupied(
+                f"the robot does not fit at the goal {_words(goal)}: an obstacle is too near{within}"
+            )
+        raise NoPath(f"no way leads to the goal {_words(goal)}: obstacles cut it off{within}")
+
+
+def _cell(costmap: Costmap, pose: Array) -> Cell | None:
+    if not np.isfinite(pose).all():
+        return None
+    column, row = costmap.world_to_map(float(pose[0]), float(pose[1]))
+    return (column, row) if costmap.holds(column, row) else None
+
+
+def _way_out(costmap: Costmap, first: Cell, step: NDArray[np.float32], start: Array) -> Cell:
+    """Where the wavefront begins: the robot's cell, or the nearest cell outside of inflation."""
+    if np.isfinite(step[costmap.costs[first[1], first[0]]]):
+        return first
+    reach = ESCAPE_RADIUS / costmap.resolution
+    column, row = nearest_way_out(costmap.costs, step, first[0], first[1], reach)
+    if column < 0:
+        raise StartOccupied(f"the robot at {_words(start)} is enclosed by obstacles and no free cell is near")
+    return column, row
+
+
+def _words(pose: Array) -> str:
+    return f"({float(pose[0]):.2f}, {float(pose[1]):.2f})"
+
+
+def _extent(costmap: Costmap) -> str:
+    x, y = (float(value) for value in costmap.origin)
+    width, height = costmap.width * costmap.resolution, costmap.height * costmap.resolution
+    return f"which covers x {x:.2f} to {x + width:.2f} m, y {y:.2f} to {y + height:.2f} m"

@@ -1,0 +1,337 @@
+"""Kernels of the navigation function: a wavefront over cells, and the way down its gradient."""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daidalos.mapping.compilation import compiled
+from daidalos.navigation.costmap.costmap import INSCRIBED_INFLATED_OBSTACLE, Costs
+
+Array = NDArray[np.float64]
+Field = NDArray[np.float32]
+
+BUCKETS = 64
+BUCKET_WIDTH = 0.5
+"""Width of a bucket in steps over free ground; a step costs at most 5.1 of them, so 64 buckets never wrap."""
+
+
+@compiled
+def propagate(
+    costs: Costs,
+    step: Field,
+    start_column: int,
+    start_row: int,
+    goal_column: int,
+    goal_row: int,
+    bound: float,
+) -> Field:
+    """Cost of the best path from the start to each cell, in steps over free ground; infinite without one.
+
+    Solves `|grad u| = step` with upwind differences. Cells wait in buckets of equal value (Dial 1969), each a
+    doubly linked list through the cells, and are taken up again when a better value turns up; so the order
+    inside of a bucket does not change the result.
+
+    Parameters
+    ----------
+    costs : ndarray of uint8, shape (height, width)
+        The costmap.
+    step : ndarray of float32, shape (256,)
+        Cost of a step over a cell of each value, at least 1; infinite where the robot can not be.
+    start_column, start_row, goal_column, goal_row : int
+        The two cells. The front stops when the goal's value is final.
+    bound : float
+        Cells over which the way to the goal must cost more than this, by their value and the straight
+        distance to the goal, are left out; a way that costs less is found as if they were not.
+
+    Returns
+    -------
+    ndarray of float32, shape (height, width)
+        The navigation function.
+    """
+    height, width = costs.shape
+    value = np.full(height * width, np.inf, dtype=np.float32)
+    following = np.empty(height * width, dtype=np.int32)
+    preceding = np.empty(height * width, dtype=np.int32)
+    bucket_of = np.full(height * width, -1, dtype=np.int8)
+    head = np.full(BUCKETS, -1, dtype=np.int32)
+    flat = costs.ravel()
+    start = start_row * width + start_column
+    goal = goal_row * width + goal_column
+    value[start] = 0.0
+    current = 0
+    _put(head, following, preceding, bucket_of, start, current)
+    waiting = 1
+    while waiting > 0:
+        cell = head[current % BUCKETS]
+        if cell < 0:
+            current += 1
+            if current * BUCKET_WIDTH > value[goal]:
+                break
+            continue
+        _take(head, following, preceding, bucket_of, cell)
+        waiting -= 1
+        row = cell // width
+        column = cell - row * width
+        for side in range(4):
+            if side == 0:
+                if column == 0:
+                    continue
+                other = cell - 1
+            elif side == 1:
+                if column == width - 1:
+                    continue
+                other = cell + 1
+            elif side == 2:
+                if row == 0:
+                    continue
+                other = cell - width
+            else:
+                if row == height - 1:
+                    continue
+                other = cell + width
+            if not value[cell] < value[other]:
+                continue
+            cost = step[flat[other]]
+            if cost == np.inf:
+                continue
+            y = other // width
+            x = other - y * width
+            better = _upwind(value, other, x, y, width, height, cost)
+            if better >= value[other] - np.float32(1e-4):
+                continue
+            if bound < np.inf and better + math.hypot(x - goal_column, y - goal_row) > bound:
+                continue
+            value[other] = better
+            bucket = int(better / BUCKET_WIDTH) % BUCKETS
+            if bucket_of[other] == bucket:
+                continue
+            if bucket_of[other] >= 0:
+                _take(head, following, preceding, bucket_of, other)
+                waiting -= 1
+            _put(head, following, preceding, bucket_of, other, bucket)
+            waiting += 1
+    return value.reshape(height, width)
+
+
+@compiled
+def _upwind(
+    value: Field, cell: int, column: int, row: int, width: int, height: int, cost: float
+) -> np.float32:
+    """Value of a cell from its lowest neighbour on each axis (Godunov's scheme)."""
+    infinity = np.float32(np.inf)
+    west = value[cell - 1] if column > 0 else infinity
+    east = value[cell + 1] if column < width - 1 else infinity
+    south = value[cell - width] if row > 0 else infinity
+    north = value[cell + width] if row < height - 1 else infinity
+    a = min(west, east)
+    b = min(south, north)
+    low, high = min(a, b), max(a, b)
+    apart = high - low
+    if apart >= cost:
+        return np.float32(low + cost)
+    return np.float32(0.5 * (low + high + math.sqrt(2.0 * cost * cost - apart * apart)))
+
+
+@compiled
+def _put(
+    head: NDArray[np.int32],
+    following: NDArray[np.int32],
+    preceding: NDArray[np.int32],
+    bucket_of: NDArray[np.int8],
+    cell: int,
+    bucket: int,
+) -> None:
+    second = head[bucket]
+    following[cell] = second
+    preceding[cell] = -1
+    if second >= 0:
+        preceding[second] = cell
+    head[bucket] = cell
+    bucket_of[cell] = bucket
+
+
+@compiled
+def _take(
+    head: NDArray[np.int32],
+    following: NDArray[np.int32],
+    preceding: NDArray[np.int32],
+    bucket_of: NDArray[np.int8],
+    cell: int,
+) -> None:
+    before, after = preceding[cell], following[cell]
+    if before >= 0:
+        following[before] = after
+    else:
+        head[bucket_of[cell]] = after
+    if after >= 0:
+        preceding[after] = before
+    bucket_of[cell] = -1
+
+
+@compiled
+def descend(value: Field, goal_column: int, goal_row: int, start_column: int, start_row: int) -> Array:
+    """Way from the start to the goal, found by going down the navigation function from the goal.
+
+    Steps of half a cell follow the gradient between the centres of cells; where that does not lead down, at
+    edges of obstacles, the next point is the lowest neighbouring cell. Every other point is kept.
+
+    Returns
+    -------
+    ndarray, shape (n, 2)
+        Points (column, row) in cells, whole numbers at the centres of cells; the first is the start, the last
+        the goal.
+    """
+    height, width = value.shape
+    limit = 8 * height * width
+    points = np.empty((1024, 2))
+    count = 0
+    x, y = float(goal_column), float(goal_row)
+    level = value[goal_row, goal_column]
+    for number in range(limit):
+        if number % 2 == 0:
+            if count + 1 >= points.shape[0]:
+                larger = np.empty((2 * points.shape[0], 2))
+                larger[:count] = points[:count]
+                points = larger
+            points[count, 0] = x
+            points[count, 1] = y
+            count += 1
+        if math.hypot(x - start_column, y - start_row) < 1.0:
+            break
+        dx, dy = _downhill(value, x, y)
+        norm = math.hypot(dx, dy)
+        moved = False
+        if norm > 1e-3:
+            nx, ny = x + 0.5 * dx / norm, y + 0.5 * dy / norm
+            there = _interpolated(value, nx, ny)
+            if there < level:
+                x, y, level = nx, ny, there
+                moved = True
+        if not moved:
+            x, y, level = _lowest_neighbour(value, x, y)
+    points[count, 0] = float(start_column)
+    points[count, 1] = float(start_row)
+    count += 1
+    return points[:count][::-1].copy()
+
+
+@compiled
+def _interpolated(value: Field, x: float, y: float) -> np.float32:
+    """Bilinear value at a point; infinite when any cell around it is, to keep paths off blocked cells."""
+    column = min(max(math.floor(x), 0), value.shape[1] - 2)
+    row = min(max(math.floor(y), 0), value.shape[0] - 2)
+    u, v = x - column, y - row
+    low = (1.0 - u) * value[row, column] + u * value[row, column + 1]
+    high = (1.0 - u) * value[row + 1, column] + u * value[row + 1, column + 1]
+    return np.float32((1.0 - v) * low + v * high)
+
+
+@compiled
+def _downhill(value: Field, x: float, y: float) -> tuple[float, float]:
+    """Direction of steepest descent at a point, from the cells around it."""
+    column = math.floor(x)
+    row = math.floor(y)
+    dx = dy = 0.0
+    for j in range(2):
+        for i in range(2):
+            weight = abs(1 - i - (x - column)) * abs(1 - j - (y - row))
+            cx, cy = column + i, row + j
+            if weight <= 0.0 or cx < 0 or cy < 0 or cx >= value.shape[1] or cy >= value.shape[0]:
+                continue
+            here = value[cy, cx]
+            if here == np.inf:
+                continue
+            gx = _slope(_value(value, cx - 1, cy), here, _value(value, cx + 1, cy))
+            gy = _slope(_value(value, cx, cy - 1), here, _value(value, cx, cy + 1))
+            norm = math.hypot(gx, gy)
+            if norm > 0.0:
+                dx += weight * gx / norm
+                dy += weight * gy / norm
+    return dx, dy
+
+
+@compiled
+def _value(value: Field, column: int, row: int) -> np.float32:
+    """Value of a cell, infinite outside of the grid."""
+    if 0 <= column < value.shape[1] and 0 <= row < value.shape[0]:
+        return np.float32(value[row, column])
+    return np.float32(np.inf)
+
+
+@compiled
+def _slope(before: np.float32, here: np.float32, after: np.float32) -> float:
+    """Descent along one axis: towards the lower neighbour, none where both are higher."""
+    if before < after:
+        return float(before - here) if before < here else 0.0
+    return float(here - after) if after < here else 0.0
+
+
+@compiled
+def _lowest_neighbour(value: Field, x: float, y: float) -> tuple[float, float, np.float32]:
+    """Centre and value of the lowest of the four cells around a point and their neighbours along the axes."""
+    best = np.float32(np.inf)
+    at_x, at_y = x, y
+    column = round(x)
+    row = round(y)
+    for dx, dy in ((-1, 0), (1, 0), (0, -1), (0, 1)):
+        cx, cy = column + dx, row + dy
+        if 0 <= cx < value.shape[1] and 0 <= cy < value.shape[0] and value[cy, cx] < best:
+            best = value[cy, cx]
+            at_x, at_y = float(cx), float(cy)
+    return at_x, at_y, best
+
+
+@compiled
+def nearest_reached(value: Field, column: int, row: int, reach: float) -> tuple[int, int]:
+    """Cell with a finite value nearest to a cell, within a distance in cells; (-1, -1) if there is none."""
+    radius = math.floor(reach)
+    best = reach * reach + 1e-6
+    found_column = found_row = -1
+    for y in range(max(row - radius, 0), min(row + radius + 1, value.shape[0])):
+        for x in range(max(column - radius, 0), min(column + radius + 1, value.shape[1])):
+            d = float((x - column) ** 2 + (y - row) ** 2)
+            if value[y, x] < np.inf and d < best:
+                best = d
+                found_column, found_row = x, y
+    return found_column, found_row
+
+
+@compiled
+def nearest_way_out(costs: Costs, step: Field, column: int, row: int, reach: float) -> tuple[int, int]:
+    """Nearest passable cell that a blocked cell is connected to; (-1, -1) if there is none.
+
+    From inside of the inscribed radius the way leads over inscribed cells only, at any distance; from inside
+    of an obstacle over anything, within a distance in cells.
+    """
+    height, width = costs.shape
+    inside = costs[row, column] != INSCRIBED_INFLATED_OBSTACLE
+    seen = np.zeros((height, width), dtype=np.bool_)
+    queue = np.empty((height * width, 2), dtype=np.int32)
+    queue[0, 0] = column
+    queue[0, 1] = row
+    seen[row, column] = True
+    taken, waiting = 0, 1
+    best = np.inf
+    found_column = found_row = -1
+    while taken < waiting:
+        x, y = queue[taken, 0], queue[taken, 1]
+        taken += 1
+        d = math.hypot(x - column, y - row)
+        if step[costs[y, x]] < np.inf:
+            if d < best:
+                best = d
+                found_column, found_row = x, y
+            continue
+        if d > best or (inside and d > reach):
+            continue
+        if not inside and costs[y, x] != INSCRIBED_INFLATED_OBSTACLE:
+            continue
+        for dx, dy in ((-1, 0), (1, 0), (0, -1), (0, 1)):
+            cx, cy = x + dx, y + dy
+            if 0 <= cx < width and 0 <= cy < height and not seen[cy, cx]:
+                seen[cy, cx] = True
+                queue[waiting, 0] = cx
+                queue[waiting, 1] = cy
+                waiting += 1
+    return found_column, found_row

@@ -1,0 +1,1 @@
+"""Paths with fewer kinks than the planner left."""

@@ -1,0 +1,84 @@
+"""Each point between where it was and the middle of its neighbours, over and over."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daidalos.mapping.compilation import compiled
+from daidalos.navigation.costmap.costmap import INSCRIBED_INFLATED_OBSTACLE, NO_INFORMATION, Costmap, Costs
+from daidalos.navigation.paths import with_headings
+from daidalos.navigation.smoothers.smoother import Smoother
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class SimpleSmootherParameters:
+    """Parameters of the smoother, by their Nav2 names."""
+
+    tolerance: float = 1e-10
+    max_its: int = 1000
+    w_data: float = 0.2
+    w_smooth: float = 0.3
+
+
+class SimpleSmoother(Smoother):
+    """Minimises the sum of the squared displacements of points and of the squared second differences.
+
+    A point stays where it is when its next place is one where the robot must not be.
+    """
+
+    Parameters = SimpleSmootherParameters
+
+    def __init__(self, parameters: SimpleSmootherParameters | None = None) -> None:
+        self.parameters = parameters or SimpleSmootherParameters()
+
+    def smooth(self, path: Array, costmap: Costmap) -> Array:
+        """See `Smoother.smooth`."""
+        if path.shape[0] < 3:
+            return path.copy()
+        p = self.parameters
+        points = np.ascontiguousarray(path[:, :2])
+        smoothed = relax(
+            points,
+            costmap.costs,
+            costmap.resolution,
+            costmap.origin,
+            p.w_data,
+            p.w_smooth,
+            p.tolerance,
+            p.max_its,
+        )
+        return with_headings(smoothed, final_heading=float(path[-1, 2]))
+
+
+@compiled
+def relax(
+    points: Array,
+    costs: Costs,
+    resolution: float,
+    origin: Array,
+    w_data: float,
+    w_smooth: float,
+    tolerance: float,
+    max_its: int,
+) -> Array:
+    """Move inner points by `w_data (given - here) + w_smooth (before + after - 2 here)` until they rest."""
+    moved = points.copy()
+    for _ in range(max_its):
+        change = 0.0
+        for i in range(1, points.shape[0] - 1):
+            step = w_data * (points[i] - moved[i]) + w_smooth * (moved[i - 1] + moved[i + 1] - 2.0 * moved[i])
+            there = moved[i] + step
+            column = int(np.floor((there[0] - origin[0]) / resolution))
+            row = int(np.floor((there[1] - origin[1]) / resolution))
+            if 0 <= row < costs.shape[0] and 0 <= column < costs.shape[1]:
+                cost = costs[row, column]
+                if cost >= INSCRIBED_INFLATED_OBSTACLE and cost != NO_INFORMATION:
+                    continue
+            moved[i] = there
+            change += step[0] * step[0] + step[1] * step[1]
+        if change < tolerance:
+            break
+    return moved
