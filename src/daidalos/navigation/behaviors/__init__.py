@@ -1,0 +1,1 @@
+"""Simple motions that free a robot: spin, back up, wait."""

@@ -1,0 +1,80 @@
+"""Drive straight, forwards or backwards, for a distance."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daidalos.navigation.behaviors.behavior import (
+    Behavior,
+    BehaviorStep,
+    CollisionAhead,
+    InvalidInput,
+    TimedOut,
+    contact_ahead,
+)
+from daidalos.navigation.costmap.costmap import Costmap
+from daidalos.navigation.costmap.footprint import Footprint
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class DriveOnHeadingParameters:
+    """Parameters of the behaviour, by their Nav2 names; seconds."""
+
+    simulate_ahead_time: float = 2.0
+
+
+@dataclass(frozen=True)
+class DriveOnHeadingCommand:
+    """How far [m] and how fast [m/s] to drive, negative for backwards, and how long it may take [s]."""
+
+    distance: float = 0.15
+    speed: float = 0.025
+    time_allowance: float = 10.0
+
+
+class DriveOnHeading(Behavior[DriveOnHeadingCommand]):
+    """Drives straight until the robot is a distance away from where it began."""
+
+    Parameters = DriveOnHeadingParameters
+
+    def __init__(
+        self,
+        footprint: Footprint,
+        parameters: DriveOnHeadingParameters | None = None,
+        cycle_frequency: float = 10.0,
+    ) -> None:
+        super().__init__(footprint, cycle_frequency)
+        self.parameters = parameters or DriveOnHeadingParameters()
+        self._command = DriveOnHeadingCommand()
+        self._deadline = 0.0
+        self._from = np.zeros(3)
+
+    def start(self, command: DriveOnHeadingCommand, pose: Array, now: float) -> None:
+        """See `Behavior.start`."""
+        if command.distance * command.speed <= 0.0:
+            raise InvalidInput(
+                "distance and speed must both be positive or both negative, "
+                f"not {command.distance} m and {command.speed} m/s"
+            )
+        self._command = command
+        self._deadline = now + command.time_allowance
+        self._from = pose.copy()
+
+    def step(self, pose: Array, velocity: Array, costmap: Costmap, now: float) -> BehaviorStep:
+        """See `Behavior.step`."""
+        driven = math.hypot(float(pose[0] - self._from[0]), float(pose[1] - self._from[1]))
+        left = abs(self._command.distance) - driven
+        if left <= 0.0:
+            return BehaviorStep(np.zeros(3), True, driven)
+        if now > self._deadline:
+            raise TimedOut(f"drove {driven:.2f} m of {abs(self._command.distance):.2f} in time")
+        speed = self._command.speed
+        ahead = min(self.parameters.simulate_ahead_time, left / abs(speed))
+        if contact_ahead(costmap, self.footprint, pose, speed, 0.0, ahead):
+            raise CollisionAhead(f"the robot would touch something within {left:.2f} m")
+        slower = math.copysign(min(abs(speed), left / self.period), speed)
+        return BehaviorStep(np.array([slower, 0.0, 0.0]), False, driven)

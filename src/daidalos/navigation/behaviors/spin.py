@@ -1,0 +1,93 @@
+"""Turn on the spot by an angle."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daidalos.mapping.pose2 import wrap
+from daidalos.navigation.behaviors.behavior import (
+    Behavior,
+    BehaviorStep,
+    CollisionAhead,
+    InvalidInput,
+    TimedOut,
+    contact_ahead,
+)
+from daidalos.navigation.controllers.rotation import rotation_speed
+from daidalos.navigation.costmap.costmap import Costmap
+from daidalos.navigation.costmap.footprint import Footprint
+
+Array = NDArray[np.float64]
+
+DONE_ANGLE = 0.02
+"""Rest of the angle [rad] at which the turn is done."""
+
+
+@dataclass(frozen=True)
+class SpinParameters:
+    """Parameters of the behaviour, by their Nav2 names; SI units."""
+
+    simulate_ahead_time: float = 2.0
+    max_rotational_vel: float = 1.0
+    min_rotational_vel: float = 0.4
+    rotational_acc_lim: float = 3.2
+
+
+@dataclass(frozen=True)
+class SpinCommand:
+    """How far to turn [rad], positive to the left, and how long that may take [s]."""
+
+    target_yaw: float = 1.57
+    time_allowance: float = 10.0
+
+
+class Spin(Behavior[SpinCommand]):
+    """Turns by an angle of any size, measured by the turns of the robot's pose."""
+
+    Parameters = SpinParameters
+
+    def __init__(
+        self, footprint: Footprint, parameters: SpinParameters | None = None, cycle_frequency: float = 10.0
+    ) -> None:
+        super().__init__(footprint, cycle_frequency)
+        self.parameters = parameters or SpinParameters()
+        self._command = SpinCommand()
+        self._deadline = 0.0
+        self._last_yaw = 0.0
+        self._turned = 0.0
+
+    def start(self, command: SpinCommand, pose: Array, now: float) -> None:
+        """See `Behavior.start`."""
+        if not np.isfinite(command.target_yaw):
+            raise InvalidInput(f"target_yaw must be a finite angle in radians, not {command.target_yaw}")
+        self._command = command
+        self._deadline = now + command.time_allowance
+        self._last_yaw = float(pose[2])
+        self._turned = 0.0
+
+    def step(self, pose: Array, velocity: Array, costmap: Costmap, now: float) -> BehaviorStep:
+        """See `Behavior.step`."""
+        self._turned += float(wrap(pose[2] - self._last_yaw))
+        self._last_yaw = float(pose[2])
+        left = self._command.target_yaw - self._turned
+        if abs(left) <= DONE_ANGLE:
+            return BehaviorStep(np.zeros(3), True, abs(self._turned))
+        if now > self._deadline:
+            raise TimedOut(
+                f"turned {abs(self._turned):.2f} rad of {abs(self._command.target_yaw):.2f} in time"
+            )
+        turn = self._speed(left, float(velocity[2]))
+        ahead = min(self.parameters.simulate_ahead_time, abs(left) / max(abs(turn), 1e-3))
+        if contact_ahead(costmap, self.footprint, pose, 0.0, turn, ahead):
+            raise CollisionAhead("the robot would touch something while it turns")
+        return BehaviorStep(np.array([0.0, 0.0, turn]), False, abs(self._turned))
+
+    def _speed(self, left: float, present: float) -> float:
+        """Angular velocity that brakes in time, but does not creep before the last cycle."""
+        p = self.parameters
+        turn = rotation_speed(
+            left, present, max_speed=p.max_rotational_vel, max_accel=p.rotational_acc_lim, period=self.period
+        )
+        slowest = min(p.min_rotational_vel, abs(left) / self.period)
+        return float(np.copysign(max(abs(turn), slowest), left))

@@ -1,0 +1,1 @@
+"""Parts of the MPPI controller: rollouts and the critics that judge them."""

@@ -1,0 +1,120 @@
+"""Keep off obstacles: the costmap's values under a rollout, and a high price for contact."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daidalos.mapping.compilation import compiled
+from daidalos.navigation.controllers.mppi.critics.critic import Critic, Scene
+from daidalos.navigation.controllers.mppi.rollouts import Rollouts, Samples
+from daidalos.navigation.costmap.costmap import (
+    INSCRIBED_INFLATED_OBSTACLE,
+    LETHAL_OBSTACLE,
+    NO_INFORMATION,
+    Costs,
+)
+from daidalos.navigation.costmap.footprint import FootprintCollisionChecker, outline_cost
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class CostCriticParameters:
+    """Parameters of the critic, by their Nav2 names; the distance is in metres."""
+
+    cost_weight: float = 3.81
+    collision_cost: float = 1_000_000.0
+    near_goal_distance: float = 0.5
+    consider_footprint: bool = False
+    trajectory_point_step: int = 2
+
+
+class CostCritic(Critic):
+    """Adds the mean cost, relative to an obstacle's, of the cells that the robot's centre crosses.
+
+    Near to the goal only contact counts, so that goals inside of inflation are reached. A robot that stands
+    too near to an obstacle already, by noise or by an obstacle that came, may drive away: until it is farther
+    off, only the obstacle itself counts as contact.
+    """
+
+    judges_contact = True
+
+    Parameters = CostCriticParameters
+
+    def __init__(self, parameters: CostCriticParameters | None = None) -> None:
+        self.parameters = parameters or CostCriticParameters()
+
+    def score(self, rollouts: Rollouts, scene: Scene) -> None:
+        """See `Critic.score`."""
+        p = self.parameters
+        costmap = scene.control.costmap
+        near_goal = scene.control.distance_to_goal < p.near_goal_distance
+        outline = (
+            scene.footprint.polygon if p.consider_footprint and not scene.footprint.circular else NO_OUTLINE
+        )
+        contact = INSCRIBED_INFLATED_OBSTACLE
+        if FootprintCollisionChecker(costmap, scene.footprint).in_collision(scene.control.pose):
+            outline, contact = NO_OUTLINE, LETHAL_OBSTACLE
+        cost_of_cells(
+            rollouts.x,
+            rollouts.y,
+            rollouts.yaw,
+            costmap.costs,
+            costmap.resolution,
+            costmap.origin,
+            outline,
+            max(scene.control.circumscribed_cost, 1),
+            contact,
+            p.trajectory_point_step,
+            0.0 if near_goal else p.cost_weight / LETHAL_OBSTACLE,
+            p.collision_cost,
+            rollouts.costs,
+            rollouts.collides,
+        )
+
+
+NO_OUTLINE: Array = np.zeros((0, 2))
+
+
+@compiled
+def cost_of_cells(
+    x: Samples,
+    y: Samples,
+    yaw: Samples,
+    costs: Costs,
+    resolution: float,
+    origin: Array,
+    outline: Array,
+    circumscribed_cost: int,
+    contact: int,
+    stride: int,
+    weight: float,
+    collision: float,
+    total: Samples,
+    collides: NDArray[np.bool_],
+) -> None:
+    """Add to `total` the mean weighted cost under each rollout; stop at contact and note it in `collides`."""
+    scale = 1.0 / resolution
+    height, width = costs.shape
+    count = (x.shape[1] + stride - 1) // stride
+    for b in range(x.shape[0]):
+        added = 0.0
+        for t in range(x.shape[1] - 1 - (count - 1) * stride, x.shape[1], stride):
+            column = int((x[b, t] - origin[0]) * scale)
+            row = int((y[b, t] - origin[1]) * scale)
+            if column < 0 or row < 0 or column >= width or row >= height:
+                continue
+            cost = int(costs[row, column])
+            if cost == NO_INFORMATION:
+                continue
+            if outline.shape[0] > 0 and circumscribed_cost <= cost < INSCRIBED_INFLATED_OBSTACLE:
+                under = outline_cost(costs, resolution, origin, outline, x[b, t], y[b, t], yaw[b, t])
+                if under == LETHAL_OBSTACLE:
+                    cost = under
+            if cost >= contact:
+                collides[b] = True
+                added += collision * (1.0 - 0.5 * t / x.shape[1])
+                break
+            added += weight * cost
+        total[b] += np.float32(added / count) if not collides[b] else np.float32(added)

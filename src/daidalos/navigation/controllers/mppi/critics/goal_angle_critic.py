@@ -1,0 +1,38 @@
+"""Look as the goal does, once it is very near."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from daidalos.mapping.pose2 import wrap
+from daidalos.navigation.controllers.mppi.critics.critic import Critic, Scene
+from daidalos.navigation.controllers.mppi.rollouts import Rollouts
+
+
+@dataclass(frozen=True)
+class GoalAngleCriticParameters:
+    """Parameters of the critic, by their Nav2 names; the threshold is in metres."""
+
+    cost_weight: float = 3.0
+    threshold_to_consider: float = 0.5
+
+
+class GoalAngleCritic(Critic):
+    """Adds the mean absolute angle [rad] between a rollout's headings and the goal's.
+
+    Only within the goal's tolerance, whatever the threshold: a robot that cannot move sideways and has turned
+    too early stands beside the goal for ever.
+    """
+
+    Parameters = GoalAngleCriticParameters
+
+    def __init__(self, parameters: GoalAngleCriticParameters | None = None) -> None:
+        self.parameters = parameters or GoalAngleCriticParameters()
+
+    def score(self, rollouts: Rollouts, scene: Scene) -> None:
+        """See `Critic.score`."""
+        near = min(self.parameters.threshold_to_consider, scene.control.xy_goal_tolerance)
+        if scene.control.distance_to_goal > near:
+            return
+        angle = np.abs(wrap(rollouts.yaw - float(scene.control.goal[2])))
+        rollouts.costs[:] += (self.parameters.cost_weight * angle.mean(axis=1)).astype(np.float32)

@@ -1,0 +1,47 @@
+"""Get to the goal: the distance of a rollout to it, once the goal is near."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from daidalos.mapping.compilation import compiled
+from daidalos.navigation.controllers.mppi.critics.critic import Critic, Scene
+from daidalos.navigation.controllers.mppi.rollouts import Rollouts, Samples
+
+
+@dataclass(frozen=True)
+class GoalCriticParameters:
+    """Parameters of the critic, by their Nav2 names; the threshold is in metres."""
+
+    cost_weight: float = 5.0
+    threshold_to_consider: float = 1.4
+
+
+class GoalCritic(Critic):
+    """Adds the mean distance [m] between the points of a rollout and the goal."""
+
+    Parameters = GoalCriticParameters
+
+    def __init__(self, parameters: GoalCriticParameters | None = None) -> None:
+        self.parameters = parameters or GoalCriticParameters()
+
+    def score(self, rollouts: Rollouts, scene: Scene) -> None:
+        """See `Critic.score`."""
+        if scene.control.distance_to_goal > self.parameters.threshold_to_consider:
+            return
+        x, y = (float(value) for value in scene.control.goal[:2])
+        mean_distance(rollouts.x, rollouts.y, x, y, self.parameters.cost_weight, rollouts.costs)
+
+
+@compiled
+def mean_distance(
+    x: Samples, y: Samples, goal_x: float, goal_y: float, weight: float, total: Samples
+) -> None:
+    """Add to `total` the weighted mean distance of each rollout to a point."""
+    gx, gy = np.float32(goal_x), np.float32(goal_y)
+    for b in range(x.shape[0]):
+        added = np.float32(0.0)
+        for t in range(x.shape[1]):
+            dx, dy = x[b, t] - gx, y[b, t] - gy
+            added += np.sqrt(dx * dx + dy * dy)
+        total[b] += np.float32(weight) * added / x.shape[1]

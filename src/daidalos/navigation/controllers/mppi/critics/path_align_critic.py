@@ -1,0 +1,95 @@
+"""Stay on the path: the distance between a rollout and the path, point by point."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daidalos.mapping.compilation import compiled
+from daidalos.navigation.controllers.mppi.critics.critic import Critic, Scene
+from daidalos.navigation.controllers.mppi.rollouts import Rollouts, Samples
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class PathAlignCriticParameters:
+    """Parameters of the critic, by their Nav2 names; the threshold is in metres."""
+
+    cost_weight: float = 10.0
+    threshold_to_consider: float = 0.5
+    offset_from_furthest: int = 6
+    max_path_occupancy_ratio: float = 0.07
+    trajectory_point_step: int = 4
+
+
+class PathAlignCritic(Critic):
+    """Adds the mean distance [m] of a rollout's points to the points of the path after the same length.
+
+    Silent where the goal is near, where the rollouts do not get far (the robot is about to turn), and where
+    the path is blocked, so that the robot may leave it.
+    """
+
+    Parameters = PathAlignCriticParameters
+
+    def __init__(self, parameters: PathAlignCriticParameters | None = None) -> None:
+        self.parameters = parameters or PathAlignCriticParameters()
+
+    def score(self, rollouts: Rollouts, scene: Scene) -> None:
+        """See `Critic.score`."""
+        p = self.parameters
+        if (
+            scene.control.distance_to_goal < p.threshold_to_consider
+            or scene.furthest < p.offset_from_furthest
+        ):
+            return
+        blocked = 1.0 - float(scene.path_free[: scene.furthest + 1].mean())
+        if blocked > p.max_path_occupancy_ratio:
+            return
+        path = scene.control.path
+        mean_offset(
+            rollouts.x,
+            rollouts.y,
+            float(scene.control.pose[0]),
+            float(scene.control.pose[1]),
+            np.ascontiguousarray(path[:, :2]),
+            scene.along,
+            p.trajectory_point_step,
+            p.cost_weight,
+            rollouts.costs,
+        )
+
+
+@compiled
+def mean_offset(
+    x: Samples,
+    y: Samples,
+    start_x: float,
+    start_y: float,
+    points: Array,
+    along: Array,
+    stride: int,
+    weight: float,
+    total: Samples,
+) -> None:
+    """Add to `total` the weighted mean distance from rollouts to the path, matched by length travelled."""
+    last = points.shape[0] - 1
+    for b in range(x.shape[0]):
+        added = 0.0
+        count = 0
+        travelled = 0.0
+        px, py = start_x, start_y
+        i = 0
+        for t in range(stride - 1, x.shape[1], stride):
+            dx, dy = x[b, t] - px, y[b, t] - py
+            travelled += np.sqrt(dx * dx + dy * dy)
+            px, py = float(x[b, t]), float(y[b, t])
+            while i < last and along[i] < travelled:
+                i += 1
+            ox, oy = px - points[i, 0], py - points[i, 1]
+            added += np.sqrt(ox * ox + oy * oy)
+            count += 1
+            if i == last:
+                break
+        if count > 0:
+            total[b] += np.float32(weight * added / count)

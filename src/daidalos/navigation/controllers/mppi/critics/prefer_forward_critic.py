@@ -1,0 +1,32 @@
+"""Drive forwards: a price for every metre driven in reverse."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from daidalos.navigation.controllers.mppi.critics.critic import Critic, Scene
+from daidalos.navigation.controllers.mppi.rollouts import Rollouts
+
+
+@dataclass(frozen=True)
+class PreferForwardCriticParameters:
+    """Parameters of the critic, by their Nav2 names; the threshold is in metres."""
+
+    cost_weight: float = 5.0
+    threshold_to_consider: float = 0.5
+
+
+class PreferForwardCritic(Critic):
+    """Adds the distance [m] that a rollout drives in reverse."""
+
+    Parameters = PreferForwardCriticParameters
+
+    def __init__(self, parameters: PreferForwardCriticParameters | None = None) -> None:
+        self.parameters = parameters or PreferForwardCriticParameters()
+
+    def score(self, rollouts: Rollouts, scene: Scene) -> None:
+        """See `Critic.score`."""
+        if scene.control.distance_to_goal < self.parameters.threshold_to_consider:
+            return
+        reverse = np.maximum(-rollouts.vx, 0.0).sum(axis=1) * np.float32(scene.step)
+        rollouts.costs[:] += np.float32(self.parameters.cost_weight) * reverse

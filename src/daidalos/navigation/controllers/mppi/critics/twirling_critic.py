@@ -1,0 +1,30 @@
+"""Do not wag: a price for turning."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from daidalos.navigation.controllers.mppi.critics.critic import Critic, Scene
+from daidalos.navigation.controllers.mppi.rollouts import Rollouts
+
+
+@dataclass(frozen=True)
+class TwirlingCriticParameters:
+    """Parameters of the critic, by their Nav2 names."""
+
+    cost_weight: float = 10.0
+
+
+class TwirlingCritic(Critic):
+    """Adds the mean absolute angular velocity [rad/s] of a rollout, away from the goal."""
+
+    Parameters = TwirlingCriticParameters
+
+    def __init__(self, parameters: TwirlingCriticParameters | None = None) -> None:
+        self.parameters = parameters or TwirlingCriticParameters()
+
+    def score(self, rollouts: Rollouts, scene: Scene) -> None:
+        """See `Critic.score`."""
+        if scene.control.distance_to_goal < scene.control.xy_goal_tolerance:
+            return
+        rollouts.costs[:] += np.float32(self.parameters.cost_weight) * np.abs(rollouts.wz).mean(axis=1)

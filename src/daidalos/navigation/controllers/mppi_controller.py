@@ -1,0 +1,235 @@
+"""MPPI: sampled control sequences, judged by critics and averaged by their costs."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daidalos.mapping.compilation import compiled
+from daidalos.navigation.controllers.controller import ControlInput, Controller, NoValidControl
+from daidalos.navigation.controllers.mppi.critics.cost_critic import CostCritic
+from daidalos.navigation.controllers.mppi.critics.critic import Critic, Scene
+from daidalos.navigation.controllers.mppi.critics.goal_angle_critic import GoalAngleCritic
+from daidalos.navigation.controllers.mppi.critics.goal_critic import GoalCritic
+from daidalos.navigation.controllers.mppi.critics.path_align_critic import PathAlignCritic
+from daidalos.navigation.controllers.mppi.critics.path_angle_critic import PathAngleCritic
+from daidalos.navigation.controllers.mppi.critics.path_follow_critic import PathFollowCritic
+from daidalos.navigation.controllers.mppi.critics.prefer_forward_critic import PreferForwardCritic
+from daidalos.navigation.controllers.mppi.rollouts import Limits, Rollouts, Samples, correlated_noise
+from daidalos.navigation.costmap.costmap import INSCRIBED_INFLATED_OBSTACLE, NO_INFORMATION
+from daidalos.navigation.costmap.footprint import Footprint
+from daidalos.navigation.paths import distances_along
+
+Array = NDArray[np.float64]
+
+NOISE_POOL = 8
+"""Batches of noise that are drawn once; each cycle takes a random part of them."""
+
+
+@dataclass(frozen=True)
+class MppiParameters:
+    """Parameters of the controller, by their Nav2 names; SI units.
+
+    `noise_correlation_time` [s] is ours: how long a deviation lasts.
+    """
+
+    time_steps: int = 56
+    model_dt: float = 0.05
+    batch_size: int = 1000
+    vx_std: float = 0.3
+    wz_std: float = 0.8
+    vx_max: float = 0.5
+    vx_min: float = -0.15
+    wz_max: float = 1.8
+    ax_max: float = 2.5
+    ax_min: float = -2.5
+    az_max: float = 3.2
+    iteration_count: int = 1
+    temperature: float = 0.3
+    gamma: float = 0.015
+    prune_distance: float = 1.7
+    retry_attempt_limit: int = 1
+    noise_correlation_time: float = 0.5
+
+
+def default_critics() -> tuple[Critic, ...]:
+    """Critics of a robot that drives forwards."""
+    return (
+        CostCritic(),
+        GoalCritic(),
+        GoalAngleCritic(),
+        PathAlignCritic(),
+        PathFollowCritic(),
+        PathAngleCritic(),
+        PreferForwardCritic(),
+    )
+
+
+class MppiController(Controller):
+    """Model predictive path integral control (Williams et al. 2017) of a robot that drives and turns.
+
+    Each cycle disturbs the last control sequence with noise, drives every disturbed sequence through the
+    robot's motion model, lets the critics judge the trajectories and takes the mean of the sequences,
+    weighted by `exp(-cost / temperature)`. Where the mean would touch an obstacle, which can happen between
+    two ways around it, the best sample is taken instead.
+
+    Parameters
+    ----------
+    footprint : Footprint
+        Outline of the robot.
+    parameters : MppiParameters, optional
+        Horizon, samples and limits.
+    critics : sequence of Critic, optional
+        What makes a trajectory good.
+    control_frequency : float
+        Cycles per second.
+    seed : int
+        Of the noise.
+    """
+
+    Parameters = MppiParameters
+
+    def __init__(
+        self,
+        footprint: Footprint,
+        parameters: MppiParameters | None = None,
+        critics: Sequence[Critic] | None = None,
+        control_frequency: float = 20.0,
+        seed: int = 0,
+    ) -> None:
+        self.footprint = footprint
+        self.parameters = p = parameters or MppiParameters()
+        self.critics = tuple(critics) if critics is not None else default_critics()
+        self.period = 1.0 / control_frequency
+        self._generator = np.random.default_rng(seed)
+        self._speed_limit = p.vx_max
+        self._controls: Samples = np.zeros((p.time_steps, 2), dtype=np.float32)
+        self._rollouts = Rollouts.empty(p.batch_size, p.time_steps)
+        self._single = Rollouts.empty(1, p.time_steps)
+        correlation = (
+            math.exp(-p.model_dt / p.noise_correlation_time) if p.noise_correlation_time > 0.0 else 0.0
+        )
+        self._pool = correlated_noise(self._generator, NOISE_POOL * p.batch_size, p.time_steps, correlation)
+        self._pool *= np.array([p.vx_std, p.wz_std], dtype=np.float32)
+
+    @property
+    def look_ahead(self) -> float:
+        """See `Controller.look_ahead`."""
+        p = self.parameters
+        return max(p.prune_distance, p.vx_max * p.time_steps * p.model_dt) + 0.3
+
+    @property
+    def trajectory(self) -> Array:
+        """Poses (n, 3) that the last control sequence leads to, in the costmap's frame."""
+        s = self._single
+        return np.stack([s.x[0], s.y[0], s.yaw[0]], axis=-1).astype(np.float64)
+
+    def compute_velocity_commands(self, control: ControlInput) -> Array:
+        """See `Controller.compute_velocity_commands`."""
+        self._shift()
+        for attempt in range(self.parameters.retry_attempt_limit + 1):
+            if attempt > 0:
+                self._controls[:] = 0.0
+            for _ in range(self.parameters.iteration_count):
+                self._optimise(control)
+            if not self._single.collides[0]:
+                return np.array([float(self._single.vx[0, 0]), 0.0, float(self._single.wz[0, 0])])
+        self._controls[:] = 0.0
+        raise NoValidControl(
+            f"all of {self.parameters.batch_size} motions from ({float(control.pose[0]):.2f}, "
+            f"{float(control.pose[1]):.2f}) touch an obstacle"
+        )
+
+    def set_speed_limit(self, speed_limit: float, *, percentage: bool) -> None:
+        """See `Controller.set_speed_limit`."""
+        most = self.parameters.vx_max
+        limit = most * speed_limit / 100.0 if percentage else speed_limit
+        self._speed_limit = most if speed_limit <= 0.0 else min(limit, most)
+
+    def reset(self) -> None:
+        """See `Controller.reset`."""
+        self._controls[:] = 0.0
+
+    def _shift(self) -> None:
+        """Begin where the last sequence is now."""
+        steps = self.parameters.time_steps
+        then = np.minimum(np.arange(steps) + self.period / self.parameters.model_dt, steps - 1.0)
+        for axis in range(2):
+            self._controls[:, axis] = np.interp(then, np.arange(steps), self._controls[:, axis])
+
+    def _optimise(self, control: ControlInput) -> None:
+        """Improve the control sequence once, and drive it."""
+        p = self.parameters
+        rollouts = self._rollouts
+        limits = Limits(p.vx_min, self._speed_limit, p.wz_max, p.ax_min, p.ax_max, p.az_max)
+        first = int(self._generator.integers((NOISE_POOL - 1) * p.batch_size))
+        noise = self._pool[first : first + p.batch_size]
+        rollouts.drive(control.pose, control.velocity, self._controls, noise, limits, p.model_dt)
+        scene = self._scene(control)
+        for critic in self.critics:
+            critic.score(rollouts, scene)
+        if p.gamma > 0.0:
+            pull = self._controls * np.array([p.gamma / p.vx_std**2, p.gamma / p.wz_std**2], dtype=np.float32)
+            rollouts.costs[:] += noise.reshape(p.batch_size, -1) @ pull.ravel()
+        weights = _weights(rollouts, p.temperature)
+        self._take(np.stack([weights @ rollouts.vx, weights @ rollouts.wz], axis=-1), control, limits, scene)
+        if self._single.collides[0]:
+            best = int(np.argmin(rollouts.costs))
+            self._take(np.stack([rollouts.vx[best], rollouts.wz[best]], axis=-1), control, limits, scene)
+
+    def _take(self, controls: Samples, control: ControlInput, limits: Limits, scene: Scene) -> None:
+        """Make a sequence the present one and see where it leads."""
+        self._controls[:] = controls
+        still = np.zeros((1, *controls.shape), dtype=np.float32)
+        self._single.drive(
+            control.pose, control.velocity, self._controls, still, limits, self.parameters.model_dt
+        )
+        for critic in self.critics:
+            if critic.judges_contact:
+                critic.score(self._single, scene)
+
+    def _scene(self, control: ControlInput) -> Scene:
+        path = control.path
+        cells = np.floor((path[:, :2] - control.costmap.origin) / control.costmap.resolution).astype(np.int64)
+        inside = (cells >= 0).all(axis=1)
+        inside &= (cells < (control.costmap.width, control.costmap.height)).all(axis=1)
+        free = np.ones(path.shape[0], dtype=np.bool_)
+        costs = control.costmap.costs[cells[inside, 1], cells[inside, 0]]
+        free[inside] = (costs < INSCRIBED_INFLATED_OBSTACLE) | (costs == NO_INFORMATION)
+        furthest = furthest_reached(self._rollouts.x, self._rollouts.y, np.ascontiguousarray(path[:, :2]))
+        return Scene(control, self.footprint, distances_along(path), free, furthest, self.parameters.model_dt)
+
+
+def _weights(rollouts: Rollouts, temperature: float) -> Samples:
+    """Share of each sample in the mean.
+
+    The temperature is relative to how much worse than the best sample the best tenth is, so that the critics'
+    weights need no tuning to it, and the last centimetres count as much as the first metres.
+    """
+    above = rollouts.costs - rollouts.costs.min()
+    alive = above[~rollouts.collides]
+    tenth = alive.size // 10
+    spread = float(np.partition(alive, tenth)[tenth]) if alive.size else 1.0
+    weights: Samples = np.exp(-above / np.float32(temperature * max(spread, 1e-4)))
+    weights /= weights.sum()
+    return weights
+
+
+@compiled
+def furthest_reached(x: Samples, y: Samples, points: Array) -> int:
+    """Index of the point, farthest along a path, that is nearest to the end of some rollout."""
+    furthest = 0
+    last = x.shape[1] - 1
+    for b in range(x.shape[0]):
+        best = np.inf
+        index = 0
+        for i in range(points.shape[0]):
+            dx, dy = x[b, last] - points[i, 0], y[b, last] - points[i, 1]
+            d = dx * dx + dy * dy
+            if d < best:
+                best = d
+                index = i
+        furthest = max(furthest, index)
+    return furthest

@@ -1,0 +1,84 @@
+"""Which part of a plan is ahead of the robot."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daidalos.mapping.pose2 import compose
+from daidalos.navigation.controllers.controller import InvalidPath
+from daidalos.navigation.paths import distances_along
+
+Array = NDArray[np.float64]
+
+
+class PathHandler:
+    """Keeps a plan and forgets what the robot has passed.
+
+    The robot is looked for only a limited way along the plan, so that where a plan comes near to itself the
+    robot does not jump from one part to the other.
+
+    Parameters
+    ----------
+    max_robot_pose_search_dist : float
+        How far [m] along the plan the robot may have got since the last cycle.
+    """
+
+    def __init__(self, max_robot_pose_search_dist: float = 1.5) -> None:
+        self.max_robot_pose_search_dist = max_robot_pose_search_dist
+        self._plan = np.zeros((0, 3))
+        self._along = np.zeros(0)
+        self._passed = 0
+
+    @property
+    def has_plan(self) -> bool:
+        """Whether there is a plan."""
+        return self._plan.shape[0] > 0
+
+    def set_plan(self, plan: Array) -> None:
+        """Take a plan (n, 3), in a frame of its own.
+
+        Raises
+        ------
+        InvalidPath
+            It has no poses, or one that is not finite.
+        """
+        if plan.ndim != 2 or plan.shape[0] == 0 or plan.shape[1] != 3:
+            raise InvalidPath(
+                f"a path must be at least one pose (x, y, yaw), not an array of shape {plan.shape}"
+            )
+        if not np.isfinite(plan).all():
+            raise InvalidPath("the path has a pose that is not finite")
+        self._plan = plan.copy()
+        self._along = distances_along(plan)
+        self._passed = 0
+
+    def ahead(self, pose: Array, plan_frame: Array, look_ahead: float) -> tuple[Array, Array, float]:
+        """Cut out what is ahead of the robot, and forget what is behind.
+
+        Parameters
+        ----------
+        pose : ndarray, shape (3,)
+            Pose of the robot in the costmap's frame.
+        plan_frame : ndarray, shape (3,)
+            Pose of the plan's frame in the costmap's frame.
+        look_ahead : float
+            How much [m] of the path is wanted.
+
+        Returns
+        -------
+        path : ndarray, shape (n, 3)
+            The next poses of the plan in the costmap's frame, at least one.
+        goal : ndarray, shape (3,)
+            Its last pose in the costmap's frame.
+        distance : float
+            Length [m] of all that is left of the plan.
+        """
+        start = self._along[self._passed]
+        end = int(np.searchsorted(self._along, start + self.max_robot_pose_search_dist, side="right"))
+        near = compose(plan_frame, self._plan[self._passed : end])
+        away = np.hypot(near[:, 0] - pose[0], near[:, 1] - pose[1])
+        self._passed += int(np.argmin(away))
+        start = self._along[self._passed]
+        end = int(np.searchsorted(self._along, start + look_ahead, side="right"))
+        path = compose(plan_frame, self._plan[self._passed : max(end, self._passed + 1)])
+        goal = compose(plan_frame, self._plan[-1])
+        return path, goal, float(self._along[-1] - start)

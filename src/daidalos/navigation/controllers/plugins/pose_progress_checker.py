@@ -1,0 +1,36 @@
+"""A robot makes progress when it leaves a circle or turns in a given time."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daidalos.mapping.pose2 import wrap
+from daidalos.navigation.controllers.plugins.simple_progress_checker import (
+    SimpleProgressChecker,
+    SimpleProgressCheckerParameters,
+)
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class PoseProgressCheckerParameters(SimpleProgressCheckerParameters):
+    """Parameters of the checker, by their Nav2 names; the angle is in radians."""
+
+    required_movement_angle: float = 0.5
+
+
+class PoseProgressChecker(SimpleProgressChecker):
+    """Takes a turn on the spot as progress as well."""
+
+    Parameters = PoseProgressCheckerParameters
+
+    def __init__(self, parameters: PoseProgressCheckerParameters | None = None) -> None:
+        self.turning = parameters or PoseProgressCheckerParameters()
+        super().__init__(self.turning)
+
+    def moved_enough(self, base: Array, pose: Array) -> bool:
+        """Whether the robot has left the circle around a pose, or turned away from its yaw."""
+        turned = abs(float(wrap(pose[2] - base[2])))
+        return super().moved_enough(base, pose) or turned > self.turning.required_movement_angle

@@ -1,0 +1,49 @@
+"""A goal is reached when the robot is near enough and turned well enough."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daidalos.mapping.pose2 import wrap
+from daidalos.navigation.controllers.plugins.goal_checker import GoalChecker
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class SimpleGoalCheckerParameters:
+    """Parameters of the checker, by their Nav2 names; metres and radians."""
+
+    xy_goal_tolerance: float = 0.25
+    yaw_goal_tolerance: float = 0.25
+    stateful: bool = True
+
+
+class SimpleGoalChecker(GoalChecker):
+    """Compares position, then yaw; a stateful one does not look at the position again once it was right."""
+
+    Parameters = SimpleGoalCheckerParameters
+
+    def __init__(self, parameters: SimpleGoalCheckerParameters | None = None) -> None:
+        self.parameters = parameters or SimpleGoalCheckerParameters()
+        self._arrived = False
+
+    @property
+    def tolerances(self) -> tuple[float, float]:
+        """See `GoalChecker.tolerances`."""
+        return self.parameters.xy_goal_tolerance, self.parameters.yaw_goal_tolerance
+
+    def is_goal_reached(self, pose: Array, goal: Array, velocity: Array) -> bool:
+        """See `GoalChecker.is_goal_reached`."""
+        away = math.hypot(float(goal[0] - pose[0]), float(goal[1] - pose[1]))
+        near = away <= self.parameters.xy_goal_tolerance
+        if not near and not (self.parameters.stateful and self._arrived):
+            return False
+        self._arrived = True
+        return abs(float(wrap(goal[2] - pose[2]))) <= self.parameters.yaw_goal_tolerance
+
+    def reset(self) -> None:
+        """See `GoalChecker.reset`."""
+        self._arrived = False

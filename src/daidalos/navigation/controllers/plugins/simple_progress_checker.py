@@ -1,0 +1,44 @@
+"""A robot makes progress when it leaves a circle in a given time."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daidalos.navigation.controllers.plugins.progress_checker import ProgressChecker
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class SimpleProgressCheckerParameters:
+    """Parameters of the checker, by their Nav2 names; metres and seconds."""
+
+    required_movement_radius: float = 0.5
+    movement_time_allowance: float = 10.0
+
+
+class SimpleProgressChecker(ProgressChecker):
+    """Starts a new circle and a new time whenever the robot has left the last circle."""
+
+    Parameters = SimpleProgressCheckerParameters
+
+    def __init__(self, parameters: SimpleProgressCheckerParameters | None = None) -> None:
+        self.parameters = parameters or SimpleProgressCheckerParameters()
+        self._base: tuple[Array, float] | None = None
+
+    def check(self, pose: Array, now: float) -> bool:
+        """See `ProgressChecker.check`."""
+        if self._base is None or self.moved_enough(self._base[0], pose):
+            self._base = (pose.copy(), now)
+        return now - self._base[1] <= self.parameters.movement_time_allowance
+
+    def moved_enough(self, base: Array, pose: Array) -> bool:
+        """Whether the robot has left the circle around a pose."""
+        moved = math.hypot(float(pose[0] - base[0]), float(pose[1] - base[1]))
+        return moved > self.parameters.required_movement_radius
+
+    def reset(self) -> None:
+        """See `ProgressChecker.reset`."""
+        self._base = None

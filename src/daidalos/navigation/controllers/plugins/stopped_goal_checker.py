@@ -1,0 +1,42 @@
+"""A goal is reached when the robot is there and stands."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daidalos.navigation.controllers.plugins.simple_goal_checker import (
+    SimpleGoalChecker,
+    SimpleGoalCheckerParameters,
+)
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class StoppedGoalCheckerParameters(SimpleGoalCheckerParameters):
+    """Parameters of the checker, by their Nav2 names; velocities in m/s and rad/s."""
+
+    trans_stopped_velocity: float = 0.25
+    rot_stopped_velocity: float = 0.25
+
+
+class StoppedGoalChecker(SimpleGoalChecker):
+    """Wants the pose of `SimpleGoalChecker`, and low velocities."""
+
+    Parameters = StoppedGoalCheckerParameters
+
+    def __init__(self, parameters: StoppedGoalCheckerParameters | None = None) -> None:
+        self.stopped = parameters or StoppedGoalCheckerParameters()
+        super().__init__(self.stopped)
+
+    def is_goal_reached(self, pose: Array, goal: Array, velocity: Array) -> bool:
+        """See `GoalChecker.is_goal_reached`."""
+        there = super().is_goal_reached(pose, goal, velocity)
+        speed = math.hypot(float(velocity[0]), float(velocity[1]))
+        return (
+            there
+            and speed <= self.stopped.trans_stopped_velocity
+            and abs(float(velocity[2])) <= self.stopped.rot_stopped_velocity
+        )

@@ -1,0 +1,212 @@
+"""Regulated pure pursuit: drive an arc to a carrot on the path, slower where it is tight, near or narrow."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daidalos.mapping.pose2 import between
+from daidalos.navigation.controllers.controller import ControlInput, Controller, NoValidControl
+from daidalos.navigation.controllers.rotation import rotation_speed
+from daidalos.navigation.costmap.costmap import INSCRIBED_INFLATED_OBSTACLE, MAX_NON_OBSTACLE, NO_INFORMATION
+from daidalos.navigation.costmap.footprint import Footprint, FootprintCollisionChecker
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class RegulatedPurePursuitParameters:
+    """Parameters of the controller, by their Nav2 names; SI units."""
+
+    desired_linear_vel: float = 0.5
+    max_linear_accel: float = 2.5
+    lookahead_dist: float = 0.6
+    min_lookahead_dist: float = 0.3
+    max_lookahead_dist: float = 0.9
+    lookahead_time: float = 1.5
+    use_velocity_scaled_lookahead_dist: bool = True
+    min_approach_linear_velocity: float = 0.05
+    approach_velocity_scaling_dist: float = 0.6
+    use_collision_detection: bool = True
+    max_allowed_time_to_collision_up_to_carrot: float = 1.0
+    use_regulated_linear_velocity_scaling: bool = True
+    use_cost_regulated_linear_velocity_scaling: bool = True
+    regulated_linear_scaling_min_radius: float = 0.9
+    regulated_linear_scaling_min_speed: float = 0.15
+    cost_scaling_dist: float = 0.6
+    cost_scaling_gain: float = 1.0
+    inflation_cost_scaling_factor: float = 3.0
+    use_rotate_to_heading: bool = True
+    rotate_to_heading_min_angle: float = 0.785
+    rotate_to_heading_angular_vel: float = 1.8
+    max_angular_accel: float = 3.2
+
+
+class RegulatedPurePursuitController(Controller):
+    """Pure pursuit with a regulated speed.
+
+    After Macenski et al. 2023, "Regulated Pure Pursuit for Robot Path Tracking". The carrot is the point of
+    the path at the look-ahead distance. The arc that leaves the robot along its heading and meets the carrot
+    has the curvature `2 y / (x^2 + y^2)`. The speed is reduced on tight arcs, near obstacles and towards the
+    goal; a carrot far to the side, and the yaw of the goal, are reached by a turn on the spot.
+
+    Parameters
+    ----------
+    footprint : Footprint
+        Outline of the robot.
+    parameters : RegulatedPurePursuitParameters, optional
+        Speeds, distances and regulations.
+    control_frequency : float
+        Cycles per second.
+    """
+
+    Parameters = RegulatedPurePursuitParameters
+
+    def __init__(
+        self,
+        footprint: Footprint,
+        parameters: RegulatedPurePursuitParameters | None = None,
+        control_frequency: float = 20.0,
+    ) -> None:
+        self.footprint = footprint
+        self.parameters = parameters or RegulatedPurePursuitParameters()
+        self.period = 1.0 / control_frequency
+        self._speed_limit = self.parameters.desired_linear_vel
+        self._at_goal = False
+        self._rotating = False
+
+    @property
+    def look_ahead(self) -> float:
+        """See `Controller.look_ahead`."""
+        return max(self.parameters.max_lookahead_dist, self.parameters.lookahead_dist) + 0.5
+
+    def compute_velocity_commands(self, control: ControlInput) -> Array:
+        """See `Controller.compute_velocity_commands`."""
+        to_goal = between(control.pose, control.goal)
+        if math.hypot(float(to_goal[0]), float(to_goal[1])) <= 0.5 * control.xy_goal_tolerance:
+            self._at_goal = True
+        if self._at_goal:
+            return self._turn(control, float(to_goal[2]))
+        carrot = self._carrot(control)
+        angle = math.atan2(float(carrot[1]), float(carrot[0]))
+        if self._must_rotate(angle):
+            return self._turn(control, angle)
+        squared = float(carrot[0] ** 2 + carrot[1] ** 2)
+        curvature = 2.0 * float(carrot[1]) / squared if squared > 1e-6 else 0.0
+        speed = self._regulated_speed(control, curvature)
+        turn = speed * curvature
+        if self.parameters.use_collision_detection:
+            self._refuse_collision(control, speed, turn, math.sqrt(squared))
+        return np.array([speed, 0.0, turn])
+
+    def set_speed_limit(self, speed_limit: float, *, percentage: bool) -> None:
+        """See `Controller.set_speed_limit`."""
+        most = self.parameters.desired_linear_vel
+        limit = most * speed_limit / 100.0 if percentage else speed_limit
+        self._speed_limit = most if speed_limit <= 0.0 else min(limit, most)
+
+    def reset(self) -> None:
+        """See `Controller.reset`."""
+        self._at_goal = False
+        self._rotating = False
+
+    def _carrot(self, control: ControlInput) -> Array:
+        """Point (x, y) of the path at the look-ahead distance, in the robot's frame."""
+        p = self.parameters
+        distance = p.lookahead_dist
+        if p.use_velocity_scaled_lookahead_dist:
+            scaled = abs(float(control.velocity[0])) * p.lookahead_time
+            distance = min(max(scaled, p.min_lookahead_dist), p.max_lookahead_dist)
+        points = between(control.pose, control.path)[:, :2]
+        away = np.hypot(points[:, 0], points[:, 1])
+        beyond = np.flatnonzero(away >= distance)
+        if beyond.size == 0:
+            return np.array(points[-1])
+        outer = int(beyond[0])
+        if outer == 0:
+            return np.array(points[0])
+        return _on_circle(points[outer - 1], points[outer], distance)
+
+    def _must_rotate(self, angle: float) -> bool:
+        """Whether to turn on the spot; once begun, until the carrot is nearly ahead."""
+        if not self.parameters.use_rotate_to_heading:
+            return False
+        enough = 0.15 if self._rotating else self.parameters.rotate_to_heading_min_angle
+        self._rotating = abs(angle) > enough
+        return self._rotating
+
+    def _turn(self, control: ControlInput, angle: float) -> Array:
+        """Turn on the spot, once the robot stands."""
+        p = self.parameters
+        forward = float(control.velocity[0])
+        slower = math.copysign(max(abs(forward) - p.max_linear_accel * self.period, 0.0), forward)
+        turn = rotation_speed(
+            angle,
+            float(control.velocity[2]),
+            max_speed=p.rotate_to_heading_angular_vel,
+            max_accel=p.max_angular_accel,
+            period=self.period,
+        )
+        return np.array([slower if abs(slower) > 0.02 else 0.0, 0.0, turn])
+
+    def _regulated_speed(self, control: ControlInput, curvature: float) -> float:
+        p = self.parameters
+        speed = self._speed_limit
+        radius = 1.0 / max(abs(curvature), 1e-6)
+        if p.use_regulated_linear_velocity_scaling and radius < p.regulated_linear_scaling_min_radius:
+            speed *= radius / p.regulated_linear_scaling_min_radius
+        if p.use_cost_regulated_linear_velocity_scaling:
+            speed *= self._narrowness(control)
+        speed = max(speed, min(p.regulated_linear_scaling_min_speed, self._speed_limit))
+        speed = min(speed, p.rotate_to_heading_angular_vel * radius)
+        remaining = control.distance_to_goal
+        if remaining < p.approach_velocity_scaling_dist:
+            approach = self._speed_limit * remaining / p.approach_velocity_scaling_dist
+            speed = min(speed, max(approach, p.min_approach_linear_velocity))
+        step = p.max_linear_accel * self.period
+        present = float(control.velocity[0])
+        return min(max(speed, present - step), present + step)
+
+    def _narrowness(self, control: ControlInput) -> float:
+        """Share of the speed that the nearest obstacle allows; the inflated cost tells its distance."""
+        p = self.parameters
+        cost = control.costmap.cost_at(float(control.pose[0]), float(control.pose[1]))
+        if cost in (0, NO_INFORMATION):
+            return 1.0
+        inscribed = self.footprint.inscribed_radius
+        cost = min(cost, INSCRIBED_INFLATED_OBSTACLE)
+        away = inscribed - math.log(cost / MAX_NON_OBSTACLE) / p.inflation_cost_scaling_factor
+        if away >= p.cost_scaling_dist:
+            return 1.0
+        return max(p.cost_scaling_gain * away / p.cost_scaling_dist, 0.0)
+
+    def _refuse_collision(self, control: ControlInput, speed: float, turn: float, reach: float) -> None:
+        """Follow the arc as far as the carrot, or as long as allowed, and look for contact."""
+        checker = FootprintCollisionChecker(control.costmap, self.footprint)
+        if checker.in_collision(control.pose):
+            return
+        step = control.costmap.resolution / max(abs(speed), 0.05)
+        pose = control.pose.copy()
+        elapsed = 0.0
+        while elapsed < self.parameters.max_allowed_time_to_collision_up_to_carrot:
+            elapsed += step
+            heading = pose[2] + 0.5 * turn * step
+            pose = pose + step * np.array([speed * math.cos(heading), speed * math.sin(heading), turn])
+            if math.hypot(float(pose[0] - control.pose[0]), float(pose[1] - control.pose[1])) > reach:
+                return
+            if checker.in_collision(pose):
+                raise NoValidControl(
+                    f"an obstacle is in the way at ({float(pose[0]):.2f}, {float(pose[1]):.2f}), "
+                    f"{elapsed:.1f} s ahead"
+                )
+
+
+def _on_circle(inner: Array, outer: Array, radius: float) -> Array:
+    """Where the line from a point inside of a circle around the origin to one outside crosses it."""
+    step = outer - inner
+    a = float(step @ step)
+    b = float(inner @ step)
+    c = float(inner @ inner) - radius * radius
+    share = (-b + math.sqrt(max(b * b - a * c, 0.0))) / a if a > 0.0 else 1.0
+    return np.array(inner + min(max(share, 0.0), 1.0) * step)

@@ -1,0 +1,132 @@
+"""Turn to the path first, then let another controller drive, and turn to the goal's yaw at the end."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daidalos.mapping.pose2 import between
+from daidalos.navigation.controllers.controller import ControlInput, Controller
+from daidalos.navigation.controllers.rotation import rotation_speed
+from daidalos.navigation.costmap.footprint import Footprint, FootprintCollisionChecker
+from daidalos.navigation.paths import distances_along
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class RotationShimParameters:
+    """Parameters of the controller, by their Nav2 names; SI units."""
+
+    angular_dist_threshold: float = 0.785
+    angular_disengage_threshold: float = 0.3
+    forward_sampling_distance: float = 0.5
+    rotate_to_heading_angular_vel: float = 1.8
+    max_angular_accel: float = 3.2
+    simulate_ahead_time: float = 1.0
+    rotate_to_goal_heading: bool = True
+
+
+class RotationShimController(Controller):
+    """Wraps a controller that is good at following and not at starting or ending.
+
+    A robot whose path leads sideways or back turns on the spot where it has room to. Within the goal's
+    tolerance it turns to the goal's yaw; the braking curve of `rotation_speed` ends the turn without
+    overshoot.
+
+    Parameters
+    ----------
+    primary : Controller
+        The controller that drives.
+    footprint : Footprint
+        Outline of the robot.
+    parameters : RotationShimParameters, optional
+        When and how fast to turn.
+    control_frequency : float
+        Cycles per second.
+    """
+
+    Parameters = RotationShimParameters
+
+    def __init__(
+        self,
+        primary: Controller,
+        footprint: Footprint,
+        parameters: RotationShimParameters | None = None,
+        control_frequency: float = 20.0,
+    ) -> None:
+        self.primary = primary
+        self.footprint = footprint
+        self.parameters = parameters or RotationShimParameters()
+        self.period = 1.0 / control_frequency
+        self._starting = True
+        self._turning = False
+        self._at_goal = False
+
+    @property
+    def look_ahead(self) -> float:
+        """See `Controller.look_ahead`."""
+        return max(self.primary.look_ahead, self.parameters.forward_sampling_distance)
+
+    def compute_velocity_commands(self, control: ControlInput) -> Array:
+        """See `Controller.compute_velocity_commands`."""
+        to_goal = between(control.pose, control.goal)
+        away = math.hypot(float(to_goal[0]), float(to_goal[1]))
+        if self.parameters.rotate_to_goal_heading and (
+            self._at_goal or away <= 0.8 * control.xy_goal_tolerance
+        ):
+            self._at_goal = True
+            return self._turn(control, float(to_goal[2]))
+        if self._starting or control.distance_to_goal < 0.3:
+            angle = self._angle_to_path(control)
+            self._starting = self._must_turn(control, angle)
+            if self._starting:
+                self._turning = True
+                return self._turn(control, angle)
+        return self.primary.compute_velocity_commands(control)
+
+    def set_speed_limit(self, speed_limit: float, *, percentage: bool) -> None:
+        """See `Controller.set_speed_limit`."""
+        self.primary.set_speed_limit(speed_limit, percentage=percentage)
+
+    def reset(self) -> None:
+        """See `Controller.reset`."""
+        self._starting = True
+        self._turning = False
+        self._at_goal = False
+        self.primary.reset()
+
+    def _angle_to_path(self, control: ControlInput) -> float:
+        """Bearing [rad] of the path at the sampling distance, or of its end."""
+        along = distances_along(control.path)
+        index = min(int(np.searchsorted(along, self.parameters.forward_sampling_distance)), along.size - 1)
+        ahead = between(control.pose, control.path[index])
+        return math.atan2(float(ahead[1]), float(ahead[0]))
+
+    def _turn(self, control: ControlInput, angle: float) -> Array:
+        p = self.parameters
+        turn = rotation_speed(
+            angle,
+            float(control.velocity[2]),
+            max_speed=p.rotate_to_heading_angular_vel,
+            max_accel=p.max_angular_accel,
+            period=self.period,
+        )
+        return np.array([0.0, 0.0, turn])
+
+    def _must_turn(self, control: ControlInput, angle: float) -> bool:
+        """Whether the robot looks away from the path, and has room to turn; once begun, until it does not."""
+        p = self.parameters
+        enough = p.angular_disengage_threshold if self._turning else p.angular_dist_threshold
+        return abs(angle) > enough and self._has_room(control, angle)
+
+    def _has_room(self, control: ControlInput, angle: float) -> bool:
+        """Whether the turn, as far as it is simulated, touches nothing that the robot does not touch now."""
+        if self.footprint.circular:
+            return True
+        p = self.parameters
+        checker = FootprintCollisionChecker(control.costmap, self.footprint)
+        end = math.copysign(min(abs(angle), p.rotate_to_heading_angular_vel * p.simulate_ahead_time), angle)
+        turns = np.linspace(0.0, end, max(int(abs(end) / 0.1), 2))
+        return not any(checker.in_collision(control.pose + np.array([0.0, 0.0, turn])) for turn in turns)

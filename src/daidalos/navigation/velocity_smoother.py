@@ -1,0 +1,92 @@
+"""Velocity commands that a drive can follow: limits on velocity and acceleration, dead band, time-out."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daidalos.navigation.errors import NavigationError
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class VelocitySmootherParameters:
+    """Parameters of the smoother, by their Nav2 names; triples are (x, y, yaw) in SI units."""
+
+    smoothing_frequency: float = 20.0
+    scale_velocities: bool = False
+    feedback: str = "OPEN_LOOP"
+    max_velocity: tuple[float, float, float] = (0.5, 0.0, 2.5)
+    min_velocity: tuple[float, float, float] = (-0.5, 0.0, -2.5)
+    max_accel: tuple[float, float, float] = (2.5, 0.0, 3.2)
+    max_decel: tuple[float, float, float] = (-2.5, 0.0, -3.2)
+    deadband_velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    velocity_timeout: float = 1.0
+
+    def __post_init__(self) -> None:
+        if self.feedback not in ("OPEN_LOOP", "CLOSED_LOOP"):
+            raise NavigationError(f"feedback must be OPEN_LOOP or CLOSED_LOOP, not {self.feedback!r}")
+        if any(a < 0.0 for a in self.max_accel) or any(d > 0.0 for d in self.max_decel):
+            raise NavigationError("max_accel must not be negative and max_decel not positive")
+        if any(low > high for low, high in zip(self.min_velocity, self.max_velocity, strict=True)):
+            raise NavigationError("min_velocity must not be greater than max_velocity")
+
+
+class VelocitySmoother:
+    """Passes velocity commands on, changed as little as the limits ask for."""
+
+    Parameters = VelocitySmootherParameters
+
+    def __init__(self, parameters: VelocitySmootherParameters | None = None) -> None:
+        self.parameters = parameters or VelocitySmootherParameters()
+        self._command = np.zeros(3)
+        self._commanded_at: float | None = None
+        self._last = np.zeros(3)
+
+    def command(self, velocity: Array, now: float) -> None:
+        """Take a wanted velocity (x, y, yaw); one that is not finite is taken as a stop."""
+        self._command = velocity.copy() if np.isfinite(velocity).all() else np.zeros(3)
+        self._commanded_at = now
+
+    def step(self, now: float, measured: Array | None = None) -> Array | None:
+        """Find the velocity for the next period.
+
+        Parameters
+        ----------
+        now : float
+            Time [s].
+        measured : ndarray, shape (3,), optional
+            Velocity from odometry, for `CLOSED_LOOP`.
+
+        Returns
+        -------
+        ndarray, shape (3,) or None
+            Velocity (x, y, yaw); `None` where nothing has to be sent: no command yet, or one that has timed
+            out after which the robot stands.
+        """
+        p = self.parameters
+        if self._commanded_at is None:
+            return None
+        timed_out = now - self._commanded_at > p.velocity_timeout
+        if timed_out and not self._last.any():
+            return None
+        wanted = np.zeros(3) if timed_out else np.clip(self._command, p.min_velocity, p.max_velocity)
+        closed = p.feedback == "CLOSED_LOOP" and measured is not None
+        present = measured if closed and measured is not None else self._last
+        self._last = self._towards(present, wanted)
+        return np.where(np.abs(self._last) < p.deadband_velocity, 0.0, self._last)
+
+    def _towards(self, present: Array, wanted: Array) -> Array:
+        """Change each component as far as its acceleration allows, or all by the same share."""
+        p = self.parameters
+        period = 1.0 / p.smoothing_frequency
+        change = wanted - present
+        speeding = np.abs(wanted) >= np.abs(present)
+        speeding &= wanted * present >= 0.0
+        allowed = np.where(speeding, p.max_accel, np.negative(p.max_decel)) * period
+        share = np.divide(allowed, np.abs(change), out=np.ones(3), where=np.abs(change) > allowed)
+        if p.scale_velocities:
+            share = np.full(3, share.min())
+        reached: Array = present + share * change
+        return reached
