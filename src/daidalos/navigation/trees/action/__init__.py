@@ -1,0 +1,1 @@
+"""Leaves that have something done, one class each."""

@@ -1,0 +1,86 @@
+"""A leaf that starts a task, waits for its end without blocking, and stops it when it is halted."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any, ClassVar
+
+import numpy as np
+from py_trees.common import Status
+
+from daidalos.navigation.trees.node import Node, Port, Ports
+from daidalos.navigation.trees.services import Services, Task
+
+RECOVERIES = "number_recoveries"
+"""Name on the blackboard under which recovery actions are counted."""
+
+SERVER: dict[str, Port] = {"server_name": Port(str, None), "server_timeout": Port(float, None)}
+"""Inputs of every node that calls an action server."""
+
+ERRORS: dict[str, Port] = {"error_code_id": Port(str, output=True), "error_msg": Port(str, output=True)}
+"""Outputs of every node that calls an action server: name of the error code, and the reason for people."""
+
+
+class ActionNode(Node):
+    """Runs the task of its own name; subclasses declare their ports.
+
+    Attributes
+    ----------
+    UPDATES : tuple of str
+        Inputs that are passed on to the running task when they change.
+    RECOVERY : bool
+        Whether it counts as a recovery; an input `is_recovery` overrules.
+    """
+
+    UPDATES: ClassVar[tuple[str, ...]] = ()
+    RECOVERY: ClassVar[bool] = False
+
+    def __init__(self, name: str, ports: Ports, services: Services, children: Sequence[Any]) -> None:
+        super().__init__(name, ports, services, children)
+        self._task: Task | None = None
+        self._sent: dict[str, Any] = {}
+
+    def initialise(self) -> None:
+        """Start the task."""
+        self._sent = self.ports.inputs()
+        if self._sent.get("is_recovery", self.RECOVERY):
+            count = self.ports.blackboard.get(RECOVERIES, 0)
+            self.ports.blackboard.set(RECOVERIES, count + 1)
+        self.ports.set("error_code_id", "NONE")
+        self._task = self.services.start(type(self).__name__, self._sent)
+
+    def update(self) -> Status:
+        """Look whether the task has ended."""
+        if self._task is None:
+            return Status.FAILURE
+        outcome = self._task.poll()
+        if outcome is None:
+            self._pass_changes_on(self._task)
+            return Status.RUNNING
+        self._task = None
+        for key, value in outcome.outputs.items():
+            self.ports.set(key, value)
+        self.ports.set("error_code_id", outcome.error_code)
+        self.ports.set("error_msg", outcome.error_msg)
+        self.feedback_message = outcome.error_msg
+        return Status.SUCCESS if outcome.succeeded else Status.FAILURE
+
+    def terminate(self, new_status: Status) -> None:
+        """Stop the task if it still runs."""
+        if self._task is not None and new_status == Status.INVALID:
+            self._task.halt()
+            self._task = None
+
+    def _pass_changes_on(self, task: Task) -> None:
+        latest = self.ports.inputs()
+        if any(differs(latest.get(key), self._sent.get(key)) for key in self.UPDATES):
+            self._sent = latest
+            task.update(latest)
+
+
+def differs(one: Any, other: Any) -> bool:
+    """Whether two values of the blackboard are not the same, arrays or not."""
+    return one is not other and not np.array_equal(one, other)
+
+
+def with_server(ports: Mapping[str, Port]) -> dict[str, Port]:
+    """Ports of a node that calls an action server: its own, and those that all have."""
+    return {**ports, **SERVER, **ERRORS}

@@ -1,0 +1,20 @@
+"""Drive backwards for a distance."""
+
+from typing import ClassVar
+
+from daidalos.navigation.trees.action.action_node import ActionNode, with_server
+from daidalos.navigation.trees.node import Port, flag
+
+
+class BackUp(ActionNode):
+    """Succeeds when the robot has driven back by `backup_dist` [m]."""
+
+    PORTS: ClassVar[dict[str, Port]] = with_server(
+        {
+            "backup_dist": Port(float, 0.15),
+            "backup_speed": Port(float, 0.025),
+            "time_allowance": Port(float, 10.0),
+            "disable_collision_checks": Port(flag, False),
+        }
+    )
+    RECOVERY: ClassVar[bool] = True

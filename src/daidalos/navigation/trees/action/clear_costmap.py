@@ -1,0 +1,29 @@
+"""Make a costmap forget what sensors saw."""
+
+from typing import ClassVar
+
+from daidalos.navigation.trees.action.action_node import ActionNode
+from daidalos.navigation.trees.node import Port
+
+_SERVICE = {"service_name": Port(str), "server_timeout": Port(float, None)}
+
+
+class ClearEntireCostmap(ActionNode):
+    """Clears all of it."""
+
+    PORTS: ClassVar[dict[str, Port]] = _SERVICE
+    RECOVERY: ClassVar[bool] = True
+
+
+class ClearCostmapAroundRobot(ActionNode):
+    """Clears a square of an edge [m] around the robot."""
+
+    PORTS: ClassVar[dict[str, Port]] = {**_SERVICE, "reset_distance": Port(float, 1.0)}
+    RECOVERY: ClassVar[bool] = True
+
+
+class ClearCostmapExceptRegion(ActionNode):
+    """Clears what is outside of a square of an edge [m] around the robot."""
+
+    PORTS: ClassVar[dict[str, Port]] = {**_SERVICE, "reset_distance": Port(float, 1.0)}
+    RECOVERY: ClassVar[bool] = True

@@ -1,0 +1,20 @@
+"""Follow a path to its end."""
+
+from typing import ClassVar
+
+from daidalos.navigation.trees.action.action_node import ActionNode, with_server
+from daidalos.navigation.trees.node import Port, entry
+
+
+class FollowPath(ActionNode):
+    """Succeeds at the goal; a new path is taken up on the way."""
+
+    PORTS: ClassVar[dict[str, Port]] = with_server(
+        {
+            "path": Port(entry),
+            "controller_id": Port(str, ""),
+            "goal_checker_id": Port(str, ""),
+            "progress_checker_id": Port(str, ""),
+        }
+    )
+    UPDATES: ClassVar[tuple[str, ...]] = ("path", "controller_id", "goal_checker_id", "progress_checker_id")

@@ -1,0 +1,22 @@
+"""Smooth a path."""
+
+from typing import ClassVar
+
+from daidalos.navigation.trees.action.action_node import ActionNode, with_server
+from daidalos.navigation.trees.node import Port, entry, flag
+
+
+class SmoothPath(ActionNode):
+    """Succeeds with a smoother path."""
+
+    PORTS: ClassVar[dict[str, Port]] = with_server(
+        {
+            "unsmoothed_path": Port(entry),
+            "smoother_id": Port(str, ""),
+            "max_smoothing_duration": Port(float, 3.0),
+            "check_for_collisions": Port(flag, False),
+            "smoothed_path": Port(entry, output=True),
+            "smoothing_duration": Port(float, output=True),
+            "was_completed": Port(flag, output=True),
+        }
+    )

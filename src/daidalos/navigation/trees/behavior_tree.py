@@ -1,0 +1,208 @@
+"""Behaviour trees as BehaviorTree.CPP and Nav2 write them: read a file, tick it, halt it, draw it."""
+
+from __future__ import annotations
+
+from difflib import get_close_matches
+from pathlib import Path
+from typing import Any
+
+import py_trees
+from py_trees.common import Status
+
+from daidalos.description.errors import DescriptionError
+from daidalos.description.markup import Element, parse_markup
+from daidalos.navigation.trees.blackboard import Blackboard
+from daidalos.navigation.trees.errors import TreeError
+from daidalos.navigation.trees.node import Ports
+from daidalos.navigation.trees.registry import known_nodes, node_class
+from daidalos.navigation.trees.services import Services
+
+DEFAULT_TREE = (
+    Path(__file__).parents[2]
+    / "share/nav2_bt_navigator/behavior_trees/navigate_to_pose_w_replanning_and_recovery.xml"
+)
+"""The tree of `navigate_to_pose` that is used where none is named."""
+
+_EXPLICIT = frozenset({"Action", "Condition", "Control", "Decorator"})
+_COMMENTARY = frozenset({"name", "ID", "_description", "_fullpath", "_uid"})
+
+
+class BehaviorTree:
+    """A tree that can be ticked.
+
+    Parameters
+    ----------
+    root : py_trees behaviour
+        Its root.
+    blackboard : Blackboard
+        What its nodes share.
+    """
+
+    def __init__(self, root: Any, blackboard: Blackboard) -> None:
+        self.root = root
+        self.blackboard = blackboard
+
+    @classmethod
+    def load(cls, path: Path, services: Services, blackboard: Blackboard | None = None) -> BehaviorTree:
+        """Read the tree of a file.
+
+        Raises
+        ------
+        TreeError
+            The file can not be read, is not XML, or names a node or port that does not exist.
+        """
+        try:
+            text = path.read_text(encoding="utf-8")
+        except (OSError, UnicodeDecodeError) as error:
+            raise TreeError(f"{path}: cannot be read: {error}") from None
+        return cls.parse(text, services, blackboard, str(path))
+
+    @classmethod
+    def parse(
+        cls, text: str, services: Services, blackboard: Blackboard | None = None, source: str = "tree"
+    ) -> BehaviorTree:
+        """Read a tree.
+
+        Parameters
+        ----------
+        text : str
+            XML of BehaviorTree.CPP, version 3 or 4.
+        services : Services
+            What the leaves ask of the robot.
+        blackboard : Blackboard, optional
+            Values that the tree begins with.
+        source : str
+            Where the text came from; errors name it.
+
+        Raises
+        ------
+        TreeError
+            It is not XML, or names a node or port that does not exist.
+        """
+        board = blackboard or Blackboard()
+        trees, main = _trees(_document(text, source), Path(source).parent)
+        builder = _Builder(trees, services)
+        return cls(builder.subtree(main, board, trees[main], ()), board)
+
+    @property
+    def status(self) -> Status:
+        """How the last tick ended."""
+        return self.root.status
+
+    def tick(self) -> Status:
+        """Walk the tree once; `RUNNING` until it has succeeded or failed."""
+        self.root.tick_once()
+        return self.root.status
+
+    def halt(self) -> None:
+        """Stop whatever runs."""
+        self.root.stop(Status.INVALID)
+
+    def to_text(self) -> str:
+        """Draw the tree with the state of each node."""
+        drawing: str = py_trees.display.unicode_tree(self.root, show_status=True)
+        return drawing
+
+
+def _document(text: str, source: str) -> Element:
+    try:
+        root = parse_markup(text, source)
+    except DescriptionError as error:
+        raise TreeError(str(error)) from None
+    if root.tag != "root":
+        raise TreeError(f"{root.where}: the outermost element must be <root>, not <{root.tag}>")
+    return root
+
+
+def _trees(
+    root: Element, folder: Path, seen: frozenset[Path] = frozenset()
+) -> tuple[dict[str, Element], str]:
+    """Trees of a file and those it includes by their ID, and the ID of the one to run."""
+    trees: dict[str, Element] = {}
+    for include in root.all("include"):
+        path = (folder / include.attributes.get("path", "")).resolve()
+        if not path.is_file() or path in seen:
+            why = "includes itself" if path in seen else "does not exist"
+            raise TreeError(f"{include.where}: the included file {path} {why}")
+        inner = _document(path.read_text(encoding="utf-8"), str(path))
+        trees.update(_trees(inner, path.parent, seen | {path})[0])
+    own = [tree.attributes.get("ID", "MainTree") for tree in root.all("BehaviorTree")]
+    trees.update(zip(own, root.all("BehaviorTree"), strict=True))
+    if not trees:
+        raise TreeError(f"{root.where}: there is no <BehaviorTree>")
+    main = root.attributes.get("main_tree_to_execute") or (own[0] if len(own) == 1 else "MainTree")
+    if main not in trees and not seen:
+        raise TreeError(f"{root.where}: there is no tree {main!r}; the trees are: {', '.join(trees)}")
+    return trees, main
+
+
+class _Builder:
+    """Makes nodes of elements."""
+
+    def __init__(self, trees: dict[str, Element], services: Services) -> None:
+        self._trees = trees
+        self._services = services
+
+    def subtree(self, identifier: str, board: Blackboard, element: Element, path: tuple[str, ...]) -> Any:
+        """Root node of one of the trees; `element` is where it is asked for."""
+        if identifier not in self._trees:
+            raise TreeError(
+                f"{_place(element)}: there is no tree {identifier!r}{_near(identifier, self._trees)}"
+            )
+        if identifier in path:
+            raise TreeError(f"{_place(element)}: the tree {identifier!r} contains itself")
+        tree = self._trees[identifier]
+        if len(tree.children) != 1:
+            raise TreeError(
+                f"{tree.where}: the tree {identifier!r} must have one root, not {len(tree.children)}"
+            )
+        return self._node(tree.children[0], board, (*path, identifier))
+
+    def _node(self, element: Element, board: Blackboard, path: tuple[str, ...]) -> Any:
+        identifier = element.attributes.get("ID", "") if element.tag in _EXPLICIT else element.tag
+        if identifier in ("SubTree", "SubTreePlus"):
+            return self._inner_tree(element, board, path)
+        made_by = node_class(identifier)
+        if made_by is None:
+            raise TreeError(
+                f"{_place(element)}: there is no node {identifier!r}{_near(identifier, known_nodes())}"
+            )
+        children = [self._node(child, board, path) for child in element.children]
+        _check_number(element, len(children), made_by.CHILDREN)
+        attributes = {k: v for k, v in element.attributes.items() if k not in _COMMENTARY}
+        ports = Ports(made_by.PORTS, attributes, board, _place(element))
+        return made_by(element.attributes.get("name", identifier), ports, self._services, children)
+
+    def _inner_tree(self, element: Element, board: Blackboard, path: tuple[str, ...]) -> Any:
+        """Tree inside of a tree, with a blackboard of its own whose remapped names are this one's."""
+        attributes = element.attributes
+        auto = {attributes.get(key) for key in ("_autoremap", "__autoremap", "__shared_blackboard")}
+        inner = Blackboard(
+            board,
+            {k: v[1:-1] for k, v in attributes.items() if v.startswith("{") and v.endswith("}")},
+            autoremap=bool(auto & {"true", "1"}),
+        )
+        for key, text in attributes.items():
+            if not key.startswith("_") and key not in _COMMENTARY and not text.startswith("{"):
+                inner.set(key, text)
+        return self.subtree(attributes.get("ID", ""), inner, element, path)
+
+
+def _check_number(element: Element, number: int, allowed: tuple[int, int | None]) -> None:
+    fewest, most = allowed
+    if number >= fewest and (most is None or number <= most):
+        return
+    wanted = (
+        f"at least {fewest}" if most is None else f"{fewest}" if most == fewest else f"{fewest} to {most}"
+    )
+    raise TreeError(f"{_place(element)}: it must have {wanted} children, not {number}")
+
+
+def _place(element: Element) -> str:
+    return f"{element.where}: {element.label}"
+
+
+def _near(word: str, words: Any) -> str:
+    """Hint at what was meant."""
+    near = get_close_matches(word, list(words), n=1)
+    return f"; did you mean {near[0]!r}?" if near else f"; there are: {', '.join(sorted(words))}"

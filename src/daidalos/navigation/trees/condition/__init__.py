@@ -1,0 +1,1 @@
+"""Leaves that answer a question, one class each."""

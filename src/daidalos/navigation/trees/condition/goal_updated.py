@@ -1,0 +1,35 @@
+"""Whether there is another goal than before."""
+
+from collections.abc import Sequence
+from typing import Any, ClassVar
+
+from py_trees.common import Status
+
+from daidalos.navigation.trees.action.action_node import differs
+from daidalos.navigation.trees.node import Node, Port, Ports, entry
+from daidalos.navigation.trees.services import Services
+
+
+class GoalUpdated(Node):
+    """Succeeds when `goal` on the blackboard is not the one that was there when the node was first ticked."""
+
+    PORTS: ClassVar[dict[str, Port]] = {"goal": Port(entry, None), "goals": Port(entry, None)}
+
+    def __init__(self, name: str, ports: Ports, services: Services, children: Sequence[Any]) -> None:
+        super().__init__(name, ports, services, children)
+        self._known: tuple[Any, Any] | None = None
+
+    def update(self) -> Status:
+        """Compare with what was known."""
+        board = self.ports.blackboard
+        latest = (board.get("goal"), board.get("goals"))
+        known, self._known = self._known, latest
+        if known is None:
+            return Status.FAILURE
+        changed = any(differs(one, other) for one, other in zip(latest, known, strict=True))
+        return Status.SUCCESS if changed else Status.FAILURE
+
+    def terminate(self, new_status: Status) -> None:
+        """Begin anew after a halt."""
+        if new_status == Status.INVALID:
+            self._known = None

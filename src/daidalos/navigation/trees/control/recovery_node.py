@@ -1,0 +1,50 @@
+"""Try, and after a failure recover and try again."""
+
+from collections.abc import Iterator, Sequence
+from typing import Any, ClassVar
+
+from py_trees.common import Status
+
+from daidalos.navigation.trees.node import Control, Port, Ports
+from daidalos.navigation.trees.services import Services
+
+
+class RecoveryNode(Control):
+    """Succeeds when its first child does.
+
+    Each time that the first child fails, the second must succeed before the next try. Fails when the second
+    child fails, or when the first has failed after all retries.
+    """
+
+    PORTS: ClassVar[dict[str, Port]] = {"number_of_retries": Port(int, 1)}
+    CHILDREN: ClassVar[tuple[int, int | None]] = (2, 2)
+
+    def __init__(self, name: str, ports: Ports, services: Services, children: Sequence[Any]) -> None:
+        super().__init__(name, ports, services, children)
+        self._retries = 0
+
+    def tick(self) -> Iterator[Any]:
+        """Tick the child whose turn it is, and the other one as long as that ends at once."""
+        main, recovery = self.children
+        if self.status != Status.RUNNING:
+            self._retries = 0
+            self.current_child = main
+        while True:
+            child = self.current_child
+            yield from child.tick()
+            if child.status == Status.RUNNING:
+                self.conclude(Status.RUNNING)
+                break
+            if child is recovery and child.status == Status.SUCCESS:
+                self._retries += 1
+                self.current_child = main
+            elif (
+                child is main
+                and child.status == Status.FAILURE
+                and self._retries < self.ports.get("number_of_retries")
+            ):
+                self.current_child = recovery
+            else:
+                self.conclude(child.status)
+                break
+        yield self

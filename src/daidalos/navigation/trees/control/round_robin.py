@@ -1,0 +1,48 @@
+"""One child at a time, another one each time."""
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from py_trees.common import Status
+
+from daidalos.navigation.trees.node import Control, Ports
+from daidalos.navigation.trees.services import Services
+
+
+class RoundRobin(Control):
+    """Succeeds with the first child that does, from the one after the last success on; fails if none does.
+
+    Only a halt while a child runs makes it begin with the first child again.
+    """
+
+    def __init__(self, name: str, ports: Ports, services: Services, children: Sequence[Any]) -> None:
+        super().__init__(name, ports, services, children)
+        self._turn = 0
+        self._failed = 0
+
+    def tick(self) -> Iterator[Any]:
+        """Tick children until one does not fail."""
+        if self.status != Status.RUNNING:
+            self._failed = 0
+        while self._failed < len(self.children):
+            child = self.children[self._turn]
+            self.current_child = child
+            yield from child.tick()
+            if child.status == Status.RUNNING:
+                self.conclude(Status.RUNNING)
+                yield self
+                return
+            self._turn = (self._turn + 1) % len(self.children)
+            if child.status == Status.SUCCESS:
+                self.conclude(Status.SUCCESS)
+                yield self
+                return
+            self._failed += 1
+        self.conclude(Status.FAILURE)
+        yield self
+
+    def stop(self, new_status: Status = Status.INVALID) -> None:
+        """Begin anew if a child was interrupted."""
+        if new_status == Status.INVALID and self.status == Status.RUNNING:
+            self._turn = 0
+        super().stop(new_status)

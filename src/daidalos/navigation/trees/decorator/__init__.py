@@ -1,0 +1,1 @@
+"""Nodes that change what their one child does or says."""

@@ -1,0 +1,42 @@
+"""Tick the child only so often."""
+
+from collections.abc import Iterator, Sequence
+from typing import Any, ClassVar
+
+from py_trees.common import Status
+
+from daidalos.navigation.trees.errors import TreeError
+from daidalos.navigation.trees.node import Decorator, Port, Ports
+from daidalos.navigation.trees.services import Services
+
+
+class RateController(Decorator):
+    """Ticks its child at once, while it runs, and then `hz` times a second; in between repeats its status."""
+
+    PORTS: ClassVar[dict[str, Port]] = {"hz": Port(float, 10.0)}
+
+    def __init__(self, name: str, ports: Ports, services: Services, children: Sequence[Any]) -> None:
+        super().__init__(name, ports, services, children)
+        if not ports.get("hz") > 0.0:
+            raise TreeError(f"{ports.where}: hz must be greater than 0, not {ports.get('hz')}")
+        self._last: float | None = None
+
+    def tick(self) -> Iterator[Any]:
+        """Tick the child if it is time."""
+        now = self.services.now()
+        waiting = self._last is not None and now - self._last < 1.0 / self.ports.get("hz") - 1e-9
+        if self.decorated.status == Status.RUNNING or self.status == Status.INVALID or not waiting:
+            if self.decorated.status != Status.RUNNING:
+                self._last = now
+            yield from self.decorated.tick()
+            self.status = self.update()
+        yield self
+
+    def update(self) -> Status:
+        """Say what the child says."""
+        return self.decorated.status
+
+    def terminate(self, new_status: Status) -> None:
+        """Tick at once after a halt."""
+        if new_status == Status.INVALID:
+            self._last = None

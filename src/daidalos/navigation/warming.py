@@ -1,0 +1,70 @@
+"""Compiling every kernel of navigation ahead of its first use."""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from daidalos.mapping.grid import OccupancyGrid
+from daidalos.mapping.scan import LaserScanData
+from daidalos.navigation.controllers.controller import ControlInput
+from daidalos.navigation.controllers.mppi.critics.cost_critic import CostCritic, CostCriticParameters
+from daidalos.navigation.controllers.mppi_controller import MppiController, MppiParameters, default_critics
+from daidalos.navigation.costmap.costmap import Costmap
+from daidalos.navigation.costmap.footprint import Footprint, FootprintCollisionChecker
+from daidalos.navigation.costmap.layered_costmap import CostmapParameters, LayeredCostmap
+from daidalos.navigation.costmap.layers.inflation_layer import InflationLayer
+from daidalos.navigation.costmap.layers.obstacle_layer import Observation, ObstacleLayer
+from daidalos.navigation.costmap.layers.static_layer import StaticLayer
+from daidalos.navigation.planners.navfn_planner import NavfnPlanner
+from daidalos.navigation.smoothers.simple_smoother import SimpleSmoother
+
+OUTLINE = Footprint.of_corners(np.array([[0.2, 0.2], [0.2, -0.2], [-0.2, -0.2], [-0.2, 0.2]]))
+
+
+def warm_up(progress: Callable[[float, str], None] = lambda share, step: None) -> None:
+    """Call every kernel once with data of the types of a real robot; see `daidalos.navigation.warm_up`."""
+    progress(0.0, "costmap")
+    costmap = _costmap()
+    steps: list[tuple[str, Callable[[], object]]] = [
+        ("planner", lambda: _plan(costmap)),
+        ("controller", lambda: _control(costmap)),
+    ]
+    for done, (name, step) in enumerate(steps, 1):
+        progress(done / (len(steps) + 1), name)
+        step()
+    progress(1.0, "ready")
+
+
+def _costmap() -> Costmap:
+    """Put a map, a scan and inflation together."""
+    data = np.zeros((80, 80), dtype=np.int8)
+    data[0] = 100
+    static, obstacles = StaticLayer(), ObstacleLayer(OUTLINE)
+    static.set_map(OccupancyGrid(data, 0.05, (0.0, 0.0, 0.0)))
+    scan = LaserScanData(np.array([1.0, np.inf, 1.0]), 0.0, 0.1, 0.1, 10.0)
+    pose = np.array([1.0, 2.0, 0.0])
+    obstacles.add_observation(Observation.from_scan(scan, pose, 0.0))
+    layered = LayeredCostmap(CostmapParameters(), [static, obstacles, InflationLayer(0.2)])
+    layered.update(pose, 0.0)
+    return layered.costmap
+
+
+def _plan(costmap: Costmap) -> None:
+    start, goal, walled = (np.array([x, y, 0.0]) for x, y in ((1.0, 2.0), (3.0, 2.0), (1.0, 0.1)))
+    planner = NavfnPlanner()
+    path = planner.create_plan(costmap, start, goal)
+    planner.create_plan(costmap, walled, goal)
+    planner.create_plan(costmap, start, walled)
+    SimpleSmoother().smooth(path, costmap)
+
+
+def _control(costmap: Costmap) -> None:
+    """Let a controller see a far goal, and a near one, with each of its critics."""
+    pose, rest = np.array([1.0, 2.0, 0.0]), np.zeros(3)
+    path = np.stack([np.linspace(1.0, 3.0, 41), np.full(41, 2.0), np.zeros(41)], axis=-1)
+    outline = CostCritic(CostCriticParameters(consider_footprint=True))
+    controller = MppiController(OUTLINE, MppiParameters(batch_size=20), (outline, *default_critics()))
+    for distance in (2.0, 0.7):
+        control = ControlInput(pose, rest, path, path[-1], distance, costmap)
+        controller.compute_velocity_commands(control)
+    FootprintCollisionChecker(costmap, OUTLINE).in_collision(pose)
