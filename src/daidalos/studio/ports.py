@@ -1,0 +1,91 @@
+"""Opening the server's port: the same number on every address, the wanted one or the next that is free."""
+
+from __future__ import annotations
+
+import errno
+import socket
+import sys
+from collections.abc import Sequence
+
+PORTS_TRIED = 64
+BACKLOG = 128
+
+_USED = {errno.EADDRINUSE, errno.EACCES}
+_ABSENT = {errno.EADDRNOTAVAIL, errno.EAFNOSUPPORT}
+
+
+class PortError(Exception):
+    """No port could be opened; the text says which and why."""
+
+
+def open_port(hosts: Sequence[str], wanted: int) -> list[socket.socket]:
+    """Listen on all of the hosts at one port.
+
+    Parameters
+    ----------
+    hosts
+        Addresses or names; those of a family that this machine lacks (IPv6) are left out.
+    wanted
+        The first port to try; 0 leaves the choice to the system.
+
+    Returns
+    -------
+    list of socket
+        Listening sockets, at least one, all of the same port.
+
+    Raises
+    ------
+    PortError
+        When a host is unknown, none can be listened on, or no port is free.
+    """
+    ports = range(wanted, min(wanted + PORTS_TRIED, 1 << 16)) if wanted else [0] * PORTS_TRIED
+    for port in ports:
+        sockets = _open_on_all(hosts, port)
+        if sockets is not None:
+            return sockets
+    raise PortError(f"no free port from {wanted} to {wanted + len(ports) - 1} on {', '.join(hosts)}")
+
+
+def _open_on_all(hosts: Sequence[str], port: int) -> list[socket.socket] | None:
+    """Return the sockets, or None where the port is used on one of the hosts."""
+    sockets: list[socket.socket] = []
+    reason = ""
+    for host in hosts:
+        try:
+            sockets.append(_listen(host, port))
+        except OSError as error:
+            reason = f"can not listen on {host}: {error.strerror or error}"
+            if error.errno not in _ABSENT:
+                for opened in sockets:
+                    opened.close()
+                if error.errno in _USED:
+                    return None
+                raise PortError(reason) from None
+        else:
+            port = sockets[0].getsockname()[1]
+    if not sockets:
+        raise PortError(reason or "no host to listen on")
+    return sockets
+
+
+def _listen(host: str, port: int) -> socket.socket:
+    family, kind, number, _, address = socket.getaddrinfo(
+        host, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE
+    )[0]
+    opened = socket.socket(family, kind, number)
+    try:
+        if sys.platform == "win32":
+            # There, SO_REUSEADDR would take the port away from whoever has it.
+            opened.setsockopt(socket.SOL_SOCKET, socket.SO_EXCLUSIVEADDRUSE, 1)
+        else:
+            opened.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        if family == socket.AF_INET6:
+            opened.setsockopt(socket.IPPROTO_IPV6, socket.IPV6_V6ONLY, 1)
+        opened.bind(address)
+        # At once: until somebody listens, two sockets may hold the same port.
+        opened.listen(BACKLOG)
+    except OSError:
+        opened.close()
+        raise
+    opened.setblocking(False)
+    return opened

@@ -1,0 +1,328 @@
+"""The studio's server: the page and the Foxglove WebSocket protocol on one port, in a thread of its own."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import socket
+import threading
+import uuid
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from concurrent.futures import Future
+from pathlib import Path
+from types import TracebackType
+
+from aiohttp import web
+from aiohttp.typedefs import Handler
+
+from daidalos.studio import protocol
+from daidalos.studio.access import AccessPolicy
+from daidalos.studio.assets import AssetResolver
+from daidalos.studio.client import Client
+from daidalos.studio.hub import Changes, Hub
+from daidalos.studio.pages import HEADERS, STATIC, STATIC_KEY, page
+from daidalos.studio.ports import open_port
+from daidalos.studio.protocol import Level
+from daidalos.studio.source import GraphSource, Parameter, Topic
+
+DEFAULT_PORT = 8765
+LOOPBACK = ("127.0.0.1", "::1")
+LARGEST_FRAME = 64 << 20  # what a client may send at once; a published image or cloud fits
+SETTLE_S = 0.05  # a graph changes in bursts when nodes start
+TIME_PERIOD_S = 1 / 60  # a screen shows no more
+GOODBYE_S = 0.3
+
+
+class StudioServer:
+    """Serves a graph to browsers and to any client of the Foxglove WebSocket protocol.
+
+    Parameters
+    ----------
+    source
+        The graph.
+    name
+        What clients show as the name of the connection.
+    port
+        The port to listen on, or the next free one above; 0 for any.
+    hosts
+        Addresses to listen on; loopback unless told otherwise.
+    allowed_hosts, allowed_origins
+        See `AccessPolicy`.
+    assets
+        Finds meshes and textures; None serves none.
+    static
+        Folder of the built page.
+    metadata
+        What else clients are told, e.g. ``{"ROS_DISTRO": "jazzy"}``.
+    """
+
+    def __init__(
+        self,
+        source: GraphSource,
+        *,
+        name: str = "daidalos",
+        port: int = DEFAULT_PORT,
+        hosts: Sequence[str] = LOOPBACK,
+        allowed_hosts: Iterable[str] = (),
+        allowed_origins: Iterable[str] = (),
+        assets: AssetResolver | None = None,
+        static: Path = STATIC,
+        metadata: Mapping[str, str] | None = None,
+    ) -> None:
+        self._source = source
+        self._name = name
+        self._wanted_port = port
+        self._hosts = tuple(hosts)
+        exposed = not set(self._hosts) <= {*LOOPBACK, "localhost"}
+        self._access = AccessPolicy(allowed_hosts, allowed_origins, exposed=exposed)
+        self._assets = assets
+        self._static = static
+        self._metadata = dict(metadata or {})
+        self._session = uuid.uuid4().hex
+        self._hub = Hub(source)
+        self._clients: set[Client] = set()
+        self._sockets: set[web.WebSocketResponse] = set()
+        self._settling = False
+        self._time: int | None = None
+        self._time_waits = False
+        self._thread: threading.Thread | None = None
+        self._loop: asyncio.AbstractEventLoop | None = None
+        self._stopping: asyncio.Event | None = None
+        self._port = 0
+
+    @property
+    def port(self) -> int:
+        """The port that was opened; 0 before `start`."""
+        return self._port
+
+    @property
+    def url(self) -> str:
+        """The page's address for a browser on this machine."""
+        return f"http://localhost:{self._port}/"
+
+    @property
+    def client_count(self) -> int:
+        """How many clients are connected."""
+        return len(self._clients)
+
+    def start(self) -> None:
+        """Open the port and serve from a new thread; returns when clients can connect.
+
+        Raises
+        ------
+        PortError
+            When the address can not be opened, or no port is free.
+        """
+        sockets = open_port(self._hosts, self._wanted_port)
+        self._port = sockets[0].getsockname()[1]
+        ready: Future[None] = Future()
+        self._thread = threading.Thread(target=self._run, args=(sockets, ready), name="studio", daemon=True)
+        self._thread.start()
+        ready.result()
+
+    def stop(self) -> None:
+        """Take leave of the clients, close the port and end the thread; within a second."""
+        thread, self._thread = self._thread, None
+        if thread is not None:
+            self._soon(self._leave)
+            thread.join()
+
+    def __enter__(self) -> StudioServer:
+        self.start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.stop()
+
+    # What the source calls, from any thread ---------------------------------------------------------------
+
+    def graph_changed(self) -> None:
+        """See `Observer`."""
+        self._soon(self._settle)
+
+    def time_advanced(self, nanoseconds: int) -> None:
+        """See `Observer`."""
+        first, self._time = self._time is None, nanoseconds
+        if first:
+            self._soon(self._introduce_time)
+        if not self._time_waits:
+            self._time_waits = True
+            self._soon(self._schedule_time)
+
+    def parameters_changed(self, parameters: Sequence[Parameter]) -> None:
+        """See `Observer`."""
+        self._soon(lambda: self._tell_parameters(parameters))
+
+    def _soon(self, call: Callable[[], object]) -> None:
+        loop = self._loop
+        if loop is not None:
+            with contextlib.suppress(RuntimeError):  # the loop has ended, and with it every client
+                loop.call_soon_threadsafe(call)
+
+    # The server's thread ----------------------------------------------------------------------------------
+
+    def _run(self, sockets: list[socket.socket], ready: Future[None]) -> None:
+        try:
+            asyncio.run(self._serve(sockets, ready))
+        except BaseException as error:
+            if ready.done():
+                raise
+            ready.set_exception(error)
+
+    async def _serve(self, sockets: list[socket.socket], ready: Future[None]) -> None:
+        self._loop = asyncio.get_running_loop()
+        self._stopping = asyncio.Event()
+        app = web.Application(middlewares=[self._guard])
+        app[STATIC_KEY] = self._static
+        app.router.add_get("/", self._root)
+        app.router.add_get("/{path:.*}", page)
+        runner = web.AppRunner(app, access_log=None, handle_signals=False, shutdown_timeout=GOODBYE_S)
+        observing = None
+        try:
+            await runner.setup()
+            for opened in sockets:
+                await web.SockSite(runner, opened).start()
+            self._time = self._source.time()
+            observing = self._source.attach(self)
+            self._hub.refresh()
+            ready.set_result(None)
+            await self._stopping.wait()
+        finally:
+            if observing is not None:
+                observing.close()
+            await self._take_leave()
+            await runner.cleanup()
+            self._loop = None
+
+    def _leave(self) -> None:
+        if self._stopping is not None:
+            self._stopping.set()
+
+    async def _take_leave(self) -> None:
+        goodbyes = [asyncio.create_task(each.close(code=1001)) for each in self._sockets]
+        if goodbyes:
+            _, late = await asyncio.wait(goodbyes, timeout=GOODBYE_S)
+            for goodbye in late:
+                goodbye.cancel()
+
+    @web.middleware
+    async def _guard(self, request: web.Request, handler: Handler) -> web.StreamResponse:
+        refusal = self._access.refusal(request.headers.get("Host"), request.headers.get("Origin"))
+        if refusal is not None:
+            return web.Response(status=403, text=refusal + "\n", headers=HEADERS)
+        return await handler(request)
+
+    async def _root(self, request: web.Request) -> web.StreamResponse:
+        if "websocket" not in request.headers.get("Upgrade", "").lower():
+            return await page(request)
+        return await self._converse(request)
+
+    async def _converse(self, request: web.Request) -> web.StreamResponse:
+        offered = {name.strip() for name in request.headers.get("Sec-WebSocket-Protocol", "").split(",")}
+        if not offered & set(protocol.SUBPROTOCOLS):
+            known = " or ".join(protocol.SUBPROTOCOLS)
+            return web.Response(status=400, text=f"expected the WebSocket subprotocol {known}\n")
+        connection = web.WebSocketResponse(
+            protocols=protocol.SUBPROTOCOLS,
+            compress=False,  # costs more than loopback and local networks give back
+            heartbeat=30,
+            max_msg_size=LARGEST_FRAME,
+            timeout=GOODBYE_S,
+        )
+        await connection.prepare(request)
+        client = Client(connection, self._source, self._hub, self._assets)
+        for frame in self._greeting():
+            client.outbox.put_reply(frame)
+        if self._time is not None:
+            client.outbox.put_time(self._time)
+        self._clients.add(client)
+        self._sockets.add(connection)
+        try:
+            await client.run()
+        finally:
+            self._clients.discard(client)
+            self._sockets.discard(connection)
+        return connection
+
+    def _greeting(self) -> list[str]:
+        frames = [self._server_info()]
+        if self._hub.topics:
+            frames += _announce(self._hub.topics)
+        if self._hub.services:
+            frames.append(protocol.advertise_services(self._hub.services))
+        return frames
+
+    def _server_info(self) -> str:
+        return protocol.server_info(self._name, self._session, self._time is not None, self._metadata)
+
+    def _settle(self) -> None:
+        if not self._settling:
+            self._settling = True
+            asyncio.get_running_loop().call_later(SETTLE_S, self._look_again)
+
+    def _look_again(self) -> None:
+        self._settling = False
+        changes = self._hub.refresh()
+        graph = self._source.graph()
+        frames = _changes(changes)
+        for client in self._clients:
+            client.channels_gone(set(changes.topics_gone))
+            for frame in frames:
+                client.outbox.put_reply(frame)
+            client.graph_changed(graph)
+
+    def _tell_parameters(self, parameters: Sequence[Parameter]) -> None:
+        for client in self._clients:
+            client.parameters_changed(parameters)
+
+    def _introduce_time(self) -> None:
+        # The same session with one capability more: clients keep what they have.
+        for client in self._clients:
+            client.outbox.put_reply(self._server_info())
+
+    def _schedule_time(self) -> None:
+        asyncio.get_running_loop().call_later(TIME_PERIOD_S, self._send_time)
+
+    def _send_time(self) -> None:
+        self._time_waits = False
+        if self._time is not None:
+            for client in self._clients:
+                client.outbox.put_time(self._time)
+
+
+def _changes(changes: Changes) -> list[str]:
+    frames = []
+    if changes.topics_gone:
+        frames.append(protocol.unadvertise(changes.topics_gone))
+        unknown = _without_definition(changes.topics_gone)
+        if unknown:
+            frames.append(protocol.remove_status(map(_definition_status, unknown)))
+    if changes.services_gone:
+        frames.append(protocol.unadvertise_services(changes.services_gone))
+    if changes.topics:
+        frames += _announce(changes.topics)
+    if changes.services:
+        frames.append(protocol.advertise_services(changes.services))
+    return frames
+
+
+def _announce(topics: Mapping[int, Topic]) -> list[str]:
+    complaints = [
+        protocol.status(
+            Level.WARNING,
+            f"{topic.name}: the definition of {topic.type} is not known here; its messages stay bytes",
+            _definition_status(topic),
+        )
+        for topic in _without_definition(topics)
+    ]
+    return [protocol.advertise(topics), *complaints]
+
+
+def _without_definition(topics: Mapping[int, Topic]) -> list[Topic]:
+    return [topic for topic in topics.values() if topic.schema is None]
+
+
+def _definition_status(topic: Topic) -> str:
+    return f"definition:{topic.name}:{topic.type}"

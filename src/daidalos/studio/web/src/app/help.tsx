@@ -1,0 +1,61 @@
+// The help: keys and mouse on one card.
+import { TOOLS } from "../tools/registry";
+import { Icon } from "../ui/icons";
+import { helpIsOpen } from "./help_state";
+
+const VIEW_KEYS = [
+  ["t", "Top-down view or orbit"],
+  ["l", "Follow the robot"],
+  ["z", "Home view"],
+  ["d", "Dark or light"],
+  ["Esc", "Put the tool away"],
+  ["?", "This card"],
+] as const;
+
+const MOUSE = [
+  ["Left", "Turn (top-down: move)"],
+  ["Middle, Shift + left", "Move"],
+  ["Right, wheel", "Zoom"],
+] as const;
+
+export function Help() {
+  if (!helpIsOpen.value) {
+    return null;
+  }
+  const close = () => (helpIsOpen.value = false);
+  return (
+    <div class="backdrop" onClick={close}>
+      <div class="card" role="dialog" aria-label="Keys and mouse" onClick={(event) => event.stopPropagation()}>
+        <header>
+          <h2>Keys and mouse</h2>
+          <button class="icon-button" title="Close" onClick={close}>
+            <Icon name="close" />
+          </button>
+        </header>
+        <div class="columns">
+          <Keys title="Tools" rows={TOOLS.map(({ key, title }) => [key, title] as const)} />
+          <Keys title="View" rows={VIEW_KEYS} />
+          <Keys title="Mouse" rows={MOUSE} />
+        </div>
+      </div>
+    </div>
+  );
+}
+
+function Keys({ title, rows }: { title: string; rows: readonly (readonly [key: string, meaning: string])[] }) {
+  return (
+    <section>
+      <h3>{title}</h3>
+      <dl>
+        {rows.map(([key, meaning]) => (
+          <div key={key}>
+            <dt>
+              <kbd>{key}</kbd>
+            </dt>
+            <dd>{meaning}</dd>
+          </div>
+        ))}
+      </dl>
+    </section>
+  );
+}

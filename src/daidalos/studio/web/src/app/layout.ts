@@ -1,0 +1,164 @@
+// Where the panels are: docking, the layout that everyone sees first, and keeping what the user made of it.
+import { signal } from "@preact/signals";
+import {
+  createDockview,
+  type DockviewApi,
+  type GroupPanelPartInitParameters,
+  type IContentRenderer,
+  type SerializedDockview,
+} from "dockview-core";
+import { h, render } from "preact";
+import { PANELS } from "../panels/registry";
+import type { PanelType } from "../panels/panel";
+import { forget, isRecord, read, write } from "./stored";
+import type { Studio } from "./studio";
+
+const KEY = "layout";
+const THEME = { name: "daidalos", className: "dockview-theme-daidalos", gap: 6 };
+/** Below this width there is no right column; what matters of it goes behind the displays. */
+const NARROW_PX = 1200;
+const DISPLAYS_NARROW_PX = 250;
+
+export class Layout {
+  private readonly dock: DockviewApi;
+  private saving = 0;
+
+  constructor(
+    private readonly element: HTMLElement,
+    studio: Studio,
+  ) {
+    this.dock = createDockview(element, {
+      theme: THEME,
+      createComponent: ({ name }) => new PanelHost(panelType(name), studio),
+      disableFloatingGroups: true,
+    });
+    this.restore();
+    this.dock.onDidLayoutChange(() => this.saveSoon());
+  }
+
+  /** Show a panel: the one that is there, else a new one. */
+  open(type: PanelType, params: Record<string, unknown> = {}): void {
+    const present = this.dock.panels.find((panel) => panel.view.contentComponent === type.id);
+    if (present && !type.many) {
+      present.api.setActive();
+      return;
+    }
+    const id = present ? `${type.id}-${crypto.getRandomValues(new Uint32Array(1)).join()}` : type.id;
+    this.dock.addPanel({ id, component: type.id, title: type.title, params });
+  }
+
+  openById(id: string): void {
+    this.open(panelType(id));
+  }
+
+  reset(): void {
+    forget(KEY);
+    this.dock.clear();
+    this.arrange();
+  }
+
+  /** The ids of the panels that are open. */
+  openPanels(): string[] {
+    return this.dock.panels.map((panel) => panel.view.contentComponent);
+  }
+
+  private restore(): void {
+    const saved = read<SerializedDockview | undefined>(KEY, undefined, (value): value is SerializedDockview =>
+      isRecord(value),
+    );
+    if (saved) {
+      try {
+        this.dock.fromJSON(saved);
+        return;
+      } catch (error) {
+        console.warn("the saved layout can not be used", error);
+        this.dock.clear();
+      }
+    }
+    this.arrange();
+  }
+
+  private arrange(): void {
+    const [width, height] = [window.innerWidth, window.innerHeight];
+    // Sizes are shares of what there is: the dock must know how much that is.
+    this.dock.layout(this.element.clientWidth, this.element.clientHeight);
+    const add = (id: string, beside?: string, direction: "within" | "left" | "right" | "below" = "within") =>
+      this.dock.addPanel({
+        id,
+        component: id,
+        title: panelType(id).title,
+        inactive: direction === "within" && beside !== undefined,
+        ...(beside === undefined ? {} : { position: { referencePanel: beside, direction } }),
+      });
+    const scene = add("scene");
+    const displays = add("displays", "scene", "left");
+    if (width < NARROW_PX) {
+      add("topics", "displays");
+      add("message", "displays");
+      displays.api.setSize({ width: DISPLAYS_NARROW_PX });
+    } else {
+      const topics = add("topics", "scene", "right");
+      add("message", "topics");
+      const plot = add("plot", "topics", "below");
+      add("log", "plot");
+      displays.api.setSize({ width: clamp(width * 0.19, DISPLAYS_NARROW_PX, 320) });
+      topics.api.setSize({ width: clamp(width * 0.23, 280, 400) });
+      plot.api.setSize({ height: clamp(height * 0.34, 200, 380) });
+    }
+    displays.api.setActive();
+    scene.api.setActive();
+  }
+
+  private saveSoon(): void {
+    clearTimeout(this.saving);
+    this.saving = window.setTimeout(() => write(KEY, this.dock.toJSON()), 300);
+  }
+}
+
+function clamp(value: number, least: number, most: number): number {
+  return Math.min(most, Math.max(least, value));
+}
+
+function panelType(id: string): PanelType {
+  const found = PANELS.find((panel) => panel.id === id);
+  if (!found) {
+    throw new Error(`there is no panel ${id}`);
+  }
+  return found;
+}
+
+/** Puts a Preact component into a docked panel. */
+class PanelHost implements IContentRenderer {
+  readonly element = document.createElement("div");
+  private readonly visible = signal(false);
+  private readonly disposers: { dispose(): void }[] = [];
+
+  constructor(
+    private readonly type: PanelType,
+    private readonly studio: Studio,
+  ) {
+    this.element.className = "panel";
+    this.element.dataset.panel = type.id;
+  }
+
+  init({ api, params }: GroupPanelPartInitParameters): void {
+    this.visible.value = api.isVisible;
+    this.disposers.push(api.onDidVisibilityChange(({ isVisible }) => (this.visible.value = isVisible)));
+    render(
+      h(this.type.component, {
+        studio: this.studio,
+        visible: this.visible,
+        params,
+        remember: (changed: Record<string, unknown>) => api.updateParameters(changed),
+      }),
+      this.element,
+    );
+  }
+
+  dispose(): void {
+    render(null, this.element);
+    for (const disposer of this.disposers) {
+      disposer.dispose();
+    }
+  }
+}

@@ -1,0 +1,129 @@
+// The application: one connection, one tree of frames, one clock, and the loop that drives all that moves.
+import { effect, signal } from "@preact/signals";
+import { Session } from "../connection/session";
+import { DisplayList } from "../displays/list";
+import type { TFMessage } from "../ros/messages";
+import { Assets } from "../scene/assets";
+import { TransformBuffer } from "../tf/buffer";
+import { RobotClock } from "../tf/clock";
+import { FixedFrame } from "../tf/fixed_frame";
+
+const TF_KEEP = 2048;
+/** Frames that come more seldom than this are not waited for when drawing. */
+const SLOW_FRAME_S = 0.15;
+const READ_OUT_S = 0.1;
+
+export interface ClockReading {
+  time: number | undefined;
+  /** Simulated seconds per second; undefined where the time is not simulated. */
+  factor: number | undefined;
+}
+
+export class Studio {
+  readonly session: Session;
+  readonly tf = new TransformBuffer();
+  readonly clock = new RobotClock();
+  readonly fixedFrame = new FixedFrame(this.tf);
+  readonly displays = new DisplayList();
+  readonly assets: Assets;
+  readonly reading = signal<ClockReading>({ time: undefined, factor: undefined });
+  /** The topic that the message panel shows. */
+  readonly selectedTopic = signal("");
+  /** Shows a panel; set by the layout. */
+  openPanel: (id: string) => void = () => undefined;
+  /** Called when time was turned back or the server is another. */
+  readonly onReset = new Set<() => void>();
+
+  private readonly frames = new Set<(page: number) => void>();
+  private readAt = 0;
+
+  constructor(worker: Worker) {
+    this.session = new Session(worker);
+    this.assets = new Assets(this.session);
+    this.session.onTime = (time, announced) => this.clock.hear(time, performance.now() / 1000, announced);
+    this.session.onNewServer = () => {
+      this.tf.clear();
+      this.assets.clear();
+      this.reset();
+    };
+    this.tf.onReset = () => this.reset();
+    this.session.subscribe<TFMessage>("/tf", TF_KEEP, (message) => this.receiveTransforms(message));
+    this.session.subscribe<TFMessage>("/tf_static", TF_KEEP, ({ transforms }) => {
+      for (const transform of transforms) {
+        this.tf.set(transform, true);
+      }
+    });
+    effect(() => this.displays.discover(this.session.topics.value));
+  }
+
+  start(url: string): void {
+    this.session.open(url);
+    const loop = (milliseconds: number) => {
+      requestAnimationFrame(loop);
+      this.frame(milliseconds / 1000);
+    };
+    requestAnimationFrame(loop);
+  }
+
+  /** Call with the page's clock for every frame of the screen; returns how to stop. */
+  onFrame(call: (page: number) => void): () => void {
+    this.frames.add(call);
+    return () => this.frames.delete(call);
+  }
+
+  /** Robot time, for stamps of what the page publishes. */
+  now(): number {
+    return this.clock.now(performance.now() / 1000) ?? Date.now() / 1000;
+  }
+
+  private frame(page: number): void {
+    this.session.dispatch();
+    this.clock.tick(performance.now() / 1000);
+    this.fixedFrame.refresh();
+    if (page - this.readAt > READ_OUT_S) {
+      this.readAt = page;
+      this.readClock();
+    }
+    for (const call of this.frames) {
+      call(page);
+    }
+  }
+
+  private readClock(): void {
+    const time = this.clock.now(performance.now() / 1000);
+    const factor = this.clock.announced ? this.clock.rate : undefined;
+    const before = this.reading.peek();
+    if (before.time !== time || before.factor !== factor) {
+      this.reading.value = { time, factor };
+    }
+  }
+
+  private receiveTransforms({ transforms }: TFMessage): void {
+    this.hearAge();
+    for (const transform of transforms) {
+      this.tf.set(transform, false);
+    }
+  }
+
+  /** How far transforms are behind just before new ones come tells how far behind to draw. */
+  private hearAge(): void {
+    const now = this.clock.now(performance.now() / 1000);
+    if (now === undefined) {
+      return;
+    }
+    let age = 0;
+    for (const { newest, period } of this.tf.moving()) {
+      if (period < SLOW_FRAME_S && now - newest < 1) {
+        age = Math.max(age, now - newest);
+      }
+    }
+    this.clock.hearAge(age);
+  }
+
+  private reset(): void {
+    this.clock.reset();
+    for (const call of this.onReset) {
+      call();
+    }
+  }
+}

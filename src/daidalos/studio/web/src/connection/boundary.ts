@@ -1,0 +1,67 @@
+// What the page and its worker say to each other: the one typed boundary between them.
+
+export interface TopicInfo {
+  name: string;
+  type: string;
+  /** False where the server does not know the definition, so that messages stay bytes. */
+  known: boolean;
+}
+
+export interface ServiceInfo {
+  name: string;
+  type: string;
+}
+
+export interface ParameterInfo {
+  name: string;
+  value?: unknown;
+  type?: string;
+}
+
+export interface Received {
+  topic: string;
+  /** When it arrived in the graph, in seconds of the graph's clock. */
+  time: number;
+  message: unknown;
+}
+
+export interface Traffic {
+  /** Messages and bytes per second. */
+  rate: number;
+  bandwidth: number;
+  total: number;
+}
+
+export interface StatusInfo {
+  level: number;
+  text: string;
+  id?: string;
+}
+
+export type LinkState = "connecting" | "connected" | "lost";
+
+export type ToWorker =
+  | { kind: "open"; url: string }
+  | { kind: "ready" }
+  /** Also for a topic that is subscribed already: what is kept for late listeners then comes again. */
+  | { kind: "subscribe"; topic: string; keep: number }
+  | { kind: "unsubscribe"; topic: string }
+  | { kind: "publish"; topic: string; type: string; message: unknown }
+  | { kind: "call"; id: number; service: string; request: unknown }
+  | { kind: "fetchAsset"; id: number; uri: string }
+  | { kind: "getParameters"; names: string[] }
+  | { kind: "setParameters"; parameters: ParameterInfo[] };
+
+export type FromWorker =
+  | { kind: "link"; state: LinkState; reason?: string }
+  | { kind: "server"; name: string; session: string; hasTime: boolean }
+  | { kind: "topics"; topics: TopicInfo[] }
+  | { kind: "services"; services: ServiceInfo[] }
+  | { kind: "batch"; messages: Received[]; time?: number; hasClock: boolean }
+  | { kind: "traffic"; traffic: Record<string, Traffic> }
+  | { kind: "status"; status: StatusInfo }
+  | { kind: "removeStatus"; ids: string[] }
+  | { kind: "published"; topic: string; error?: string }
+  | { kind: "response"; id: number; message?: unknown; error?: string }
+  | { kind: "asset"; id: number; data?: ArrayBuffer; error?: string }
+  | { kind: "parameters"; parameters: ParameterInfo[] };

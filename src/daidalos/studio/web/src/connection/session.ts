@@ -1,0 +1,232 @@
+// The page's view of the connection: what there is, and who in the page listens to what.
+import { signal, type ReadonlySignal } from "@preact/signals";
+import type {
+  FromWorker,
+  LinkState,
+  ParameterInfo,
+  Received,
+  ServiceInfo,
+  StatusInfo,
+  ToWorker,
+  TopicInfo,
+  Traffic,
+} from "./boundary";
+
+export type Listener<M> = (message: M, time: number) => void;
+
+export interface Publishing {
+  topic: string;
+  error?: string;
+}
+
+interface Subscriber {
+  keep: number;
+  received: Listener<never>;
+}
+
+/** Hidden pages get no animation frames; their histories go on at this rate. */
+const HIDDEN_MS = 250;
+
+export class Session {
+  readonly link = signal<LinkState>("connecting");
+  readonly serverName = signal("");
+  readonly topics = signal<TopicInfo[]>([]);
+  readonly services = signal<ServiceInfo[]>([]);
+  readonly traffic = signal<Record<string, Traffic>>({});
+  readonly statuses = signal<(StatusInfo & { key: number })[]>([]);
+  readonly parameters = signal<ReadonlyMap<string, ParameterInfo>>(new Map());
+  readonly lastPublished = signal<Publishing | undefined>(undefined);
+
+  /** Called when robot time moves: with its value, and whether a clock of the server's says so. */
+  onTime: (time: number, fromClock: boolean) => void = () => undefined;
+  /** Called when the server is another than before, so that nothing of the old one may stay. */
+  onNewServer: () => void = () => undefined;
+
+  private readonly subscribers = new Map<string, Set<Subscriber>>();
+  private readonly requests = new Map<number, (message: FromWorker) => void>();
+  private batch: Extract<FromWorker, { kind: "batch" }> | undefined;
+  private server = "";
+  private numbers = 0;
+  private hiddenTimer = 0;
+
+  constructor(private readonly worker: Worker) {
+    worker.onmessage = (event: MessageEvent<FromWorker>) => this.receive(event.data);
+  }
+
+  open(url: string): void {
+    this.send({ kind: "open", url });
+  }
+
+  /** Listen to a topic, existing or not; keep this many messages when the page can not follow. */
+  subscribe<M>(topic: string, keep: number, received: Listener<M>): () => void {
+    const subscriber: Subscriber = { keep, received: received as Listener<never> };
+    const others = this.subscribers.get(topic) ?? new Set();
+    this.subscribers.set(topic, others.add(subscriber));
+    this.send({ kind: "subscribe", topic, keep: mostOf(others) });
+    return () => {
+      if (!others.delete(subscriber)) {
+        return;
+      }
+      if (others.size === 0 && this.subscribers.get(topic) === others) {
+        this.subscribers.delete(topic);
+        this.send({ kind: "unsubscribe", topic });
+      }
+    };
+  }
+
+  publish(topic: string, type: string, message: unknown): void {
+    this.send({ kind: "publish", topic, type, message });
+  }
+
+  async call(service: string, request: unknown): Promise<unknown> {
+    const answer = await this.ask((id) => ({ kind: "call", id, service, request }));
+    if (answer.kind !== "response" || answer.error !== undefined) {
+      throw new Error(answer.kind === "response" ? answer.error : "no answer");
+    }
+    return answer.message;
+  }
+
+  async fetchAsset(uri: string): Promise<ArrayBuffer> {
+    const answer = await this.ask((id) => ({ kind: "fetchAsset", id, uri }));
+    if (answer.kind !== "asset" || !answer.data) {
+      throw new Error(answer.kind === "asset" ? answer.error : "no answer");
+    }
+    return answer.data;
+  }
+
+  readParameters(names: string[] = []): void {
+    this.send({ kind: "getParameters", names });
+  }
+
+  setParameters(parameters: ParameterInfo[]): void {
+    this.send({ kind: "setParameters", parameters });
+  }
+
+  /** The type of a topic, where it exists. */
+  typeOf(topic: string): string | undefined {
+    return this.topics.value.find((each) => each.name === topic)?.type;
+  }
+
+  /** Hand out what has arrived; once per drawn frame. */
+  dispatch(): void {
+    const batch = this.batch;
+    if (!batch) {
+      return;
+    }
+    this.batch = undefined;
+    if (batch.time !== undefined) {
+      this.onTime(batch.time, true);
+    }
+    let newest = -Infinity;
+    for (const received of batch.messages) {
+      this.deliver(received);
+      newest = Math.max(newest, received.time);
+    }
+    if (!batch.hasClock && newest > -Infinity) {
+      this.onTime(newest, false);
+    }
+    this.send({ kind: "ready" });
+  }
+
+  private deliver({ topic, time, message }: Received): void {
+    for (const subscriber of this.subscribers.get(topic) ?? []) {
+      subscriber.received(message as never, time);
+    }
+  }
+
+  private ask(build: (id: number) => ToWorker): Promise<FromWorker> {
+    const id = ++this.numbers;
+    return new Promise((resolve) => {
+      this.requests.set(id, resolve);
+      this.send(build(id));
+    });
+  }
+
+  private answer(id: number, message: FromWorker): void {
+    this.requests.get(id)?.(message);
+    this.requests.delete(id);
+  }
+
+  private receive(message: FromWorker): void {
+    switch (message.kind) {
+      case "batch":
+        this.batch = message;
+        if (document.hidden && !this.hiddenTimer) {
+          this.hiddenTimer = window.setTimeout(() => {
+            this.hiddenTimer = 0;
+            this.dispatch();
+          }, HIDDEN_MS);
+        }
+        break;
+      case "link":
+        this.link.value = message.state;
+        break;
+      case "server":
+        this.serverName.value = message.name;
+        if (this.server !== message.session) {
+          if (this.server) {
+            this.onNewServer();
+          }
+          this.server = message.session;
+          this.statuses.value = [];
+        }
+        break;
+      case "topics":
+        this.topics.value = message.topics;
+        break;
+      case "services":
+        this.services.value = message.services;
+        break;
+      case "traffic":
+        this.traffic.value = message.traffic;
+        break;
+      case "status":
+        this.addStatus(message.status);
+        break;
+      case "removeStatus":
+        this.statuses.value = this.statuses.value.filter((each) => !message.ids.includes(each.id ?? ""));
+        break;
+      case "published":
+        this.lastPublished.value = message;
+        if (message.error !== undefined) {
+          this.addStatus({ level: 2, text: `${message.topic}: ${message.error}` });
+        }
+        break;
+      case "response":
+      case "asset":
+        this.answer(message.id, message);
+        break;
+      case "parameters": {
+        const known = new Map(this.parameters.value);
+        for (const parameter of message.parameters) {
+          known.set(parameter.name, parameter);
+        }
+        this.parameters.value = known;
+        break;
+      }
+    }
+  }
+
+  private addStatus(status: StatusInfo): void {
+    const others = this.statuses.value.filter((each) => status.id === undefined || each.id !== status.id);
+    this.statuses.value = [...others.slice(-49), { ...status, key: ++this.numbers }];
+  }
+
+  private send(message: ToWorker): void {
+    this.worker.postMessage(message);
+  }
+}
+
+function mostOf(subscribers: Iterable<Subscriber>): number {
+  let most = 0;
+  for (const { keep } of subscribers) {
+    most = Math.max(most, keep);
+  }
+  return most;
+}
+
+/** The rates of one topic, as a string for a table. */
+export function rateText(traffic: ReadonlySignal<Record<string, Traffic>>, topic: string): string {
+  const rate = traffic.value[topic]?.rate;
+  return rate === undefined ? "" : rate >= 99.5 ? rate.toFixed(0) : rate.toFixed(1);
+}

@@ -1,0 +1,81 @@
+// The worker: holds the WebSocket, decodes, and hands the page one batch whenever the page is ready for it.
+/// <reference lib="webworker" />
+import type { FromWorker, ToWorker } from "./boundary";
+import { Link } from "./link";
+
+const SUBPROTOCOLS = ["foxglove.sdk.v1", "foxglove.websocket.v1"];
+const RETRY_FIRST_MS = 300;
+const RETRY_LAST_MS = 4000;
+const MEASURE_MS = 1000;
+
+declare const self: DedicatedWorkerGlobalScope;
+
+let socket: WebSocket | undefined;
+let retryMs = RETRY_FIRST_MS;
+let pageIsReady = true;
+let flushIsDue = false;
+
+const link = new Link({
+  toServer(frame) {
+    if (socket?.readyState === WebSocket.OPEN) {
+      socket.send(frame);
+    }
+  },
+  toPage,
+});
+
+function toPage(message: FromWorker, transfer: Transferable[] = []): void {
+  self.postMessage(message, transfer);
+}
+
+self.onmessage = (event: MessageEvent<ToWorker>) => {
+  const message = event.data;
+  if (message.kind === "open") {
+    open(message.url);
+  } else if (message.kind === "ready") {
+    pageIsReady = true;
+    flushSoon();
+  } else {
+    link.receivePage(message);
+  }
+};
+
+function open(url: string): void {
+  toPage({ kind: "link", state: "connecting" });
+  socket = new WebSocket(url, SUBPROTOCOLS);
+  socket.binaryType = "arraybuffer";
+  socket.onopen = () => {
+    retryMs = RETRY_FIRST_MS;
+    toPage({ kind: "link", state: "connected" });
+  };
+  socket.onmessage = (event: MessageEvent<string | ArrayBuffer>) => {
+    if (typeof event.data === "string") {
+      link.receiveText(event.data);
+    } else {
+      link.receiveBinary(event.data);
+      flushSoon();
+    }
+  };
+  socket.onclose = (event) => {
+    toPage({ kind: "link", state: "lost", reason: event.reason });
+    link.reset();
+    setTimeout(() => open(url), retryMs);
+    retryMs = Math.min(RETRY_LAST_MS, retryMs * 1.6);
+  };
+}
+
+function flushSoon(): void {
+  if (pageIsReady && !flushIsDue && link.hasNews) {
+    flushIsDue = true;
+    // After what has arrived together is read: one message to the page instead of many.
+    setTimeout(() => {
+      flushIsDue = false;
+      if (link.hasNews) {
+        pageIsReady = false;
+        link.flush();
+      }
+    });
+  }
+}
+
+setInterval(() => link.measure(performance.now() / 1000), MEASURE_MS);

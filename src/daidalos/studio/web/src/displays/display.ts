@@ -1,0 +1,118 @@
+// The contract of a display: something that draws a part of the robot's world into the scene.
+import { signal } from "@preact/signals";
+import { Group, type Material, type Mesh, type Object3D, type Texture } from "three";
+import type { Theme } from "../app/theme";
+import type { Session } from "../connection/session";
+import type { Assets } from "../scene/assets";
+import type { View } from "../scene/view";
+import { Transform, type TransformBuffer, type When } from "../tf/buffer";
+import type { Settings } from "./settings";
+
+/** How a display fares: idle has nothing to show yet, and that is no fault. */
+export interface Status {
+  level: "ok" | "idle" | "warning" | "error";
+  text: string;
+}
+
+export interface DisplayContext {
+  session: Session;
+  tf: TransformBuffer;
+  assets: Assets;
+  theme: () => Theme;
+  /** Ask for the scene to be drawn again. */
+  invalidate: () => void;
+}
+
+/** What a display needs to know to bring itself up to date for one frame. */
+export interface FrameInfo {
+  fixed: string;
+  /** The moment to draw, in robot time. */
+  time: When;
+  /** The page's clock, in seconds. */
+  page: number;
+  view: View;
+  height: number;
+}
+
+export abstract class Display {
+  readonly object = new Group();
+  readonly status = signal<Status>({ level: "idle", text: "" });
+
+  constructor(
+    protected readonly context: DisplayContext,
+    protected settings: Settings,
+  ) {}
+
+  /** Take over changed settings (never another topic: that makes another display). */
+  restyle(settings: Settings): void {
+    this.settings = settings;
+    this.context.invalidate();
+  }
+
+  /** Bring the scene up to date; once per drawn frame. */
+  update(_frame: FrameInfo): void {}
+
+  /** Forget what was received: time was turned back, or the server is another. */
+  reset(): void {}
+
+  dispose(): void {
+    disposeTree(this.object);
+    this.object.removeFromParent();
+    this.context.invalidate();
+  }
+
+  protected report(level: Status["level"], text: string): void {
+    const before = this.status.peek();
+    if (before.level !== level || before.text !== text) {
+      this.status.value = { level, text };
+    }
+  }
+}
+
+const PLACE = new Transform();
+
+/** Put an object where a frame is; false where that is not known. */
+export function place(
+  context: DisplayContext,
+  object: Object3D,
+  fixed: string,
+  frame: string,
+  when: When,
+  clamp: boolean,
+): boolean {
+  if (frame === fixed) {
+    PLACE.identity();
+  } else if (!context.tf.lookup(fixed, frame, when, PLACE, { clamp })) {
+    return false;
+  }
+  // A scene in which nothing moves is not drawn again.
+  if (!object.position.equals(PLACE.position) || !object.quaternion.equals(PLACE.rotation)) {
+    object.position.copy(PLACE.position);
+    object.quaternion.copy(PLACE.rotation);
+    context.invalidate();
+  }
+  return true;
+}
+
+/** Free the graphics memory of an object and all below it. */
+export function disposeTree(root: Object3D): void {
+  root.traverse((object) => {
+    const mesh = object as Partial<Mesh>;
+    if (!object.userData.sharesGeometry) {
+      mesh.geometry?.dispose();
+    }
+    const materials = mesh.material ? [mesh.material].flat() : [];
+    for (const material of materials) {
+      disposeMaterial(material);
+    }
+  });
+}
+
+function disposeMaterial(material: Material): void {
+  for (const value of Object.values(material)) {
+    if ((value as Texture | null)?.isTexture) {
+      (value as Texture).dispose();
+    }
+  }
+  material.dispose();
+}

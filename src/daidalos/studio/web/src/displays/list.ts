@@ -1,0 +1,147 @@
+// The list of displays: what is configured, kept in the browser; and the first list that everyone sees.
+import { signal, type Signal } from "@preact/signals";
+import { forget, isRecord, stored } from "../app/stored";
+import type { TopicInfo } from "../connection/boundary";
+import type { Display } from "./display";
+import { displayFor, displayType, type DisplayType } from "./registry";
+import type { DisplayConfig, Settings, Value } from "./settings";
+
+const KEY = "displays";
+
+/** What appears by itself when its topic exists and nothing shows it yet. */
+const DISCOVERED = new Set(["LaserScan", "Map", "Path", "PointCloud2", "Marker", "MarkerArray", "Polygon", "PoseArray"]);
+const DISCOVERED_MOST = 24;
+
+interface Saved {
+  configs: DisplayConfig[];
+  /** Topics for which a display was made by itself once; removing it is respected. */
+  seen: string[];
+}
+
+export class DisplayList {
+  /** The displays that live in the scene, by id. */
+  readonly live: Signal<ReadonlyMap<string, Display>> = signal(new Map());
+  private readonly saved = stored<Saved>(KEY, { configs: firstConfigs(), seen: [] }, isSaved);
+
+  get configs(): readonly DisplayConfig[] {
+    return this.saved.value.configs;
+  }
+
+  add(type: DisplayType, topic?: string): void {
+    const config = makeConfig(type, { ...(topic === undefined ? {} : { topic }) }, topic ? shortName(topic) : undefined);
+    this.change([...this.configs, config]);
+  }
+
+  remove(id: string): void {
+    this.change(this.configs.filter((config) => config.id !== id));
+  }
+
+  enable(id: string, enabled: boolean): void {
+    this.edit(id, (config) => ({ ...config, enabled }));
+  }
+
+  rename(id: string, name: string): void {
+    this.edit(id, (config) => ({ ...config, name }));
+  }
+
+  set(id: string, key: string, value: Value): void {
+    this.edit(id, (config) => ({ ...config, settings: { ...config.settings, [key]: value } }));
+  }
+
+  move(id: string, to: number): void {
+    const moved = this.configs.find((config) => config.id === id);
+    if (moved) {
+      const others = this.configs.filter((config) => config.id !== id);
+      this.change([...others.slice(0, to), moved, ...others.slice(to)]);
+    }
+  }
+
+  reset(): void {
+    forget(KEY);
+    this.saved.value = { configs: firstConfigs(), seen: [] };
+  }
+
+  /** Make displays for topics that nobody shows yet. */
+  discover(topics: readonly TopicInfo[]): void {
+    const { configs, seen } = this.saved.peek();
+    const shown = new Set(configs.map(({ settings }) => settings.topic));
+    const found = topics.flatMap(({ name, type }) => {
+      const display = displayFor(type);
+      const isNew = display && DISCOVERED.has(display.type) && !shown.has(name) && !seen.includes(name);
+      return isNew ? [{ display, name }] : [];
+    });
+    if (found.length && configs.length < DISCOVERED_MOST) {
+      const made = found.map(({ display, name }) =>
+        makeConfig(display, { topic: name, ...looksOf(name) }, shortName(name)),
+      );
+      this.saved.value = { configs: [...configs, ...made], seen: [...seen, ...found.map(({ name }) => name)] };
+    }
+  }
+
+  private edit(id: string, change: (config: DisplayConfig) => DisplayConfig): void {
+    this.change(this.configs.map((config) => (config.id === id ? change(config) : config)));
+  }
+
+  private change(configs: DisplayConfig[]): void {
+    this.saved.value = { ...this.saved.value, configs };
+  }
+}
+
+/** What shows a mobile robot at its best; each entry waits quietly until its topic exists. */
+function firstConfigs(): DisplayConfig[] {
+  const entry = (type: string, name: string, settings: Settings = {}, enabled = true) => {
+    const found = displayType(type);
+    return found ? [makeConfig(found, settings, name, enabled)] : [];
+  };
+  return [
+    ...entry("Grid", "Grid"),
+    ...entry("Map", "Map", { topic: "/map" }),
+    ...entry("Map", "Global costmap", { topic: "/global_costmap/costmap", scheme: "glow", alpha: 0.35 }),
+    ...entry("Map", "Local costmap", { topic: "/local_costmap/costmap", scheme: "glow", alpha: 0.7 }),
+    ...entry("RobotModel", "Robot"),
+    ...entry("TF", "TF"),
+    ...entry("LaserScan", "Laser scan"),
+    ...entry("Path", "Plan", { topic: "/plan" }),
+    ...entry("Path", "Local plan", { topic: "/local_plan", color: "#f5c451", width: 2.5, offset: 0.03 }),
+    ...entry("Pose", "Goal"),
+    ...entry("Polygon", "Footprint", { topic: "/local_costmap/published_footprint" }),
+    ...entry("Odometry", "Odometry", {}, false),
+  ];
+}
+
+/** How a discovered topic looks where its name says more than its type. */
+function looksOf(topic: string): Settings {
+  return topic.includes("costmap") && !topic.includes("footprint") ? { scheme: "glow", alpha: 0.5 } : {};
+}
+
+function makeConfig(type: DisplayType, settings: Settings, name = type.type, enabled = true): DisplayConfig {
+  return {
+    id: crypto.getRandomValues(new Uint32Array(2)).join("-"),
+    type: type.type,
+    name,
+    enabled,
+    settings: { ...type.defaults, ...settings },
+  };
+}
+
+function shortName(topic: string): string {
+  return topic.replace(/^\//, "");
+}
+
+function isSaved(value: unknown): value is Saved {
+  return (
+    isRecord(value) &&
+    Array.isArray(value.seen) &&
+    Array.isArray(value.configs) &&
+    value.configs.every(
+      (config) =>
+        isRecord(config) &&
+        typeof config.id === "string" &&
+        typeof config.name === "string" &&
+        typeof config.enabled === "boolean" &&
+        isRecord(config.settings) &&
+        typeof config.type === "string" &&
+        displayType(config.type) !== undefined,
+    )
+  );
+}

@@ -1,0 +1,92 @@
+// Makes displays of their configurations, keeps them up to date, and takes them down.
+import { effect, untracked } from "@preact/signals";
+import type { Group } from "three";
+import type { Display, DisplayContext, FrameInfo } from "./display";
+import type { DisplayList } from "./list";
+import { displayType } from "./registry";
+import type { DisplayConfig, Settings } from "./settings";
+
+interface Made {
+  display: Display;
+  settings: Settings;
+}
+
+export class DisplayManager {
+  private readonly made = new Map<string, Made>();
+  private readonly stop: () => void;
+
+  constructor(
+    private readonly list: DisplayList,
+    private readonly context: DisplayContext,
+    private readonly parent: Group,
+  ) {
+    this.stop = effect(() => {
+      const configs = list.configs;
+      untracked(() => this.apply(configs));
+    });
+  }
+
+  update(frame: FrameInfo): void {
+    for (const { display } of this.made.values()) {
+      display.update(frame);
+    }
+  }
+
+  reset(): void {
+    for (const { display } of this.made.values()) {
+      display.reset();
+    }
+    this.context.invalidate();
+  }
+
+  dispose(): void {
+    this.stop();
+    for (const { display } of this.made.values()) {
+      display.dispose();
+    }
+    this.made.clear();
+    this.tell();
+  }
+
+  private apply(configs: readonly DisplayConfig[]): void {
+    const wanted = new Map(configs.filter(({ enabled }) => enabled).map((config) => [config.id, config]));
+    let changed = false;
+    for (const [id, { display, settings }] of this.made) {
+      const config = wanted.get(id);
+      if (!config || config.settings.topic !== settings.topic) {
+        display.dispose();
+        this.made.delete(id);
+        changed = true;
+      }
+    }
+    for (const [id, config] of wanted) {
+      const made = this.made.get(id);
+      if (!made) {
+        changed = this.make(config) || changed;
+      } else if (made.settings !== config.settings) {
+        made.settings = config.settings;
+        made.display.restyle(config.settings);
+      }
+    }
+    if (changed) {
+      this.tell();
+    }
+  }
+
+  private make(config: DisplayConfig): boolean {
+    const type = displayType(config.type);
+    if (!type) {
+      return false;
+    }
+    // Settings of an older version may lack some.
+    const display = type.create(this.context, { ...type.defaults, ...config.settings });
+    this.made.set(config.id, { display, settings: config.settings });
+    this.parent.add(display.object);
+    this.context.invalidate();
+    return true;
+  }
+
+  private tell(): void {
+    this.list.live.value = new Map([...this.made].map(([id, { display }]) => [id, display]));
+  }
+}

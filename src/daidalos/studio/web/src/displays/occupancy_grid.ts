@@ -1,0 +1,197 @@
+// Map: occupancy grids and costmaps as textures on the ground.
+import {
+  DataTexture,
+  LinearMipmapLinearFilter,
+  Mesh,
+  MeshBasicMaterial,
+  NearestFilter,
+  NearestMipmapNearestFilter,
+  PlaneGeometry,
+  RGBAFormat,
+  SRGBColorSpace,
+  UnsignedByteType,
+} from "three";
+import type { OccupancyGrid, OccupancyGridUpdate } from "../ros/messages";
+import { costmapPalette, glowPalette, mapPalette, planPalette, rawPalette, type Palette } from "../scene/colors";
+import { beginsFine } from "../scene/graphics";
+import { Layer } from "../scene/layers";
+import type { DisplayContext, FrameInfo } from "./display";
+import type { DisplayType } from "./registry";
+import { number, text, type Settings } from "./settings";
+import { StampedDisplay } from "./topic_display";
+
+const LARGEST_TEXTURE = 8192;
+
+class MapDisplay extends StampedDisplay<OccupancyGrid> {
+  private readonly mesh: Mesh<PlaneGeometry, MeshBasicMaterial>;
+  private readonly stopUpdates: () => void;
+  private texture: DataTexture | undefined;
+  private pixels = new Uint32Array();
+  private painted: string | undefined;
+  private complaint = "";
+
+  constructor(context: DisplayContext, settings: Settings) {
+    super(context, settings, "latest");
+    const material = new MeshBasicMaterial({ transparent: true, depthWrite: false, toneMapped: false });
+    this.mesh = new Mesh(new PlaneGeometry(1, 1).translate(0.5, 0.5, 0), material);
+    this.object.add(this.mesh);
+    const updates = `${text(settings, "topic")}_updates`;
+    this.stopUpdates = text(settings, "topic")
+      ? context.session.subscribe<OccupancyGridUpdate>(updates, 32, (update) => this.patch(update))
+      : () => undefined;
+  }
+
+  /** Width and height in cells of what is shown. */
+  get size(): [number, number] {
+    return this.shown ? [this.shown.info.width, this.shown.info.height] : [0, 0];
+  }
+
+  protected override show(grid: OccupancyGrid): void {
+    const { width, height, resolution, origin } = grid.info;
+    this.complaint = complaintAbout(grid);
+    if (this.complaint) {
+      return;
+    }
+    if (!this.texture || this.texture.image.width !== width || this.texture.image.height !== height) {
+      this.makeTexture(width, height);
+    }
+    this.paint(grid, 0, 0, width, height, grid.data);
+    const { position, orientation } = origin;
+    this.mesh.position.set(position.x, position.y, position.z);
+    this.mesh.quaternion.set(orientation.x, orientation.y, orientation.z, orientation.w).normalize();
+    this.mesh.scale.set(width * resolution, height * resolution, 1);
+    this.style();
+  }
+
+  override update(frame: FrameInfo): void {
+    super.update(frame);
+    if (this.shown && this.painted !== this.scheme()) {
+      this.show(this.shown);
+    }
+    if (this.complaint) {
+      this.report("error", this.complaint);
+    }
+  }
+
+  override dispose(): void {
+    this.stopUpdates();
+    this.texture?.dispose();
+    super.dispose();
+  }
+
+  protected override describe({ info }: OccupancyGrid): string {
+    return `${info.width} × ${info.height} cells of ${Number(info.resolution.toFixed(3))} m`;
+  }
+
+  private patch(update: OccupancyGridUpdate): void {
+    const grid = this.shown;
+    const { x, y, width, height, data } = update;
+    if (!grid || x < 0 || y < 0 || x + width > grid.info.width || y + height > grid.info.height) {
+      return;
+    }
+    for (let row = 0; row < height; row++) {
+      grid.data.set(data.subarray(row * width, (row + 1) * width), (y + row) * grid.info.width + x);
+    }
+    this.paint(grid, x, y, width, height, data);
+    this.context.invalidate();
+  }
+
+  private makeTexture(width: number, height: number): void {
+    this.texture?.dispose();
+    this.pixels = new Uint32Array(width * height);
+    const bytes = new Uint8Array(this.pixels.buffer);
+    this.texture = new DataTexture(bytes, width, height, RGBAFormat, UnsignedByteType);
+    this.texture.colorSpace = SRGBColorSpace;
+    // Cells stay sharp from near, and do not shimmer from afar.
+    this.texture.magFilter = NearestFilter;
+    this.texture.minFilter = beginsFine ? LinearMipmapLinearFilter : NearestMipmapNearestFilter;
+    this.texture.generateMipmaps = true;
+    this.texture.anisotropy = beginsFine ? 4 : 1;
+    this.mesh.material.map = this.texture;
+    this.mesh.material.needsUpdate = true;
+  }
+
+  private paint(grid: OccupancyGrid, x: number, y: number, width: number, height: number, data: Int8Array): void {
+    this.painted = this.scheme();
+    const palette = new Uint32Array(paletteFor(this.painted, this.context.theme() === "dark").buffer);
+    for (let row = 0; row < height; row++) {
+      let to = (y + row) * grid.info.width + x;
+      for (let from = row * width; from < (row + 1) * width; from++, to++) {
+        this.pixels[to] = palette[(data[from] as number) & 255] as number;
+      }
+    }
+    if (this.texture) {
+      this.texture.needsUpdate = true;
+    }
+  }
+
+  private scheme(): string {
+    const scheme = text(this.settings, "scheme");
+    return scheme === "plan" ? `plan ${this.context.theme()}` : scheme;
+  }
+
+  private style(): void {
+    const behind = text(this.settings, "layer") === "behind";
+    const costs = ["costmap", "glow"].includes(text(this.settings, "scheme"));
+    this.mesh.renderOrder = behind ? Layer.BEHIND : costs ? Layer.COSTMAP : Layer.MAP;
+    this.mesh.material.opacity = number(this.settings, "alpha");
+  }
+}
+
+function complaintAbout({ info, data }: OccupancyGrid): string {
+  if (info.width * info.height !== data.length) {
+    return `${data.length} cells do not fill ${info.width} × ${info.height}`;
+  }
+  if (Math.max(info.width, info.height) > LARGEST_TEXTURE) {
+    return `${info.width} × ${info.height} cells are more than a texture can hold`;
+  }
+  return info.width * info.height === 0 ? "the map is empty" : "";
+}
+
+function paletteFor(scheme: string, dark: boolean): Palette {
+  switch (scheme) {
+    case "map":
+      return mapPalette();
+    case "costmap":
+      return costmapPalette();
+    case "raw":
+      return rawPalette();
+    case "glow":
+      return glowPalette();
+  }
+  return planPalette(dark);
+}
+
+export const OCCUPANCY_GRID: DisplayType = {
+  type: "Map",
+  messages: ["nav_msgs/msg/OccupancyGrid"],
+  properties: [
+    { key: "topic", label: "Topic", kind: "topic" },
+    {
+      key: "scheme",
+      label: "Colour scheme",
+      kind: "choice",
+      options: [
+        ["plan", "plan"],
+        ["glow", "glow"],
+        ["map", "map (RViz)"],
+        ["costmap", "costmap (RViz)"],
+        ["raw", "raw (RViz)"],
+      ],
+    },
+    { key: "alpha", label: "Alpha", kind: "number", min: 0, max: 1, step: 0.05 },
+    {
+      key: "layer",
+      label: "Draw",
+      kind: "choice",
+      options: [
+        ["normal", "in order"],
+        ["behind", "behind all"],
+      ],
+    },
+  ],
+  defaults: { topic: "/map", scheme: "plan", alpha: 1, layer: "normal" },
+  create: (context, settings) => new MapDisplay(context, settings),
+};
+
+export { MapDisplay };

@@ -1,0 +1,66 @@
+// Odometry: where the robot has been, as a trail of arrows.
+import { Quaternion, Vector3 } from "three";
+import type { Odometry, Pose } from "../ros/messages";
+import type { DisplayContext } from "./display";
+import { Arrows, ARROW_PROPERTIES } from "./poses";
+import type { DisplayType } from "./registry";
+import { number, text, type Settings } from "./settings";
+import { StampedDisplay } from "./topic_display";
+
+const MOST = 2000;
+
+class OdometryDisplay extends StampedDisplay<Odometry> {
+  private arrows: Arrows;
+  private length: number;
+  private trail: Pose[] = [];
+
+  constructor(context: DisplayContext, settings: Settings) {
+    super(context, settings, "latest");
+    this.length = number(settings, "length");
+    this.arrows = new Arrows(MOST, this.length);
+    this.object.add(this.arrows);
+  }
+
+  protected override show({ pose: { pose } }: Odometry): void {
+    const last = this.trail.at(-1);
+    if (!last || isFar(last, pose, number(this.settings, "distance"), number(this.settings, "angle"))) {
+      this.trail.push(pose);
+    }
+    this.trail = this.trail.slice(-Math.min(MOST, number(this.settings, "keep")));
+    if (this.length !== number(this.settings, "length")) {
+      this.length = number(this.settings, "length");
+      this.arrows.geometry.dispose();
+      this.arrows.removeFromParent();
+      this.arrows = new Arrows(MOST, this.length);
+      this.object.add(this.arrows);
+    }
+    this.arrows.paint(text(this.settings, "color"), number(this.settings, "alpha"));
+    this.arrows.setPoses(this.trail);
+  }
+
+  override reset(): void {
+    super.reset();
+    this.trail = [];
+  }
+}
+
+function isFar(a: Pose, b: Pose, distance: number, angle: number): boolean {
+  const [p, q] = [a.position, b.position];
+  const [s, t] = [a.orientation, b.orientation];
+  const turned = new Quaternion(s.x, s.y, s.z, s.w).angleTo(new Quaternion(t.x, t.y, t.z, t.w));
+  return new Vector3(q.x - p.x, q.y - p.y, q.z - p.z).length() >= distance || turned >= angle;
+}
+
+export const ODOMETRY: DisplayType = {
+  type: "Odometry",
+  messages: ["nav_msgs/msg/Odometry"],
+  properties: [
+    { key: "topic", label: "Topic", kind: "topic" },
+    ...ARROW_PROPERTIES,
+    { key: "keep", label: "Keep", kind: "number", min: 1, max: MOST, step: 10 },
+    { key: "distance", label: "Every", kind: "number", min: 0, max: 10, step: 0.05, unit: "m" },
+    { key: "angle", label: "or every", kind: "number", min: 0, max: 3.2, step: 0.05, unit: "rad" },
+  ],
+  defaults: { topic: "/odom", color: "#fb923c", alpha: 0.9, length: 0.2, keep: 200, distance: 0.2, angle: 0.3 },
+  create: (context, settings) => new OdometryDisplay(context, settings),
+};

@@ -1,0 +1,45 @@
+// Entry: builds the application and puts it into the page.
+import { render } from "preact";
+import { useEffect, useRef } from "preact/hooks";
+import "dockview-core/dist/styles/dockview.css";
+import "uplot/dist/uPlot.min.css";
+import "./styles/theme.css";
+import "./styles/shell.css";
+import "./styles/controls.css";
+import "./styles/panels.css";
+import { Help } from "./app/help";
+import { Layout } from "./app/layout";
+import { listenToKeys } from "./app/shortcuts";
+import { Studio } from "./app/studio";
+import { attachedWorld, installTestHooks } from "./app/test_hooks";
+import { TopBar } from "./app/top_bar";
+
+let layout: Layout;
+
+function App({ studio }: { studio: Studio }) {
+  const dock = useRef<HTMLDivElement>(null);
+  useEffect(() => {
+    layout = new Layout(dock.current as HTMLDivElement, studio);
+    studio.openPanel = (id) => layout.openById(id);
+  }, []);
+  return (
+    <>
+      <TopBar studio={studio} layout={() => layout} />
+      <main class="dock" ref={dock} />
+      <Help />
+    </>
+  );
+}
+
+/** The server that sent the page, unless the address names another: ?connect=ws://robot:8765 */
+function serverUrl(): string {
+  const named = new URLSearchParams(location.search).get("connect");
+  return named ?? `${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/`;
+}
+
+const worker = new Worker(new URL("./connection/worker.ts", import.meta.url), { type: "module" });
+const studio = new Studio(worker);
+installTestHooks(studio);
+listenToKeys(attachedWorld);
+render(<App studio={studio} />, document.getElementById("app") as HTMLElement);
+studio.start(serverUrl());

@@ -1,0 +1,111 @@
+// Log: what nodes say on /rosout.
+import { useSignal } from "@preact/signals";
+import { useEffect, useRef } from "preact/hooks";
+import type { Log } from "../ros/messages";
+import { formatTime, toSeconds } from "../ros/time";
+import { Choice } from "../ui/editors";
+import { Empty } from "../ui/empty";
+import { Icon } from "../ui/icons";
+import { SearchField } from "../ui/search";
+import type { PanelProps, PanelType } from "./panel";
+
+const KEEP = 256;
+const KEPT_LINES = 2000;
+const SHOWN_LINES = 300;
+const REFRESH_MS = 100;
+
+const LEVELS = [
+  [10, "debug"],
+  [20, "info"],
+  [30, "warn"],
+  [40, "error"],
+  [50, "fatal"],
+] as const;
+
+interface Line {
+  key: number;
+  log: Log;
+}
+
+function LogPanel({ studio, visible }: PanelProps) {
+  const lines = useSignal<readonly Line[]>([]);
+  const least = useSignal(20);
+  const filter = useSignal("");
+  const list = useRef<HTMLDivElement>(null);
+  const follows = useRef(true);
+  useEffect(() => {
+    let pending: Line[] = [];
+    let key = 0;
+    // Also while hidden: what was said before one looks is what one looks for.
+    const stop = studio.session.subscribe<Log>("/rosout", KEEP, (log) => pending.push({ key: ++key, log }));
+    const timer = setInterval(() => {
+      if (pending.length) {
+        lines.value = [...lines.value, ...pending].slice(-KEPT_LINES);
+        pending = [];
+      }
+    }, REFRESH_MS);
+    return () => {
+      stop();
+      clearInterval(timer);
+    };
+  }, []);
+  const wanted = filter.value.toLowerCase();
+  const shown = visible.value
+    ? lines.value
+        .filter(({ log }) => log.level >= least.value && `${log.name} ${log.msg}`.toLowerCase().includes(wanted))
+        .slice(-SHOWN_LINES)
+    : [];
+  useEffect(() => {
+    if (follows.current && list.current) {
+      list.current.scrollTop = list.current.scrollHeight;
+    }
+  });
+  return (
+    <div class="column">
+      <div class="bar">
+        <Choice
+          label="Least severity"
+          value={String(least.value)}
+          options={LEVELS.map(([level, name]) => [String(level), name])}
+          onChange={(level) => (least.value = Number(level))}
+        />
+        <SearchField value={filter.value} placeholder="Filter" onChange={(text) => (filter.value = text)} />
+        <button class="icon-button" title="Clear" onClick={() => (lines.value = [])}>
+          <Icon name="trash" />
+        </button>
+      </div>
+      {shown.length === 0 ? (
+        <Empty icon="log" title="Nothing to report">
+          {lines.value.length ? "Nothing matches the filter." : "What nodes log appears here."}
+        </Empty>
+      ) : (
+        <div
+          class="scroll log"
+          ref={list}
+          onScroll={({ currentTarget: box }) => {
+            follows.current = box.scrollHeight - box.scrollTop - box.clientHeight < 24;
+          }}
+        >
+          {shown.map(({ key, log }) => (
+            <LogLine key={key} log={log} />
+          ))}
+        </div>
+      )}
+    </div>
+  );
+}
+
+function LogLine({ log }: { log: Log }) {
+  const level = [...LEVELS].reverse().find(([least]) => log.level >= least)?.[1] ?? "debug";
+  return (
+    <div class={`log-line ${level}`} title={log.file && `${log.file}:${log.line} ${log.function}`}>
+      <span class="log-time figures">{formatTime(toSeconds(log.stamp))}</span>
+      <span class={`log-level ${level}`}>{level}</span>
+      <span class="log-text">
+        <span class="log-name">{log.name}</span> {log.msg}
+      </span>
+    </div>
+  );
+}
+
+export const LOG_PANEL: PanelType = { id: "log", title: "Log", icon: "log", component: LogPanel };

@@ -1,0 +1,2 @@
+// What is dragged from messages into plots: the path of a field.
+export const PLOT_DRAG = "application/x-daidalos-field";

@@ -1,0 +1,120 @@
+// 3D: the view of the robot's world, with RViz's tools and views.
+import { useSignal } from "@preact/signals";
+import { useEffect, useRef } from "preact/hooks";
+import { attachWorld } from "../app/test_hooks";
+import { followed, World } from "../scene/world";
+import { TOOLS } from "../tools/registry";
+import { Icon } from "../ui/icons";
+import type { PanelProps, PanelType } from "./panel";
+
+const MOUSE_HINT = {
+  orbit: "Left: turn · Middle: move · Right or wheel: zoom",
+  top: "Left: move · Shift + left: turn · Right or wheel: zoom",
+} as const;
+
+function ScenePanel({ studio, visible }: PanelProps) {
+  const container = useRef<HTMLDivElement>(null);
+  const world = useSignal<World | undefined>(undefined);
+  const failure = useSignal("");
+  useEffect(() => {
+    try {
+      const made = new World(container.current as HTMLDivElement, studio, () => visible.value);
+      world.value = made;
+      const detach = attachWorld(made);
+      return () => {
+        detach();
+        made.dispose();
+      };
+    } catch (error) {
+      failure.value = error instanceof Error ? error.message : String(error);
+      return undefined;
+    }
+  }, []);
+  return (
+    <div class="scene">
+      <div class="scene-canvas" ref={container} />
+      {world.value && <Toolbar world={world.value} />}
+      {world.value && <ViewButtons world={world.value} />}
+      {world.value && <Hint world={world.value} />}
+      {failure.value && (
+        <div class="empty over">
+          <Icon name="cube" size={28} />
+          <strong>This browser can not draw in 3-D</strong>
+          <span>{failure.value}. WebGL 2 must be switched on in its settings.</span>
+        </div>
+      )}
+      {studio.session.link.value !== "connected" && <Waiting state={studio.session.link.value} />}
+    </div>
+  );
+}
+
+function Toolbar({ world }: { world: World }) {
+  const { toolbox } = world;
+  return (
+    <div class="overlay-bar tools" role="toolbar" aria-label="Tools">
+      {TOOLS.map((tool) => (
+        <button
+          key={tool.id}
+          class={`tool ${toolbox.active.value === tool ? "active" : ""}`}
+          title={`${tool.title} (${tool.key})`}
+          aria-pressed={toolbox.active.value === tool}
+          data-tool={tool.id}
+          onClick={() => toolbox.take(tool)}
+        >
+          <Icon name={tool.icon} />
+          <span class="tool-title">{tool.title}</span>
+        </button>
+      ))}
+    </div>
+  );
+}
+
+function ViewButtons({ world }: { world: World }) {
+  const follow = () => world.follow(followed.value ? "" : (world.robotFrame() ?? ""));
+  const top = world.viewKind.value === "top";
+  return (
+    <div class="overlay-bar views" role="toolbar" aria-label="View">
+      <button
+        class={`tool ${top ? "active" : ""}`}
+        title="Top-down view (t)"
+        aria-pressed={top}
+        data-test="top-down"
+        onClick={() => world.switchView(top ? "orbit" : "top")}
+      >
+        <Icon name="top" />
+      </button>
+      <button
+        class={`tool ${followed.value ? "active" : ""}`}
+        title="Follow the robot (l)"
+        aria-pressed={followed.value !== ""}
+        onClick={follow}
+      >
+        <Icon name="follow" />
+      </button>
+      <button class="tool" title="Home view (z)" onClick={() => world.home()}>
+        <Icon name="home" />
+      </button>
+    </div>
+  );
+}
+
+function Hint({ world }: { world: World }) {
+  const { toolbox } = world;
+  const tool = toolbox.active.value;
+  return (
+    <div class={`hint ${tool.create ? "busy" : ""}`} data-test="hint">
+      {toolbox.saying.value || tool.hint || MOUSE_HINT[world.viewKind.value]}
+    </div>
+  );
+}
+
+function Waiting({ state }: { state: "connecting" | "lost" }) {
+  return (
+    <div class="waiting" role="status">
+      <span class="spinner" />
+      {state === "connecting" ? "Connecting to the robot…" : "Connection lost, trying again…"}
+    </div>
+  );
+}
+
+export const SCENE_PANEL: PanelType = { id: "scene", title: "3D", icon: "cube", component: ScenePanel };

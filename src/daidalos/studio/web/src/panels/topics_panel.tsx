@@ -1,0 +1,117 @@
+// Topics: what there is, of which type, how often and how much.
+import { useSignal } from "@preact/signals";
+import { useEffect } from "preact/hooks";
+import type { Studio } from "../app/studio";
+import type { TopicInfo, Traffic } from "../connection/boundary";
+import { displayFor } from "../displays/registry";
+import { Empty } from "../ui/empty";
+import { Icon } from "../ui/icons";
+import { SearchField } from "../ui/search";
+import type { PanelProps, PanelType } from "./panel";
+
+/** Listening only to measure would make a robot send what nobody looks at; these are large. */
+const HEAVY = new Set([
+  "sensor_msgs/msg/Image",
+  "sensor_msgs/msg/CompressedImage",
+  "sensor_msgs/msg/PointCloud2",
+  "sensor_msgs/msg/PointCloud",
+]);
+
+function TopicsPanel({ studio, visible }: PanelProps) {
+  const filter = useSignal("");
+  const { session } = studio;
+  const wanted = filter.value.toLowerCase();
+  const topics = session.topics.value.filter(
+    ({ name, type }) => name.toLowerCase().includes(wanted) || type.toLowerCase().includes(wanted),
+  );
+  const measured = visible.value ? topics.filter(({ type }) => !HEAVY.has(type)).map(({ name }) => name) : [];
+  useEffect(() => {
+    const stops = measured.map((name) => session.subscribe(name, 0, () => undefined));
+    return () => {
+      for (const stop of stops) {
+        stop();
+      }
+    };
+  }, [measured.join()]);
+  if (session.topics.value.length === 0) {
+    return (
+      <Empty icon="topics" title="No topics yet">
+        They appear as soon as a node publishes.
+      </Empty>
+    );
+  }
+  return (
+    <div class="column">
+      <div class="bar">
+        <SearchField value={filter.value} placeholder="Filter by name or type" onChange={(text) => (filter.value = text)} />
+        <span class="faint figures">{topics.length}</span>
+      </div>
+      <div class="scroll" role="list">
+        {topics.map((topic) => (
+          <TopicRow key={`${topic.name} ${topic.type}`} studio={studio} topic={topic} />
+        ))}
+      </div>
+    </div>
+  );
+}
+
+function TopicRow({ studio, topic }: { studio: Studio; topic: TopicInfo }) {
+  const traffic = studio.session.traffic.value[topic.name];
+  const selected = studio.selectedTopic.value === topic.name;
+  const display = displayFor(topic.type);
+  const isShown = studio.displays.configs.some(({ settings }) => settings.topic === topic.name);
+  const select = () => {
+    studio.selectedTopic.value = topic.name;
+    studio.openPanel("message");
+  };
+  return (
+    <div class={`topic-row ${selected ? "selected" : ""}`} role="listitem" data-topic={topic.name}>
+      <button class="bare grow" onClick={select} title={topic.known ? "Show its messages" : "Its definition is not known"}>
+        <span class="topic-name ellipsis">{topic.name}</span>
+        <span class="topic-type ellipsis">{shortType(topic.type)}</span>
+      </button>
+      <span class="topic-traffic figures">
+        <span>{rate(traffic)}</span>
+        <span class="faint">{bandwidth(traffic)}</span>
+      </span>
+      {display && !isShown ? (
+        <button
+          class="icon-button small"
+          title={`Show in 3D as ${display.type}`}
+          onClick={() => studio.displays.add(display, topic.name)}
+        >
+          <Icon name="add" size={14} />
+        </button>
+      ) : (
+        <span class="icon-button small" />
+      )}
+    </div>
+  );
+}
+
+function shortType(type: string): string {
+  return type.replace("/msg/", "/");
+}
+
+function rate(traffic: Traffic | undefined): string {
+  if (!traffic) {
+    return "";
+  }
+  const { rate: hertz, total } = traffic;
+  return hertz === 0 ? (total ? "still" : "silent") : `${hertz < 9.95 ? hertz.toFixed(1) : hertz.toFixed(0)} Hz`;
+}
+
+function bandwidth(traffic: Traffic | undefined): string {
+  if (!traffic || traffic.bandwidth === 0) {
+    return "";
+  }
+  const units = ["B/s", "kB/s", "MB/s"];
+  let [value, unit] = [traffic.bandwidth, 0];
+  while (value >= 1000 && unit < units.length - 1) {
+    value /= 1000;
+    unit++;
+  }
+  return `${value < 9.95 ? value.toFixed(1) : value.toFixed(0)} ${units[unit]}`;
+}
+
+export const TOPICS_PANEL: PanelType = { id: "topics", title: "Topics", icon: "topics", component: TopicsPanel };

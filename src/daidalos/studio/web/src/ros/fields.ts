@@ -1,0 +1,35 @@
+// Paths into messages, as plots name them: /odom/pose/pose/position/x, /scan/ranges/0.
+
+/** The topic that a path begins with, and the fields after it. */
+export function splitPath(path: string, topics: Iterable<string>): { topic: string; fields: string[] } | undefined {
+  let topic = "";
+  for (const name of topics) {
+    if ((path === name || path.startsWith(`${name}/`)) && name.length > topic.length) {
+      topic = name;
+    }
+  }
+  return topic ? { topic, fields: path.slice(topic.length).split("/").filter(Boolean) } : undefined;
+}
+
+/** The number at a path; undefined where there is none. */
+export function numberAt(message: unknown, fields: readonly string[]): number | undefined {
+  let value = message;
+  for (const field of fields) {
+    if (typeof value !== "object" || value === null) {
+      return undefined;
+    }
+    value = (value as Record<string, unknown>)[field];
+  }
+  switch (typeof value) {
+    case "number":
+      return value;
+    case "bigint":
+    case "boolean":
+      return Number(value);
+  }
+  return undefined;
+}
+
+export function isTypedArray(value: unknown): value is ArrayLike<number | bigint> & ArrayBufferView {
+  return ArrayBuffer.isView(value) && !(value instanceof DataView);
+}

@@ -1,0 +1,14 @@
+// The order in which flat things are drawn over each other; what stands on the ground comes after all of them.
+
+export const Layer = {
+  BEHIND: -60,
+  MAP: -50,
+  COSTMAP: -40,
+  GRID: -30,
+  SHADOW: -20,
+  LINE: 10,
+  OUTLINE: 11,
+  LINK: 20,
+  TOOL: 30,
+  LABEL: 40,
+} as const;

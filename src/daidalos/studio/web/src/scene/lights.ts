@@ -1,0 +1,63 @@
+// Light that shapes the robot, and a soft shadow that puts it on the ground.
+import {
+  DirectionalLight,
+  Group,
+  HemisphereLight,
+  Mesh,
+  PlaneGeometry,
+  ShadowMaterial,
+  type Vector3,
+} from "three";
+import { Layer } from "./layers";
+
+/** The shadow is drawn only near what the camera follows: software renderers pay for every pixel of it. */
+const SHADOW_RADIUS_M = 2.5;
+const SUN_OFFSET = [1.6, -2.2, 4.2] as const;
+
+export class Lights {
+  readonly object = new Group();
+  private readonly sun = new DirectionalLight(0xffffff, 2.1);
+  private readonly sky = new HemisphereLight(0xf4f7ff, 0x7d828c, 1.9);
+  private readonly ground: Mesh;
+  private readonly shade = new ShadowMaterial({ color: 0x05080d, opacity: 0.34, depthWrite: false });
+
+  constructor() {
+    this.sky.position.set(0, 0, 1);
+    const fill = new DirectionalLight(0xbfd4ff, 0.55);
+    fill.position.set(-3, 2, 1.5);
+    const { shadow } = this.sun;
+    shadow.mapSize.set(1024, 1024);
+    shadow.radius = 5;
+    shadow.normalBias = 0.01;
+    const { camera } = shadow;
+    [camera.left, camera.right, camera.bottom, camera.top] = [-1, 1, -1, 1].map((s) => s * SHADOW_RADIUS_M) as [
+      number,
+      number,
+      number,
+      number,
+    ];
+    [camera.near, camera.far] = [0.5, 12];
+    this.sun.castShadow = true;
+    this.ground = new Mesh(new PlaneGeometry(2 * SHADOW_RADIUS_M, 2 * SHADOW_RADIUS_M), this.shade);
+    this.ground.receiveShadow = true;
+    this.ground.renderOrder = Layer.SHADOW;
+    this.object.add(this.sky, fill, this.sun, this.sun.target, this.ground);
+    this.follow({ x: 0, y: 0, z: 0 } as Vector3);
+  }
+
+  set shadows(on: boolean) {
+    this.sun.castShadow = on;
+    this.ground.visible = on;
+  }
+
+  set theme(theme: "dark" | "light") {
+    this.shade.opacity = theme === "dark" ? 0.42 : 0.26;
+  }
+
+  /** Keep the shadow under what is looked at. */
+  follow(center: Pick<Vector3, "x" | "y">): void {
+    this.sun.target.position.set(center.x, center.y, 0);
+    this.sun.position.set(center.x + SUN_OFFSET[0], center.y + SUN_OFFSET[1], SUN_OFFSET[2]);
+    this.ground.position.set(center.x, center.y, 0.004);
+  }
+}

@@ -1,0 +1,177 @@
+// The cameras and how the mouse moves them: RViz's orbit view and its top-down orthographic view.
+import {
+  MOUSE,
+  OrthographicCamera,
+  PerspectiveCamera,
+  TOUCH,
+  Vector3,
+  type Camera,
+} from "three";
+import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
+
+export type ViewKind = "orbit" | "top";
+
+export interface ViewState {
+  kind: ViewKind;
+  focus: [number, number, number];
+  distance: number;
+  /** Rotation about the vertical and height above the horizon, in rad. */
+  yaw: number;
+  pitch: number;
+}
+
+export const HOME: ViewState = { kind: "orbit", focus: [0, 0, 0], distance: 5.6, yaw: -2.3, pitch: 0.72 };
+
+const FIELD_OF_VIEW_DEG = 45;
+const NEAR_M = 0.02;
+const FAR_M = 2000;
+
+export class View {
+  onChange: () => void = () => undefined;
+  /** Whether the user has moved the view with the mouse. */
+  isMoved = false;
+  private readonly perspective = new PerspectiveCamera(FIELD_OF_VIEW_DEG, 1, NEAR_M, FAR_M);
+  private readonly orthographic = new OrthographicCamera(-1, 1, 1, -1, -FAR_M, FAR_M);
+  private readonly orbit: OrbitControls;
+  private readonly top: OrbitControls;
+  private kindNow: ViewKind = "orbit";
+  private leftIsFree = true;
+  private aspect = 1;
+
+  constructor(element: HTMLElement) {
+    for (const camera of [this.perspective, this.orthographic]) {
+      camera.up.set(0, 0, 1);
+    }
+    this.orbit = new OrbitControls(this.perspective, element);
+    this.orbit.maxPolarAngle = Math.PI * 0.495;
+    this.orbit.minDistance = 0.15;
+    this.orbit.maxDistance = FAR_M / 4;
+    this.orbit.touches = { ONE: TOUCH.ROTATE, TWO: TOUCH.DOLLY_PAN };
+    this.top = new OrbitControls(this.orthographic, element);
+    [this.top.minPolarAngle, this.top.maxPolarAngle] = [0, 0];
+    [this.top.minZoom, this.top.maxZoom] = [0.002, 20];
+    this.top.touches = { ONE: TOUCH.PAN, TWO: TOUCH.DOLLY_ROTATE };
+    for (const controls of [this.orbit, this.top]) {
+      controls.enableDamping = true;
+      controls.dampingFactor = 0.18;
+      controls.zoomToCursor = true;
+      controls.zoomSpeed = 1.2;
+      controls.addEventListener("change", () => this.onChange());
+      controls.addEventListener("start", () => (this.isMoved = true));
+    }
+    this.restore(HOME);
+  }
+
+  get kind(): ViewKind {
+    return this.kindNow;
+  }
+
+  get camera(): Camera & { updateProjectionMatrix(): void } {
+    return this.kindNow === "orbit" ? this.perspective : this.orthographic;
+  }
+
+  get focus(): Vector3 {
+    return this.controls.target;
+  }
+
+  /** How far one sees around the focus, in metres. */
+  get reach(): number {
+    return this.kindNow === "orbit" ? this.perspective.position.distanceTo(this.orbit.target) : 1 / this.orthographic.zoom;
+  }
+
+  /** Metres that one pixel spans at a point. */
+  metresPerPixel(at: Vector3, height: number): number {
+    if (this.kindNow === "top") {
+      return 2 / this.orthographic.zoom / height;
+    }
+    const depth = at.clone().sub(this.perspective.position).dot(this.perspective.getWorldDirection(new Vector3()));
+    return (2 * Math.max(NEAR_M, depth) * Math.tan((FIELD_OF_VIEW_DEG * Math.PI) / 360)) / height;
+  }
+
+  resize(width: number, height: number): void {
+    this.aspect = width / Math.max(1, height);
+    this.perspective.aspect = this.aspect;
+    this.perspective.updateProjectionMatrix();
+    [this.orthographic.left, this.orthographic.right] = [-this.aspect, this.aspect];
+    this.orthographic.updateProjectionMatrix();
+  }
+
+  /** Let a tool have the left button, or give it back to the camera. */
+  set leftButton(moves: boolean) {
+    this.leftIsFree = moves;
+    this.applyButtons();
+  }
+
+  switchTo(kind: ViewKind): void {
+    if (kind !== this.kindNow) {
+      this.restore({ ...this.state(), kind });
+    }
+  }
+
+  /** Move the view along with something that moves. */
+  shift(by: Vector3): void {
+    this.focus.add(by);
+    this.camera.position.add(by);
+  }
+
+  lookAt(point: Vector3): void {
+    this.shift(point.clone().sub(this.focus));
+    this.onChange();
+  }
+
+  state(): ViewState {
+    const { x, y, z } = this.focus;
+    const orbit = this.kindNow === "orbit";
+    return {
+      kind: this.kindNow,
+      focus: [x, y, z],
+      distance: this.reach * (orbit ? 1 : 1 / Math.tan((FIELD_OF_VIEW_DEG * Math.PI) / 360)),
+      yaw: orbit ? this.orbit.getAzimuthalAngle() - Math.PI / 2 : this.lastYaw,
+      pitch: orbit ? Math.PI / 2 - this.orbit.getPolarAngle() : this.lastPitch,
+    };
+  }
+
+  restore(state: ViewState): void {
+    this.kindNow = state.kind;
+    [this.lastYaw, this.lastPitch] = [state.yaw, state.pitch];
+    this.controls.target.fromArray(state.focus);
+    if (state.kind === "orbit") {
+      const level = Math.cos(state.pitch) * state.distance;
+      this.perspective.position
+        .set(Math.cos(state.yaw) * level, Math.sin(state.yaw) * level, Math.sin(state.pitch) * state.distance)
+        .add(this.orbit.target);
+    } else {
+      this.orthographic.zoom = 1 / (state.distance * Math.tan((FIELD_OF_VIEW_DEG * Math.PI) / 360));
+      this.orthographic.position.copy(this.top.target).setZ(this.top.target.z + 10);
+      this.orthographic.updateProjectionMatrix();
+    }
+    this.applyButtons();
+    this.controls.update();
+    this.onChange();
+  }
+
+  /** Let the damping go on; return whether the view still moves. */
+  update(): boolean {
+    return this.controls.update();
+  }
+
+  dispose(): void {
+    this.orbit.dispose();
+    this.top.dispose();
+  }
+
+  private lastYaw = HOME.yaw;
+  private lastPitch = HOME.pitch;
+
+  private get controls(): OrbitControls {
+    return this.kindNow === "orbit" ? this.orbit : this.top;
+  }
+
+  private applyButtons(): void {
+    const orbit = this.kindNow === "orbit";
+    this.orbit.enabled = orbit;
+    this.top.enabled = !orbit;
+    const left = this.leftIsFree ? (orbit ? MOUSE.ROTATE : MOUSE.PAN) : null;
+    this.controls.mouseButtons = { LEFT: left, MIDDLE: MOUSE.PAN, RIGHT: MOUSE.DOLLY };
+  }
+}

@@ -1,0 +1,122 @@
+// The canvas: renders the scene when something has changed, and no more finely than the machine can.
+import { Color, Object3D, Raycaster, Scene, Vector2, Vector3, WebGLRenderer, PCFShadowMap } from "three";
+import { beginsFine } from "./graphics";
+import { Lights } from "./lights";
+import { Quality } from "./quality";
+import { View } from "./view";
+
+Object3D.DEFAULT_UP.set(0, 0, 1);
+
+export class Viewport {
+  readonly scene = new Scene();
+  readonly view: View;
+  readonly lights = new Lights();
+  readonly canvas: HTMLCanvasElement;
+  readonly quality = new Quality();
+  private readonly renderer: WebGLRenderer;
+  private readonly raycaster = new Raycaster();
+  private dirty = true;
+  private size = new Vector2(1, 1);
+
+  constructor(container: HTMLElement) {
+    // Transparent: the background is the style sheet's gradient, which costs nothing here.
+    this.renderer = new WebGLRenderer({ antialias: beginsFine, alpha: true, powerPreference: "high-performance" });
+    this.renderer.setClearColor(new Color(0), 0);
+    this.renderer.shadowMap.type = PCFShadowMap;
+    this.canvas = this.renderer.domElement;
+    this.canvas.tabIndex = 0;
+    container.append(this.canvas);
+    this.view = new View(this.canvas);
+    this.view.onChange = () => this.invalidate();
+    this.scene.add(this.lights.object);
+    this.applyQuality();
+  }
+
+  get width(): number {
+    return this.size.x;
+  }
+
+  get height(): number {
+    return this.size.y;
+  }
+
+  /** Something looks different now. */
+  invalidate = (): void => {
+    this.dirty = true;
+  };
+
+  resize(width: number, height: number): void {
+    if (width < 1 || height < 1 || (width === this.size.x && height === this.size.y)) {
+      return;
+    }
+    this.size.set(width, height);
+    this.renderer.setSize(width, height);
+    this.view.resize(width, height);
+    // At once: a canvas that was resized is empty until it is drawn.
+    this.render();
+  }
+
+  /** Draw if anything changed; `page` is the page's clock in seconds. */
+  frame(page: number): void {
+    if (this.view.update()) {
+      this.dirty = true;
+    }
+    if (this.dirty && this.quality.isDue(page)) {
+      if (this.quality.judge(page)) {
+        this.applyQuality();
+      }
+      this.render();
+    }
+  }
+
+  /** Where a point of the scene is on the canvas, in pixels from its upper left corner. */
+  project(point: Vector3): { x: number; y: number } {
+    const at = point.clone().project(this.view.camera);
+    return { x: ((at.x + 1) / 2) * this.size.x, y: ((1 - at.y) / 2) * this.size.y };
+  }
+
+  /** Where the ray through a pixel meets the ground. */
+  groundAt(x: number, y: number): Vector3 | undefined {
+    const { origin, direction } = this.rayThrough(x, y);
+    const along = -origin.z / direction.z;
+    // Beyond the horizon or behind the camera there is no ground.
+    return along > 0 && along < 1e4 ? origin.clone().addScaledVector(direction, along) : undefined;
+  }
+
+  /** The nearest surface under a pixel, else the ground. */
+  surfaceAt(x: number, y: number): Vector3 | undefined {
+    this.rayThrough(x, y);
+    const pickable: Object3D[] = [];
+    this.scene.traverseVisible((object) => {
+      if (object.userData.pickable) {
+        pickable.push(object);
+      }
+    });
+    return this.raycaster.intersectObjects(pickable, false)[0]?.point ?? this.groundAt(x, y);
+  }
+
+  dispose(): void {
+    this.view.dispose();
+    this.renderer.dispose();
+    this.canvas.remove();
+  }
+
+  private rayThrough(x: number, y: number): Raycaster["ray"] {
+    const at = new Vector2((x / this.size.x) * 2 - 1, 1 - (y / this.size.y) * 2);
+    this.view.camera.updateMatrixWorld();
+    this.raycaster.setFromCamera(at, this.view.camera);
+    return this.raycaster.ray;
+  }
+
+  private applyQuality(): void {
+    this.renderer.setPixelRatio(this.quality.pixelRatio);
+    this.renderer.shadowMap.enabled = this.quality.shadows;
+    this.lights.shadows = this.quality.shadows;
+    this.dirty = true;
+  }
+
+  private render(): void {
+    this.dirty = false;
+    this.renderer.render(this.scene, this.view.camera);
+  }
+}

@@ -1,0 +1,194 @@
+// The 3-D view put together: canvas, displays, tools and the camera that may follow the robot.
+import { effect, signal } from "@preact/signals";
+import { Group, Vector3 } from "three";
+import { isRecord, isString, read, stored, write } from "../app/stored";
+import type { Studio } from "../app/studio";
+import { theme } from "../app/theme";
+import { DisplayManager } from "../displays/manager";
+import type { FrameInfo } from "../displays/display";
+import { Transform } from "../tf/buffer";
+import { Toolbox } from "../tools/toolbox";
+import { HOME, type ViewKind, type ViewState } from "./view";
+import { Viewport } from "./viewport";
+
+const VIEW_KEY = "view";
+const SAVE_EVERY_S = 2;
+/** What the shadow follows, and what "follow" follows, by preference. */
+const ROBOT_FRAMES = ["base_footprint", "base_link", "base"];
+
+/** The frame that the camera moves along with; empty: none. */
+export const followed = stored("follow", "", isString);
+
+export class World {
+  readonly viewport: Viewport;
+  readonly toolbox: Toolbox;
+  readonly viewKind = signal<ViewKind>("orbit");
+  private readonly content = new Group();
+  private readonly overlay = new Group();
+  private readonly manager: DisplayManager;
+  private readonly stops: (() => void)[] = [];
+  private readonly followedAt = new Vector3();
+  private followedNow = "";
+  /** The fixed frame in which the view found the robot by itself. */
+  private foundIn = "";
+  private savedAt = 0;
+  private savedView = "";
+
+  constructor(
+    container: HTMLElement,
+    private readonly studio: Studio,
+    visible: () => boolean,
+  ) {
+    this.viewport = new Viewport(container);
+    const { viewport } = this;
+    viewport.scene.add(this.content, this.overlay);
+    const kept = read<ViewState | undefined>(VIEW_KEY, undefined, isViewState);
+    viewport.view.restore(kept ?? HOME);
+    viewport.view.isMoved = kept !== undefined;
+    this.viewKind.value = viewport.view.kind;
+    this.manager = new DisplayManager(
+      studio.displays,
+      {
+        session: studio.session,
+        tf: studio.tf,
+        assets: studio.assets,
+        theme: () => theme.value,
+        invalidate: viewport.invalidate,
+      },
+      this.content,
+    );
+    this.toolbox = new Toolbox(viewport, {
+      overlay: this.overlay,
+      fixedFrame: () => studio.fixedFrame.current.value,
+      now: () => studio.now(),
+      publish: (topic, type, message) => studio.session.publish(topic, type, message),
+      focusOn: (point) => viewport.view.lookAt(point),
+      invalidate: viewport.invalidate,
+    });
+    const observer = new ResizeObserver(() => viewport.resize(container.clientWidth, container.clientHeight));
+    observer.observe(container);
+    const reset = () => this.manager.reset();
+    studio.onReset.add(reset);
+    this.stops.push(
+      () => observer.disconnect(),
+      () => studio.onReset.delete(reset),
+      effect(() => {
+        viewport.lights.theme = theme.value;
+        viewport.invalidate();
+      }),
+      studio.onFrame((page) => {
+        if (visible()) {
+          this.frame(page);
+        }
+      }),
+    );
+  }
+
+  switchView(kind: ViewKind): void {
+    this.viewport.view.switchTo(kind);
+    this.viewKind.value = kind;
+  }
+
+  /** Look at the robot, or at the origin where there is none, as at the beginning. */
+  home(): void {
+    const at = this.robotAt();
+    this.viewport.view.restore({ ...HOME, kind: this.viewKind.value, focus: at ? [at.x, at.y, 0] : [0, 0, 0] });
+  }
+
+  follow(frame: string): void {
+    followed.value = frame;
+    if (frame) {
+      const pose = this.poseOf(frame);
+      if (pose) {
+        this.viewport.view.lookAt(pose.position.clone().setZ(this.viewport.view.focus.z));
+      }
+    }
+  }
+
+  /** The robot's own frame, where TF has one. */
+  robotFrame(): string | undefined {
+    return ROBOT_FRAMES.find((frame) => this.studio.tf.has(frame));
+  }
+
+  /** Where a frame is drawn at present, in the fixed frame. */
+  poseOf(frame: string): Transform | undefined {
+    const pose = new Transform();
+    const fixed = this.studio.fixedFrame.current.value;
+    return this.studio.tf.lookup(fixed, frame, this.drawingTime(), pose, { clamp: true }) ? pose : undefined;
+  }
+
+  dispose(): void {
+    for (const stop of this.stops) {
+      stop();
+    }
+    this.toolbox.dispose();
+    this.manager.dispose();
+    this.viewport.dispose();
+  }
+
+  private frame(page: number): void {
+    const info: FrameInfo = {
+      fixed: this.studio.fixedFrame.current.value,
+      time: this.drawingTime(),
+      page,
+      view: this.viewport.view,
+      height: this.viewport.height,
+    };
+    this.manager.update(info);
+    this.followRobot();
+    this.viewport.frame(page);
+    this.keepView(page);
+  }
+
+  private drawingTime(): number | "latest" {
+    return this.studio.clock.drawingTime(performance.now() / 1000) ?? "latest";
+  }
+
+  private robotAt(): Vector3 | undefined {
+    const frame = this.robotFrame();
+    return frame === undefined ? undefined : this.poseOf(frame)?.position;
+  }
+
+  private followRobot(): void {
+    const robot = this.robotAt();
+    if (robot) {
+      this.viewport.lights.follow(robot);
+      const fixed = this.studio.fixedFrame.current.value;
+      if (this.foundIn !== fixed && !this.viewport.view.isMoved) {
+        this.foundIn = fixed;
+        this.home();
+      }
+    }
+    const frame = followed.value;
+    const at = frame ? this.poseOf(frame)?.position : undefined;
+    if (at && this.followedNow === frame) {
+      this.viewport.view.shift(at.clone().sub(this.followedAt).setZ(0));
+    }
+    this.followedNow = at ? frame : "";
+    if (at) {
+      this.followedAt.copy(at);
+    }
+  }
+
+  private keepView(page: number): void {
+    if (page - this.savedAt > SAVE_EVERY_S) {
+      this.savedAt = page;
+      const view = this.viewport.view.state();
+      const text = JSON.stringify(view);
+      if (text !== this.savedView && this.viewport.view.isMoved) {
+        this.savedView = text;
+        write(VIEW_KEY, view);
+      }
+    }
+  }
+}
+
+function isViewState(value: unknown): value is ViewState {
+  return (
+    isRecord(value) &&
+    (value.kind === "orbit" || value.kind === "top") &&
+    Array.isArray(value.focus) &&
+    value.focus.length === 3 &&
+    [...value.focus, value.distance, value.yaw, value.pitch].every((each) => Number.isFinite(each))
+  );
+}

@@ -1,0 +1,89 @@
+// Which tool is in hand, and what the mouse does with it.
+import { signal } from "@preact/signals";
+import type { Viewport } from "../scene/viewport";
+import { MOVE_CAMERA, TOOLS } from "./registry";
+import type { Pointer, Tool, ToolContext, ToolType } from "./tool";
+
+export class Toolbox {
+  readonly active = signal<ToolType>(MOVE_CAMERA);
+  /** What the tool has to say at the moment. */
+  readonly saying = signal("");
+  private tool: Tool | undefined;
+  private pressed = false;
+  private readonly listening = new AbortController();
+
+  constructor(
+    private readonly viewport: Viewport,
+    private readonly context: Omit<ToolContext, "say" | "finish">,
+  ) {
+    const { signal: until } = this.listening;
+    const { canvas } = viewport;
+    canvas.addEventListener("pointerdown", (event) => this.down(event), { signal: until });
+    canvas.addEventListener("pointermove", (event) => this.move(event), { signal: until });
+    canvas.addEventListener("pointerup", (event) => this.up(event), { signal: until });
+    canvas.addEventListener("pointercancel", () => (this.pressed = false), { signal: until });
+    canvas.addEventListener("contextmenu", (event) => event.preventDefault(), { signal: until });
+  }
+
+  take(type: ToolType): void {
+    this.tool?.dispose();
+    this.tool = type.create?.({
+      ...this.context,
+      say: (text) => (this.saying.value = text),
+      finish: () => this.take(MOVE_CAMERA),
+    });
+    this.pressed = false;
+    this.active.value = type;
+    this.saying.value = "";
+    this.viewport.view.leftButton = this.tool === undefined;
+    this.viewport.canvas.style.cursor = this.tool ? "crosshair" : "";
+    this.viewport.invalidate();
+  }
+
+  takeById(id: string): void {
+    const type = TOOLS.find((each) => each.id === id);
+    if (type) {
+      this.take(type);
+    }
+  }
+
+  /** Take the tool of a key; false where there is none. */
+  takeByKey(key: string): boolean {
+    const type = key === "Escape" ? MOVE_CAMERA : TOOLS.find((each) => each.key === key);
+    if (type) {
+      this.take(type);
+    }
+    return type !== undefined;
+  }
+
+  dispose(): void {
+    this.tool?.dispose();
+    this.listening.abort();
+  }
+
+  private down(event: PointerEvent): void {
+    this.viewport.canvas.focus({ preventScroll: true });
+    if (this.tool && event.button === 0) {
+      this.viewport.canvas.setPointerCapture(event.pointerId);
+      this.pressed = true;
+      this.tool.pressed?.(this.pointer(event));
+    }
+  }
+
+  private move(event: PointerEvent): void {
+    this.tool?.moved?.(this.pointer(event), this.pressed);
+  }
+
+  private up(event: PointerEvent): void {
+    if (this.tool && event.button === 0 && this.pressed) {
+      this.pressed = false;
+      this.tool.released?.(this.pointer(event));
+    }
+  }
+
+  private pointer(event: PointerEvent): Pointer {
+    const box = this.viewport.canvas.getBoundingClientRect();
+    const [x, y] = [event.clientX - box.left, event.clientY - box.top];
+    return { x, y, ground: this.viewport.groundAt(x, y), surface: () => this.viewport.surfaceAt(x, y) };
+  }
+}

@@ -1,0 +1,6 @@
+// How the page's modules are tested.
+import { defineConfig } from "vitest/config";
+
+export default defineConfig({
+  test: { environment: "node", include: ["src/**/*.test.ts"] },
+});

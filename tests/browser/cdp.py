@@ -1,0 +1,256 @@
+"""A small driver for Chromium over the DevTools protocol, since Playwright slows pages with WebSockets."""
+
+import asyncio
+import base64
+import contextlib
+import json
+import os
+import shutil
+import tempfile
+import threading
+from collections.abc import Coroutine
+from pathlib import Path
+from typing import Any, TypeVar
+
+import aiohttp
+
+T = TypeVar("T")
+
+FLAGS = (
+    "--headless=new",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-background-timer-throttling",
+    "--disable-renderer-backgrounding",
+    "--disable-component-update",
+    "--disable-extensions",
+    "--disable-quic",
+    "--disable-sync",
+    "--disable-gpu",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+    "--hide-scrollbars",
+    "--mute-audio",
+    "--remote-debugging-port=0",
+    "--remote-allow-origins=*",
+)
+START_S = 30
+ANSWER_S = 30
+
+
+def find_chromium() -> str | None:
+    """The browser to drive: `DAIDALOS_CHROMIUM`, else what is on the path."""
+    named = os.environ.get("DAIDALOS_CHROMIUM")
+    candidates = [named] if named else ["chromium", "chromium-browser", "google-chrome", "chrome"]
+    return next((found for name in candidates if (found := shutil.which(name))), None)
+
+
+class PageError(Exception):
+    """The page threw, or did not become what was waited for."""
+
+
+class Chromium:
+    """One browser with one page; all methods may be called from an ordinary test.
+
+    Parameters
+    ----------
+    width, height
+        Size of the page in CSS pixels.
+    """
+
+    def __init__(self, width: int = 1440, height: int = 900) -> None:
+        self.errors: list[str] = []
+        self._size = (width, height)
+        self._numbers = 0
+        self._answers: dict[int, asyncio.Future[dict[str, Any]]] = {}
+        self._loop = asyncio.new_event_loop()
+        self._thread = threading.Thread(target=self._loop.run_forever, name="cdp", daemon=True)
+        self._thread.start()
+        self._profile = tempfile.mkdtemp(prefix="chromium-")
+        self._run(self._launch())
+
+    def close(self) -> None:
+        """End the browser and remove its profile."""
+        self._run(self._shut())
+        self._loop.call_soon_threadsafe(self._loop.stop)
+        self._thread.join()
+        self._loop.close()
+        shutil.rmtree(self._profile, ignore_errors=True)
+
+    def __enter__(self) -> "Chromium":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def open(self, url: str) -> None:
+        """Go to an address and wait until the document is there."""
+        self._run(self._command("Page.navigate", url=url))
+        self.wait_for("document.readyState === 'complete'")
+
+    def resize(self, width: int, height: int) -> None:
+        """Give the page another size."""
+        self._size = (width, height)
+        self._run(self._set_size())
+
+    def evaluate(self, expression: str) -> Any:
+        """Value of a JavaScript expression, awaited where it is a promise."""
+        answer = self._run(
+            self._command("Runtime.evaluate", expression=expression, returnByValue=True, awaitPromise=True)
+        )
+        if "exceptionDetails" in answer:
+            details = answer["exceptionDetails"]
+            raise PageError(details.get("exception", {}).get("description") or details["text"])
+        return answer["result"].get("value")
+
+    def wait_for(self, condition: str, timeout: float = 30) -> Any:
+        """Wait in the page until an expression is true, and return its value."""
+        limit = int(1000 * timeout)
+        value = self.evaluate(
+            f"""new Promise((resolve) => {{
+                const until = performance.now() + {limit};
+                const look = () => {{
+                    let value;
+                    try {{ value = ({condition}); }} catch {{ value = undefined; }}
+                    if (value || performance.now() > until) resolve(value ?? null);
+                    else setTimeout(look, 30);
+                }};
+                look();
+            }})"""
+        )
+        if not value:
+            raise PageError(f"not true within {timeout} s: {condition}; errors: {self.errors}")
+        return value
+
+    def press(self, key: str) -> None:
+        """Press and release a key."""
+        text = {"text": key} if len(key) == 1 else {}
+        self._run(self._command("Input.dispatchKeyEvent", type="keyDown", key=key, **text))
+        self._run(self._command("Input.dispatchKeyEvent", type="keyUp", key=key))
+
+    def click(self, x: float, y: float) -> None:
+        """Press and release the left button at a place in the window."""
+        self.drag([(x, y)])
+
+    def click_on(self, selector: str) -> None:
+        """Click the middle of an element."""
+        box = self.wait_for(
+            f"(() => {{ const e = document.querySelector({selector!r});"
+            " e?.scrollIntoView({ block: 'nearest' });"
+            " const b = e?.getBoundingClientRect();"
+            " return b && b.width && { x: b.x + b.width / 2, y: b.y + b.height / 2 }; })()"
+        )
+        self.click(box["x"], box["y"])
+
+    def drag(self, points: list[tuple[float, float]], button: str = "left") -> None:
+        """Press at the first point, move through the others, release at the last."""
+        mouse = {"button": button, "clickCount": 1}
+        (x, y), *others = points
+        self._mouse("mouseMoved", x, y)
+        self._mouse("mousePressed", x, y, buttons=1, **mouse)
+        for x, y in others:
+            self._mouse("mouseMoved", x, y, buttons=1, button=button)
+        self._mouse("mouseReleased", x, y, **mouse)
+
+    def wheel(self, x: float, y: float, by: float) -> None:
+        """Turn the wheel at a place in the window."""
+        self._mouse("mouseWheel", x, y, deltaX=0, deltaY=by)
+
+    def screenshot(self, path: Path | str) -> None:
+        """Write a picture of the page as PNG."""
+        answer = self._run(self._command("Page.captureScreenshot", format="png"))
+        Path(path).write_bytes(base64.b64decode(answer["data"]))
+
+    # Inside ------------------------------------------------------------------------------------------
+
+    def _mouse(self, kind: str, x: float, y: float, **more: Any) -> None:
+        self._run(self._command("Input.dispatchMouseEvent", type=kind, x=x, y=y, **more))
+
+    def _run(self, work: Coroutine[Any, Any, T]) -> T:
+        return asyncio.run_coroutine_threadsafe(work, self._loop).result()
+
+    async def _launch(self) -> None:
+        browser = find_chromium()
+        assert browser is not None, "no Chromium found"
+        sandbox = ["--no-sandbox"] if hasattr(os, "geteuid") and os.geteuid() == 0 else []
+        self._process = await asyncio.create_subprocess_exec(
+            browser,
+            *FLAGS,
+            *sandbox,
+            f"--user-data-dir={self._profile}",
+            "about:blank",
+            stdout=asyncio.subprocess.DEVNULL,
+            stderr=asyncio.subprocess.PIPE,
+        )
+        port = await asyncio.wait_for(self._debugging_port(), START_S)
+        self._http = aiohttp.ClientSession()
+        async with self._http.get(f"http://127.0.0.1:{port}/json/list") as response:
+            pages = [entry for entry in await response.json() if entry["type"] == "page"]
+        self._socket = await self._http.ws_connect(pages[0]["webSocketDebuggerUrl"], max_msg_size=0)
+        self._reader = asyncio.create_task(self._read())
+        for domain in ("Page", "Runtime", "Log"):
+            await self._command(f"{domain}.enable")
+        await self._set_size()
+
+    async def _debugging_port(self) -> int:
+        assert self._process.stderr is not None
+        lines = []
+        while line := (await self._process.stderr.readline()).decode(errors="replace"):
+            lines.append(line)
+            if "DevTools listening on" in line:
+                self._drain = asyncio.create_task(self._process.stderr.read())
+                return int(line.split("127.0.0.1:")[1].split("/")[0])
+        raise PageError("Chromium did not start: " + "".join(lines[-5:]))
+
+    async def _set_size(self) -> None:
+        width, height = self._size
+        await self._command(
+            "Emulation.setDeviceMetricsOverride",
+            width=width,
+            height=height,
+            deviceScaleFactor=1,
+            mobile=False,
+        )
+
+    async def _command(self, method: str, **parameters: Any) -> dict[str, Any]:
+        self._numbers += 1
+        number = self._numbers
+        self._answers[number] = asyncio.get_running_loop().create_future()
+        await self._socket.send_json({"id": number, "method": method, "params": parameters})
+        return await asyncio.wait_for(self._answers[number], ANSWER_S + 60)
+
+    async def _read(self) -> None:
+        async for message in self._socket:
+            content = json.loads(message.data)
+            if "id" in content:
+                answer = self._answers.pop(content["id"])
+                if "error" in content:
+                    answer.set_exception(PageError(content["error"]["message"]))
+                else:
+                    answer.set_result(content["result"])
+            else:
+                self._note(content["method"], content["params"])
+
+    def _note(self, method: str, parameters: dict[str, Any]) -> None:
+        if method == "Runtime.exceptionThrown":
+            details = parameters["exceptionDetails"]
+            self.errors.append(details.get("exception", {}).get("description") or details["text"])
+        elif method == "Runtime.consoleAPICalled" and parameters["type"] in ("error", "warning", "assert"):
+            self.errors.append(
+                " ".join(str(each.get("value", each.get("description"))) for each in parameters["args"])
+            )
+        elif method == "Log.entryAdded" and parameters["entry"]["level"] == "error":
+            entry = parameters["entry"]
+            self.errors.append(f"{entry['text']} {entry.get('url', '')}")
+
+    async def _shut(self) -> None:
+        with contextlib.suppress(Exception):
+            await asyncio.wait_for(self._command("Browser.close"), 5)
+        self._reader.cancel()
+        await self._http.close()
+        try:
+            await asyncio.wait_for(self._process.wait(), 5)
+        except TimeoutError:
+            self._process.kill()
+            await self._process.wait()
+        self._drain.cancel()
