@@ -1,0 +1,257 @@
+"""AMCL: adaptive Monte Carlo localization in a known map."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daidalos.localization.config import AmclConfig
+from daidalos.localization.errors import LocalizationError
+from daidalos.localization.likelihood_map import LikelihoodMap
+from daidalos.localization.motion_models.differential import DifferentialMotionModel
+from daidalos.localization.motion_models.motion_model import MotionModel
+from daidalos.localization.motion_models.omnidirectional import OmniMotionModel
+from daidalos.localization.particles import (
+    bins_of,
+    heaviest_cluster,
+    kld_bound,
+    low_variance_indices,
+    mean_and_covariance,
+)
+from daidalos.localization.sensor_models.beam import BeamModel
+from daidalos.localization.sensor_models.likelihood_field import (
+    LikelihoodFieldModel,
+    LikelihoodFieldProbModel,
+)
+from daidalos.localization.sensor_models.sensor_model import Beams, SensorModel
+from daidalos.mapping.grid import OccupancyGrid
+from daidalos.mapping.pose2 import between, compose, inverse, wrap
+from daidalos.mapping.scan import LaserScanData
+
+Array = NDArray[np.float64]
+
+MOTION_MODELS: dict[str, type[DifferentialMotionModel] | type[OmniMotionModel]] = {
+    "nav2_amcl::DifferentialMotionModel": DifferentialMotionModel,
+    "differential": DifferentialMotionModel,
+    "nav2_amcl::OmniMotionModel": OmniMotionModel,
+    "omnidirectional": OmniMotionModel,
+}
+SENSOR_MODELS: dict[str, type[LikelihoodFieldModel] | type[LikelihoodFieldProbModel] | type[BeamModel]] = {
+    "likelihood_field": LikelihoodFieldModel,
+    "likelihood_field_prob": LikelihoodFieldProbModel,
+    "beam": BeamModel,
+}
+DEFAULT_COVARIANCE = np.diag([0.25, 0.25, (math.pi / 12.0) ** 2])
+"""Spread of the first particles where no initial pose is given."""
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """What the filter believes.
+
+    Attributes
+    ----------
+    pose : ndarray, shape (3,)
+        Pose (x, y, yaw) of the base in the map.
+    covariance : ndarray, shape (3, 3)
+        Of that pose, at the last scan that was used.
+    particles : ndarray, shape (n, 3)
+        All poses that are thought possible, at the last scan that was used.
+    weights : ndarray, shape (n,)
+        Their weights; they sum up to 1.
+    map_to_odom : ndarray, shape (3,)
+        Pose of odometry's frame in the map.
+    updated : bool
+        Whether the scan was used, rather than odometry alone.
+    """
+
+    pose: Array
+    covariance: Array
+    particles: Array
+    weights: Array
+    map_to_odom: Array
+    updated: bool
+
+
+class Amcl:
+    """A particle filter over the poses in a map.
+
+    Particles move with odometry, are weighed by scans and drawn anew by their weights; as many as KLD
+    sampling asks for. When scans fit worse than they did, random particles are added until the robot is found
+    again.
+
+    Parameters
+    ----------
+    config : AmclConfig
+        Parameters.
+    grid : OccupancyGrid
+        The map.
+    seed : int
+        Of the random numbers.
+
+    Raises
+    ------
+    LocalizationError
+        There is no such model, or the map can not be used.
+    """
+
+    def __init__(self, config: AmclConfig, grid: OccupancyGrid, seed: int = 0) -> None:
+        self.config = config
+        self._generator = np.random.default_rng(seed)
+        motion = _choose("robot_model_type", MOTION_MODELS, config.robot_model_type)
+        sensor = _choose("laser_model_type", SENSOR_MODELS, config.laser_model_type)
+        self._motion: MotionModel = motion(config)
+        self._sensor: SensorModel = sensor(config)
+        self._world = LikelihoodMap(grid, config.laser_likelihood_max_dist)
+        self._particles: Array = np.zeros((1, 3))
+        self._weights: Array = np.ones(1)
+        self._odom: Array | None = None
+        self._map_to_odom: Array = np.zeros(3)
+        self.initialise(np.zeros(3), DEFAULT_COVARIANCE)
+
+    def set_map(self, grid: OccupancyGrid) -> None:
+        """Go on in another map of the same frame.
+
+        Raises
+        ------
+        LocalizationError
+            The map can not be used; the last one stays.
+        """
+        self._world = LikelihoodMap(grid, self.config.laser_likelihood_max_dist)
+
+    def initialise(self, pose: Array, covariance: Array) -> None:
+        """Begin around a pose.
+
+        Parameters
+        ----------
+        pose : ndarray, shape (3,)
+            Pose (x, y, yaw) in the map.
+        covariance : ndarray, shape (3, 3)
+            How sure that is.
+
+        Raises
+        ------
+        LocalizationError
+            Either is not finite.
+        """
+        if not (np.isfinite(pose).all() and np.isfinite(covariance).all()):
+            raise LocalizationError("an initial pose and its covariance must be finite")
+        count = self.config.max_particles
+        drawn = self._generator.multivariate_normal(pose, covariance, count, method="eigh")
+        drawn[:, 2] = wrap(drawn[:, 2])
+        self._begin(drawn)
+
+    def global_localization(self) -> None:
+        """Begin without knowing anything: anywhere in the free space of the map."""
+        self._begin(self._world.draw_poses(self.config.max_particles, self._generator))
+
+    def request_nomotion_update(self) -> None:
+        """Use the next scan even if the robot has not moved."""
+        self._forced = True
+
+    def update(self, odom_pose: Array, scan: LaserScanData) -> Estimate:
+        """Take a scan, and where the robot was by odometry at its time.
+
+        Parameters
+        ----------
+        odom_pose : ndarray, shape (3,)
+            Pose (x, y, yaw) of the base in odometry's frame.
+        scan : LaserScanData
+            The scan, with the pose of its sensor.
+
+        Returns
+        -------
+        Estimate
+            Pose in the map; from odometry alone while the robot has hardly moved.
+        """
+        if self._odom is not None and not self._forced and not self._moved(odom_pose):
+            return self._estimate(odom_pose, updated=False)
+        if self._odom is not None:
+            self._particles = self._motion.sample(self._particles, self._odom, odom_pose, self._generator)
+        self._odom = odom_pose.copy()
+        self._forced = False
+        beams = Beams.of_scan(scan, self.config)
+        if beams.ranges.size:
+            self._weigh(beams)
+        self._look_closely(odom_pose)
+        return self._estimate(odom_pose, updated=True)
+
+    def _begin(self, particles: Array) -> None:
+        self._particles = particles
+        self._weights = np.full(particles.shape[0], 1.0 / particles.shape[0])
+        self._odom = None
+        self._forced = False
+        self._scans = 0
+        self._slow = self._fast = 0.0
+        self._mean, self._covariance = mean_and_covariance(particles, self._weights)
+        self._map_to_odom = np.zeros(3)
+
+    def _moved(self, odom_pose: Array) -> bool:
+        step = between(self._odom if self._odom is not None else odom_pose, odom_pose)
+        far = math.hypot(float(step[0]), float(step[1])) >= self.config.update_min_d
+        return far or abs(float(step[2])) >= self.config.update_min_a
+
+    def _weigh(self, beams: Beams) -> None:
+        """Weigh the particles by a scan, and draw them anew when it is time."""
+        likelihoods = self._sensor.likelihoods(self._particles, beams, self._world)
+        weights = self._weights * likelihoods
+        average = float(weights.sum())
+        if average > 0.0:
+            self._weights = weights / average
+        else:
+            self._weights = np.full(weights.size, 1.0 / weights.size)
+        self._follow_average(average)
+        self._scans += 1
+        if self._scans % self.config.resample_interval == 0:
+            self._resample()
+
+    def _follow_average(self, average: float) -> None:
+        """Keep the two averages of the likelihood, by whose ratio a lost robot is noticed."""
+        if self._slow == 0.0:
+            self._slow = self._fast = average
+            return
+        self._slow += self.config.recovery_alpha_slow * (average - self._slow)
+        self._fast += self.config.recovery_alpha_fast * (average - self._fast)
+
+    def _resample(self) -> None:
+        c = self.config
+        lost = self._share_of_random()
+        most = low_variance_indices(self._weights, c.max_particles, self._generator.random())
+        covered = np.unique(bins_of(self._particles[np.unique(most)])).size + round(lost * c.max_particles)
+        count = min(max(kld_bound(covered, c.pf_err, c.pf_z), c.min_particles), c.max_particles)
+        chosen = low_variance_indices(self._weights, count, self._generator.random())
+        drawn = self._particles[chosen]
+        strangers = self._generator.random(count) < lost
+        if strangers.any():
+            drawn[strangers] = self._world.draw_poses(int(strangers.sum()), self._generator)
+        self._particles = drawn
+        self._weights = np.full(count, 1.0 / count)
+
+    def _share_of_random(self) -> float:
+        """Share of particles to draw anywhere: by how much the fast average has fallen below the slow one."""
+        if self.config.recovery_alpha_slow == 0.0 or self._slow <= 0.0:
+            return 0.0
+        return max(0.0, 1.0 - self._fast / self._slow)
+
+    def _look_closely(self, odom_pose: Array) -> None:
+        """Take the pose from the heaviest cluster."""
+        members = heaviest_cluster(self._particles, self._weights)
+        self._mean, self._covariance = mean_and_covariance(self._particles[members], self._weights[members])
+        self._map_to_odom = compose(self._mean, inverse(odom_pose))
+
+    def _estimate(self, odom_pose: Array, *, updated: bool) -> Estimate:
+        return Estimate(
+            compose(self._map_to_odom, odom_pose),
+            self._covariance.copy(),
+            self._particles.copy(),
+            self._weights.copy(),
+            self._map_to_odom.copy(),
+            updated,
+        )
+
+
+def _choose(parameter: str, models: dict[str, type], name: str) -> type:
+    if name not in models:
+        raise LocalizationError(f"{parameter} must be one of {', '.join(models)}, not {name!r}")
+    return models[name]

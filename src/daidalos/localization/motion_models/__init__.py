@@ -1,0 +1,1 @@
+"""Where a robot may be after a motion that its odometry measured."""

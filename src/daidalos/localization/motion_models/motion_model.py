@@ -1,0 +1,31 @@
+"""The contract of a motion model."""
+
+from abc import ABC, abstractmethod
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+class MotionModel(ABC):
+    """Draws poses after a motion."""
+
+    @abstractmethod
+    def sample(self, particles: Array, before: Array, after: Array, generator: np.random.Generator) -> Array:
+        """Draw a pose for each particle.
+
+        Parameters
+        ----------
+        particles : ndarray, shape (n, 3)
+            Poses (x, y, yaw) before the motion.
+        before, after : ndarray, shape (3,)
+            Poses that odometry gave before and after it, in a frame of its own.
+        generator : numpy.random.Generator
+            Source of randomness.
+
+        Returns
+        -------
+        ndarray, shape (n, 3)
+            Poses after the motion.
+        """

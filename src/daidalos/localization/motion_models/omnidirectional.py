@@ -1,0 +1,39 @@
+"""Motion of a robot that drives in any direction."""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daidalos.localization.config import AmclConfig
+from daidalos.localization.motion_models.motion_model import MotionModel
+from daidalos.mapping.pose2 import between, wrap
+
+Array = NDArray[np.float64]
+
+
+class OmniMotionModel(MotionModel):
+    """A translation in the measured direction, one across it, and a turn, each with noise."""
+
+    def __init__(self, config: AmclConfig) -> None:
+        self.config = config
+
+    def sample(self, particles: Array, before: Array, after: Array, generator: np.random.Generator) -> Array:
+        """See `MotionModel.sample`."""
+        c = self.config
+        step = between(before, after)
+        distance, turn = math.hypot(float(step[0]), float(step[1])), float(step[2])
+        direction = particles[:, 2] + math.atan2(float(step[1]), float(step[0]))
+        noise = generator.standard_normal((3, particles.shape[0]))
+        along = distance + noise[0] * math.sqrt(c.alpha3 * distance**2 + c.alpha1 * turn**2)
+        across = noise[1] * math.sqrt(c.alpha1 * turn**2 + c.alpha5 * distance**2)
+        turned = turn + noise[2] * math.sqrt(c.alpha4 * turn**2 + c.alpha2 * distance**2)
+        cosine, sine = np.cos(direction), np.sin(direction)
+        return np.stack(
+            [
+                particles[:, 0] + along * cosine - across * sine,
+                particles[:, 1] + along * sine + across * cosine,
+                wrap(particles[:, 2] + turned),
+            ],
+            axis=-1,
+        )

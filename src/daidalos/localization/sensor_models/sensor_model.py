@@ -1,0 +1,80 @@
+"""The contract of a sensor model, and the beams it sees."""
+
+import math
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daidalos.localization.config import AmclConfig
+from daidalos.localization.likelihood_map import LikelihoodMap
+from daidalos.mapping.scan import LaserScanData
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Beams:
+    """Some beams of a scan.
+
+    Attributes
+    ----------
+    ranges : ndarray, shape (k,)
+        Distances [m]; the largest range where a beam met nothing.
+    angles : ndarray, shape (k,)
+        Directions [rad] in the sensor's frame.
+    max_range : float
+        Largest range [m].
+    sensor_pose : ndarray, shape (3,)
+        Pose of the sensor in the frame of the base.
+    """
+
+    ranges: Array
+    angles: Array
+    max_range: float
+    sensor_pose: Array
+
+    @classmethod
+    def of_scan(cls, scan: LaserScanData, config: AmclConfig) -> "Beams":
+        """Choose beams of a scan, spread evenly, without those that are no measurement."""
+        ranges = np.asarray(scan.ranges, dtype=np.float64)
+        count = min(config.max_beams, ranges.size)
+        chosen = np.unique(np.linspace(0, ranges.size - 1, count).astype(np.int64))
+        nearest = config.laser_min_range if config.laser_min_range > 0.0 else scan.range_min
+        farthest = min(scan.range_max, config.laser_max_range)
+        if config.laser_max_range <= 0.0:
+            farthest = scan.range_max
+        if not math.isfinite(farthest):
+            farthest = 1e3
+        picked = np.minimum(ranges[chosen], farthest)
+        valid = picked >= max(nearest, 1e-6)
+        return cls(
+            picked[valid],
+            scan.angle_min + scan.angle_increment * chosen[valid].astype(np.float64),
+            float(farthest),
+            np.array(scan.sensor_pose, dtype=np.float64),
+        )
+
+
+class SensorModel(ABC):
+    """Weighs poses by a scan."""
+
+    @abstractmethod
+    def likelihoods(self, particles: Array, beams: Beams, world: LikelihoodMap) -> Array:
+        """Judge poses.
+
+        Parameters
+        ----------
+        particles : ndarray, shape (n, 3)
+            Poses (x, y, yaw) of the base in the map's frame.
+        beams : Beams
+            The scan.
+        world : LikelihoodMap
+            The map.
+
+        Returns
+        -------
+        ndarray, shape (n,)
+            How likely the scan is at each pose, up to one factor for all.
+        """
