@@ -145,7 +145,8 @@ class LaunchContext:
 
     def would_handle_event(self, event: Event) -> bool:
         """Tell whether any handler is for this event."""
-        return any(handler.matches(event) for handler in self._event_handlers)
+        # Another thread may add or remove handlers meanwhile.
+        return any(handler.matches(event) for handler in tuple(self._event_handlers))
 
     def register_event_handler(self, event_handler: BaseEventHandler, append: bool = False) -> None:
         """Add an event handler before the others, or after them if `append`."""

@@ -1,0 +1,1 @@
+from .ready import ReadyToTest as ReadyToTest

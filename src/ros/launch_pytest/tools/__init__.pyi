@@ -1,0 +1,14 @@
+from . import process as process
+from .process import assert_output as assert_output
+from .process import assert_output_sync as assert_output_sync
+from .process import assert_stderr as assert_stderr
+from .process import assert_stderr_sync as assert_stderr_sync
+from .process import register_event_handler as register_event_handler
+from .process import wait_for_exit as wait_for_exit
+from .process import wait_for_exit_sync as wait_for_exit_sync
+from .process import wait_for_output as wait_for_output
+from .process import wait_for_output_sync as wait_for_output_sync
+from .process import wait_for_start as wait_for_start
+from .process import wait_for_start_sync as wait_for_start_sync
+from .process import wait_for_stderr as wait_for_stderr
+from .process import wait_for_stderr_sync as wait_for_stderr_sync

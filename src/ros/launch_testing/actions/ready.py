@@ -1,0 +1,26 @@
+"""The action that says that tests may begin."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from launch import LaunchContext, LaunchDescriptionEntity
+from launch.action import Action
+
+
+class ReadyToTest(Action):
+    """Tells whoever runs the tests that what was described before has been started."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.__callbacks: list[Callable[[], None]] = []
+
+    def _add_callback(self, callback: Callable[[], None]) -> None:
+        """Have a function called when the action is executed."""
+        self.__callbacks.append(callback)
+
+    def execute(self, context: LaunchContext) -> list[LaunchDescriptionEntity] | None:
+        """Call the functions that wait for this."""
+        for callback in self.__callbacks:
+            callback()
+        return None

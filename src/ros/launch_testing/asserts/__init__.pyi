@@ -1,0 +1,14 @@
+from ..util.proc_lookup import NO_CMD_ARGS as NO_CMD_ARGS
+from .assert_exit_codes import EXIT_FORCED as EXIT_FORCED
+from .assert_exit_codes import EXIT_OK as EXIT_OK
+from .assert_exit_codes import EXIT_SIGINT as EXIT_SIGINT
+from .assert_exit_codes import EXIT_SIGKILL as EXIT_SIGKILL
+from .assert_exit_codes import EXIT_SIGQUIT as EXIT_SIGQUIT
+from .assert_exit_codes import EXIT_SIGSEGV as EXIT_SIGSEGV
+from .assert_exit_codes import assertExitCodes as assertExitCodes
+from .assert_output import assertDefaultStream as assertDefaultStream
+from .assert_output import assertInStderr as assertInStderr
+from .assert_output import assertInStdout as assertInStdout
+from .assert_output import assertInStream as assertInStream
+from .assert_sequential_output import SequentialTextChecker as SequentialTextChecker
+from .assert_sequential_output import assertSequentialStdout as assertSequentialStdout

@@ -1,0 +1,1 @@
+from .stdout_ready_listener import StdoutReadyListener as StdoutReadyListener

@@ -1,0 +1,2 @@
+from . import hooks as hooks
+from . import hookspecs as hookspecs

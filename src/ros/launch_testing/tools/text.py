@@ -1,0 +1,115 @@
+"""Comparison of text with what was expected."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable
+from typing import Any
+
+Match = Callable[..., tuple[int, int] | None]
+
+
+def normalize_lineseps(lines: str | Iterable[str]) -> Any:
+    """Return a text, or lines, that end as they do on this kind of system in memory: with a newline only."""
+    if isinstance(lines, str):
+        return lines.replace("\r\n", "\n")
+    return [line.replace("\r\n", "\n") for line in lines]
+
+
+def build_text_match(expected_text: Any, *, strict: bool = False) -> Match:
+    """Return a function that finds what is expected in a text.
+
+    The function takes the text and where to begin, and returns the place, begin and end, or None.
+
+    Parameters
+    ----------
+    expected_text
+        A text, a regular expression, or several of these that follow one another.
+    strict
+        Whether the whole text must be it.
+    """
+    if isinstance(expected_text, str):
+        expected = normalize_lineseps(expected_text)
+
+        def find_text(actual: str, start: int = 0) -> tuple[int, int] | None:
+            actual = normalize_lineseps(actual)
+            if strict:
+                return (start, len(actual)) if actual[start:] == expected else None
+            place = actual.find(expected, start)
+            return None if place < 0 else (place, place + len(expected))
+
+        return find_text
+    if hasattr(expected_text, "search"):
+        return _build_pattern_match(expected_text, strict=strict)
+    return _build_sequence_match(list(expected_text), strict=strict)
+
+
+def _build_pattern_match(pattern: re.Pattern[str], *, strict: bool) -> Match:
+    def find_pattern(actual: str, start: int = 0) -> tuple[int, int] | None:
+        actual = normalize_lineseps(actual)
+        match = pattern.fullmatch(actual, start) if strict else pattern.search(actual, start)
+        return None if match is None else match.span()
+
+    return find_pattern
+
+
+def _build_sequence_match(items: list[Any], *, strict: bool) -> Match:
+    matches = [build_text_match(item) for item in items]
+
+    def find_sequence(actual: str, start: int = 0) -> tuple[int, int] | None:
+        actual = normalize_lineseps(actual)
+        begin: int | None = None
+        end = start
+        for match in matches:
+            place = match(actual, end)
+            if place is None or (strict and place[0] != end):
+                return None
+            begin = place[0] if begin is None else begin
+            end = place[1]
+        if strict and end != len(actual):
+            return None
+        return (start if begin is None else begin), end
+
+    return find_sequence
+
+
+def build_line_match(expected_lines: Any, *, strict: bool = False) -> Match:
+    """Return a function that finds what is expected among lines.
+
+    The function takes the lines and where to begin, and returns the place, begin and end, or None.
+
+    Parameters
+    ----------
+    expected_lines
+        A text or a regular expression for one line, or several of these for lines one after another.
+    strict
+        Whether a line must be exactly it, and no other lines may stand between two.
+    """
+    several = not (isinstance(expected_lines, str) or hasattr(expected_lines, "search"))
+    items = list(expected_lines) if several else [expected_lines]
+    matches = [build_text_match(item, strict=strict) for item in items]
+
+    def find_lines(actual: Iterable[str], start: int = 0) -> tuple[int, int] | None:
+        lines = normalize_lineseps(list(actual))
+        for begin in range(start, len(lines)):
+            end = _follow(matches, lines, begin, strict)
+            if end is not None:
+                return begin, end
+            if strict:
+                return None
+        return None if matches else (start, start)
+
+    return find_lines
+
+
+def _follow(matches: list[Match], lines: list[str], begin: int, strict: bool) -> int | None:
+    position = begin
+    for number, match in enumerate(matches):
+        while position < len(lines) and match(lines[position]) is None:
+            if strict or number == 0:
+                return None
+            position += 1
+        if position == len(lines):
+            return None
+        position += 1
+    return position
