@@ -184,9 +184,7 @@ class Action:
     @property
     def feedback_message(self) -> Message:
         """The message on the feedback topic."""
-        return Message(
-            f"{self.name}_FeedbackMessage", (_GOAL_ID, Field(FieldType(self.feedback.name), "feedback"))
-        )
+        return Message(f"{self.name}_FeedbackMessage", (_GOAL_ID, Field(FieldType(self.feedback.name), "feedback")))
 
     @property
     def messages(self) -> tuple[Message, ...]:

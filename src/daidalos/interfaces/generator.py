@@ -400,11 +400,7 @@ def _check_many(field: Field, message: Message) -> str:
     elif kind.base == "byte":
         check = "_m.check_byte"
     elif kind.is_primitive:
-        check = (
-            f"lambda n, v: _m.check_string(n, v, {kind.string_bound})"
-            if kind.string_bound
-            else "_m.check_string"
-        )
+        check = f"lambda n, v: _m.check_string(n, v, {kind.string_bound})" if kind.string_bound else "_m.check_string"
     else:
         check = f"lambda n, v: _m.check_message(n, v, {_class_of(kind.base, message)})"
     return f"_m.check_list({name!r}, value, {check}, {kind.kind.value!r}, {kind.size})"

@@ -113,9 +113,7 @@ def reject(message: Message, unknown: Mapping[str, object]) -> None:
     if not names:
         return
     fields = ", ".join(message._fields_and_field_types)
-    raise AssertionError(
-        f"Invalid arguments passed to constructor: {names}; {type(message).__name__} has {fields}"
-    )
+    raise AssertionError(f"Invalid arguments passed to constructor: {names}; {type(message).__name__} has {fields}")
 
 
 def check_bool(name: str, value: object) -> bool:
@@ -164,9 +162,7 @@ def check_string(name: str, value: object, bound: int | None = None) -> str:
 def check_message(name: str, value: Any, kind: type[Message]) -> Any:
     """Return `value` when it is a message of class `kind`."""
     if not isinstance(value, kind):
-        raise AssertionError(
-            f"The '{name}' field must be a sub message of type '{kind.__name__}', not {_kind(value)}"
-        )
+        raise AssertionError(f"The '{name}' field must be a sub message of type '{kind.__name__}', not {_kind(value)}")
     return value
 
 
@@ -212,9 +208,7 @@ def check_array(name: str, value: Any, base: str, size: int) -> numpy.ndarray[An
         else:
             value = _array_from(name, value, base, dtype)
     elif value.dtype != dtype:
-        raise AssertionError(
-            f"The '{name}' numpy.ndarray() must have the dtype of '{dtype}', not {value.dtype}"
-        )
+        raise AssertionError(f"The '{name}' numpy.ndarray() must have the dtype of '{dtype}', not {value.dtype}")
     result: numpy.ndarray[Any, Any] = value
     if result.size != size:
         raise AssertionError(f"The '{name}' array must have a size of {size}, not {result.size}")

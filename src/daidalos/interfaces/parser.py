@@ -25,9 +25,7 @@ class InterfaceError(ValueError):
     """An interface file says something that it may not; the message names file and line."""
 
 
-_TYPE = re.compile(
-    r"(?P<base>[A-Za-z][\w/]*)(?:<=(?P<bound>\d+))?(?P<array>\[(?P<upto><=)?(?P<size>\d*)\])?$"
-)
+_TYPE = re.compile(r"(?P<base>[A-Za-z][\w/]*)(?:<=(?P<bound>\d+))?(?P<array>\[(?P<upto><=)?(?P<size>\d*)\])?$")
 _FIELD_NAME = re.compile(r"[a-z][a-z0-9]*(?:_[a-z0-9]+)*$")
 _CONSTANT_NAME = re.compile(r"[A-Z][A-Z0-9]*(?:_[A-Z0-9]+)*$")
 _NAME = re.compile(r"[A-Z][A-Za-z0-9]*$")

@@ -132,9 +132,7 @@ class Backend(ABC):
         """Tell others of a node of ours; the result undoes it."""
 
     @abstractmethod
-    def declare_publisher(
-        self, key: str, endpoint: EndpointInfo, on_matched: Callable[[bool], None]
-    ) -> WirePublisher:
+    def declare_publisher(self, key: str, endpoint: EndpointInfo, on_matched: Callable[[bool], None]) -> WirePublisher:
         """Declare a publisher; `on_matched` is told when listeners elsewhere come (True) and are gone."""
 
     @abstractmethod
@@ -144,13 +142,9 @@ class Backend(ABC):
         """Declare a subscription; `on_sample` is called on the receiving thread."""
 
     @abstractmethod
-    def declare_service(
-        self, key: str, endpoint: EndpointInfo, on_request: Callable[[Any], None]
-    ) -> WireService:
+    def declare_service(self, key: str, endpoint: EndpointInfo, on_request: Callable[[Any], None]) -> WireService:
         """Declare a service; `on_request` is called on the receiving thread."""
 
     @abstractmethod
-    def declare_client(
-        self, key: str, endpoint: EndpointInfo, on_response: Callable[[Any], None]
-    ) -> WireClient:
+    def declare_client(self, key: str, endpoint: EndpointInfo, on_response: Callable[[Any], None]) -> WireClient:
         """Declare a client; `on_response` is called on the receiving thread."""

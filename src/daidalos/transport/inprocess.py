@@ -75,21 +75,19 @@ class InProcessBackend(Backend):
     def identify(
         self, kind: EndpointKind, node: NodeInfo, name: str, type_name: str, type_hash: str, qos: Qos
     ) -> tuple[str, bytes]:
-        """Number the endpoint."""
+        """Give the endpoint the next number."""
         number = self._number()
         return f"{self._session}/{number}", number.to_bytes(8, "little") + bytes.fromhex(self._session)
 
     def new_node(self, name: str, namespace: str, enclave: str) -> NodeInfo:
-        """Number the node."""
+        """Give the node the next number."""
         return NodeInfo(f"{self._session}/{self._number()}", name, namespace, enclave)
 
     def declare_node(self, node: NodeInfo) -> Callable[[], None]:
         """Tell nobody."""
         return lambda: None
 
-    def declare_publisher(
-        self, key: str, endpoint: EndpointInfo, on_matched: Callable[[bool], None]
-    ) -> WirePublisher:
+    def declare_publisher(self, key: str, endpoint: EndpointInfo, on_matched: Callable[[bool], None]) -> WirePublisher:
         """Return a wire to nowhere."""
         return _Nowhere()
 
@@ -99,14 +97,10 @@ class InProcessBackend(Backend):
         """Return a wire from nowhere."""
         return _Nowhere()
 
-    def declare_service(
-        self, key: str, endpoint: EndpointInfo, on_request: Callable[[Any], None]
-    ) -> WireService:
+    def declare_service(self, key: str, endpoint: EndpointInfo, on_request: Callable[[Any], None]) -> WireService:
         """Return a wire from nowhere."""
         return _Nowhere()
 
-    def declare_client(
-        self, key: str, endpoint: EndpointInfo, on_response: Callable[[Any], None]
-    ) -> WireClient:
+    def declare_client(self, key: str, endpoint: EndpointInfo, on_response: Callable[[Any], None]) -> WireClient:
         """Return a wire to nowhere."""
         return _Nowhere()

@@ -73,6 +73,11 @@ class Publisher:
         if self._heard and self._wire is not None:
             self._wire.put([data], sequence, stamp)
 
+    @property
+    def is_heard(self) -> bool:
+        """Whether a message would reach, or be kept for, anybody."""
+        return bool(self._targets) or self._heard or self._latched
+
     def replay(self, subscription: Subscription) -> None:
         """Give a subscription of this process the samples that were kept for late comers."""
         for message, *rest in list(self._history):

@@ -103,8 +103,8 @@ def incompatibilities(offered: Qos, requested: Qos) -> list[Policy]:
         found.append(Policy.DURABILITY)
     if offered.deadline_ns > requested.deadline_ns:
         found.append(Policy.DEADLINE)
-    if requested.liveliness is Liveliness.MANUAL_BY_TOPIC and offered.liveliness is Liveliness.AUTOMATIC:
-        found.append(Policy.LIVELINESS)
-    elif offered.liveliness_lease_ns > requested.liveliness_lease_ns:
+    if (
+        requested.liveliness is Liveliness.MANUAL_BY_TOPIC and offered.liveliness is Liveliness.AUTOMATIC
+    ) or offered.liveliness_lease_ns > requested.liveliness_lease_ns:
         found.append(Policy.LIVELINESS)
     return found

@@ -28,9 +28,7 @@ class Service:
         Called after a request was queued, on the thread that queued it.
     """
 
-    def __init__(
-        self, endpoint: EndpointInfo, request: Codec, response: Codec, on_ready: Callable[[], None]
-    ) -> None:
+    def __init__(self, endpoint: EndpointInfo, request: Codec, response: Codec, on_ready: Callable[[], None]) -> None:
         self.endpoint = endpoint
         self.on_ready = on_ready
         self._request = request

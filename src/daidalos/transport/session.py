@@ -15,6 +15,8 @@ from daidalos.transport.qos import Qos, incompatibilities
 from daidalos.transport.service import Service
 from daidalos.transport.subscription import Subscription
 
+Watcher = Callable[[bool, EndpointInfo], None]
+
 
 def _nothing() -> None:
     """Stand in for a callback that nobody gave."""
@@ -42,6 +44,7 @@ class Session:
         self._subscriptions: dict[str, set[Subscription]] = {}
         self._services: dict[str, list[Service]] = {}
         self._clients: dict[str, set[Client]] = {}
+        self._watchers: dict[str, list[Watcher]] = {}
         self._stop_listening = self.graph.listen(self._on_graph_change)
         backend.start(self.graph)
 
@@ -55,9 +58,7 @@ class Session:
             member.close()
         self.backend.close()
 
-    def create_node(
-        self, name: str, namespace: str, enclave: str = "/"
-    ) -> tuple[NodeInfo, Callable[[], None]]:
+    def create_node(self, name: str, namespace: str, enclave: str = "/") -> tuple[NodeInfo, Callable[[], None]]:
         """Join as a node; returns its description and what removes it."""
         node = self.backend.new_node(name, namespace, enclave)
         undeclare = self.backend.declare_node(node)
@@ -137,10 +138,7 @@ class Session:
         if client.has_local_server:
             return True
         mine = client.endpoint
-        return any(
-            _same_type(mine, other)
-            for other in self.graph.endpoints(EndpointKind.SERVICE, name=mine.name)
-        )
+        return any(_same_type(mine, other) for other in self.graph.endpoints(EndpointKind.SERVICE, name=mine.name))
 
     def counterparts(self, endpoint: EndpointInfo) -> list[EndpointInfo]:
         """Return the endpoints that an endpoint of a topic exchanges samples with."""
@@ -149,6 +147,27 @@ class Session:
             return [other for other in others if _compatible(endpoint, other)]
         others = self.graph.endpoints(EndpointKind.PUBLISHER, name=endpoint.name)
         return [other for other in others if _compatible(other, endpoint)]
+
+    def watch(self, name: str, watcher: Watcher) -> Callable[[], None]:
+        """Call ``watcher(added, endpoint)`` when an endpoint of a topic or service comes or goes.
+
+        It is told of those that are there already, too. The result ends it.
+        """
+        with self._lock:
+            self._watchers.setdefault(name, []).append(watcher)
+            present = self.graph.endpoints(name=name)
+        for endpoint in present:
+            watcher(True, endpoint)
+
+        def stop() -> None:
+            with self._lock:
+                watchers = self._watchers.get(name, [])
+                if watcher in watchers:
+                    watchers.remove(watcher)
+                if not watchers:
+                    self._watchers.pop(name, None)
+
+        return stop
 
     def _endpoint(
         self, kind: EndpointKind, node: NodeInfo, name: str, interface: Any, qos: Qos
@@ -188,18 +207,21 @@ class Session:
             client.set_server(next(matching, None))
 
     def _on_graph_change(self, added: bool, what: NodeInfo | EndpointInfo) -> None:
-        if isinstance(what, EndpointInfo) and what.kind is EndpointKind.PUBLISHER:
-            with self._lock:
+        if not isinstance(what, EndpointInfo):
+            return
+        with self._lock:
+            if what.kind is EndpointKind.PUBLISHER:
                 for subscription in self._subscriptions.get(what.name, ()):
                     self._refuse_incompatible(subscription)
+            watchers = tuple(self._watchers.get(what.name, ()))
+        for watcher in watchers:
+            watcher(added, what)
 
     def _refuse_incompatible(self, subscription: Subscription) -> None:
         """Keep out what publishers of other processes send against our QoS; the wire may not check it."""
         mine = subscription.endpoint
         publishers = self.graph.endpoints(EndpointKind.PUBLISHER, name=mine.name)
-        subscription.refuse(
-            frozenset(one.gid for one in publishers if incompatibilities(one.qos, mine.qos))
-        )
+        subscription.refuse(frozenset(one.gid for one in publishers if incompatibilities(one.qos, mine.qos)))
 
 
 def _same_type(one: EndpointInfo, other: EndpointInfo) -> bool:

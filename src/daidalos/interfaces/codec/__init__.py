@@ -172,10 +172,7 @@ def _compile(name: str, source: tuple[str, dict[str, Any]]) -> Callable[..., Any
 
 
 def _has_wide_strings(kind: type[Message]) -> bool:
-    return any(
-        base == "wstring" if isinstance(base, str) else _has_wide_strings(base)
-        for _, base, *_ in kind._FIELDS
-    )
+    return any(base == "wstring" if isinstance(base, str) else _has_wide_strings(base) for _, base, *_ in kind._FIELDS)
 
 
 def _check_kind(message: object, kind: type[Message]) -> None:

@@ -38,8 +38,7 @@ class Decoder(Generator):
     def needs_view(self, kind: type[Message]) -> bool:
         """Tell whether reading the message slices arrays or calls functions."""
         return any(
-            many != "single"
-            or (not isinstance(base, str) and (not self.inlined(base) or self.needs_view(base)))
+            many != "single" or (not isinstance(base, str) and (not self.inlined(base) or self.needs_view(base)))
             for _, base, many, _, _ in kind._FIELDS
         )
 
@@ -146,9 +145,7 @@ class Decoder(Generator):
         self.flush()
         self.make_dynamic()
         if many == "bounded":
-            self.emit(
-                f"if {count} > {size}: raise ValueError(f'{{{count}}} values, at most {size} are allowed')"
-            )
+            self.emit(f"if {count} > {size}: raise ValueError(f'{{{count}}} values, at most {size} are allowed')")
         if width == 8:
             self.emit(f"if {count}: p += 4 - p & 7")
         self.emit(f"q = p + {width} * {count}" if width > 1 else f"q = p + {count}")
@@ -187,14 +184,10 @@ class Decoder(Generator):
         self.flush()
         self.make_dynamic()
         if many == "bounded":
-            self.emit(
-                f"if {count} > {size}: raise ValueError(f'{{{count}}} values, at most {size} are allowed')"
-            )
+            self.emit(f"if {count} > {size}: raise ValueError(f'{{{count}}} values, at most {size} are allowed')")
         smallest = _smallest(base)
         if many != "array":
-            self.emit(
-                f"if {count} * {smallest} > end - p: raise ValueError(f'{{{count}}} values do not fit')"
-            )
+            self.emit(f"if {count} * {smallest} > end - p: raise ValueError(f'{{{count}}} values do not fit')")
         if base == "string":
             self.strings(count, target)
             return

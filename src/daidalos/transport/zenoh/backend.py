@@ -68,9 +68,7 @@ class ZenohBackend(Backend):
             self._session_id = str(self._session.zid())
             self._peers = {peer.session for peer in peers}
             self._registry.register(Peer(self._session_id, tuple(listen)))
-        self._links = self._session.info.declare_transport_events_listener(
-            Callback(self._on_transport, indirect=False)
-        )
+        self._links = self._session.info.declare_transport_events_listener(Callback(self._on_transport, indirect=False))
         self._tokens = self._session.liveliness().declare_subscriber(
             keys.tokens(self._domain), Callback(self._on_token, indirect=False), history=True
         )
@@ -84,7 +82,7 @@ class ZenohBackend(Backend):
         path = self._registry.folder / f"{self._session_id}.sock"
         if len(os.fsencode(path)) > _SOCKET_PATH_LIMIT:
             raise OSError(
-                f"the runtime folder's path is too long for a socket: {path.parent}; set XDG_RUNTIME_DIR to a shorter one"
+                f"the path {path.parent} is too long for a socket; set XDG_RUNTIME_DIR to a shorter one"
             )
         return [f"unixsock-stream/{path}"]
 
@@ -164,9 +162,7 @@ class ZenohBackend(Backend):
     def _data_key(self, endpoint: EndpointInfo) -> str:
         return keys.data_key(self._domain, endpoint.name, endpoint.type_name, endpoint.type_hash)
 
-    def declare_publisher(
-        self, key: str, endpoint: EndpointInfo, on_matched: Callable[[bool], None]
-    ) -> WirePublisher:
+    def declare_publisher(self, key: str, endpoint: EndpointInfo, on_matched: Callable[[bool], None]) -> WirePublisher:
         """Declare a publisher and its token."""
         self._own.add(endpoint.gid)
         wire = ZenohPublisher(self._session, self._data_key(endpoint), endpoint, on_matched)
@@ -181,17 +177,13 @@ class ZenohBackend(Backend):
         wire.on_close = self._closer(key, endpoint)
         return wire
 
-    def declare_service(
-        self, key: str, endpoint: EndpointInfo, on_request: Callable[[Any], None]
-    ) -> WireService:
+    def declare_service(self, key: str, endpoint: EndpointInfo, on_request: Callable[[Any], None]) -> WireService:
         """Declare a queryable and its token."""
         wire = ZenohService(self._session, self._data_key(endpoint), on_request)
         wire.on_close = self._closer(key, endpoint)
         return wire
 
-    def declare_client(
-        self, key: str, endpoint: EndpointInfo, on_response: Callable[[Any], None]
-    ) -> WireClient:
+    def declare_client(self, key: str, endpoint: EndpointInfo, on_response: Callable[[Any], None]) -> WireClient:
         """Declare a querier and its token."""
         wire = ZenohClient(self._session, self._data_key(endpoint), endpoint, on_response)
         wire.on_close = self._closer(key, endpoint)

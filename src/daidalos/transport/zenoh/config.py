@@ -21,9 +21,7 @@ _SHM_NEEDED = 256 * 2**20
 _MINUTE_MS = 60_000
 
 
-def session_config(
-    environment: Environment, session: str, listen: Iterable[str], peers: Iterable[str]
-) -> zenoh.Config:
+def session_config(environment: Environment, session: str, listen: Iterable[str], peers: Iterable[str]) -> zenoh.Config:
     """Return the configuration of a session.
 
     Parameters

@@ -207,9 +207,7 @@ class ZenohClient(_Wire, WireClient):
 
     def send(self, data: bytes, sequence: int, stamp_ns: int) -> None:
         """Send one request."""
-        self._querier.get(
-            self._callback, payload=data, attachment=_attachment(sequence, stamp_ns, self._gid)
-        )
+        self._querier.get(self._callback, payload=data, attachment=_attachment(sequence, stamp_ns, self._gid))
 
     def response(self, item: Any) -> tuple[bytes, int, int]:
         """Return the answer's bytes, its request's sequence number and its source stamp."""

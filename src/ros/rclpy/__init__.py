@@ -1,0 +1,206 @@
+"""ROS 2's client library for Python.
+
+A program begins with `init`, makes a `Node` with publishers, subscriptions, services, clients, actions, timers and
+parameters, has their callbacks run by `spin`, and ends with `shutdown`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from types import TracebackType
+from typing import TYPE_CHECKING, Any
+
+from rclpy.context import Context
+from rclpy.parameter import Parameter
+from rclpy.signals import (
+    SignalHandlerOptions,
+    install_signal_handlers,
+    uninstall_signal_handlers,
+    watch_context,
+)
+from rclpy.utilities import get_default_context, get_rmw_implementation_identifier, ok, try_shutdown
+from rclpy.utilities import shutdown as _shutdown
+
+if TYPE_CHECKING:
+    from rclpy.executors import Executor
+    from rclpy.node import Node
+    from rclpy.task import Future
+
+__all__ = [
+    "Context",
+    "InitContextManager",
+    "Parameter",
+    "SignalHandlerOptions",
+    "create_node",
+    "get_default_context",
+    "get_global_executor",
+    "get_rmw_implementation_identifier",
+    "init",
+    "ok",
+    "shutdown",
+    "spin",
+    "spin_once",
+    "spin_until_future_complete",
+    "try_shutdown",
+]
+
+__executor: Executor | None = None
+
+
+class InitContextManager:
+    """What `init` returns: ``with rclpy.init():`` shuts down at its end."""
+
+    def __init__(self, context: Context, owns_handlers: bool) -> None:
+        self.context = context
+        self._owns_handlers = owns_handlers
+
+    def __enter__(self) -> InitContextManager:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.context.try_shutdown()
+        if self._owns_handlers:
+            uninstall_signal_handlers()
+
+
+def init(
+    *,
+    args: Sequence[str] | None = None,
+    context: Context | None = None,
+    domain_id: int | None = None,
+    signal_handler_options: SignalHandlerOptions | None = None,
+) -> InitContextManager:
+    """Begin.
+
+    Parameters
+    ----------
+    args
+        Command-line arguments; those of the process where None.
+    context
+        The default context where None.
+    domain_id
+        The domain; ``ROS_DOMAIN_ID`` where None.
+    signal_handler_options
+        Which signals to handle; all with the default context, none with another where None.
+
+    Raises
+    ------
+    RuntimeError
+        When the context was begun before, or an argument cannot be understood.
+    """
+    default = context is None
+    target = get_default_context() if context is None else context
+    if signal_handler_options is None:
+        signal_handler_options = SignalHandlerOptions.ALL if default else SignalHandlerOptions.NO
+    target.init(args, domain_id=domain_id)
+    watch_context(target)
+    install_signal_handlers(signal_handler_options)
+    return InitContextManager(target, signal_handler_options != SignalHandlerOptions.NO)
+
+
+def get_global_executor() -> Executor:
+    """Return the executor that `spin` uses where none is given."""
+    global __executor
+    if __executor is None or __executor.context is not get_default_context():
+        from rclpy.executors import SingleThreadedExecutor
+
+        __executor = SingleThreadedExecutor()
+        context = get_default_context()
+        context.on_shutdown(_reset_global_executor)
+    return __executor
+
+
+def _reset_global_executor() -> None:
+    global __executor
+    if __executor is not None:
+        __executor.wake()
+        __executor = None
+
+
+def shutdown(*, context: Context | None = None, uninstall_handlers: bool | None = None) -> None:
+    """End.
+
+    Parameters
+    ----------
+    context
+        The default context where None.
+    uninstall_handlers
+        Whether signals are handled no more; only after the default context where None.
+
+    Raises
+    ------
+    RuntimeError
+        When there is nothing to end.
+    """
+    _shutdown(context=context)
+    if uninstall_handlers or (uninstall_handlers is None and context is None):
+        uninstall_signal_handlers()
+
+
+def create_node(
+    node_name: str,
+    *,
+    context: Context | None = None,
+    cli_args: list[str] | None = None,
+    namespace: str | None = None,
+    use_global_arguments: bool = True,
+    enable_rosout: bool = True,
+    start_parameter_services: bool = True,
+    parameter_overrides: list[Parameter[Any]] | None = None,
+    allow_undeclared_parameters: bool = False,
+    automatically_declare_parameters_from_overrides: bool = False,
+    enable_logger_service: bool = False,
+) -> Node:
+    """Return a new node; see `rclpy.node.Node`."""
+    from rclpy.node import Node
+
+    return Node(
+        node_name,
+        context=context,
+        cli_args=cli_args,
+        namespace=namespace,
+        use_global_arguments=use_global_arguments,
+        enable_rosout=enable_rosout,
+        start_parameter_services=start_parameter_services,
+        parameter_overrides=parameter_overrides,
+        allow_undeclared_parameters=allow_undeclared_parameters,
+        automatically_declare_parameters_from_overrides=automatically_declare_parameters_from_overrides,
+        enable_logger_service=enable_logger_service,
+    )
+
+
+def spin_once(node: Node, *, executor: Executor | None = None, timeout_sec: float | None = None) -> None:
+    """Run one callback of a node; wait for it at most `timeout_sec` seconds (None: however long it takes)."""
+    executor = executor or get_global_executor()
+    try:
+        executor.add_node(node)
+        executor.spin_once(timeout_sec=timeout_sec)
+    finally:
+        executor.remove_node(node)
+
+
+def spin(node: Node, executor: Executor | None = None) -> None:
+    """Run a node's callbacks until the context is shut down."""
+    executor = executor or get_global_executor()
+    try:
+        executor.add_node(node)
+        while executor.context.ok():
+            executor.spin()
+            if executor._is_shutdown:
+                return
+    finally:
+        executor.remove_node(node)
+
+
+def spin_until_future_complete(
+    node: Node, future: Future, executor: Executor | None = None, timeout_sec: float | None = None
+) -> None:
+    """Run a node's callbacks until a future is done or cancelled, for at most `timeout_sec` seconds."""
+    executor = executor or get_global_executor()
+    try:
+        executor.add_node(node)
+        executor.spin_until_future_complete(future, timeout_sec)
+    finally:
+        executor.remove_node(node)

@@ -1,0 +1,400 @@
+"""Action clients."""
+
+from __future__ import annotations
+
+import threading
+import uuid
+import weakref
+from collections.abc import Callable
+from types import TracebackType
+from typing import TYPE_CHECKING, Any, Self
+
+from rclpy.callback_groups import CallbackGroup
+from rclpy.impl.entities import ClientHandle, SubscriptionHandle
+from rclpy.impl.errors import InvalidHandle
+from rclpy.impl.node_graph import checked_name
+from rclpy.impl.ready import ReadyHook
+from rclpy.qos import (
+    QoSProfile,
+    qos_profile_action_status_default,
+    qos_profile_services_default,
+)
+from rclpy.task import Future
+from rclpy.type_support import check_is_valid_action_type
+from rclpy.waitable import NumberOfEntities, Waitable
+
+if TYPE_CHECKING:
+    from rclpy.node import Node
+
+
+class ClientGoalHandle:
+    """A goal that was sent, as its sender sees it."""
+
+    def __init__(self, action_client: ActionClient, goal_id: Any, goal_response: Any) -> None:
+        self._action_client = action_client
+        self._goal_id = goal_id
+        self._goal_response = goal_response
+        self._status = 0
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, ClientGoalHandle) and self._goal_id == other.goal_id
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __repr__(self) -> str:
+        return (
+            f"ClientGoalHandle <id={bytes(self._goal_id.uuid).hex()}, accepted={self.accepted}, status={self.status}>"
+        )
+
+    @property
+    def goal_id(self) -> Any:
+        """The goal's identity, a ``unique_identifier_msgs/msg/UUID``."""
+        return self._goal_id
+
+    @property
+    def stamp(self) -> Any:
+        """When the server accepted the goal."""
+        return self._goal_response.stamp
+
+    @property
+    def accepted(self) -> bool:
+        """Whether the server accepted the goal."""
+        return bool(self._goal_response.accepted)
+
+    @property
+    def status(self) -> int:
+        """The goal's state, as in ``action_msgs/msg/GoalStatus``."""
+        return self._status
+
+    def cancel_goal(self) -> Any:
+        """Ask for cancellation and wait for the ``CancelGoal`` response."""
+        return self._action_client._cancel_goal(self)
+
+    def cancel_goal_async(self) -> Future:
+        """Ask for cancellation; the future's result will be the ``CancelGoal`` response."""
+        return self._action_client._cancel_goal_async(self)
+
+    def get_result(self) -> Any:
+        """Wait for the result: an object with ``status`` and ``result``."""
+        return self._action_client._get_result(self)
+
+    def get_result_async(self) -> Future:
+        """Ask for the result; the future's result will be an object with ``status`` and ``result``."""
+        return self._action_client._get_result_async(self)
+
+
+class ActionClient(Waitable):
+    """Sends goals to an action's server.
+
+    Parameters
+    ----------
+    node
+        The node to call with.
+    action_type
+        Class of the action.
+    action_name
+        Its name, relative to the node unless it begins with a slash.
+    callback_group
+        The node's default where None.
+    goal_service_qos_profile, result_service_qos_profile, cancel_service_qos_profile, feedback_sub_qos_profile, \
+status_sub_qos_profile
+        Quality of service of the parts.
+    """
+
+    def __init__(
+        self,
+        node: Node,
+        action_type: Any,
+        action_name: str,
+        *,
+        callback_group: CallbackGroup | None = None,
+        goal_service_qos_profile: QoSProfile = qos_profile_services_default,
+        result_service_qos_profile: QoSProfile = qos_profile_services_default,
+        cancel_service_qos_profile: QoSProfile = qos_profile_services_default,
+        feedback_sub_qos_profile: QoSProfile = QoSProfile(depth=10),  # noqa: B008
+        status_sub_qos_profile: QoSProfile = qos_profile_action_status_default,
+    ) -> None:
+        if callback_group is None:
+            callback_group = node.default_callback_group
+        super().__init__(callback_group)
+        check_is_valid_action_type(action_type)
+        self._client_node = node
+        self._action_type = action_type
+        self._action_name = action_name
+        self._lock = threading.RLock()
+        self._hook = ReadyHook(self)
+        self._own_waiters = 0
+        self._destroyed = False
+        self._goal_handles: dict[bytes, weakref.ref[ClientGoalHandle]] = {}
+        self._pending_goal_requests: dict[int, Future] = {}
+        self._goal_sequence_number_to_goal_id: dict[int, Any] = {}
+        self._pending_cancel_requests: dict[int, Future] = {}
+        self._pending_result_requests: dict[int, Future] = {}
+        self._result_sequence_number_to_goal_id: dict[int, Any] = {}
+        self._feedback_callbacks: dict[bytes, Callable[[Any], None]] = {}
+        self._logger = node.get_logger().get_child("action_client")
+        impl = action_type.Impl
+        with node.handle as handle:
+            base = f"{checked_name(handle, action_name, is_service=False)}/_action"
+            self._goal_client = ClientHandle(
+                handle, impl.SendGoalService, f"{base}/send_goal", goal_service_qos_profile
+            )
+            self._cancel_client = ClientHandle(
+                handle, impl.CancelGoalService, f"{base}/cancel_goal", cancel_service_qos_profile
+            )
+            self._result_client = ClientHandle(
+                handle, impl.GetResultService, f"{base}/get_result", result_service_qos_profile
+            )
+            self._feedback_subscription = SubscriptionHandle(
+                handle, impl.FeedbackMessage, f"{base}/feedback", feedback_sub_qos_profile
+            )
+            self._status_subscription = SubscriptionHandle(
+                handle, impl.GoalStatusMessage, f"{base}/status", status_sub_qos_profile
+            )
+        # In the order in which they are looked at: feedback comes before the result that ends it.
+        self._sources = (
+            (self._goal_client, self._on_goal_response),
+            (self._cancel_client, self._on_cancel_response),
+            (self._feedback_subscription, self._on_feedback),
+            (self._status_subscription, self._on_status),
+            (self._result_client, self._on_result_response),
+        )
+        for source, _ in self._sources:
+            source.set_on_ready(self._on_ready)
+        node.add_waitable(self)
+
+    # The executor's side.
+
+    def _on_ready(self) -> None:
+        """Do at once what a blocking call waits for, which may hold up the executor, or make the client ready."""
+        if not self._own_waiters:
+            self._hook()
+            return
+        work = self._take()
+        while work is not None:
+            work[0](*work[1])
+            work = self._take()
+
+    def _take(self) -> tuple[Callable[..., Any], tuple[Any, ...]] | None:
+        for source, callback in self._sources:
+            if not len(source.impl):
+                continue
+            if isinstance(source, ClientHandle):
+                taken = source.take_response()
+            else:
+                sample = source.impl.take()
+                taken = None if sample is None else (sample[0],)
+            if taken is not None:
+                return callback, taken
+        return None
+
+    def _has_more(self) -> bool:
+        return any(len(source.impl) for source, _ in self._sources)
+
+    def get_num_entities(self) -> NumberOfEntities:
+        """Return two subscriptions and three clients."""
+        return NumberOfEntities(2, 0, 0, 3, 0)
+
+    def _finish(self, pending: dict[int, Future], number: int, result: Any, what: str) -> None:
+        future = pending.pop(number, None)
+        if future is None:
+            self._logger.warning(
+                f"Ignoring unexpected {what} response. There may be more than one action server for the action "
+                f"'{self._action_name}'"
+            )
+            return
+        future._set_executor(self._client_node.executor)
+        future.set_result(result)
+
+    def _on_goal_response(self, header: Any, response: Any) -> None:
+        number = header.request_id.sequence_number
+        with self._lock:
+            goal_id = self._goal_sequence_number_to_goal_id.pop(number, None)
+        if goal_id is None:
+            self._finish(self._pending_goal_requests, number, None, "goal")
+            return
+        goal_handle = ClientGoalHandle(self, goal_id, response)
+        if goal_handle.accepted:
+            with self._lock:
+                self._goal_handles[bytes(goal_id.uuid)] = weakref.ref(goal_handle)
+        else:
+            self._feedback_callbacks.pop(bytes(goal_id.uuid), None)
+        self._finish(self._pending_goal_requests, number, goal_handle, "goal")
+
+    def _on_cancel_response(self, header: Any, response: Any) -> None:
+        self._finish(self._pending_cancel_requests, header.request_id.sequence_number, response, "cancel")
+
+    def _on_result_response(self, header: Any, response: Any) -> None:
+        number = header.request_id.sequence_number
+        with self._lock:
+            goal_id = self._result_sequence_number_to_goal_id.pop(number, None)
+        if goal_id is not None:
+            self._end_goal(goal_id, response.status)
+        self._finish(self._pending_result_requests, number, response, "result")
+
+    def _end_goal(self, goal_id: Any, status: int) -> None:
+        key = bytes(goal_id.uuid)
+        with self._lock:
+            reference = self._goal_handles.pop(key, None)
+            self._feedback_callbacks.pop(key, None)
+        goal_handle = reference() if reference is not None else None
+        if goal_handle is not None:
+            goal_handle._status = status
+
+    def _on_feedback(self, message: Any) -> Any:
+        callback = self._feedback_callbacks.get(bytes(message.goal_id.uuid))
+        return callback(message) if callback is not None else None
+
+    def _on_status(self, message: Any) -> None:
+        for status in message.status_list:
+            key = bytes(status.goal_info.goal_id.uuid)
+            reference = self._goal_handles.get(key)
+            goal_handle = reference() if reference is not None else None
+            if goal_handle is not None:
+                goal_handle._status = status.status
+            elif reference is not None:
+                self._goal_handles.pop(key, None)
+
+    # Calls.
+
+    def _generate_random_uuid(self) -> Any:
+        from unique_identifier_msgs.msg import UUID
+
+        return UUID(uuid=list(uuid.uuid4().bytes))
+
+    def send_goal(self, goal: Any, **kwargs: Any) -> Any:
+        """Send a goal and wait for its result: an object with ``status`` and ``result``.
+
+        Returns None when the server rejects the goal. It needs no executor.
+
+        Raises
+        ------
+        TypeError
+            When the goal is of the wrong type.
+        """
+        if not isinstance(goal, self._action_type.Goal):
+            raise TypeError()
+        goal_handle = self._wait(lambda: self.send_goal_async(goal, **kwargs))
+        if not goal_handle.accepted:
+            return None
+        return self._get_result(goal_handle)
+
+    def _wait(self, call: Callable[[], Future]) -> Any:
+        """Return the result of a call's future, taking care of responses ourselves meanwhile."""
+        done = threading.Event()
+        with self._lock:
+            self._own_waiters += 1
+        try:
+            future = call()
+            future.on_wake(done.set)
+            done.wait()
+        finally:
+            with self._lock:
+                self._own_waiters -= 1
+        return future.result()
+
+    def send_goal_async(
+        self,
+        goal: Any,
+        feedback_callback: Callable[[Any], None] | None = None,
+        goal_uuid: Any = None,
+    ) -> Future:
+        """Send a goal; the future's result will be a `ClientGoalHandle`.
+
+        Parameters
+        ----------
+        goal
+            The goal.
+        feedback_callback
+            Called with every feedback message.
+        goal_uuid
+            The goal's identity; a random one where None.
+
+        Raises
+        ------
+        TypeError
+            When the goal is of the wrong type.
+        """
+        if not isinstance(goal, self._action_type.Goal):
+            raise TypeError()
+        request = self._action_type.Impl.SendGoalService.Request()
+        request.goal_id = self._generate_random_uuid() if goal_uuid is None else goal_uuid
+        request.goal = goal
+        future = Future()
+        with self._lock:
+            if feedback_callback is not None:
+                self._feedback_callbacks[bytes(request.goal_id.uuid)] = feedback_callback
+            number = self._goal_client.send_request(request)
+            if number in self._pending_goal_requests:
+                raise RuntimeError(f"Sequence ({number}) conflicts with pending goal request")
+            self._pending_goal_requests[number] = future
+            self._goal_sequence_number_to_goal_id[number] = request.goal_id
+        return future
+
+    def _cancel_goal(self, goal_handle: ClientGoalHandle) -> Any:
+        return self._wait(lambda: self._cancel_goal_async(goal_handle))
+
+    def _cancel_goal_async(self, goal_handle: ClientGoalHandle) -> Future:
+        from action_msgs.srv import CancelGoal
+
+        if not isinstance(goal_handle, ClientGoalHandle):
+            raise TypeError(f"Expected type ClientGoalHandle but received {type(goal_handle)}")
+        request = CancelGoal.Request()
+        request.goal_info.goal_id = goal_handle.goal_id
+        future = Future()
+        with self._lock:
+            self._pending_cancel_requests[self._cancel_client.send_request(request)] = future
+        return future
+
+    def _get_result(self, goal_handle: ClientGoalHandle) -> Any:
+        return self._wait(lambda: self._get_result_async(goal_handle))
+
+    def _get_result_async(self, goal_handle: ClientGoalHandle) -> Future:
+        if not isinstance(goal_handle, ClientGoalHandle):
+            raise TypeError(f"Expected type ClientGoalHandle but received {type(goal_handle)}")
+        request = self._action_type.Impl.GetResultService.Request()
+        request.goal_id = goal_handle.goal_id
+        future = Future()
+        with self._lock:
+            number = self._result_client.send_request(request)
+            self._pending_result_requests[number] = future
+            self._result_sequence_number_to_goal_id[number] = goal_handle.goal_id
+        return future
+
+    def server_is_ready(self) -> bool:
+        """Tell whether the action is served."""
+        if self._destroyed:
+            raise InvalidHandle("the action client was destroyed")
+        services = (self._goal_client, self._cancel_client, self._result_client)
+        return all(client.service_server_is_available() for client in services) and all(
+            subscription.get_publisher_count()
+            for subscription in (self._feedback_subscription, self._status_subscription)
+        )
+
+    def wait_for_server(self, timeout_sec: float | None = None) -> bool:
+        """Wait until the action is served; False when `timeout_sec` seconds pass, or at a shutdown."""
+        graph = self._goal_client.node.graph
+        context = self._client_node.context
+        limit = None if timeout_sec is None or timeout_sec < 0 else timeout_sec
+        graph.wait_for(lambda: not context.ok() or self.server_is_ready(), limit)
+        return self.server_is_ready()
+
+    def destroy(self) -> None:
+        """Call no more."""
+        if self._destroyed:
+            return
+        self._destroyed = True
+        for source, _ in self._sources:
+            source.destroy_when_not_in_use()
+        if self in list(self._client_node.waitables):
+            self._client_node.remove_waitable(self)
+
+    def __enter__(self) -> Self:
+        if self._destroyed:
+            raise InvalidHandle("the action client was destroyed")
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Leave it as it is."""

@@ -1,0 +1,564 @@
+"""Action servers."""
+
+from __future__ import annotations
+
+import threading
+import time
+import traceback
+from collections.abc import Callable
+from enum import Enum
+from types import TracebackType
+from typing import TYPE_CHECKING, Any, Self
+
+from rclpy.action._goal_state import GoalEvent, GoalState, next_state
+from rclpy.callback_groups import CallbackGroup
+from rclpy.impl.entities import PublisherHandle, ServiceHandle
+from rclpy.impl.errors import InvalidHandle
+from rclpy.impl.node_graph import checked_name
+from rclpy.impl.ready import ReadyHook
+from rclpy.qos import (
+    QoSProfile,
+    qos_profile_action_status_default,
+    qos_profile_services_default,
+)
+from rclpy.task import Future
+from rclpy.type_support import check_is_valid_action_type
+from rclpy.waitable import NumberOfEntities, Waitable
+
+if TYPE_CHECKING:
+    from rclpy.node import Node
+
+
+class GoalResponse(Enum):
+    """Answers to a goal."""
+
+    REJECT = 1
+    ACCEPT = 2
+
+
+class CancelResponse(Enum):
+    """Answers to a wish to cancel."""
+
+    REJECT = 1
+    ACCEPT = 2
+
+
+class ServerGoalHandle:
+    """A goal that a server has accepted."""
+
+    def __init__(self, action_server: ActionServer, goal_info: Any, goal_request: Any) -> None:
+        self._action_server = action_server
+        self._goal_info = goal_info
+        self._goal_request = goal_request
+        self._cancel_requested = False
+        self._state = GoalState.ACCEPTED
+        self._lock = threading.Lock()
+        self._destroyed = False
+        self.ended_ns: int | None = None
+        self._response: Any = None
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, ServerGoalHandle) and self.goal_id == other.goal_id
+
+    def __hash__(self) -> int:
+        return hash(bytes(self.goal_id.uuid))
+
+    @property
+    def request(self) -> Any:
+        """The goal."""
+        return self._goal_request
+
+    @property
+    def goal_id(self) -> Any:
+        """The goal's identity, a ``unique_identifier_msgs/msg/UUID``."""
+        return self._goal_info.goal_id
+
+    @property
+    def is_active(self) -> bool:
+        """Whether the goal is not yet over."""
+        return not self._destroyed and self._state.is_active
+
+    @property
+    def is_cancel_requested(self) -> bool:
+        """Whether the goal is to be cancelled."""
+        return self._state is GoalState.CANCELING
+
+    @property
+    def status(self) -> int:
+        """The goal's state, as in ``action_msgs/msg/GoalStatus``."""
+        return GoalState.UNKNOWN if self._destroyed else int(self._state)
+
+    def _update_state(self, event: GoalEvent) -> None:
+        with self._lock:
+            if self._destroyed:
+                return
+            self._state = next_state(self._state, event)
+            if not self._state.is_active:
+                self.ended_ns = time.monotonic_ns()
+        self._action_server._publish_status()
+        if not self._state.is_active:
+            self._action_server.notify_goal_done()
+
+    def execute(self, execute_callback: Callable[[ServerGoalHandle], Any] | None = None) -> None:
+        """Have the goal carried out, by the server's callback where None.
+
+        Raises
+        ------
+        RCLError
+            When it is carried out already, or over.
+        """
+        if not self.is_cancel_requested:
+            self._update_state(GoalEvent.EXECUTE)
+        self._action_server.notify_execute(self, execute_callback)
+
+    def publish_feedback(self, feedback: Any) -> None:
+        """Tell the client how far it got.
+
+        Raises
+        ------
+        TypeError
+            When the feedback is of the wrong type.
+        """
+        if not isinstance(feedback, self._action_server.action_type.Feedback):
+            raise TypeError(f"Expected {self._action_server.action_type.Feedback}, got {type(feedback)}")
+        message = self._action_server.action_type.Impl.FeedbackMessage()
+        message.goal_id = self.goal_id
+        message.feedback = feedback
+        self._action_server._feedback_publisher.impl.publish(message)
+
+    def succeed(self, response: Any = None) -> None:
+        """End the goal as reached, with a result if it is given here instead of being returned."""
+        self._finish(GoalEvent.SUCCEED, response)
+
+    def abort(self, response: Any = None) -> None:
+        """End the goal as failed; see `succeed`."""
+        self._finish(GoalEvent.ABORT, response)
+
+    def canceled(self, response: Any = None) -> None:
+        """End the goal as cancelled; see `succeed`."""
+        self._finish(GoalEvent.CANCELED, response)
+
+    def _finish(self, event: GoalEvent, response: Any) -> None:
+        self._update_state(event)
+        self._response = response
+        if response is not None:
+            self._action_server._set_result(self, response)
+
+    def destroy(self) -> None:
+        """Forget the goal."""
+        self._destroyed = True
+        self._action_server._forget(bytes(self.goal_id.uuid))
+
+
+def default_handle_accepted_callback(goal_handle: ServerGoalHandle) -> None:
+    """Carry the goal out at once."""
+    goal_handle.execute()
+
+
+def default_goal_callback(goal_request: Any) -> GoalResponse:
+    """Accept every goal."""
+    return GoalResponse.ACCEPT
+
+
+def default_cancel_callback(cancel_request: Any) -> CancelResponse:
+    """Refuse to cancel."""
+    return CancelResponse.REJECT
+
+
+class ActionServer(Waitable):
+    """Serves an action.
+
+    Parameters
+    ----------
+    node
+        The node to serve with.
+    action_type
+        Class of the action.
+    action_name
+        Its name, relative to the node unless it begins with a slash.
+    execute_callback
+        ``callback(goal_handle) -> result``: carries a goal out.
+    callback_group
+        The node's default where None.
+    goal_callback
+        ``callback(goal) -> GoalResponse``: accepts or rejects.
+    handle_accepted_callback
+        ``callback(goal_handle)``: called with every accepted goal; carries it out at once by default.
+    cancel_callback
+        ``callback(goal_handle) -> CancelResponse``: lets a goal be cancelled or not.
+    goal_service_qos_profile, result_service_qos_profile, cancel_service_qos_profile, feedback_pub_qos_profile, \
+status_pub_qos_profile
+        Quality of service of the parts.
+    result_timeout
+        How long results are kept, in seconds; for ever where negative.
+    """
+
+    def __init__(
+        self,
+        node: Node,
+        action_type: Any,
+        action_name: str,
+        execute_callback: Callable[[ServerGoalHandle], Any],
+        *,
+        callback_group: CallbackGroup | None = None,
+        goal_callback: Callable[[Any], GoalResponse] = default_goal_callback,
+        handle_accepted_callback: Callable[[ServerGoalHandle], None] = default_handle_accepted_callback,
+        cancel_callback: Callable[[Any], CancelResponse] = default_cancel_callback,
+        goal_service_qos_profile: QoSProfile = qos_profile_services_default,
+        result_service_qos_profile: QoSProfile = qos_profile_services_default,
+        cancel_service_qos_profile: QoSProfile = qos_profile_services_default,
+        feedback_pub_qos_profile: QoSProfile = QoSProfile(depth=10),  # noqa: B008
+        status_pub_qos_profile: QoSProfile = qos_profile_action_status_default,
+        result_timeout: float = 900,
+    ) -> None:
+        if callback_group is None:
+            callback_group = node.default_callback_group
+        super().__init__(callback_group)
+        check_is_valid_action_type(action_type)
+        self._lock = threading.RLock()
+        self.register_handle_accepted_callback(handle_accepted_callback)
+        self.register_goal_callback(goal_callback)
+        self.register_cancel_callback(cancel_callback)
+        self.register_execute_callback(execute_callback)
+        self._server_node = node
+        self._action_type = action_type
+        self._goal_handles: dict[bytes, ServerGoalHandle] = {}
+        self._result_futures: dict[bytes, Future] = {}
+        self._result_timeout = result_timeout
+        self._logger = node.get_logger().get_child("action_server")
+        self._hook = ReadyHook(self)
+        self._destroyed = False
+        impl = action_type.Impl
+        with node.handle as handle:
+            name = checked_name(handle, action_name, is_service=False)
+            base = f"{name}/_action"
+            self._goal_service = ServiceHandle(
+                handle, impl.SendGoalService, f"{base}/send_goal", goal_service_qos_profile
+            )
+            self._cancel_service = ServiceHandle(
+                handle, impl.CancelGoalService, f"{base}/cancel_goal", cancel_service_qos_profile
+            )
+            self._result_service = ServiceHandle(
+                handle, impl.GetResultService, f"{base}/get_result", result_service_qos_profile
+            )
+            self._feedback_publisher = PublisherHandle(
+                handle, impl.FeedbackMessage, f"{base}/feedback", feedback_pub_qos_profile
+            )
+            self._status_publisher = PublisherHandle(
+                handle, impl.GoalStatusMessage, f"{base}/status", status_pub_qos_profile
+            )
+        self._services = (
+            (self._goal_service, self._execute_goal_request),
+            (self._cancel_service, self._execute_cancel_request),
+            (self._result_service, self._execute_get_result_request),
+        )
+        self._expiry = _Expiry(self, node)
+        for service, _ in self._services:
+            service.set_on_ready(self._hook)
+        node.add_waitable(self)
+
+    @property
+    def action_type(self) -> Any:
+        """Class of the action."""
+        return self._action_type
+
+    # The executor's side.
+
+    def _take(self) -> tuple[Callable[..., Any], tuple[Any, ...]] | None:
+        for service, callback in self._services:
+            taken = service.take_request()
+            if taken is not None:
+                return callback, taken
+        return None
+
+    def _has_more(self) -> bool:
+        return any(len(service.impl) for service, _ in self._services)
+
+    def get_num_entities(self) -> NumberOfEntities:
+        """Return three services and a timer."""
+        return NumberOfEntities(0, 0, 1, 0, 3)
+
+    # Goals.
+
+    async def _execute_goal_request(self, request: Any, header: Any) -> None:
+        from action_msgs.msg import GoalInfo
+
+        key = bytes(request.goal_id.uuid)
+        response = self._action_type.Impl.SendGoalService.Response(accepted=False)
+        goal_info = GoalInfo(goal_id=request.goal_id, stamp=self._server_node.get_clock().now().to_msg())
+        self._logger.debug(f"New goal request with ID: {key.hex()}")
+        with self._lock:
+            known = key in self._goal_handles
+        if known:
+            self._logger.error(f"Goal with ID {key.hex()} was offered before")
+        else:
+            response.accepted = await self._is_accepted(request.goal)
+        response.stamp = goal_info.stamp
+        goal_handle = None
+        if response.accepted:
+            goal_handle = ServerGoalHandle(self, goal_info, request.goal)
+            with self._lock:
+                self._goal_handles[key] = goal_handle
+                self._result_futures[key] = Future()
+        self._goal_service.send_response(response, header)
+        if goal_handle is None:
+            self._logger.debug(f"New goal rejected: {key.hex()}")
+            return
+        self._logger.debug(f"New goal accepted: {key.hex()}")
+        self._publish_status()
+        self._handle_accepted_callback(goal_handle)
+
+    async def _is_accepted(self, goal: Any) -> bool:
+        try:
+            answer = self._goal_callback(goal)
+            if hasattr(answer, "__await__"):
+                answer = await answer
+        except Exception as error:
+            self._logger.error(f"Error raised in goal callback: {error}")
+            traceback.print_exc()
+            return False
+        if not isinstance(answer, GoalResponse):
+            self._logger.warning(f"Goal callback did not return a valid response value: {answer!r}")
+        return answer == GoalResponse.ACCEPT
+
+    async def _execute_goal(self, execute_callback: Callable[[ServerGoalHandle], Any], goal_handle: Any) -> None:
+        key = bytes(goal_handle.goal_id.uuid)
+        self._logger.debug(f"Executing goal with ID {key.hex()}")
+        try:
+            result = execute_callback(goal_handle)
+            if hasattr(result, "__await__"):
+                result = await result
+        except Exception as error:
+            self._logger.error(f"Error raised in execute callback: {error}")
+            traceback.print_exc()
+            result = None
+        if goal_handle.is_active:
+            self._logger.warning(f"Goal state not set, assuming aborted. Goal ID: {key.hex()}")
+            goal_handle.abort()
+        if goal_handle._response is not None:
+            return
+        if not isinstance(result, self._action_type.Result):
+            if result is not None:
+                self._logger.error(f"Execute callback returned {type(result)}, expected {self._action_type.Result}")
+            result = self._action_type.Result()
+        self._set_result(goal_handle, result)
+
+    def _set_result(self, goal_handle: ServerGoalHandle, result: Any) -> None:
+        future = self._result_futures.get(bytes(goal_handle.goal_id.uuid))
+        if future is None or future.done():
+            return
+        response = self._action_type.Impl.GetResultService.Response()
+        response.status = goal_handle.status
+        response.result = result
+        future.set_result(response)
+
+    def notify_execute(
+        self, goal_handle: ServerGoalHandle, execute_callback: Callable[[ServerGoalHandle], Any] | None
+    ) -> None:
+        """Have a goal carried out by the node's executor."""
+        callback = execute_callback or self._execute_callback
+        executor = self._server_node.executor
+        if executor is not None:
+            executor.create_task(self._execute_goal, callback, goal_handle)
+        else:
+            self._logger.error("Failed to execute goal: the node is in no executor")
+
+    def notify_goal_done(self) -> None:
+        """Note that a goal is over: its result is kept for a while from now."""
+        self._expiry.plan()
+
+    # Cancelling.
+
+    async def _execute_cancel_request(self, request: Any, header: Any) -> None:
+        from action_msgs.srv import CancelGoal
+
+        response = CancelGoal.Response()
+        with self._lock:
+            wanted, response.return_code = self._goals_to_cancel(request.goal_info)
+        for goal_handle in wanted:
+            if await self._is_cancel_accepted(goal_handle):
+                goal_handle._update_state(GoalEvent.CANCEL_GOAL)
+                response.goals_canceling.append(goal_handle._goal_info)
+        if wanted and not response.goals_canceling:
+            response.return_code = CancelGoal.Response.ERROR_REJECTED
+        self._cancel_service.send_response(response, header)
+
+    def _goals_to_cancel(self, info: Any) -> tuple[list[ServerGoalHandle], int]:
+        """Return the goals that a request means: one by its identity, all up to a time, both, or all."""
+        from action_msgs.srv import CancelGoal
+
+        key = bytes(info.goal_id.uuid)
+        stamp = (info.stamp.sec, info.stamp.nanosec)
+        goals = [goal for goal in self._goal_handles.values() if goal.is_active]
+        if any(key):
+            one = self._goal_handles.get(key)
+            if one is None:
+                return [], CancelGoal.Response.ERROR_UNKNOWN_GOAL_ID
+            if stamp == (0, 0):
+                if not one.is_active:
+                    return [], CancelGoal.Response.ERROR_GOAL_TERMINATED
+                return [one], CancelGoal.Response.ERROR_NONE
+        elif stamp == (0, 0):
+            return goals, CancelGoal.Response.ERROR_NONE
+        chosen = [goal for goal in goals if _stamp(goal) <= stamp or bytes(goal.goal_id.uuid) == key]
+        return chosen, CancelGoal.Response.ERROR_NONE
+
+    async def _is_cancel_accepted(self, goal_handle: ServerGoalHandle) -> bool:
+        try:
+            answer = self._cancel_callback(goal_handle)
+            if hasattr(answer, "__await__"):
+                answer = await answer
+        except Exception as error:
+            self._logger.error(f"Error raised in cancel callback: {error}")
+            traceback.print_exc()
+            return False
+        return answer == CancelResponse.ACCEPT and goal_handle.is_active
+
+    # Results.
+
+    async def _execute_get_result_request(self, request: Any, header: Any) -> None:
+        key = bytes(request.goal_id.uuid)
+        with self._lock:
+            future = self._result_futures.get(key)
+        if future is None:
+            self._logger.debug(f"Sending result response for unknown goal ID: {key.hex()}")
+            response = self._action_type.Impl.GetResultService.Response()
+            response.status = GoalState.UNKNOWN
+            self._result_service.send_response(response, header)
+            return
+        future.on_wake(lambda: self._send_result(future, header))
+
+    def _send_result(self, future: Future, header: Any) -> None:
+        if not self._destroyed and future.done():
+            self._result_service.send_response(future.result(), header)
+
+    def _forget(self, key: bytes) -> None:
+        with self._lock:
+            self._goal_handles.pop(key, None)
+            self._result_futures.pop(key, None)
+
+    def expire_goals(self) -> None:
+        """Forget the goals whose results were kept long enough."""
+        if self._result_timeout < 0:
+            return
+        limit = time.monotonic_ns() - int(self._result_timeout * 1e9)
+        with self._lock:
+            expired = [
+                key for key, goal in self._goal_handles.items() if goal.ended_ns is not None and goal.ended_ns <= limit
+            ]
+            for key in expired:
+                self._goal_handles[key]._destroyed = True
+                self._forget(key)
+        if expired:
+            self._publish_status()
+        self._expiry.plan()
+
+    def _publish_status(self) -> None:
+        from action_msgs.msg import GoalStatus, GoalStatusArray
+
+        with self._lock:
+            goals = list(self._goal_handles.values())
+        if self._destroyed:
+            return
+        statuses = [GoalStatus(goal_info=goal._goal_info, status=goal.status) for goal in goals]
+        self._status_publisher.impl.publish(GoalStatusArray(status_list=statuses))
+
+    # Callbacks.
+
+    def register_handle_accepted_callback(
+        self, handle_accepted_callback: Callable[[ServerGoalHandle], None] | None
+    ) -> None:
+        """Set what is called with accepted goals; the default where None."""
+        self._handle_accepted_callback = handle_accepted_callback or default_handle_accepted_callback
+
+    def register_goal_callback(self, goal_callback: Callable[[Any], GoalResponse] | None) -> None:
+        """Set what accepts or rejects goals; the default where None."""
+        self._goal_callback = goal_callback or default_goal_callback
+
+    def register_cancel_callback(self, cancel_callback: Callable[[Any], CancelResponse] | None) -> None:
+        """Set what lets goals be cancelled; the default where None."""
+        self._cancel_callback = cancel_callback or default_cancel_callback
+
+    def register_execute_callback(self, execute_callback: Callable[[ServerGoalHandle], Any]) -> None:
+        """Set what carries goals out.
+
+        Raises
+        ------
+        TypeError
+            When it cannot be called.
+        """
+        if not callable(execute_callback):
+            raise TypeError("Failed to register goal execution callback: not callable")
+        self._execute_callback = execute_callback
+
+    def destroy(self) -> None:
+        """Serve no more; goals that are not over end as they are."""
+        if self._destroyed:
+            return
+        self._destroyed = True
+        self._expiry.close()
+        for handle in (
+            *(service for service, _ in self._services),
+            self._feedback_publisher,
+            self._status_publisher,
+        ):
+            handle.destroy_when_not_in_use()
+        with self._lock:
+            self._goal_handles.clear()
+            self._result_futures.clear()
+        if self in list(self._server_node.waitables):
+            self._server_node.remove_waitable(self)
+
+    def __enter__(self) -> Self:
+        if self._destroyed:
+            raise InvalidHandle("the action server was destroyed")
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Leave it as it is."""
+
+
+def _stamp(goal: ServerGoalHandle) -> tuple[int, int]:
+    stamp = goal._goal_info.stamp
+    return stamp.sec, stamp.nanosec
+
+
+class _Expiry:
+    """Wakes the server when the oldest result has been kept long enough."""
+
+    def __init__(self, server: ActionServer, node: Node) -> None:
+        self._server = server
+        self._node = node
+        self._timer: Any = None
+
+    def plan(self) -> None:
+        """Wait for the next result to expire."""
+        server = self._server
+        if server._result_timeout < 0 or server._destroyed:
+            return
+        with server._lock:
+            ended = [goal.ended_ns for goal in server._goal_handles.values() if goal.ended_ns is not None]
+            if not ended:
+                return
+            left = min(ended) + int(server._result_timeout * 1e9) - time.monotonic_ns()
+        self.close()
+        self._timer = self._node.create_timer(max(left, 0) / 1e9, self._expire, server.callback_group, _steady())
+
+    def _expire(self) -> None:
+        self.close()
+        self._server.expire_goals()
+
+    def close(self) -> None:
+        """Wait no more."""
+        timer, self._timer = self._timer, None
+        if timer is not None:
+            self._node.destroy_timer(timer)
+
+
+def _steady() -> Any:
+    from rclpy.clock import Clock
+    from rclpy.clock_type import ClockType
+
+    return Clock(clock_type=ClockType.STEADY_TIME)

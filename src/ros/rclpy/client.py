@@ -1,0 +1,193 @@
+"""Clients of services."""
+
+from __future__ import annotations
+
+import threading
+import weakref
+from collections.abc import Callable
+from types import TracebackType
+from typing import Any, Self
+
+from rclpy.callback_groups import CallbackGroup
+from rclpy.context import Context
+from rclpy.impl.entities import ClientHandle
+from rclpy.impl.ready import ReadyHook
+from rclpy.qos import QoSProfile
+from rclpy.task import Future
+
+
+class Client:
+    """Calls a service; made by `Node.create_client`."""
+
+    def __init__(
+        self,
+        context: Context,
+        client_impl: ClientHandle,
+        srv_type: Any,
+        srv_name: str,
+        qos_profile: QoSProfile,
+        callback_group: CallbackGroup,
+    ) -> None:
+        self.context = context
+        self.__client = client_impl
+        self._hook = ReadyHook(self)
+        self._node: Any = None
+        self.srv_type = srv_type
+        self.srv_name = srv_name
+        self.qos_profile = qos_profile
+        self._pending_requests: dict[int, Future] = {}
+        self.callback_group = callback_group
+        self._executor_event = False
+        self._lock = threading.RLock()
+        self._has_own_waiter = 0
+        client_impl.set_on_ready(self._on_ready)
+
+    def call(self, request: Any, timeout_sec: float | None = None) -> Any:
+        """Call the service and wait for the response.
+
+        It needs no executor: called from a callback, even of a single-threaded executor, it waits by itself.
+
+        Returns
+        -------
+        response or None
+            None when `timeout_sec` seconds (None: no limit) pass without one.
+
+        Raises
+        ------
+        TypeError
+            When the request is of the wrong type.
+        """
+        if not isinstance(request, self.srv_type.Request):
+            raise TypeError()
+        done = threading.Event()
+        with self._lock:
+            self._has_own_waiter += 1
+        try:
+            future = self.call_async(request)
+            future.on_wake(done.set)
+            if not done.wait(timeout_sec):
+                self.remove_pending_request(future)
+                return None
+        finally:
+            with self._lock:
+                self._has_own_waiter -= 1
+        return future.result()
+
+    def get_pending_request(self, sequence_number: int) -> Future:
+        """Return the future of a request.
+
+        Raises
+        ------
+        KeyError
+            When there is none of that number.
+        """
+        with self._lock:
+            return self._pending_requests[sequence_number]
+
+    def call_async(self, request: Any) -> Future:
+        """Call the service; the future's result will be the response.
+
+        Raises
+        ------
+        TypeError
+            When the request is of the wrong type.
+        """
+        if not isinstance(request, self.srv_type.Request):
+            raise TypeError()
+        with self.handle, self._lock:
+            sequence_number = self.__client.send_request(request)
+            if sequence_number in self._pending_requests:
+                raise RuntimeError(f"Sequence ({sequence_number}) conflicts with pending request")
+            future = Future()
+            self._pending_requests[sequence_number] = future
+            future.on_wake(_Forget(self, future, sequence_number))
+        return future
+
+    def remove_pending_request(self, future: Future) -> None:
+        """Forget a request; its response will be dropped."""
+        with self._lock:
+            for number, pending in list(self._pending_requests.items()):
+                if pending is future:
+                    self._pending_requests.pop(number, None)
+                    return
+
+    def service_is_ready(self) -> bool:
+        """Tell whether somebody serves the service."""
+        with self.handle:
+            return self.__client.service_server_is_available()
+
+    def wait_for_service(self, timeout_sec: float | None = None) -> bool:
+        """Wait until somebody serves the service; False when `timeout_sec` seconds pass, or at a shutdown."""
+        with self.handle as handle:
+            graph = handle.node.graph
+            limit = None if timeout_sec is None or timeout_sec < 0 else timeout_sec
+            graph.wait_for(lambda: not self.context.ok() or self.service_is_ready(), limit)
+            return self.service_is_ready()
+
+    @property
+    def handle(self) -> ClientHandle:
+        """What is behind the client."""
+        return self.__client
+
+    @property
+    def service_name(self) -> str:
+        """The service's full name."""
+        with self.handle:
+            return self.__client.name
+
+    @property
+    def logger_name(self) -> str:
+        """The name that the client's node logs under."""
+        return self.__client.node.logger_name()
+
+    def destroy(self) -> None:
+        """Let go; use `Node.destroy_client` instead."""
+        self.__client.destroy_when_not_in_use()
+
+    def _on_ready(self) -> None:
+        """Hand a response to who waits in `call`, which may be the executor itself, or make the client ready."""
+        if self._has_own_waiter:
+            work = self._take()
+            while work is not None:
+                work[0](*work[1])
+                work = self._take()
+        else:
+            self._hook()
+
+    def _take(self) -> tuple[Callable[..., Any], tuple[Any, ...]] | None:
+        taken = self.__client.take_response()
+        return None if taken is None else (self._finish, taken)
+
+    def _finish(self, header: Any, response: Any) -> None:
+        with self._lock:
+            future = self._pending_requests.pop(header.request_id.sequence_number, None)
+        if future is None:
+            return
+        node = self._node() if self._node else None
+        future._set_executor(node.executor if node is not None else None)
+        future.set_result(response)
+
+    def _has_more(self) -> bool:
+        return len(self.__client.impl) > 0
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.destroy()
+
+
+class _Forget:
+    """Removes a request that was cancelled, without keeping its client alive."""
+
+    def __init__(self, client: Client, future: Future, number: int) -> None:
+        self._client = weakref.ref(client)
+        self._number = number
+
+    def __call__(self) -> None:
+        client = self._client()
+        if client is not None:
+            with client._lock:
+                client._pending_requests.pop(self._number, None)

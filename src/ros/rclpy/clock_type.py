@@ -1,0 +1,12 @@
+"""Kinds of clocks."""
+
+from enum import IntEnum
+
+
+class ClockType(IntEnum):
+    """What a clock counts, with rcl's values."""
+
+    UNINITIALIZED = 0
+    ROS_TIME = 1
+    SYSTEM_TIME = 2
+    STEADY_TIME = 3

@@ -1,0 +1,459 @@
+"""Executors: they wait until something is ready and run its callback.
+
+Nothing is polled. Whatever becomes ready puts itself, once, into its executor's queue (`rclpy.impl.ready`), timers
+stand in a heap by deadline, and the waiting thread sleeps until the queue or the earliest deadline wakes it.
+"""
+
+from __future__ import annotations
+
+import heapq
+import inspect
+import itertools
+import math
+import os
+import threading
+import time
+import weakref
+from collections import deque
+from collections.abc import Callable, Coroutine
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import AbstractContextManager
+from queue import Empty, SimpleQueue
+from types import TracebackType
+from typing import TYPE_CHECKING, Any, Self
+
+from rclpy.context import Context
+from rclpy.impl.ready import ReadyHook
+from rclpy.impl.timer import TimerHandle
+from rclpy.task import Future, Task
+from rclpy.utilities import get_default_context
+
+if TYPE_CHECKING:
+    from rclpy.node import Node
+
+
+async def await_or_execute(callback: Callable[..., Any] | Coroutine[Any, Any, Any], *args: Any) -> Any:
+    """Call a function, or await a coroutine function, with these arguments."""
+    if inspect.iscoroutinefunction(callback):
+        return await callback(*args)
+    return callback(*args)  # type: ignore[operator]
+
+
+class TimeoutException(Exception):
+    """Nothing became ready in time."""
+
+
+class ShutdownException(Exception):
+    """The executor was shut down."""
+
+
+class ExternalShutdownException(Exception):
+    """The context was shut down, for instance by Ctrl-C."""
+
+    def __init__(self) -> None:
+        super().__init__("The context was shut down")
+
+
+class ConditionReachedException(Exception):
+    """What was waited for has come true."""
+
+
+class TimeoutObject:
+    """A timeout in seconds that counts down from its creation."""
+
+    def __init__(self, timeout: float) -> None:
+        self._deadline = math.inf if timeout is None or timeout < 0 else time.monotonic() + timeout
+
+    @property
+    def timeout(self) -> float:
+        """What is left of it."""
+        return max(self._deadline - time.monotonic(), 0.0)
+
+
+class _Failure:
+    """An exception on its way from a worker to the thread that spins."""
+
+    def __init__(self, error: BaseException) -> None:
+        self.error = error
+
+
+class Executor(AbstractContextManager["Executor"]):
+    """Base of executors.
+
+    Parameters
+    ----------
+    context
+        The default context where None.
+    """
+
+    def __init__(self, *, context: Context | None = None) -> None:
+        super().__init__()
+        self._context = context or get_default_context()
+        self._nodes: dict[Node, None] = {}
+        self._nodes_lock = threading.RLock()
+        self._ready: SimpleQueue[Any] = SimpleQueue()
+        self._put = self._ready.put
+        self._timers: list[tuple[int, int, int, TimerHandle]] = []
+        self._timers_lock = threading.Lock()
+        self._timer_count = itertools.count().__next__
+        self._deferred: deque[ReadyHook] = deque()
+        self._is_shutdown = False
+        self._waiting_thread: int | None = None
+        self._active = 0
+        self._idle = threading.Condition()
+        self._context.on_shutdown(self.wake)
+
+    @property
+    def context(self) -> Context:
+        """The executor's context."""
+        return self._context
+
+    # Tasks and nodes.
+
+    def create_task(self, callback: Callable[..., Any] | Coroutine[Any, Any, Any], *args: Any, **kwargs: Any) -> Task:
+        """Have a function or coroutine carried out; returns the task, whose result it will be."""
+        task = Task(callback, args, kwargs, executor=self)
+        task._requeue = self._put
+        self._put(task)
+        return task
+
+    def add_node(self, node: Node) -> bool:
+        """Run a node's callbacks from now on; False when they are already.
+
+        Raises
+        ------
+        ShutdownException
+            When the executor was shut down.
+        """
+        with self._nodes_lock:
+            if node in self._nodes:
+                return False
+            if self._is_shutdown:
+                raise ShutdownException()
+            self._nodes[node] = None
+        node._attach_executor(self)
+        return True
+
+    def remove_node(self, node: Node) -> None:
+        """Run a node's callbacks no more."""
+        with self._nodes_lock:
+            if node not in self._nodes:
+                return
+            del self._nodes[node]
+        node._detach_executor(self)
+
+    def get_nodes(self) -> list[Node]:
+        """Return the nodes whose callbacks are run."""
+        with self._nodes_lock:
+            return list(self._nodes)
+
+    def wake(self) -> None:
+        """Have the waiting thread look again at what it waits for."""
+        self._put(None)
+
+    def schedule(self, deadline_ns: int, timer: TimerHandle) -> None:
+        """Have a timer told when ``time.monotonic_ns()`` reaches a deadline."""
+        with self._timers_lock:
+            heapq.heappush(self._timers, (deadline_ns, self._timer_count(), timer.version, timer))
+            earliest = self._timers[0][3] is timer
+        if earliest and self._waiting_thread != threading.get_ident():
+            self.wake()
+
+    def shutdown(self, timeout_sec: float | None = None) -> bool:
+        """Stop, after the callbacks that run have ended.
+
+        Returns
+        -------
+        bool
+            Whether they ended within `timeout_sec` seconds (None or negative: however long it takes).
+        """
+        self._is_shutdown = True
+        self.wake()
+        for node in self.get_nodes():
+            self.remove_node(node)
+        timeout = None if timeout_sec is None or timeout_sec < 0 else timeout_sec
+        with self._idle:
+            return self._idle.wait_for(lambda: self._active == 0, timeout)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.shutdown()
+
+    def __del__(self) -> None:
+        self._is_shutdown = True
+
+    # Spinning.
+
+    def spin(self) -> None:
+        """Run callbacks until the executor or the context is shut down.
+
+        Raises
+        ------
+        ExternalShutdownException
+            When the context was shut down.
+        """
+        while self._context.ok() and not self._is_shutdown:
+            self._spin_once(None, None)
+
+    def spin_until_future_complete(self, future: Future, timeout_sec: float | None = None) -> None:
+        """Run callbacks until a future is done or cancelled, for at most `timeout_sec` seconds."""
+        future.on_wake(self.wake)
+        deadline = _deadline(timeout_sec)
+        while self._context.ok() and not future._pending_over() and not self._is_shutdown:
+            if deadline is not None and time.monotonic_ns() > deadline:
+                return
+            self._spin_once(deadline, future._pending_over)
+
+    def _spin_once(self, deadline_ns: int | None, condition: Callable[[], bool] | None) -> None:
+        """Run one callback, unless the deadline or the condition comes first."""
+        raise NotImplementedError
+
+    def spin_once(self, timeout_sec: float | None = None) -> None:
+        """Run one callback; wait for it at most `timeout_sec` seconds (None: however long it takes)."""
+        self._spin_once(_deadline(timeout_sec), None)
+
+    def spin_once_until_future_complete(self, future: Future, timeout_sec: float | TimeoutObject | None = None) -> None:
+        """Run one callback unless the future is done or cancelled first."""
+        future.on_wake(self.wake)
+        self._spin_once(_deadline(timeout_sec), future._pending_over)
+
+    def can_execute(self, entity: Any) -> bool:
+        """Tell whether the entity's callback group lets it run now."""
+        group = entity.callback_group
+        return group is None or group.can_execute(entity)
+
+    def wait_for_ready_callbacks(
+        self,
+        timeout_sec: float | TimeoutObject | None = None,
+        nodes: list[Node] | None = None,
+        condition: Callable[[], bool] = lambda: False,
+    ) -> tuple[Task, Any, Node | None]:
+        """Return the next callback that is ready, as a task, with its entity and node.
+
+        Raises
+        ------
+        TimeoutException, ShutdownException, ExternalShutdownException, ConditionReachedException
+            When one of these comes first.
+        """
+        while True:
+            item = self._wait(_deadline(timeout_sec), condition)
+            if isinstance(item, Task):
+                return item, None, None
+            if isinstance(item, _Failure):
+                raise item.error
+            if self._begin(item):
+                entity = item.entity
+                return Task(self._run_entity, (item, entity), executor=self), entity, entity._node
+
+    def _wait(self, deadline_ns: int | None, condition: Callable[[], bool] | None = None) -> Any:
+        """Return the next hook, task or failure of the queue."""
+        self._waiting_thread = threading.get_ident()
+        get = self._ready.get
+        self._check(condition)
+        while True:
+            wait = None
+            if self._timers:
+                wait = self._next_timer_s()
+            if deadline_ns is not None:
+                left = max((deadline_ns - time.monotonic_ns()) / 1e9, 0.0)
+                wait = left if wait is None else min(wait, left)
+            try:
+                item = get(True, wait) if wait is None or wait > 0 else get(False)
+            except Empty:
+                if deadline_ns is not None and time.monotonic_ns() >= deadline_ns:
+                    self._next_timer_s()
+                    if self._ready.empty():
+                        raise TimeoutException() from None
+                continue
+            if item is not None:
+                return item
+            self._check(condition)
+
+    def _check(self, condition: Callable[[], bool] | None) -> None:
+        if self._is_shutdown:
+            raise ShutdownException()
+        if not self._context.ok():
+            raise ExternalShutdownException()
+        if condition is not None and condition():
+            raise ConditionReachedException()
+
+    def _next_timer_s(self) -> float | None:
+        """Queue the timers that are due; return how long until the next one, in seconds."""
+        timers = self._timers
+        while timers:
+            now = time.monotonic_ns()
+            with self._timers_lock:
+                if not timers:
+                    return None
+                deadline, _, version, timer = timers[0]
+                if timer.version != version:
+                    heapq.heappop(timers)
+                    continue
+                if deadline > now:
+                    return (deadline - now) / 1e9
+                heapq.heappop(timers)
+            timer.on_due()
+            if not self._ready.empty():
+                return 0.0
+        return None
+
+    # Running one entity's callback.
+
+    def _begin(self, hook: ReadyHook) -> bool:
+        """Reserve the entity's callback group; False when it must wait or is no longer ours."""
+        if hook.sink is not self._put:
+            return False  # removed meanwhile; it stays marked and is queued where it is attached next
+        entity = hook.entity
+        group = entity.callback_group
+        if group is not None and not group.beginning_execution(entity):
+            self._deferred.append(hook)
+            if group.can_execute(entity):
+                self._retry_deferred()
+            return False
+        hook.queued = False
+        return True
+
+    def _retry_deferred(self) -> None:
+        """Queue again what waited for a callback group."""
+        deferred = self._deferred
+        while deferred:
+            try:
+                self._put(deferred.popleft())
+            except IndexError:
+                return
+
+    def _end(self, entity: Any) -> None:
+        group = entity.callback_group
+        if group is not None:
+            group.ending_execution(entity)
+        if self._deferred:
+            self._retry_deferred()
+
+    def _run_entity(self, hook: ReadyHook, entity: Any) -> None:
+        """Take what is ready and run the callback; its group has been reserved."""
+        suspended = False
+        try:
+            work = entity._take()
+            if work is None:
+                return
+            if entity._has_more():
+                hook()
+            callback, arguments = work
+            result = callback(*arguments)
+            if result is not None and inspect.iscoroutine(result):
+                suspended = self._run_coroutine(result, entity)
+        finally:
+            if not suspended:
+                self._end(entity)
+
+    def _run_coroutine(self, coroutine: Coroutine[Any, Any, Any], entity: Any) -> bool:
+        """Run a callback that is a coroutine; True when it waits for something and so holds its group."""
+        task = Task(coroutine, executor=self)
+        task._requeue = self._put
+        task()
+        if task.done():
+            _raise_from(task)
+            return False
+        task.on_wake(lambda: self._end(entity))
+        return True
+
+    def _run_task(self, task: Task) -> None:
+        task()
+        if task.done():
+            _raise_from(task)
+
+
+def _raise_from(task: Task) -> None:
+    error = task.exception()
+    if error is not None:
+        raise error
+
+
+def _deadline(timeout_sec: float | TimeoutObject | None) -> int | None:
+    """Return when a timeout ends, by ``time.monotonic_ns()``."""
+    if isinstance(timeout_sec, TimeoutObject):
+        timeout_sec = timeout_sec.timeout
+    if timeout_sec is None or timeout_sec < 0 or timeout_sec == math.inf:
+        return None
+    return time.monotonic_ns() + int(timeout_sec * 1e9)
+
+
+class SingleThreadedExecutor(Executor):
+    """Runs callbacks one after the other in the thread that spins."""
+
+    def _spin_once(self, deadline_ns: int | None, condition: Callable[[], bool] | None) -> None:
+        try:
+            while True:
+                item = self._wait(deadline_ns, condition)
+                if item.__class__ is ReadyHook:
+                    if self._begin(item):
+                        self._run_entity(item, item.entity)
+                        return
+                elif isinstance(item, _Failure):
+                    raise item.error
+                else:
+                    self._run_task(item)
+                    return
+        except (TimeoutException, ShutdownException, ConditionReachedException):
+            return
+
+
+class MultiThreadedExecutor(Executor):
+    """Runs callbacks in a pool of threads, as far as callback groups allow.
+
+    Parameters
+    ----------
+    num_threads
+        Size of the pool; as many as there are processors (at least 2) where None.
+    context
+        The default context where None.
+    """
+
+    def __init__(self, num_threads: int | None = None, *, context: Context | None = None) -> None:
+        super().__init__(context=context)
+        threads = num_threads or max(os.cpu_count() or 2, 2)
+        self._num_threads = threads
+        self._executor = ThreadPoolExecutor(threads, thread_name_prefix="rclpy")
+        weakref.finalize(self, self._executor.shutdown, wait=False)
+
+    def _spin_once(self, deadline_ns: int | None, condition: Callable[[], bool] | None) -> None:
+        try:
+            while True:
+                item = self._wait(deadline_ns, condition)
+                if item.__class__ is ReadyHook:
+                    if self._begin(item):
+                        self._submit(self._run_entity, item, item.entity)
+                        return
+                elif isinstance(item, _Failure):
+                    raise item.error
+                else:
+                    self._submit(self._run_task, item)
+                    return
+        except (TimeoutException, ShutdownException, ConditionReachedException):
+            return
+
+    def _submit(self, function: Callable[..., None], *arguments: Any) -> None:
+        with self._idle:
+            self._active += 1
+        self._executor.submit(self._work, function, *arguments)
+
+    def _work(self, function: Callable[..., None], *arguments: Any) -> None:
+        try:
+            function(*arguments)
+        except BaseException as error:
+            self._put(_Failure(error))
+        finally:
+            with self._idle:
+                self._active -= 1
+                if self._active == 0:
+                    self._idle.notify_all()
+
+    def shutdown(self, timeout_sec: float | None = None) -> bool:
+        """Stop, after the callbacks that run have ended; see `Executor.shutdown`."""
+        ended = super().shutdown(timeout_sec)
+        self._executor.shutdown(wait=False)
+        return ended

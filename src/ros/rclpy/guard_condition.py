@@ -1,0 +1,59 @@
+"""Guard conditions: callbacks that run when somebody triggers them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from rclpy.callback_groups import CallbackGroup
+from rclpy.context import Context
+from rclpy.exceptions import NotInitializedException
+from rclpy.impl.entities import GuardConditionHandle
+from rclpy.impl.ready import ReadyHook
+from rclpy.utilities import get_default_context
+
+
+class GuardCondition:
+    """Made by `Node.create_guard_condition`."""
+
+    def __init__(
+        self,
+        callback: Callable[[], Any] | None,
+        callback_group: CallbackGroup | None,
+        context: Context | None = None,
+    ) -> None:
+        context = context or get_default_context()
+        if context.handle is None:
+            raise NotInitializedException("the context must be initialised before it can have guard conditions")
+        self._hook = ReadyHook(self)
+        self._node: Any = None
+        self.__handle = GuardConditionHandle(context.handle, self._hook)
+        self.callback = callback
+        self.callback_group = callback_group
+        self._executor_event = False
+
+    def trigger(self) -> None:
+        """Have the callback run.
+
+        Raises
+        ------
+        InvalidHandle
+            After `destroy`.
+        """
+        with self.__handle:
+            self.__handle.trigger_guard_condition()
+
+    @property
+    def handle(self) -> GuardConditionHandle:
+        """What is behind the guard condition."""
+        return self.__handle
+
+    def destroy(self) -> None:
+        """Let go; use `Node.destroy_guard_condition` instead."""
+        self.__handle.destroy_when_not_in_use()
+
+    def _take(self) -> tuple[Callable[..., Any], tuple[Any, ...]] | None:
+        return (self.callback, ()) if self.callback is not None else None
+
+    def _has_more(self) -> bool:
+        return False

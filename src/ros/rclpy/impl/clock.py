@@ -1,0 +1,156 @@
+"""What is behind a clock: its source of time, its time jumps, and the timers that follow it."""
+
+from __future__ import annotations
+
+import heapq
+import itertools
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import IntEnum
+from typing import TYPE_CHECKING, Any
+
+from rclpy.clock_type import ClockType
+from rclpy.impl.handle import Destroyable
+
+if TYPE_CHECKING:
+    from rclpy.impl.timer import TimerHandle
+
+_SOURCES: dict[ClockType, Callable[[], int]] = {
+    ClockType.ROS_TIME: time.time_ns,
+    ClockType.SYSTEM_TIME: time.time_ns,
+    ClockType.STEADY_TIME: time.monotonic_ns,
+}
+
+
+class ClockChange(IntEnum):
+    """What happened to a clock's source of time."""
+
+    ROS_TIME_NO_CHANGE = 1
+    ROS_TIME_ACTIVATED = 2
+    ROS_TIME_DEACTIVATED = 3
+    SYSTEM_TIME_NO_CHANGE = 4
+
+
+@dataclass(frozen=True)
+class _JumpCallback:
+    owner: Any
+    on_clock_change: bool
+    min_forward_ns: int
+    min_backward_ns: int
+
+    def wants(self, change: ClockChange, delta_ns: int) -> bool:
+        if change in (ClockChange.ROS_TIME_ACTIVATED, ClockChange.ROS_TIME_DEACTIVATED):
+            return self.on_clock_change
+        forward = 0 < self.min_forward_ns <= delta_ns
+        return forward or 0 > self.min_backward_ns >= delta_ns
+
+
+class ClockHandle(Destroyable):
+    """A clock. One of type ROS_TIME can be overridden: then it shows what it is told, not the system's time."""
+
+    def __init__(self, clock_type: ClockType) -> None:
+        super().__init__()
+        self.clock_type = clock_type
+        self._source = _SOURCES[clock_type]
+        self._override: int | None = None
+        self._last_override = 0
+        self._jumps: list[_JumpCallback] = []
+        self._timers: list[tuple[int, int, int, TimerHandle]] = []
+        self._count = itertools.count().__next__
+        self.changed = threading.Condition(threading.RLock())
+
+    def now_ns(self) -> int:
+        """Return the clock's time in nanoseconds."""
+        override = self._override
+        return self._source() if override is None else override
+
+    @property
+    def overridden(self) -> bool:
+        """Whether the clock shows what it is told."""
+        return self._override is not None
+
+    def get_now(self) -> Any:
+        """Return the clock's time as rclpy's compiled part does."""
+        from rclpy.time import Time
+
+        return Time(nanoseconds=self.now_ns(), clock_type=self.clock_type)
+
+    def get_ros_time_override_is_enabled(self) -> bool:
+        """Tell whether the clock is overridden."""
+        return self.overridden
+
+    def set_ros_time_override_is_enabled(self, enabled: bool) -> None:
+        """Begin or end showing what the clock is told."""
+        with self.changed:
+            if enabled == self.overridden:
+                return
+            before = self.now_ns()
+            change = ClockChange.ROS_TIME_ACTIVATED if enabled else ClockChange.ROS_TIME_DEACTIVATED
+            self._jump(change, before, self._last_override if enabled else None)
+            waiting, self._timers = self._timers, []
+        for *_, timer in waiting:
+            timer.reschedule()
+
+    def set_ros_time_override(self, time_point: Any) -> None:
+        """Tell the clock its time: a `Time` or nanoseconds."""
+        self.set_override_ns(getattr(time_point, "nanoseconds", time_point))
+
+    def set_override_ns(self, now_ns: int) -> None:
+        """Tell the clock its time; due timers become ready."""
+        with self.changed:
+            self._last_override = now_ns
+            if self._override is None:
+                return
+            before = self._override
+            if self._jumps:
+                self._jump(ClockChange.ROS_TIME_NO_CHANGE, before, now_ns)
+            else:
+                self._override = now_ns
+                self.changed.notify_all()
+            if now_ns < before:
+                waiting, self._timers = self._timers, []
+                due = []
+            else:
+                waiting, due = [], self._pop_due(now_ns)
+        for *_, timer in waiting:
+            timer.on_backward_jump(now_ns)
+        for timer in due:
+            timer.on_due()
+
+    def _jump(self, change: ClockChange, before: int, override: int | None) -> None:
+        after = self._source() if override is None else override
+        told = [jump for jump in self._jumps if jump.wants(change, after - before)]
+        for jump in told:
+            jump.owner.call_pre()
+        self._override = override
+        self.changed.notify_all()
+        for jump in told:
+            jump.owner.call_post(change, after - before)
+
+    def _pop_due(self, now_ns: int) -> list[TimerHandle]:
+        due = []
+        while self._timers and self._timers[0][0] <= now_ns:
+            _, _, version, timer = heapq.heappop(self._timers)
+            if timer.version == version:
+                due.append(timer)
+        return due
+
+    def schedule(self, deadline_ns: int, timer: TimerHandle) -> None:
+        """Call `timer.on_due` when the overridden clock reaches `deadline_ns`."""
+        with self.changed:
+            if self._override is not None and deadline_ns > self._override:
+                heapq.heappush(self._timers, (deadline_ns, self._count(), timer.version, timer))
+                return
+        timer.on_due()
+
+    def add_clock_callback(self, owner: Any, on_clock_change: bool, min_forward: int, min_backward: int) -> None:
+        """Have `owner.call_pre` and `owner.call_post` called at jumps over these thresholds (0: never)."""
+        with self.changed:
+            self._jumps.append(_JumpCallback(owner, on_clock_change, min_forward, min_backward))
+
+    def remove_clock_callback(self, owner: Any) -> None:
+        """End that."""
+        with self.changed:
+            self._jumps = [jump for jump in self._jumps if jump.owner is not owner]

@@ -1,0 +1,242 @@
+"""Handles of nodes and of what nodes hold: the seam between rclpy and the transport."""
+
+from __future__ import annotations
+
+import weakref
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from daidalos.transport.backend import RequestId
+from daidalos.transport.graph import EndpointInfo, EndpointKind, Graph, NodeInfo, names_and_types
+from daidalos.transport.session import Session
+from rclpy.impl import names
+from rclpy.impl.arguments import RosArguments, parse
+from rclpy.impl.context import ContextHandle
+from rclpy.impl.errors import NodeNameNonExistentError
+from rclpy.impl.handle import Destroyable
+from rclpy.impl.log_output import OUTPUT
+
+
+class NodeHandle(Destroyable):
+    """A node in the graph, with its names after remapping."""
+
+    def __init__(
+        self,
+        context: ContextHandle,
+        name: str,
+        namespace: str,
+        arguments: list[str] | None,
+        use_global_arguments: bool,
+    ) -> None:
+        super().__init__()
+        self.context = context
+        self.session: Session = context.session
+        own = parse(["--ros-args", *arguments]) if arguments else RosArguments()
+        self.own_arguments = own
+        shared_arguments = context.arguments if use_global_arguments else RosArguments()
+        self.remaps = [*own.remaps, *shared_arguments.remaps]
+        self.parameter_overrides = [*shared_arguments.parameters, *own.parameters]
+        self.rosout_enabled = shared_arguments.rosout_logs
+        for logger, level in own.log_levels.items():
+            OUTPUT.set_level(logger, level)  # type: ignore[arg-type]
+        self.original_name = name
+        self.namespace = names.remap_namespace(self.remaps, name, names.absolute_namespace(namespace))
+        self.name = names.remap_node(self.remaps, name)
+        self.info, self._leave = self.session.create_node(self.name, self.namespace, shared_arguments.enclave)
+        self._members: weakref.WeakSet[Destroyable] = weakref.WeakSet()
+
+    @property
+    def graph(self) -> Graph:
+        """What is known of the domain."""
+        return self.session.graph
+
+    def get_fully_qualified_name(self) -> str:
+        """Return the name with its namespace."""
+        return self.info.full_name
+
+    def get_node_name(self) -> str:
+        """Return the name."""
+        return self.name
+
+    def get_namespace(self) -> str:
+        """Return the namespace."""
+        return self.namespace
+
+    def logger_name(self) -> str:
+        """Return the name that the node logs under: ``namespace.name``."""
+        return ".".join(part for part in self.info.full_name.split("/") if part)
+
+    def resolve_name(self, name: str, *, is_service: bool = False, only_expand: bool = False) -> str:
+        """Return the full name of a topic or service of the node, remapped unless `only_expand`."""
+        full = names.expand(name, self.name, self.namespace)
+        if only_expand:
+            return full
+        kind = "service" if is_service else "topic"
+        return names.remap_name(self.remaps, kind, full, self.name, self.namespace)
+
+    def own(self, handle: Destroyable) -> None:
+        """Have a handle destroyed with the node."""
+        self._members.add(handle)
+
+    def find_node(self, name: str, namespace: str) -> NodeInfo:
+        """Return the description of a node in the graph.
+
+        Raises
+        ------
+        NodeNameNonExistentError
+            When there is none of that name.
+        """
+        found = self.graph.find_nodes(name, namespace)
+        if not found:
+            raise NodeNameNonExistentError(
+                f"cannot get information of node '{namespace.rstrip('/')}/{name}': it does not exist"
+            )
+        return found[0]
+
+    def names_and_types_of(self, name: str, namespace: str, kind: EndpointKind) -> list[tuple[str, list[str]]]:
+        """Return what endpoints of a kind a node in the graph has."""
+        return names_and_types(self.graph.endpoints_of(self.find_node(name, namespace), kind))
+
+    def _destroy(self) -> None:
+        for member in list(self._members):
+            member.destroy_when_not_in_use()
+        self._leave()
+
+
+@dataclass(frozen=True, slots=True)
+class RequestHeader:
+    """Identifies a request; `identity` is the transport's, None in a client."""
+
+    sequence_number: int
+    identity: RequestId | None
+
+
+@dataclass(frozen=True, slots=True)
+class ServiceInfo:
+    """The header of a request or a response; stamps are Unix time in nanoseconds."""
+
+    request_id: RequestHeader
+    source_timestamp: int
+    received_timestamp: int
+
+
+class EndpointHandle(Destroyable):
+    """Base of the four kinds of endpoints; `impl` is the transport's object."""
+
+    impl: Any
+
+    def __init__(self, node: NodeHandle) -> None:
+        super().__init__()
+        self.node = node
+        node.own(self)
+
+    @property
+    def endpoint(self) -> EndpointInfo:
+        """How the graph knows it."""
+        info: EndpointInfo = self.impl.endpoint
+        return info
+
+    @property
+    def name(self) -> str:
+        """The full name of the topic or service."""
+        return self.endpoint.name
+
+    def set_on_ready(self, on_ready: Callable[[], None]) -> None:
+        """Have `on_ready` called when something was queued, and at once if something is."""
+        self.impl.on_ready = on_ready
+        if len(self.impl):
+            on_ready()
+
+    def _destroy(self) -> None:
+        self.impl.close()
+
+
+class PublisherHandle(EndpointHandle):
+    """A publisher."""
+
+    def __init__(self, node: NodeHandle, message_type: Any, topic: str, qos: Any) -> None:
+        super().__init__(node)
+        self.impl = node.session.create_publisher(node.info, topic, message_type, qos.resolved())
+
+    def get_topic_name(self) -> str:
+        """Return the full topic name."""
+        return self.name
+
+    def get_subscription_count(self) -> int:
+        """Return how many subscriptions get the samples."""
+        return len(self.node.session.counterparts(self.endpoint))
+
+
+class SubscriptionHandle(EndpointHandle):
+    """A subscription."""
+
+    def __init__(self, node: NodeHandle, message_type: Any, topic: str, qos: Any) -> None:
+        super().__init__(node)
+        self.impl = node.session.create_subscription(node.info, topic, message_type, qos.resolved())
+
+    def get_topic_name(self) -> str:
+        """Return the full topic name."""
+        return self.name
+
+    def get_publisher_count(self) -> int:
+        """Return how many publishers send samples here."""
+        return len(self.node.session.counterparts(self.endpoint))
+
+
+class ServiceHandle(EndpointHandle):
+    """A service."""
+
+    def __init__(self, node: NodeHandle, service_type: Any, name: str, qos: Any) -> None:
+        super().__init__(node)
+        self.impl = node.session.create_service(node.info, name, service_type, qos.resolved())
+
+    def take_request(self) -> tuple[Any, ServiceInfo] | None:
+        """Return the oldest request with its header, or None."""
+        taken = self.impl.take()
+        if taken is None:
+            return None
+        request, identity, source_ns, received_ns = taken
+        return request, ServiceInfo(RequestHeader(identity.sequence, identity), source_ns, received_ns)
+
+    def send_response(self, response: Any, header: Any) -> None:
+        """Answer a request; `header` is what `take_request` gave, or its `request_id`."""
+        self.impl.reply(getattr(header, "request_id", header).identity, response)
+
+
+class ClientHandle(EndpointHandle):
+    """A client."""
+
+    def __init__(self, node: NodeHandle, service_type: Any, name: str, qos: Any) -> None:
+        super().__init__(node)
+        self.impl = node.session.create_client(node.info, name, service_type, qos.resolved())
+
+    def send_request(self, request: Any) -> int:
+        """Send a request; returns its sequence number."""
+        number: int = self.impl.send(request)
+        return number
+
+    def take_response(self) -> tuple[ServiceInfo, Any] | None:
+        """Return the oldest response with its header, or None."""
+        taken = self.impl.take()
+        if taken is None:
+            return None
+        response, number, source_ns, received_ns = taken
+        return ServiceInfo(RequestHeader(number, None), source_ns, received_ns), response
+
+    def service_server_is_available(self) -> bool:
+        """Tell whether somebody serves the service."""
+        return self.node.session.server_is_ready(self.impl)
+
+
+class GuardConditionHandle(Destroyable):
+    """A flag that wakes an executor."""
+
+    def __init__(self, context: ContextHandle, on_ready: Callable[[], None]) -> None:
+        super().__init__()
+        self.context = context
+        self._on_ready = on_ready
+
+    def trigger_guard_condition(self) -> None:
+        """Wake the executor."""
+        self._on_ready()

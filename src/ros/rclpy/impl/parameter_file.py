@@ -1,0 +1,154 @@
+"""Parameter values and files in YAML, with the types that ROS 2 gives them."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+_INTEGER_MAX = 2**63 - 1
+
+
+class ParameterFileError(ValueError):
+    """A parameter file cannot be used; the message says where and why."""
+
+
+class _Loader(yaml.SafeLoader):
+    """YAML as rcl_yaml_param_parser reads it: 1e3 is a float, `on` and `yes` are booleans, dates are text."""
+
+
+_Loader.yaml_implicit_resolvers = {
+    first: [(tag, pattern) for tag, pattern in resolvers if tag != "tag:yaml.org,2002:timestamp"]
+    for first, resolvers in yaml.SafeLoader.yaml_implicit_resolvers.items()
+}
+_Loader.add_implicit_resolver(
+    "tag:yaml.org,2002:float",
+    re.compile(
+        r"""^(?:[-+]?(?:[0-9][0-9_]*)\.[0-9_]*(?:[eE][-+]?[0-9]+)?
+        |[-+]?(?:[0-9][0-9_]*)(?:[eE][-+]?[0-9]+)
+        |\.[0-9_]+(?:[eE][-+]?[0-9]+)?
+        |[-+]?\.(?:inf|Inf|INF)
+        |\.(?:nan|NaN|NAN))$""",
+        re.VERBOSE,
+    ),
+    list("-+0123456789."),
+)
+
+
+def parse_value(text: str) -> Any:
+    """Read one value: bool, int, float, str or a list of one of these.
+
+    Raises
+    ------
+    ValueError
+        When it is no such value.
+    """
+    try:
+        value = yaml.load(text, _Loader)
+    except yaml.YAMLError as error:
+        raise ValueError(_where(error)) from None
+    if text.strip() and value is None and text.strip().lower() not in ("~", "null"):
+        return text
+    return check_value(text if isinstance(value, dict) else "" if value is None else value)
+
+
+def check_value(value: Any) -> Any:
+    """Return `value` if a parameter can hold it.
+
+    Raises
+    ------
+    ValueError
+        Saying why not.
+    """
+    if isinstance(value, list):
+        kinds = {type(item) for item in value}
+        if kinds == {int, float}:
+            return [float(item) for item in value]
+        if len(kinds) > 1:
+            raise ValueError(f"a list must hold values of one type, not {value}")
+        for item in value:
+            if isinstance(item, (list, dict)) or item is None:
+                raise ValueError(f"a list must hold plain values, not {item}")
+            check_value(item)
+        return value
+    if isinstance(value, bool | str | float):
+        return value
+    if isinstance(value, int):
+        if not -_INTEGER_MAX - 1 <= value <= _INTEGER_MAX:
+            raise ValueError(f"{value} does not fit into 64 bits")
+        return value
+    raise ValueError(f"a parameter cannot hold {value!r}")
+
+
+def read_file(path: str | Path) -> list[tuple[str, str, Any]]:
+    """Read a parameter file.
+
+    Returns
+    -------
+    list of (str, str, value)
+        Node name (with its namespace; ``*`` and ``**`` are wildcards), parameter name, value; in order.
+
+    Raises
+    ------
+    ParameterFileError
+        Naming the place in the file.
+    """
+    try:
+        document = yaml.load(Path(path).read_text(encoding="utf-8"), _Loader)
+    except OSError as error:
+        raise ParameterFileError(f"{error.strerror or error}") from None
+    except yaml.YAMLError as error:
+        raise ParameterFileError(_where(error)) from None
+    if document is None:
+        return []
+    if not isinstance(document, dict):
+        raise ParameterFileError("expected node names at the top, each with 'ros__parameters' below")
+    found: list[tuple[str, str, Any]] = []
+    _walk_nodes(document, "", found)
+    return found
+
+
+def _where(error: yaml.YAMLError) -> str:
+    mark = getattr(error, "problem_mark", None)
+    problem = getattr(error, "problem", None) or str(error)
+    return f"line {mark.line + 1}, column {mark.column + 1}: {problem}" if mark else str(problem)
+
+
+def _walk_nodes(tree: dict[str, Any], prefix: str, found: list[tuple[str, str, Any]]) -> None:
+    for name, value in tree.items():
+        if name == "ros__parameters":
+            if not prefix:
+                raise ParameterFileError("'ros__parameters' stands at the top; put it below a node's name or '/**'")
+            if value is not None and not isinstance(value, dict):
+                raise ParameterFileError(f"'ros__parameters' of '{prefix}' must hold names and values")
+            _walk_parameters(value or {}, "", prefix, found)
+        elif isinstance(value, dict):
+            _walk_nodes(value, f"{prefix}/{str(name).strip('/')}" if prefix else str(name), found)
+        elif value is not None:
+            raise ParameterFileError(f"'{name}' has a value outside of 'ros__parameters'")
+
+
+def _walk_parameters(tree: dict[str, Any], prefix: str, node: str, found: list[tuple[str, str, Any]]) -> None:
+    for key, value in tree.items():
+        name = f"{prefix}.{key}" if prefix else str(key)
+        if isinstance(value, dict):
+            _walk_parameters(value, name, node, found)
+        elif value is not None:
+            try:
+                found.append((node, name, check_value(value)))
+            except ValueError as error:
+                raise ParameterFileError(f"parameter '{name}' of '{node}': {error}") from None
+
+
+def node_matches(pattern: str, full_name: str) -> bool:
+    """Tell whether a node name in a file means the node `full_name` (such as ``/lab/talker``)."""
+    if not pattern.startswith("/"):
+        pattern = f"/{pattern}"
+    if pattern == full_name or pattern == "/**":
+        return True
+    if "*" not in pattern:
+        return False
+    text = re.escape(pattern).replace(r"/\*\*", r"(?:/[^/]+)*").replace(r"\*", r"[^/]+")
+    return re.fullmatch(text, full_name) is not None

@@ -1,0 +1,39 @@
+"""How an entity tells the executor that there is something to do."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+
+class ReadyHook:
+    """Calling it, from any thread, makes its entity ready.
+
+    An entity stands in its executor's queue at most once; what becomes ready while no executor is attached is put
+    into the queue when one is. An executor may find an entity with nothing to do: it then passes over it.
+    """
+
+    __slots__ = ("entity", "queued", "sink")
+
+    def __init__(self, entity: Any) -> None:
+        self.entity = entity
+        self.queued = False
+        self.sink: Callable[[ReadyHook], None] | None = None
+
+    def __call__(self) -> None:
+        """Make the entity ready."""
+        if not self.queued:
+            self.queued = True
+            sink = self.sink
+            if sink is not None:
+                sink(self)
+
+    def attach(self, sink: Callable[[ReadyHook], None]) -> None:
+        """Direct the hook to an executor's queue."""
+        self.sink = sink
+        if self.queued:
+            sink(self)
+
+    def detach(self) -> None:
+        """Direct the hook nowhere."""
+        self.sink = None

@@ -1,0 +1,97 @@
+"""Services."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from types import TracebackType
+from typing import Any, Self
+
+from rclpy.callback_groups import CallbackGroup
+from rclpy.impl.entities import ServiceHandle
+from rclpy.impl.ready import ReadyHook
+from rclpy.qos import QoSProfile
+
+
+class Service:
+    """Answers requests; made by `Node.create_service`."""
+
+    def __init__(
+        self,
+        service_impl: ServiceHandle,
+        srv_type: Any,
+        srv_name: str,
+        callback: Callable[[Any, Any], Any],
+        callback_group: CallbackGroup,
+        qos_profile: QoSProfile,
+    ) -> None:
+        self.__service = service_impl
+        self._hook = ReadyHook(self)
+        self._node: Any = None
+        self.srv_type = srv_type
+        self.srv_name = srv_name
+        self.callback = callback
+        self.callback_group = callback_group
+        self._executor_event = False
+        self.qos_profile = qos_profile
+        service_impl.set_on_ready(self._hook)
+
+    def send_response(self, response: Any, header: Any) -> None:
+        """Answer the request with that header.
+
+        Raises
+        ------
+        TypeError
+            When the response is of the wrong type.
+        """
+        if not isinstance(response, self.srv_type.Response):
+            raise TypeError(
+                f"The callback of service '{self.srv_name}' returned {type(response)}, "
+                f"expected {self.srv_type.Response}"
+            )
+        with self.handle:
+            self.__service.send_response(response, header)
+
+    @property
+    def handle(self) -> ServiceHandle:
+        """What is behind the service."""
+        return self.__service
+
+    @property
+    def service_name(self) -> str:
+        """The service's full name."""
+        with self.handle:
+            return self.__service.name
+
+    @property
+    def logger_name(self) -> str:
+        """The name that the service's node logs under."""
+        return self.__service.node.logger_name()
+
+    def destroy(self) -> None:
+        """Let go; use `Node.destroy_service` instead."""
+        self.__service.destroy_when_not_in_use()
+
+    def _take(self) -> tuple[Callable[..., Any], tuple[Any, ...]] | None:
+        taken = self.__service.take_request()
+        return None if taken is None else (self._answer, taken)
+
+    def _answer(self, request: Any, header: Any) -> Any:
+        response = self.callback(request, self.srv_type.Response())
+        if hasattr(response, "__await__"):
+            return self._answer_later(response, header)
+        self.send_response(response, header)
+        return None
+
+    async def _answer_later(self, awaitable: Any, header: Any) -> None:
+        self.send_response(await awaitable, header)
+
+    def _has_more(self) -> bool:
+        return len(self.__service.impl) > 0
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.destroy()

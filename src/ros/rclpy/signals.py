@@ -1,0 +1,113 @@
+"""Ctrl-C and termination: the contexts are shut down, so that `spin` and everyone who waits comes back."""
+
+from __future__ import annotations
+
+import signal
+import sys
+import threading
+import weakref
+from enum import IntFlag
+from types import FrameType, TracebackType
+from typing import Any
+
+from rclpy.context import Context
+from rclpy.exceptions import ROSInterruptException
+from rclpy.guard_condition import GuardCondition
+
+
+class SignalHandlerOptions(IntFlag):
+    """Which signals are handled."""
+
+    NO = 0
+    SIGINT = 1
+    SIGTERM = 2
+    ALL = 3
+
+
+_lock = threading.Lock()
+_contexts: weakref.WeakSet[Context] = weakref.WeakSet()
+_guards: weakref.WeakSet[GuardCondition] = weakref.WeakSet()
+_installed = SignalHandlerOptions.NO
+_previous: dict[int, Any] = {}
+_previous_hook: Any = None
+_NUMBERS = {SignalHandlerOptions.SIGINT: signal.SIGINT, SignalHandlerOptions.SIGTERM: signal.SIGTERM}
+
+
+def install_signal_handlers(options: SignalHandlerOptions = SignalHandlerOptions.ALL) -> None:
+    """Handle signals from now on; only the main thread can."""
+    global _installed, _previous_hook
+    if threading.current_thread() is not threading.main_thread():
+        return
+    with _lock:
+        for option, number in _NUMBERS.items():
+            if option in options and option not in _installed:
+                _previous[number] = signal.signal(number, _on_signal)
+        if _installed == SignalHandlerOptions.NO and options != SignalHandlerOptions.NO:
+            _previous_hook, sys.excepthook = sys.excepthook, _quiet_excepthook
+            threading.excepthook = _quiet_thread_excepthook
+        _installed |= options
+
+
+def uninstall_signal_handlers() -> None:
+    """Handle signals no more."""
+    global _installed
+    if threading.current_thread() is not threading.main_thread():
+        return
+    with _lock:
+        for number, handler in _previous.items():
+            if signal.getsignal(number) is _on_signal:
+                signal.signal(number, handler if handler is not None else signal.SIG_DFL)
+        _previous.clear()
+        _installed = SignalHandlerOptions.NO
+
+
+def get_current_signal_handlers_options() -> SignalHandlerOptions:
+    """Return which signals are handled."""
+    return _installed
+
+
+def watch_context(context: Context) -> None:
+    """Shut a context down at a signal."""
+    _contexts.add(context)
+
+
+def _on_signal(number: int, frame: FrameType | None) -> None:
+    for context in list(_contexts):
+        context.shutdown_by_signal()
+    for guard in list(_guards):
+        guard.trigger()
+    previous = _previous.get(number)
+    if callable(previous):
+        previous(number, frame)
+
+
+def _quiet_excepthook(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
+    """Show no traceback when a program ends because it was asked to."""
+    if not _is_orderly(kind):
+        (_previous_hook or sys.__excepthook__)(kind, error, trace)
+
+
+def _quiet_thread_excepthook(arguments: threading.ExceptHookArgs) -> None:
+    """Do the same for a thread that spins."""
+    if not _is_orderly(arguments.exc_type):
+        threading.__excepthook__(arguments)
+
+
+def _is_orderly(kind: type[BaseException]) -> bool:
+    """Tell whether an exception only says that the program is to end."""
+    from rclpy.executors import ExternalShutdownException
+
+    return issubclass(kind, (KeyboardInterrupt, ExternalShutdownException, ROSInterruptException))
+
+
+class SignalHandlerGuardCondition(GuardCondition):
+    """A guard condition that a signal triggers."""
+
+    def __init__(self, context: Context | None = None) -> None:
+        super().__init__(callback=None, callback_group=None, context=context)
+        _guards.add(self)
+
+    def destroy(self) -> None:
+        """Let go."""
+        _guards.discard(self)
+        super().destroy()

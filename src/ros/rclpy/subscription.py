@@ -1,0 +1,158 @@
+"""Subscriptions."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Sequence
+from enum import Enum
+from types import TracebackType
+from typing import Any, Self, TypedDict
+
+from rclpy.callback_groups import CallbackGroup
+from rclpy.event_handler import EventHandler, SubscriptionEventCallbacks
+from rclpy.impl.entities import SubscriptionHandle
+from rclpy.impl.ready import ReadyHook
+from rclpy.qos import QoSProfile
+
+
+class MessageInfo(TypedDict):
+    """What is known of a message beside its data; stamps are Unix time in nanoseconds."""
+
+    source_timestamp: int
+    received_timestamp: int
+    publication_sequence_number: int | None
+    reception_sequence_number: int | None
+    publisher_gid: dict[str, Any] | None
+
+
+class Subscription:
+    """Receives a topic's messages; made by `Node.create_subscription`."""
+
+    class CallbackType(Enum):
+        """What the callback takes."""
+
+        MessageOnly = 0
+        WithMessageInfo = 1
+
+    def __init__(
+        self,
+        subscription_impl: SubscriptionHandle,
+        msg_type: Any,
+        topic: str,
+        callback: Callable[..., Any],
+        callback_group: CallbackGroup,
+        qos_profile: QoSProfile,
+        raw: bool,
+        event_callbacks: SubscriptionEventCallbacks,
+    ) -> None:
+        self.__subscription = subscription_impl
+        self._impl = subscription_impl.impl
+        self._hook = ReadyHook(self)
+        self._node: Any = None
+        self.msg_type = msg_type
+        self.topic = topic
+        self.callback = callback
+        self.callback_group = callback_group
+        self._executor_event = False
+        self.qos_profile = qos_profile
+        self.raw = raw
+        self._take_one = self._impl.take_raw if raw else self._impl.take
+        self.event_handlers: Sequence[EventHandler] = event_callbacks.create_event_handlers(
+            callback_group, subscription_impl, topic
+        )
+        subscription_impl.set_on_ready(self._hook)
+
+    def get_publisher_count(self) -> int:
+        """Return how many publishers send messages here."""
+        with self.handle:
+            return self.__subscription.get_publisher_count()
+
+    @property
+    def handle(self) -> SubscriptionHandle:
+        """What is behind the subscription."""
+        return self.__subscription
+
+    def destroy(self) -> None:
+        """Let go; use `Node.destroy_subscription` instead."""
+        for handler in self.event_handlers:
+            handler.destroy()
+        self.__subscription.destroy_when_not_in_use()
+
+    @property
+    def topic_name(self) -> str:
+        """The topic's full name."""
+        with self.handle:
+            return self.__subscription.get_topic_name()
+
+    @property
+    def callback(self) -> Callable[..., Any]:
+        """What is called with every message, and with its `MessageInfo` when it takes two arguments."""
+        return self._callback
+
+    @callback.setter
+    def callback(self, value: Callable[..., Any]) -> None:
+        self._callback = value
+        self._callback_type = _callback_type(value)
+        self._with_info = self._callback_type is Subscription.CallbackType.WithMessageInfo
+
+    @property
+    def logger_name(self) -> str:
+        """The name that the subscription's node logs under."""
+        return self.__subscription.node.logger_name()
+
+    def _take(self) -> tuple[Callable[..., Any], tuple[Any, ...]] | None:
+        taken = self._take_one()
+        if taken is None:
+            return None
+        message, item = taken
+        if self._with_info:
+            return self._callback, (message, self._message_info(item))
+        return self._callback, (message,)
+
+    def _message_info(self, item: Any) -> MessageInfo:
+        info = self._impl.info(item)
+        return MessageInfo(
+            source_timestamp=info.source_ns,
+            received_timestamp=info.received_ns,
+            publication_sequence_number=info.sequence,
+            reception_sequence_number=None,
+            publisher_gid={"implementation_identifier": "", "data": info.gid},
+        )
+
+    def _has_more(self) -> bool:
+        return bool(self._impl._queue)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.destroy()
+
+
+def _callback_type(callback: Callable[..., Any]) -> Subscription.CallbackType:
+    """Tell by its signature whether a callback takes the message's info as well.
+
+    Raises
+    ------
+    RuntimeError
+        When it can be called with neither one nor two arguments.
+    """
+    try:
+        signature = inspect.signature(callback)
+    except (TypeError, ValueError):
+        return Subscription.CallbackType.MessageOnly  # a built-in function
+    for count, kind in (
+        (1, Subscription.CallbackType.MessageOnly),
+        (2, Subscription.CallbackType.WithMessageInfo),
+    ):
+        try:
+            signature.bind(*[None] * count)
+        except TypeError:
+            continue
+        return kind
+    raise RuntimeError(
+        "Subscription.__init__(): callback should be either be callable with one argument (to get only the message) "
+        "or two (to get message and message info)"
+    )

@@ -1,0 +1,253 @@
+"""Futures, and tasks that an executor carries out."""
+
+from __future__ import annotations
+
+import inspect
+import sys
+import threading
+import warnings
+import weakref
+from collections.abc import Callable, Generator
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from rclpy.executors import Executor
+
+
+def _write_warning(error: BaseException) -> None:
+    print(f"The following exception was never retrieved: {error}", file=sys.stderr)  # noqa: T201
+
+
+class Future:
+    """The result of something that is not yet done; a coroutine may ``await`` it."""
+
+    def __init__(self, *, executor: Executor | None = None) -> None:
+        self._done = False
+        self._cancelled = False
+        self._result: Any = None
+        self._exception: BaseException | None = None
+        self._exception_fetched = False
+        self._callbacks: list[Callable[[Future], None]] = []
+        self._lock = threading.Lock()
+        self._executor: Callable[[], Executor | None] = lambda: None
+        if executor is not None:
+            self._set_executor(executor)
+
+    def __del__(self) -> None:
+        if getattr(self, "_exception", None) is not None and not self._exception_fetched:
+            _write_warning(self._exception)  # type: ignore[arg-type]
+
+    def __await__(self) -> Generator[Future, None, Any]:
+        while not self._pending_over():
+            yield self
+        return self.result()
+
+    def _pending_over(self) -> bool:
+        return self._done or self._cancelled
+
+    def cancel(self) -> None:
+        """Give up; does nothing when it is done."""
+        with self._lock:
+            if self._done:
+                return
+            self._cancelled = True
+        self._schedule_or_invoke_done_callbacks()
+
+    def cancelled(self) -> bool:
+        """Tell whether it was given up."""
+        return self._cancelled
+
+    def done(self) -> bool:
+        """Tell whether there is a result or an exception."""
+        return self._done
+
+    def result(self) -> Any:
+        """Return the result, None when there is none yet; raise the exception that came instead."""
+        if self._exception is not None:
+            self._exception_fetched = True
+            raise self._exception
+        return self._result
+
+    def exception(self) -> BaseException | None:
+        """Return the exception that came instead of a result, if one did."""
+        self._exception_fetched = True
+        return self._exception
+
+    def set_result(self, result: Any) -> None:
+        """Finish with a result."""
+        with self._lock:
+            self._result = result
+            self._done = True
+            self._cancelled = False
+        self._schedule_or_invoke_done_callbacks()
+
+    def set_exception(self, exception: BaseException) -> None:
+        """Finish with an exception."""
+        with self._lock:
+            self._exception = exception
+            self._exception_fetched = False
+            self._done = True
+            self._cancelled = False
+        self._schedule_or_invoke_done_callbacks()
+
+    def _schedule_or_invoke_done_callbacks(self) -> None:
+        """Call what waits for the end: through the executor if there is one, else here."""
+        with self._lock:
+            callbacks, self._callbacks = self._callbacks, []
+        executor = self._executor()
+        for callback in callbacks:
+            if executor is not None and not isinstance(callback, _Wake):
+                executor.create_task(callback, self)
+            else:
+                _call(callback, self)
+
+    def _set_executor(self, executor: Executor | None) -> None:
+        """Have callbacks called by an executor."""
+        self._executor = (lambda: None) if executor is None else weakref.ref(executor)
+
+    def add_done_callback(self, callback: Callable[[Future], None]) -> None:
+        """Call ``callback(future)`` when it is done; at once if it is."""
+        with self._lock:
+            if not self._pending_over():
+                self._callbacks.append(callback)
+                return
+        executor = self._executor()
+        if executor is not None:
+            executor.create_task(callback, self)
+        else:
+            _call(callback, self)
+
+    def remove_done_callback(self, callback: Callable[[Future], None]) -> bool:
+        """Do not call `callback` after all; tell whether it was waiting."""
+        with self._lock:
+            before = len(self._callbacks)
+            self._callbacks = [other for other in self._callbacks if other != callback]
+            return len(self._callbacks) < before
+
+    def on_wake(self, wake: Callable[[], None]) -> None:
+        """Call `wake` when it is over: at once, and not through an executor."""
+        with self._lock:
+            if not self._pending_over():
+                self._callbacks.insert(0, _Wake(wake))
+                return
+        wake()
+
+
+class _Wake:
+    """A callback that only wakes a waiter, and so needs no executor."""
+
+    def __init__(self, wake: Callable[[], None]) -> None:
+        self.wake = wake
+
+    def __call__(self, future: Future) -> None:
+        self.wake()
+
+
+def _call(callback: Callable[[Future], Any], future: Future) -> None:
+    # A broken callback must not keep the others from being called.
+    try:
+        callback(future)
+    except Exception as error:
+        warnings.warn(f"Unhandled exception in done callback: {error}", RuntimeWarning, stacklevel=2)
+
+
+class Task(Future):
+    """A function or a coroutine that an executor carries out; it is the future of its own result.
+
+    Parameters
+    ----------
+    handler
+        A function, a coroutine function or a coroutine.
+    args, kwargs
+        Its arguments.
+    executor
+        Who carries it out.
+    """
+
+    def __init__(
+        self,
+        handler: Any,
+        args: Any = None,
+        kwargs: Any = None,
+        executor: Executor | None = None,
+    ) -> None:
+        super().__init__(executor=executor)
+        self._args = list(args or ())
+        self._kwargs = dict(kwargs or {})
+        self._handler = handler
+        if inspect.iscoroutinefunction(handler):
+            self._handler = handler(*self._args, **self._kwargs)
+            self._args, self._kwargs = [], {}
+        self._executing = False
+        self._task_lock = threading.Lock()
+        self._requeue: Callable[[Task], None] | None = None
+
+    def __call__(self) -> None:
+        """Go on until it is done, or until it waits for something."""
+        if self._done or self._executing or not self._task_lock.acquire(blocking=False):
+            return
+        try:
+            if self._done:
+                return
+            self._executing = True
+            if inspect.iscoroutine(self._handler):
+                self._step()
+            else:
+                self._run()
+        finally:
+            self._executing = False
+            self._task_lock.release()
+
+    def _run(self) -> None:
+        try:
+            result = self._handler(*self._args, **self._kwargs)
+        except Exception as error:
+            self.set_exception(error)
+            return
+        if inspect.iscoroutine(result):
+            self._handler = result
+            self._step()
+            return
+        self.set_result(result)
+        self._complete_task()
+
+    def _step(self) -> None:
+        """Run the coroutine until it waits; what it waits for will queue the task again."""
+        if self._cancelled:
+            self._handler.close()
+            return
+        try:
+            waits_for = self._handler.send(None)
+        except StopIteration as stop:
+            self.set_result(stop.value)
+            self._complete_task()
+            return
+        except Exception as error:
+            self.set_exception(error)
+            self._complete_task()
+            return
+        requeue = self._requeue
+        if requeue is None:
+            return
+        if isinstance(waits_for, Future):
+            waits_for.on_wake(lambda: requeue(self))
+        else:
+            requeue(self)  # an awaitable of another kind: ask again
+
+    def _complete_task(self) -> None:
+        """Let go of what the handler refers to."""
+        self._handler = None
+        self._args, self._kwargs = [], {}
+
+    def executing(self) -> bool:
+        """Tell whether it is being carried out right now."""
+        return self._executing
+
+    def cancel(self) -> None:
+        """Give up; a coroutine is closed where it waits."""
+        super().cancel()
+        if not self._done and inspect.iscoroutine(self._handler) and self._task_lock.acquire(blocking=False):
+            try:
+                self._handler.close()
+            finally:
+                self._task_lock.release()
