@@ -1,0 +1,100 @@
+"""Which command starts an executable of a package."""
+
+from __future__ import annotations
+
+import difflib
+import os
+import sys
+from pathlib import Path
+
+BUILT_IN = Path(__file__).resolve().parent
+
+
+class ExecutableNotFound(LookupError):
+    """No executable of that name; the message says which are near."""
+
+
+def find_executable(package: str, executable: str) -> list[str]:
+    """Return the beginning of the command that starts an executable; arguments are to follow.
+
+    Packages of the user's workspaces come before the built-in ones.
+
+    Raises
+    ------
+    ExecutableNotFound
+        When the package is unknown or has no such executable.
+    """
+    for folder in _folders(package):
+        path = folder / executable
+        if _is_executable(path):
+            return [str(path)]
+    module = _modules(package).get(executable)
+    if module is not None:
+        return [sys.executable, "-m", f"daidalos.nodes.{package}.{module}"]
+    known = executables(package)
+    if not known and not is_known(package):
+        raise ExecutableNotFound(f"Package '{package}' not found")
+    near = difflib.get_close_matches(executable, known, n=3)
+    hint = f"; did you mean {' or '.join(near)}?" if near else f"; there are: {', '.join(known)}" if known else ""
+    raise ExecutableNotFound(f"No executable '{executable}' in package '{package}'{hint}")
+
+
+def executables(package: str) -> list[str]:
+    """Return the names of a package's executables, sorted."""
+    found = {path.name for folder in _folders(package) for path in _files(folder)}
+    return sorted(found | _modules(package).keys())
+
+
+def executable_path(package: str, executable: str) -> Path:
+    """Return the file behind an executable; see `find_executable` for what it raises."""
+    command = find_executable(package, executable)
+    return Path(command[0]) if len(command) == 1 else BUILT_IN / package / f"{command[2].rpartition('.')[2]}.py"
+
+
+def is_known(package: str) -> bool:
+    """Tell whether there is such a package."""
+    from ament_index_python.packages import PackageNotFoundError, get_package_prefix
+
+    try:
+        get_package_prefix(package)
+    except (PackageNotFoundError, ValueError):
+        return (BUILT_IN / package).is_dir()
+    return True
+
+
+def _folders(package: str) -> list[Path]:
+    prefixes = [*os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep), sys.prefix]
+    return [Path(prefix) / "lib" / package for prefix in prefixes if prefix]
+
+
+def _files(folder: Path) -> list[Path]:
+    return [path for path in folder.iterdir() if _is_executable(path)] if folder.is_dir() else []
+
+
+def _is_executable(path: Path) -> bool:
+    return path.is_file() and (sys.platform == "win32" or os.access(path, os.X_OK))
+
+
+def _modules(package: str) -> dict[str, str]:
+    """Return the built-in executables of a package: name -> module.
+
+    A module stands for the executable of its name. ROS 2 calls some executables ``name.py``: such a name is listed
+    where the package's ``__init__`` says so in ``EXECUTABLES`` (executable -> module).
+    """
+    folder = BUILT_IN / package
+    if not (folder / "__init__.py").is_file():
+        return {}
+    found = {path.stem: path.stem for path in folder.glob("*.py") if not path.stem.startswith("_")}
+    renamed = _renamed(folder)
+    for module in renamed.values():
+        found.pop(module, None)
+    return found | renamed
+
+
+def _renamed(folder: Path) -> dict[str, str]:
+    if "EXECUTABLES" not in (folder / "__init__.py").read_text(encoding="utf-8"):
+        return {}
+    from importlib import import_module
+
+    names: dict[str, str] = import_module(f"daidalos.nodes.{folder.name}").EXECUTABLES
+    return names

@@ -1,0 +1,179 @@
+"""Messages as dictionaries, YAML and CSV."""
+
+from __future__ import annotations
+
+import array
+import sys
+from collections import OrderedDict
+from typing import Any
+
+from daidalos.interfaces.message import Message
+
+_DEFAULT_TRUNCATE_LENGTH = 128
+
+
+def get_message_slot_types(msg: Any) -> OrderedDict[str, Any]:
+    """Return the fields of a message with the classes that describe their types."""
+    return OrderedDict(zip(msg.get_fields_and_field_types(), msg.SLOT_TYPES, strict=True))
+
+
+def message_to_ordereddict(
+    msg: Any, *, truncate_length: int | None = None, no_arr: bool = False, no_str: bool = False
+) -> OrderedDict[str, Any]:
+    """Return a message as nested dictionaries.
+
+    Parameters
+    ----------
+    msg
+        The message.
+    truncate_length
+        Shorten lists, bytes and strings that are longer than this.
+    no_arr, no_str
+        Say the length of lists or strings instead of their content.
+    """
+    result: OrderedDict[str, Any] = OrderedDict()
+    for name, kind in msg.get_fields_and_field_types().items():
+        result[name] = _plain(getattr(msg, name), kind, truncate_length, no_arr, no_str)
+    return result
+
+
+def _plain(value: Any, kind: str, limit: int | None, no_arr: bool, no_str: bool) -> Any:
+    if isinstance(value, Message):
+        return message_to_ordereddict(value, truncate_length=limit, no_arr=no_arr, no_str=no_str)
+    if isinstance(value, bytes):
+        shortened = limit is not None and len(value) > limit
+        return (
+            "".join(chr(item) for item in value[:limit]) + ("..." if shortened else "")
+            if len(value) > 1
+            else ord(value)
+        )
+    if isinstance(value, str):
+        if no_str:
+            return f"<string length: <{len(value)}>>"
+        return f"{value[:limit]}..." if limit is not None and len(value) > limit else value
+    if isinstance(value, (bool, int, float)):
+        return value
+    return _plain_sequence(value, kind, limit, no_arr, no_str)
+
+
+def _plain_sequence(values: Any, kind: str, limit: int | None, no_arr: bool, no_str: bool) -> Any:
+    inner = _value_type(kind)
+    if no_arr:
+        return _summary(values, kind, inner)
+    cut = limit is not None and len(values) > limit
+    shown = values[:limit] if cut else values
+    if hasattr(shown, "tolist"):
+        items = shown.tolist()
+    else:
+        items = [_plain(value, inner, limit, no_arr, no_str) for value in shown]
+    return [*items, "..."] if cut else items
+
+
+def _value_type(kind: str) -> str:
+    """``sequence<double, 3>`` -> ``double``; ``double[3]`` -> ``double``."""
+    if kind.startswith("sequence<"):
+        inner = kind.removeprefix("sequence<").removesuffix(">")
+        head, comma, bound = inner.rpartition(", ")
+        return head if comma and bound.isdigit() else inner
+    return kind.partition("[")[0]
+
+
+def _summary(values: Any, kind: str, inner: str) -> str:
+    is_array = kind.endswith("]")
+    name = inner
+    if "/" in inner:
+        package, _, short = inner.partition("/")
+        name = f"{package}/msg/{short}"
+    return f"<{'array' if is_array else 'sequence'} type: {name}{f'[{len(values)}]' if is_array else f', length: {len(values)}'}>"
+
+
+def message_to_yaml(
+    msg: Any,
+    *,
+    truncate_length: int | None = None,
+    no_arr: bool = False,
+    no_str: bool = False,
+    flow_style: bool = False,
+) -> str:
+    """Return a message as YAML; the options are those of `message_to_ordereddict`.
+
+    With `flow_style`, lists stand in brackets on one line.
+    """
+    import yaml
+
+    content = message_to_ordereddict(msg, truncate_length=truncate_length, no_arr=no_arr, no_str=no_str)
+    return yaml.dump(
+        _FlowLists.applied(content) if flow_style else _plain_dicts(content),
+        Dumper=_dumper(),
+        allow_unicode=True,
+        width=sys.maxsize,
+        default_flow_style=False,
+        sort_keys=False,
+    )
+
+
+class _FlowLists(list[Any]):
+    """A list that is written in brackets."""
+
+    @classmethod
+    def applied(cls, value: Any) -> Any:
+        """Return a value with every list in it made such a list."""
+        if isinstance(value, dict):
+            return {key: cls.applied(item) for key, item in value.items()}
+        return cls(cls.applied(item) for item in value) if isinstance(value, list) else value
+
+
+def _plain_dicts(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {key: _plain_dicts(item) for key, item in value.items()}
+    return [_plain_dicts(item) for item in value] if isinstance(value, list) else value
+
+
+def _dumper() -> Any:
+    """Return the dumper, made once: PyYAML is imported only when YAML is written."""
+    global _DUMPER
+    if _DUMPER is None:
+        import yaml
+
+        class Dumper(getattr(yaml, "CSafeDumper", yaml.SafeDumper)):  # type: ignore[misc]
+            def ignore_aliases(self, data: Any) -> bool:
+                return True
+
+        Dumper.add_representer(
+            _FlowLists,
+            lambda dumper, data: dumper.represent_sequence("tag:yaml.org,2002:seq", data, flow_style=True),
+        )
+        _DUMPER = Dumper
+    return _DUMPER
+
+
+_DUMPER: Any = None
+
+
+def message_to_csv(msg: Any, *, truncate_length: int | None = None, no_arr: bool = False, no_str: bool = False) -> str:
+    """Return a message's values separated by commas; the options are those of `message_to_ordereddict`."""
+    return ",".join(
+        _csv(getattr(msg, name), kind, truncate_length, no_arr, no_str)
+        for name, kind in msg.get_fields_and_field_types().items()
+    )
+
+
+def _csv(value: Any, kind: str, limit: int | None, no_arr: bool, no_str: bool) -> str:
+    if isinstance(value, Message):
+        return message_to_csv(value, truncate_length=limit, no_arr=no_arr, no_str=no_str)
+    if isinstance(value, (str, bytes)):
+        if isinstance(value, str) and no_str:
+            return f"<string length: <{len(value)}>>"
+        shown = value if limit is None or len(value) <= limit else f"{value[:limit]!s}..."
+        return str(shown)
+    if not isinstance(value, (list, tuple, array.array)) and not hasattr(value, "tolist"):
+        return str(value)
+    inner = _value_type(kind)
+    if no_arr:
+        return _summary(value, kind, inner)
+    cut = limit is not None and len(value) > limit
+    items = value[:limit] if cut else value
+    texts = [
+        _csv(item, inner, limit, no_arr, no_str) for item in (items.tolist() if hasattr(items, "tolist") else items)
+    ]
+    return ",".join([*texts, "..."] if cut else texts)
