@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import copy
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,7 +10,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from daidalos.simulation.instance import Instance
+from daidalos.simulation.instance import Instance, Physics
 
 Array = NDArray[np.float64]
 
@@ -65,18 +65,14 @@ class Touch:
     last_ns: int
 
 
-def read_contacts(model: Any, data: Any, instances: Iterable[Instance]) -> list[Contact]:
-    """Return all contacts, grouped by pairs of collisions. Contact forces must be up to date."""
-    names = _geom_names(model, instances)
+def read_contacts(physics: Physics) -> list[Contact]:
+    """Return all contacts now, grouped by pairs of collisions."""
+    data = _all_awake(physics)
     grouped: dict[tuple[int, int], list[int]] = {}
     for index in range(data.ncon):
         pair = data.contact.geom[index]
         grouped.setdefault((int(pair[0]), int(pair[1])), []).append(index)
-    return [
-        _contact(model, data, names[first], names[second], rows)
-        for (first, second), rows in grouped.items()
-        if first in names and second in names
-    ]
+    return [_contact(physics, data, first, second, rows) for (first, second), rows in grouped.items()]
 
 
 class ContactMonitor:
@@ -100,12 +96,12 @@ class ContactMonitor:
         """What was touched so far, in the order of first contact."""
         return tuple(self._touches.values())
 
-    def bind(self, model: Any, instances: Iterable[Instance]) -> None:
+    def bind(self, physics: Physics) -> None:
         """Take the geoms of a newly compiled model."""
-        self._names = _geom_names(model, instances)
-        self._mine = np.zeros(model.ngeom, dtype=bool)
-        self._counts = np.zeros(model.ngeom, dtype=bool)
-        for geom, (name, _, _) in self._names.items():
+        self._geoms = physics.geoms
+        self._mine = np.zeros(physics.model.ngeom, dtype=bool)
+        self._counts = np.zeros(physics.model.ngeom, dtype=bool)
+        for geom, (name, _) in self._geoms.items():
             self._mine[geom] = name == self.instance.name
             self._counts[geom] = name != self.instance.name and name not in self._ignore
 
@@ -117,33 +113,44 @@ class ContactMonitor:
             mine, other = int(first[index]), int(second[index])
             if not self._mine[mine]:
                 mine, other = other, mine
-            _, link, _ = self._names[mine]
-            key = (link, *self._names[other][:2])
+            other_model, info = self._geoms[other]
+            key = (self._geoms[mine][1].link, other_model, info.link)
             begun = self._touches[key].first_ns if key in self._touches else now_ns
             self._touches[key] = Touch(*key, begun, now_ns)
 
 
-def _geom_names(model: Any, instances: Iterable[Instance]) -> dict[int, tuple[str, str, str]]:
-    """Return model, link and collision of each geom."""
-    return {
-        model.geom(geom).id: (instance.name, info.link, info.collision)
-        for instance in instances
-        for geom, info in instance.build.geoms.items()
-    }
+def _all_awake(physics: Physics) -> Any:
+    """Return up to date data with the contacts of sleeping models as well, without waking them."""
+    model, data = physics.model, physics.data
+    if data.ntree_awake == model.ntree:
+        physics.refresh()
+        return data
+    awake = copy.copy(data)
+    sleep = int(mujoco.mjtEnableBit.mjENBL_SLEEP)
+    model.opt.enableflags &= ~sleep
+    try:
+        mujoco.mj_forward(model, awake)
+    finally:
+        model.opt.enableflags |= sleep
+    return awake
 
 
-def _contact(
-    model: Any, data: Any, first: tuple[str, str, str], second: tuple[str, str, str], rows: list[int]
-) -> Contact:
-    frames = data.contact.frame[rows].reshape(-1, 3, 3)
+def _contact(physics: Physics, data: Any, first: int, second: int, rows: list[int]) -> Contact:
+    contact = data.contact
+    frames = contact.frame[rows].reshape(-1, 3, 3)
     forces = np.zeros((len(rows), 6))
     for place, row in enumerate(rows):
-        mujoco.mj_contactForce(model, data, row, forces[place])
+        mujoco.mj_contactForce(physics.model, data, row, forces[place])
+    (model1, info1), (model2, info2) = physics.geoms[first], physics.geoms[second]
     return Contact(
-        *first,
-        *second,
-        positions=data.contact.pos[rows].copy(),
+        model1=model1,
+        link1=info1.link,
+        collision1=info1.collision,
+        model2=model2,
+        link2=info2.link,
+        collision2=info2.collision,
+        positions=contact.pos[rows].copy(),
         normals=frames[:, 0].copy(),
         forces=np.einsum("kij,ki->kj", frames, forces[:, :3]),
-        depths=-data.contact.dist[rows],
+        depths=-contact.dist[rows],
     )

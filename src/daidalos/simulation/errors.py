@@ -15,7 +15,7 @@ class UnknownNameError(SimulationError):
     Parameters
     ----------
     kind : str
-        ``model``, ``link`` or ``joint``.
+        What is named: ``model``, ``link``, ``joint``.
     name : str
     known : iterable of str
     """

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daidalos.description.pose import Pose
-from daidalos.simulation.conversion.build import ModelBuild
+from daidalos.simulation.conversion.build import GeomInfo, ModelBuild
 from daidalos.simulation.errors import SimulationError, UnknownNameError
 
 if TYPE_CHECKING:
@@ -33,6 +33,8 @@ class Physics:
         Everything: velocities, accelerations, contacts and their forces.
     heard : callable
         Tells whether anyone listens to a topic.
+    geoms : mapping
+        Place of each geom to the name of its model and what it stands for.
     """
 
     model: Any
@@ -40,6 +42,7 @@ class Physics:
     refresh_positions: Callable[[], None]
     refresh: Callable[[], None]
     heard: Callable[[str], bool]
+    geoms: Mapping[int, tuple[str, GeomInfo]]
 
 
 @dataclass(frozen=True)
@@ -69,9 +72,7 @@ class LinkView:
         """Return linear velocity of the link's origin and angular velocity, in world axes."""
         self.physics.refresh()
         motion = np.zeros(6)
-        mujoco.mj_objectVelocity(
-            self.physics.model, self.physics.data, mujoco.mjtObj.mjOBJ_XBODY, self.body, motion, 0
-        )
+        mujoco.mj_objectVelocity(self.physics.model, self.physics.data, mujoco.mjtObj.mjOBJ_XBODY, self.body, motion, 0)
         return motion[3:], motion[:3]
 
     def inertial_motion(self) -> tuple[Array, Array, Array]:
@@ -195,7 +196,7 @@ class Instance:
         return LinkView(self.physics, self.physics.model.body(self.name).id).pose
 
     def set_pose(self, pose: Pose) -> None:
-        """Move the model as a whole; joints keep their positions, free links their places in it."""
+        """Move the free links of the model as a whole; joints keep their positions."""
         change = pose @ self.pose.inverse
         data, model = self.physics.data, self.physics.model
         for link, joint in self.build.free.items():
@@ -203,11 +204,6 @@ class Instance:
             moved = change @ self.link(link).pose
             x, y, z, w = moved.orientation
             data.qpos[address : address + 7] = (*moved.position, w, x, y, z)
-        mocap = model.body(self.name).mocapid[0] if self._has_base() else -1
-        if mocap >= 0:
-            x, y, z, w = pose.orientation
-            data.mocap_pos[mocap] = pose.position
-            data.mocap_quat[mocap] = (w, x, y, z)
 
     def set_velocity(self, linear: Array, angular: Array) -> None:
         """Give every free link of the model a velocity of its origin and a turn rate, in world axes."""
@@ -216,6 +212,3 @@ class Instance:
             address = int(model.joint(joint).dofadr[0])
             data.qvel[address : address + 3] = linear
             data.qvel[address + 3 : address + 6] = self.link(link).rotation.T @ angular
-
-    def _has_base(self) -> bool:
-        return any(body.mocap for body in self.build.roots)

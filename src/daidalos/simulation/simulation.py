@@ -38,7 +38,6 @@ _DIVERGED = (
     mujoco.mjtWarning.mjWARN_BADQVEL,
     mujoco.mjtWarning.mjWARN_BADQACC,
 )
-_STATE = mujoco.mjtState.mjSTATE_INTEGRATION
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,7 +45,7 @@ class State:
     """All that a simulation needs to go on from an instant; made by `Simulation.save`."""
 
     time_ns: int
-    physics: Array
+    physics: Any
     models: tuple[str, ...]
     clocks: Mapping[int, tuple[int, int, int]]
     memories: tuple[tuple[Any, Any], ...]
@@ -145,11 +144,11 @@ class Simulation:
         instance = self._add(replace(model, name=name), pose or model.pose, namespace)
         try:
             self._recompile()
-        except ValueError as problem:
+            self._start(instance)
+        except (ValueError, SimulationError) as problem:
             self._drop(instance)
             self._recompile()
             raise SimulationError(f"model {name!r} can not be simulated: {_one_line(problem)}") from None
-        self._start(instance)
         return name
 
     def delete(self, name: str) -> None:
@@ -199,8 +198,13 @@ class Simulation:
 
     def set_pose(self, model: str, pose: Pose) -> None:
         """Move a model, static or not; its velocity stays."""
-        self.instance(model).set_pose(pose)
+        instance = self.instance(model)
+        instance.set_pose(pose)
         self._stale()
+        if instance.build.base is not None:
+            # What stands in the world is built into the compiled model.
+            instance.build.place_base(pose)
+            self._recompile()
 
     def set_velocity(self, model: str, linear: Iterable[float], angular: Iterable[float]) -> None:
         """Set a model's velocity in world axes [m/s, rad/s]."""
@@ -263,8 +267,7 @@ class Simulation:
 
     def contacts(self) -> list[Contact]:
         """Return what touches now, one entry for each pair of collisions."""
-        self._refresh()
-        return read_contacts(self._model, self._data, self._instances.values())
+        return read_contacts(self._physics)
 
     def monitor_contacts(self, model: str, ignore: Iterable[str] = ()) -> ContactMonitor:
         """Watch from now on what a model touches, however briefly.
@@ -276,18 +279,17 @@ class Simulation:
             Names of models that do not count, such as the ground.
         """
         monitor = ContactMonitor(self.instance(model), frozenset(ignore))
-        monitor.bind(self._model, self._instances.values())
+        monitor.bind(self._physics)
         self._monitors.append(monitor)
         return monitor
 
     def save(self) -> State:
         """Return the state; it can be restored as long as the same models are there."""
-        physics = np.empty(mujoco.mj_stateSize(self._model, _STATE))
-        mujoco.mj_getState(self._model, self._data, physics, _STATE)
         memories = tuple(
             (copy.deepcopy(c.memory), copy.deepcopy(c.random.bit_generator.state)) for c in self._components()
         )
-        return State(self.time_ns, physics, self.models, self._schedule.save(), memories)
+        # All of MuJoCo's data, since sleeping models are no part of its smaller states.
+        return State(self.time_ns, copy.copy(self._data), self.models, self._schedule.save(), memories)
 
     def restore(self, state: State) -> None:
         """Go back to a saved state, bit for bit.
@@ -299,7 +301,7 @@ class Simulation:
         """
         if state.models != self.models:
             raise SimulationError("models came or went since the state was saved")
-        mujoco.mj_setState(self._model, self._data, state.physics, _STATE)
+        mujoco.mj_copyData(self._data, self._model, state.physics)
         for component, (memory, random) in zip(self._components(), state.memories, strict=True):
             component.memory = copy.deepcopy(memory)
             component.random.bit_generator.state = copy.deepcopy(random)
@@ -332,10 +334,16 @@ class Simulation:
 
         components = make_components(model, setting)
         build = add_model(self._spec, self._assets, model, model.name, pose, self._warn)
-        for component in components:
-            component.prepare(build)
         instance = Instance(build, namespace, components)
         self._instances[model.name] = instance
+        try:
+            for component in components:
+                component.prepare(build)
+            if components:
+                build.keep_awake()
+        except SimulationError:
+            self._drop(instance)
+            raise
         return instance
 
     def _compile_first(self) -> None:
@@ -357,11 +365,16 @@ class Simulation:
 
     def _bind(self) -> None:
         self._stale()
-        physics = Physics(self._model, self._data, self._refresh_positions, self._refresh, self._is_heard)
+        geoms = {
+            self._model.geom(geom).id: (instance.name, info)
+            for instance in self._instances.values()
+            for geom, info in instance.build.geoms.items()
+        }
+        self._physics = Physics(self._model, self._data, self._refresh_positions, self._refresh, self._is_heard, geoms)
         for instance in self._instances.values():
-            instance.bind(physics)
+            instance.bind(self._physics)
         for monitor in self._monitors:
-            monitor.bind(self._model, self._instances.values())
+            monitor.bind(self._physics)
 
     def _start(self, instance: Instance) -> None:
         for component in instance.components:
@@ -384,9 +397,7 @@ class Simulation:
         while self.time_ns + substep_ns <= goal_ns:
             due_ns = self._schedule.next_due()
             until_ns = goal_ns if due_ns is None else min(goal_ns, due_ns)
-            count = max(
-                1, min(-(-(until_ns - self.time_ns) // substep_ns), (goal_ns - self.time_ns) // substep_ns)
-            )
+            count = max(1, min(-(-(until_ns - self.time_ns) // substep_ns), (goal_ns - self.time_ns) // substep_ns))
             if self._monitors:
                 count = min(count, max(1, _MONITOR_PERIOD_NS // substep_ns))
             mujoco.mj_step(self._model, self._data, count)

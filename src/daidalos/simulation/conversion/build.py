@@ -17,9 +17,10 @@ from daidalos.description.world import Model
 from daidalos.simulation.conversion.assets import Assets
 from daidalos.simulation.conversion.contact import set_surface
 from daidalos.simulation.conversion.geometry import add_geoms, add_wheel
-from daidalos.simulation.conversion.inertia import principal_inertia, smallest_inertia
+from daidalos.simulation.conversion.inertia import PrincipalInertia, principal_inertia, smallest_inertia
 from daidalos.simulation.conversion.joints import add_joints
 from daidalos.simulation.conversion.wheels import is_caster, is_wheel
+from daidalos.simulation.errors import UnknownNameError
 
 ASSUMED_DENSITY = 200.0
 """Of links that should move but have no mass [kg/m^3]."""
@@ -55,6 +56,10 @@ class ModelBuild:
         Joint to the names of MuJoCo's joints.
     free : dict
         Link to the name of its free joint.
+    base : MjsBody or None
+        What does not move of the model, in the world.
+    trees : list
+        Bodies that move by themselves, with all that hangs on them.
     geoms : dict
         Name of a geom to what it stands for.
     assets : tuple of str
@@ -68,6 +73,8 @@ class ModelBuild:
     roots: list[Any] = field(default_factory=list)
     joints: dict[str, list[str]] = field(default_factory=dict)
     free: dict[str, str] = field(default_factory=dict)
+    base: Any = None
+    trees: list[Any] = field(default_factory=list)
     geoms: dict[str, GeomInfo] = field(default_factory=dict)
     assets: tuple[str, ...] = ()
 
@@ -90,6 +97,8 @@ class ModelBuild:
             of the implicit part of a servo: without a rotor as heavy as what a wheel drives, the wheel
             would slip while the speed changes.
         """
+        if not self.joints.get(joint):
+            raise UnknownNameError("movable joint", joint, [n for n, added in self.joints.items() if added])
         self.spec.joint(self.joints[joint][0]).armature = rotor
         actuator = self.spec.add_actuator(
             name=f"{self.scoped(joint)}::velocity",
@@ -101,6 +110,17 @@ class ModelBuild:
             actuator.forcelimited = mujoco.mjtLimited.mjLIMITED_TRUE
             actuator.forcerange = [-torque, torque]
         return str(actuator.name)
+
+    def keep_awake(self) -> None:
+        """Simulate the model even while it rests, since somebody measures it."""
+        for body in self.trees:
+            body.sleep = mujoco.mjtSleepPolicy.mjSLEEP_NEVER
+
+    def place_base(self, pose: Pose) -> None:
+        """Put the part that does not move somewhere else, for the next compilation."""
+        if self.base is not None:
+            x, y, z, w = pose.orientation
+            self.base.pos, self.base.quat = list(pose.position), [w, x, y, z]
 
     def remove(self) -> None:
         """Take the model out of the specification; what refers to its bodies goes with them."""
@@ -171,7 +191,6 @@ class _Builder:
     # Bodies
 
     def _add_static(self) -> None:
-        """Add one mocap body for the model, so that it can be moved as a whole and collide there."""
         base = self._base()
         for link in self._model.links.values():
             self._add_link(base, link, link.pose)
@@ -181,38 +200,43 @@ class _Builder:
         if in_world:
             base = self._base()
             for joint in in_world:
-                self._add_branch(base, joint)
+                self._add_branch(base, joint, moves=False)
         for link in self._model.links.values():
             joint_above = self._above.get(link.name)
             if joint_above is None or joint_above.type is JointType.FLOATING:
                 self._add_free(link)
 
     def _base(self) -> Any:
-        body = self._body(self._build.spec.worldbody, self._build.name, self._pose)
-        body.mocap = True
-        self._build.roots.append(body)
-        return body
+        """Add the body that a static model, or one that is fixed to the world, stands on."""
+        self._build.base = self._body(self._build.spec.worldbody, self._build.name, self._pose)
+        self._build.roots.append(self._build.base)
+        return self._build.base
 
     def _add_free(self, link: Link) -> None:
         world = self._build.spec.worldbody
         body = self._add_link(world, link, self._pose @ link.pose)
         self._build.roots.append(body)
+        self._build.trees.append(body)
         name = f"{self._build.scoped(link.name)}::free"
         body.add_freejoint(name=name)
         self._build.free[link.name] = name
-        self._add_children(link)
+        self._add_children(link, moves=True)
 
-    def _add_branch(self, parent: Any, joint: Joint) -> None:
+    def _add_branch(self, parent: Any, joint: Joint, moves: bool) -> None:
+        """Add a link and what hangs on it; `moves` tells whether its parent does."""
         if joint.type is JointType.FLOATING:
             return
         link = self._model.links[joint.child]
         body = self._add_link(parent, link, joint.origin @ joint.anchor.inverse)
-        self._build.joints[joint.name] = add_joints(body, joint, self._build.scoped(joint.name))
-        self._add_children(link)
+        added = add_joints(body, joint, self._build.scoped(joint.name))
+        self._build.joints[joint.name] = added
+        if added and not moves:
+            self._build.trees.append(body)
+        self._add_children(link, moves or bool(added))
 
-    def _add_children(self, link: Link) -> None:
+    def _add_children(self, link: Link, moves: bool) -> None:
         for joint in self._below.get(link.name, []):
-            self._add_branch(self._build.bodies[link.name], joint)
+            self._add_branch(self._build.bodies[link.name], joint, moves)
 
     def _add_link(self, parent: Any, link: Link, pose: Pose) -> Any:
         body = self._body(parent, self._build.scoped(link.name), pose)
@@ -222,6 +246,8 @@ class _Builder:
         self._set_inertia(body, link)
         for index, collision in enumerate(link.collisions):
             self._add_collision(body, link, collision, index)
+        if link.name in self._solid_without_mass and not body.geoms:
+            self._apply(body, smallest_inertia())
         return body
 
     def _body(self, parent: Any, name: str, pose: Pose) -> Any:
@@ -239,6 +265,9 @@ class _Builder:
             return
         if inertia.changed:
             self._warn(f"{link.where}: link {link.name!r}: {inertia.changed}")
+        self._apply(body, inertia)
+
+    def _apply(self, body: Any, inertia: PrincipalInertia) -> None:
         x, y, z, w = inertia.orientation
         body.explicitinertial = True
         body.mass = inertia.mass
@@ -289,9 +318,7 @@ class _Builder:
         for number, geom in enumerate(geoms):
             self._finish_geom(geom, link, collision, surface, f"{index}.{number}")
 
-    def _finish_geom(
-        self, geom: Any, link: Link, collision: Collision, surface: Surface, number: str
-    ) -> None:
+    def _finish_geom(self, geom: Any, link: Link, collision: Collision, surface: Surface, number: str) -> None:
         geom.name = f"{self._build.scoped(link.name)}::{number}"
         set_surface(geom, surface)
         if link.name in self._solid_without_mass:

@@ -40,10 +40,7 @@ def convex_parts(mesh: TriangleMesh, key: str) -> tuple[list[TriangleMesh], bool
 
     hull = _hull(mesh.vertices)
     solid = trimesh.Trimesh(mesh.vertices, mesh.faces, process=True)
-    if (
-        solid.is_watertight
-        and abs(solid.volume) >= CONVEX_ENOUGH * trimesh.Trimesh(hull.vertices, hull.faces).volume
-    ):
+    if solid.is_watertight and abs(solid.volume) >= CONVEX_ENOUGH * trimesh.Trimesh(hull.vertices, hull.faces).volume:
         return [hull], False
     file = cache_folder() / "convex" / f"{key}.npz"
     parts = _load(file)

@@ -77,9 +77,7 @@ def add_wheel(body: Any, radius: float, width: float, pose: Pose) -> list[Any]:
 
 def _add(body: Any, kind: Any, size: tuple[float, float, float], pose: Pose) -> Any:
     x, y, z, w = pose.orientation
-    return body.add_geom(
-        type=kind, size=list(size), pos=list(pose.position), quat=[w, x, y, z], mass=0.0, group=SOLID
-    )
+    return body.add_geom(type=kind, size=list(size), pos=list(pose.position), quat=[w, x, y, z], mass=0.0, group=SOLID)
 
 
 def _only_seen(geom: Any) -> None:

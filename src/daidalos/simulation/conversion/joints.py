@@ -78,9 +78,7 @@ def _ball(body: Any, joint: Joint, name: str) -> list[str]:
 
 def _two_hinges(body: Any, joint: Joint, name: str) -> list[str]:
     names = (name, f"{name}#2")
-    return [
-        _add(body, _Type.mjJNT_HINGE, axis, joint, each) for axis, each in zip(joint.axes, names, strict=True)
-    ]
+    return [_add(body, _Type.mjJNT_HINGE, axis, joint, each) for axis, each in zip(joint.axes, names, strict=True)]
 
 
 def _screw(body: Any, joint: Joint, name: str) -> list[str]:

@@ -9,6 +9,9 @@ import mujoco
 
 from daidalos.description.world import Physics, World
 
+SLEEP_SPEED = 1e-5
+"""What moves slower than this for ten steps is at rest [m/s]."""
+
 LARGEST_STEP_NS = 1_000_000
 """Longer steps are cut into parts: contacts this stiff need 1 ms."""
 
@@ -43,3 +46,6 @@ def set_options(spec: Any, world: World, timestep: float) -> None:
     option.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
     option.impratio = 10.0
     option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_AUTORESET)
+    # What rests is not simulated until something touches it: a cluttered room costs little.
+    option.enableflags |= int(mujoco.mjtEnableBit.mjENBL_SLEEP)
+    option.sleep_tolerance = SLEEP_SPEED

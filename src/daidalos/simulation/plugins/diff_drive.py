@@ -85,8 +85,7 @@ class DiffDrive(Plugin):
         wheels = (*settings.left, *settings.right)
         driven = mass * (settings.diameter / 2) ** 2 / len(wheels)
         self._servos = [
-            build.add_velocity_servo(joint, 2 * driven / SERVO_TIME, settings.torque, rotor=driven)
-            for joint in wheels
+            build.add_velocity_servo(joint, 2 * driven / SERVO_TIME, settings.torque, rotor=driven) for joint in wheels
         ]
 
     def bind(self, instance: Instance) -> None:

@@ -79,13 +79,12 @@ class Lidar(Sensor):
     def bind(self, instance: Instance) -> None:
         """Find the link and what each geom reflects."""
         super().bind(instance)
-        model = instance.physics.model
-        self._reflection = np.zeros(model.ngeom + 1, dtype=np.float32)
-        self._own = np.zeros(model.ngeom + 1, dtype=bool)
-        for geom, info in instance.build.geoms.items():
-            place = model.geom(geom).id
-            self._reflection[place] = info.laser_retro
-            self._own[place] = True
+        physics = instance.physics
+        self._reflection = np.zeros(physics.model.ngeom + 1, dtype=np.float32)
+        self._own = np.zeros(physics.model.ngeom + 1, dtype=bool)
+        for geom, (model, info) in physics.geoms.items():
+            self._reflection[geom] = info.laser_retro
+            self._own[geom] = model == instance.name
 
     def measure(self, now_ns: int) -> Iterable[Sample]:
         """Cast all rays."""
@@ -97,11 +96,7 @@ class Lidar(Sensor):
             ranges[seen] = np.round(ranges[seen] / self.resolution) * self.resolution
         ranges[seen] = np.clip(ranges[seen], self.range_min, self.range_max)
         intensities = np.where(far, np.float32(0.0), self._reflection[geoms])
-        yield (
-            self._points(now_ns, ranges, intensities)
-            if self.as_points
-            else self._scan(now_ns, ranges, intensities)
-        )
+        yield (self._points(now_ns, ranges, intensities) if self.as_points else self._scan(now_ns, ranges, intensities))
 
     def _cast(self) -> tuple[Array, NDArray[np.int32]]:
         """Return the true range of each ray and the geom that it hit (-1: none)."""
@@ -139,9 +134,7 @@ class Lidar(Sensor):
         physics = self.instance.physics
         geom = np.empty(1, dtype=np.int32)
         start = origin + self.range_min * ray
-        distance = mujoco.mj_ray(
-            physics.model, physics.data, start, ray, RAY_GROUPS, True, self.link.body, geom
-        )
+        distance = mujoco.mj_ray(physics.model, physics.data, start, ray, RAY_GROUPS, True, self.link.body, geom)
         return (math.inf, -1) if distance < 0 else (distance + self.range_min, int(geom[0]))
 
     def _scan(self, now_ns: int, ranges: Array, intensities: NDArray[np.float32]) -> LaserScanSample:

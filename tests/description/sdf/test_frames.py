@@ -1,0 +1,89 @@
+import math
+
+import pytest
+
+from daidalos.description import sdf
+from daidalos.description.errors import DescriptionError
+from daidalos.description.markup import parse_markup
+from daidalos.description.pose import Pose
+from daidalos.description.sdf.frames import read_pose
+
+
+def model(body, version="1.11"):
+    return sdf.parse_model(f"<sdf version='{version}'><model name='m'>{body}</model></sdf>", "m.sdf")
+
+
+def test_ways_to_write_a_pose():
+    def pose(text):
+        return read_pose(parse_markup(f"<a>{text}</a>")).pose
+
+    quarter = Pose.from_xyz_rpy((1, 2, 3), (0, 0, math.pi / 2))
+    for text in (
+        "<pose>1 2 3 0 0 1.5707963267948966</pose>",
+        "<pose degrees='true'>1 2 3 0 0 90</pose>",
+        "<pose rotation_format='quat_xyzw'>1 2 3 0 0 2 2</pose>",
+        "<pose>1 2 3\n 0 0 1.5707963267948966</pose>",
+    ):
+        assert pose(text).orientation == pytest.approx(quarter.orientation)
+        assert pose(text).position == (1, 2, 3)
+    assert pose("") == pose("<pose/>") == Pose()
+
+
+def test_relative_to_links_frames_and_joints():
+    made = model(
+        """<link name="a"><pose>1 0 0 0 0 1.5707963267948966</pose></link>
+        <frame name="f" attached_to="a"><pose>1 0 0 0 0 0</pose></frame>
+        <frame name="g"><pose relative_to="f">0 0 1 0 0 0</pose></frame>
+        <link name="b"><pose relative_to="g">0 1 0 0 0 0</pose>
+          <collision name="c"><pose relative_to="a">0 0 7 0 0 0</pose>
+            <geometry><empty/></geometry></collision>
+        </link>
+        <joint name="j" type="fixed"><pose>1 0 0 0 0 0</pose><parent>f</parent><child>b</child></joint>
+        <link name="d"><pose relative_to="j">0 0 0 0 0 0</pose></link>"""
+    )
+    assert made.frames["f"].position == pytest.approx((1, 1, 0))
+    assert made.frames["g"].position == pytest.approx((1, 1, 1))
+    assert made.links["b"].pose.position == pytest.approx((0, 1, 1))
+    assert made.links["d"].pose.position == pytest.approx((0, 2, 1))
+    # In b's frame, a's origin is one to the left behind and below.
+    assert made.links["b"].collisions[0].pose.position == pytest.approx((-1, -1, 6))
+    joint = made.joints["j"]
+    assert joint.parent == "a"
+    assert joint.anchor.position == pytest.approx((1, 0, 0))
+    assert joint.origin.position == pytest.approx((2, 1, 1))
+
+
+@pytest.mark.parametrize(
+    ("body", "words"),
+    [
+        ("<link name='a'><pose relative_to='b'/></link>", "there is no frame 'b'; known are a"),
+        (
+            "<link name='a'><pose relative_to='f'/></link><frame name='f' attached_to='a'/>",
+            "circle: a -> f -> a",
+        ),
+        ("<link name='a'/><frame name='a'/>", "the name 'a' is used before"),
+        ("<frame name='f' attached_to='g'/><frame name='g' attached_to='f'/>", "in a circle"),
+    ],
+)
+def test_mistakes(body, words):
+    with pytest.raises(DescriptionError, match=words):
+        model(body)
+
+
+@pytest.mark.parametrize(
+    ("version", "axis", "expected"),
+    [
+        ("1.4", "<xyz>1 0 0</xyz>", (0, -1, 0)),
+        ("1.5", "<xyz>1 0 0</xyz>", (1, 0, 0)),
+        ("1.6", "<xyz>1 0 0</xyz><use_parent_model_frame>1</use_parent_model_frame>", (0, -1, 0)),
+        ("1.9", "<xyz expressed_in='__model__'>1 0 0</xyz>", (0, -1, 0)),
+        ("1.9", "<xyz expressed_in='p'>0 0 2</xyz>", (0, 0, 1)),
+    ],
+)
+def test_axes_in_each_versions_frame(version, axis, expected):
+    made = model(
+        f"""<link name="p"/><link name="c"><pose>0 0 0 0 0 1.5707963267948966</pose></link>
+        <joint name="j" type="revolute"><parent>p</parent><child>c</child><axis>{axis}</axis></joint>""",
+        version,
+    )
+    assert made.joints["j"].axis.xyz == pytest.approx(expected)

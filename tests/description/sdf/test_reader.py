@@ -1,0 +1,302 @@
+import math
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from daidalos.description import sdf
+from daidalos.description.errors import DescriptionError
+from daidalos.description.geometry import (
+    Box,
+    Capsule,
+    Cone,
+    Cylinder,
+    Ellipsoid,
+    Empty,
+    Heightmap,
+    Mesh,
+    Plane,
+    Polyline,
+    Sphere,
+)
+from daidalos.description.joint import JointType
+from daidalos.description.markup import parse_markup
+from daidalos.description.pose import Pose
+from daidalos.description.sdf.context import BUILT_IN_MODELS
+from description.robots import ARM, SHARE, problem_of
+
+WORLD = """<?xml version="1.0"?>
+<sdf version="1.9">
+  <world name="w">
+    <gravity>0 0 -3.7</gravity>
+    <magnetic_field>1e-5 0 2e-5</magnetic_field>
+    <physics type="ode"><max_step_size>0.002</max_step_size><real_time_factor>2</real_time_factor></physics>
+    <scene><ambient>0.1 0.2 0.3</ambient><shadows>0</shadows></scene>
+    <wind><linear_velocity>1 2 3</linear_velocity></wind>
+    <spherical_coordinates><latitude_deg>47</latitude_deg><longitude_deg>8</longitude_deg></spherical_coordinates>
+    <atmosphere type="adiabatic"><pressure>90000</pressure></atmosphere>
+    <include><uri>model://sun</uri></include>
+    <include><uri>model://ground_plane</uri></include>
+    <light name="lamp" type="spot">
+      <pose>0 0 3 0 0 0</pose><diffuse>1 1 0 1</diffuse><attenuation><range>5</range></attenuation>
+      <spot><inner_angle>0.2</inner_angle><outer_angle>0.5</outer_angle></spot>
+    </light>
+    <frame name="table"><pose>0 5 0 0 0 0</pose></frame>
+    <model name="cart">
+      <pose relative_to="table">1 0 0 0 0 0</pose>
+      <link name="body">
+        <inertial><mass>3</mass><inertia><ixx>0.1</ixx><iyy>0.2</iyy><izz>0.25</izz></inertia></inertial>
+        <collision name="c">
+          <geometry><box><size>1 2 3</size></box></geometry>
+          <surface><friction><ode><mu>0.4</mu><mu2>0.3</mu2></ode></friction>
+            <bounce><restitution_coefficient>0.5</restitution_coefficient></bounce>
+            <contact><collide_bitmask>0x02</collide_bitmask></contact></surface>
+          <laser_retro>7</laser_retro>
+        </collision>
+        <visual name="v"><geometry><sphere><radius>2</radius></sphere></geometry>
+          <material><script><name>Gazebo/Red</name></script></material><transparency>0.5</transparency></visual>
+        <sensor name="s" type="imu"><update_rate>100</update_rate><topic>imu</topic></sensor>
+      </link>
+      <link name="wheel"><pose>0 1 0 0 0 0</pose></link>
+      <joint name="axle" type="revolute"><parent>body</parent><child>wheel</child>
+        <axis><xyz>0 1 0</xyz><limit><lower>-1e16</lower><upper>1e16</upper><effort>-1</effort></limit>
+          <dynamics><damping>0.1</damping><spring_stiffness>2</spring_stiffness></dynamics></axis></joint>
+      <plugin name="p" filename="libp.so"/>
+    </model>
+    <plugin name="q" filename="libq.so"/>
+  </world>
+</sdf>
+"""
+
+
+def test_everything_in_a_world_is_read():
+    world = sdf.parse(WORLD)
+    assert world.name == "w"
+    assert world.gravity == (0, 0, -3.7)
+    assert world.magnetic_field == (1e-5, 0, 2e-5)
+    assert world.physics.max_step_size == 0.002
+    assert world.physics.real_time_factor == 2
+    assert world.scene.ambient == (0.1, 0.2, 0.3, 1)
+    assert not world.scene.shadows
+    assert world.wind == (1, 2, 3)
+    assert world.spherical_coordinates.latitude == 47
+    assert world.atmosphere.pressure == 90000
+    assert [light.name for light in world.lights] == ["sun", "lamp"]
+    assert world.lights[1].spot_outer_angle == 0.5
+    assert [plugin.name for plugin in world.plugins] == ["q"]
+    ground, cart = world.models
+    assert ground.static
+    assert isinstance(ground.links["link"].collisions[0].geometry, Plane)
+    assert cart.pose == Pose((1, 5, 0))
+    body = cart.links["body"]
+    assert body.inertial.inertia == (0.1, 0, 0, 0.2, 0, 0.25)
+    surface = body.collisions[0].surface
+    assert (surface.mu, surface.mu2, surface.restitution, surface.bitmask) == (0.4, 0.3, 0.5, 2)
+    assert body.collisions[0].laser_retro == 7
+    assert body.visuals[0].material.color[:3] == (0.9, 0.05, 0.05)
+    assert body.visuals[0].transparency == 0.5
+    assert (body.sensors[0].type, body.sensors[0].update_rate, body.sensors[0].topic) == ("imu", 100, "imu")
+    assert cart.links["wheel"].inertial.mass == 1
+    axle = cart.joints["axle"]
+    assert axle.type is JointType.REVOLUTE
+    assert (axle.axis.lower, axle.axis.upper, axle.axis.effort) == (-math.inf, math.inf, math.inf)
+    assert (axle.axis.damping, axle.axis.spring_stiffness) == (0.1, 2)
+    assert axle.origin == Pose((0, 1, 0))
+    assert not world.warnings
+
+
+@pytest.mark.parametrize(
+    ("text", "shape"),
+    [
+        ("<box><size>1 2 3</size></box>", Box((1, 2, 3))),
+        ("<sphere><radius>2</radius></sphere>", Sphere(2)),
+        ("<cylinder><radius>2</radius><length>3</length></cylinder>", Cylinder(2, 3)),
+        ("<capsule><radius>2</radius><length>3</length></capsule>", Capsule(2, 3)),
+        ("<cone><radius>2</radius><length>3</length></cone>", Cone(2, 3)),
+        ("<ellipsoid><radii>1 2 3</radii></ellipsoid>", Ellipsoid((1, 2, 3))),
+        ("<plane><normal>0 3 0</normal><size>4 5</size></plane>", Plane((0, 1, 0), (4, 5))),
+        (
+            "<mesh><uri>model://x/a.dae</uri><scale>1 1 2</scale>"
+            "<submesh><name>p</name><center>1</center></submesh></mesh>",
+            Mesh("model://x/a.dae", None, (1, 1, 2), "p", True),
+        ),
+        (
+            "<heightmap><uri>h.png</uri><size>9 9 2</size><pos>0 0 1</pos></heightmap>",
+            Heightmap("h.png", None, (9, 9, 2), (0, 0, 1)),
+        ),
+        (
+            "<polyline><point>0 0</point><point>1 0</point><point>0 1</point><height>2</height></polyline>"
+            "<polyline><point>0 0</point><point>.5 0</point><point>0 .5</point></polyline>",
+            Polyline((((0, 0), (1, 0), (0, 1)), ((0, 0), (0.5, 0), (0, 0.5))), 2),
+        ),
+        ("<empty/>", Empty()),
+        ("<blob/>", Empty()),
+    ],
+)
+def test_shapes(text, shape):
+    model = sdf.parse_model(
+        "<sdf version='1.9'><model name='m'><link name='l'><collision name='c'>"
+        f"<geometry>{text}</geometry></collision></link></model></sdf>"
+    )
+    assert model.links["l"].collisions[0].geometry == shape
+    assert len(model.warnings) == (1 if "blob" in text else 0)
+
+
+def folder_of_models(tmp_path):
+    arm = "<link name='base'/><link name='tip'><pose>0 0 1 0 0 0</pose></link>"
+    joint = "<joint name='j' type='revolute'><parent>base</parent><child>tip</child></joint>"
+    for name, body in {
+        "arm": arm
+        + joint
+        + "<frame name='mount'><pose>0 0 0.5 0 0 0</pose></frame><plugin name='p' filename='x'/>",
+        "robot": "<link name='chassis'/><include><uri>model://arm</uri><name>left</name>"
+        "<pose>0 1 0 0 0 0</pose></include><joint name='weld' type='fixed'><parent>chassis</parent>"
+        "<child>left::base</child></joint>",
+    }.items():
+        folder = tmp_path / name
+        folder.mkdir()
+        (folder / "model.config").write_text(
+            "<model><sdf version='1.4'>old.sdf</sdf><sdf version='1.9'>new.sdf</sdf></model>"
+        )
+        (folder / "new.sdf").write_text(f"<sdf version='1.9'><model name='{name}'>{body}</model></sdf>")
+    return tmp_path
+
+
+def included(tmp_path, include, **options):
+    text = f"<sdf version='1.9'><world name='w'>\n{include}</world></sdf>"
+    return sdf.parse(text, str(tmp_path / "w.sdf"), model_path=[tmp_path], **options)
+
+
+def test_nested_models_are_flattened(tmp_path):
+    folder_of_models(tmp_path)
+    world = included(tmp_path, "<include><uri>model://robot</uri><pose>5 0 0 0 0 0</pose></include>")
+    (robot,) = world.models
+    assert list(robot.links) == ["chassis", "left::base", "left::tip"]
+    assert robot.links["left::tip"].pose == Pose((0, 1, 1))
+    assert robot.joints["left::j"].parent == "left::base"
+    assert robot.frames["left::mount"] == Pose((0, 1, 0.5))
+    assert robot.plugins[0].scope == "left"
+    assert world.frames["robot::left::tip"] == Pose((5, 1, 1))
+
+
+def test_merged_models_lose_their_name(tmp_path):
+    folder_of_models(tmp_path)
+    model = sdf.parse_model(
+        "<sdf version='1.9'><model name='m'><include merge='true'><uri>model://arm</uri>"
+        "<pose>1 0 0 0 0 0</pose></include><frame name='f' attached_to='tip'/></model></sdf>",
+        model_path=[tmp_path],
+    )
+    assert list(model.links) == ["base", "tip"]
+    assert model.frames["f"] == Pose((1, 0, 1))
+
+
+def test_what_an_include_says_wins(tmp_path):
+    folder_of_models(tmp_path)
+    world = included(
+        tmp_path,
+        "<include><uri>model://arm</uri><name>a</name><static>1</static><placement_frame>tip</placement_frame>"
+        "<pose>3 0 0 0 0 0</pose><plugin name='extra' filename='y'/></include><include><uri>model://arm</uri></include>"
+        "<include><uri>model://arm</uri></include>",
+    )
+    first, second, third = world.models
+    assert (first.name, first.static, first.pose) == ("a", True, Pose((3, 0, -1)))
+    assert [plugin.name for plugin in first.plugins] == ["p", "extra"]
+    assert (second.name, third.name) == ("arm", "arm_0")
+    assert "the name 'arm' is taken, called arm_0" in world.warnings[0]
+
+
+def test_a_urdf_can_be_included(tmp_path):
+    (tmp_path / "arm.urdf").write_text(ARM)
+    world = included(tmp_path, "<include><uri>arm.urdf</uri><pose>0 0 2 0 0 0</pose></include>")
+    assert world.models[0].links["fore"].pose.position == pytest.approx((0, 1, 1))
+    assert world.models[0].pose == Pose((0, 0, 2))
+
+
+@pytest.mark.parametrize(
+    ("include", "words"),
+    [
+        (
+            "<include><uri>model://chair</uri></include>",
+            r"w.sdf:2: <include>: model://chair not found; looked in",
+        ),
+        ("<include/>", "<uri> is missing"),
+        ("<include><uri>https://fuel/x</uri></include>", "models are not downloaded"),
+        ("<include><uri>gone.sdf</uri></include>", "gone.sdf not found; looked beside"),
+        ("<include><uri>model://empty</uri></include>", "neither model.config nor model.sdf"),
+        ("<include><uri>model://loop</uri></include>", "includes itself"),
+    ],
+)
+def test_includes_that_fail(tmp_path, include, words):
+    (tmp_path / "empty").mkdir()
+    (tmp_path / "loop").mkdir()
+    (tmp_path / "loop/model.sdf").write_text(
+        "<sdf version='1.9'><model name='l'><include><uri>model://loop</uri></include></model></sdf>"
+    )
+    with pytest.raises(DescriptionError, match=words):
+        included(tmp_path, include)
+
+
+def test_missing_models_can_be_skipped(tmp_path):
+    world = included(tmp_path, "<include><uri>model://chair</uri></include>", skip_missing=True)
+    assert not world.models
+    assert "model://chair not found, left out" in world.warnings[0]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("<world name", "<word name", "expected <world> or <model>"),
+        ("<mass>3</mass>", "<mass>-3</mass>", "mass should not be negative"),
+        ("<radius>2</radius>", "<radius>big</radius>", r"w.sdf:\d+: <radius>: the text should be a number"),
+        ("<child>wheel</child>", "<child>weel</child>", "there is no link 'weel'"),
+        ("<parent>body</parent>", "<parent>wheel</parent>", "parent and child are the same"),
+        ('type="revolute"', 'type="rotary"', "unknown joint type 'rotary'"),
+        ("<max_step_size>0.002", "<max_step_size>-1", "expected a step between 0 and 1 s"),
+        ("<xyz>0 1 0</xyz>", "<xyz>0 0 0</xyz>", "no direction"),
+        ("<update_rate>100", "<update_rate>-1", "should not be negative"),
+        ("<size>1 2 3</size>", "<size>1 2</size>", "should be 3 numbers"),
+        ("</world>", "", "mismatched tag"),
+    ],
+)
+def test_mistakes_are_named(old, new, words):
+    assert old in WORLD
+    text = WORLD.replace(old, new).replace("</world>", "</word>" if "<word " in new else "</world>")
+    with pytest.raises(DescriptionError, match=words):
+        sdf.parse(text, "w.sdf")
+
+
+def test_files(tmp_path):
+    with pytest.raises(DescriptionError, match="no such file"):
+        sdf.load(tmp_path / "no.world")
+    folder_of_models(tmp_path)
+    assert sdf.load_model(tmp_path / "arm").name == "arm"
+    assert [model.name for model in sdf.load(tmp_path / "arm/new.sdf").models] == ["arm"]
+    with pytest.raises(DescriptionError, match="expected <model>"):
+        sdf.parse_model("<sdf version='1.9'/>")
+    with pytest.raises(DescriptionError, match="expected <sdf>"):
+        sdf.parse("<robot/>")
+
+
+@pytest.mark.parametrize("name", ["arena", "hexagon"])
+def test_our_worlds_load(name):
+    world = sdf.load(SHARE / f"turtlebot3_gazebo/worlds/{name}.world")
+    assert world.name == name
+    assert all(model.static for model in world.models)
+    assert not world.warnings
+
+
+@settings(max_examples=200, deadline=None)
+@given(st.data())
+def test_damaged_worlds_give_worlds_or_descriptions_errors(data):
+    root = parse_markup(WORLD)
+    element = data.draw(st.sampled_from(list(root.walk())))
+    if element.children and data.draw(st.booleans()):
+        element.children.remove(data.draw(st.sampled_from(element.children)))
+    elif element.attributes and data.draw(st.booleans()):
+        key = data.draw(st.sampled_from(sorted(element.attributes)))
+        element.attributes[key] = data.draw(st.text(st.characters(codec="ascii", categories=["L", "N", "P"])))
+    else:
+        element.text = data.draw(st.text(st.characters(codec="ascii", categories=["L", "N", "P", "Zs"])))
+    problem = problem_of(lambda: sdf.parse(root.to_text(), "w.sdf"))
+    assert problem is None or problem.startswith(("w.sdf", str(BUILT_IN_MODELS)))
+    assert problem is None or "\n" not in problem

@@ -1,0 +1,84 @@
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from daidalos.description.errors import DescriptionError
+from daidalos.description.markup import Element, parse_markup
+
+names = st.from_regex(r"[a-z][a-z_]{0,8}", fullmatch=True)
+words = st.text(st.characters(codec="utf-8", exclude_categories=["Cc", "Cs", "Cn"]), max_size=20)
+
+
+@st.composite
+def elements(draw, depth=3):
+    children = draw(st.lists(elements(depth=depth - 1), max_size=3)) if depth else []
+    text = "" if children else draw(words).strip()
+    return Element(draw(names), draw(st.dictionaries(names, words, max_size=3)), text, children)
+
+
+def as_tuple(element):
+    return element.tag, element.attributes, element.text.strip(), [as_tuple(child) for child in element]
+
+
+@given(elements())
+def test_what_is_written_reads_the_same(element):
+    read = parse_markup(element.to_text())
+    assert as_tuple(read) == as_tuple(element)
+
+
+def test_lines_are_kept():
+    root = parse_markup("\n\n<?xml version='1.0'?>\n<robot>\n  <link\n    name='a'/>\n</robot>", "r.urdf")
+    assert (root.line, root.children[0].line) == (4, 5)
+    assert root.children[0].where == "r.urdf:5"
+
+
+def test_byte_order_mark_and_declared_encoding():
+    assert parse_markup(b"\xef\xbb\xbf<a/>").tag == "a"
+    assert parse_markup('<?xml version="1.0" encoding="latin-1"?><a b="ü"/>').attribute("b") == "ü"
+    assert (
+        parse_markup('<?xml version="1.0" encoding="latin-1"?><a b="ü"/>'.encode("latin-1")).attribute("b")
+        == "ü"
+    )
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "words"),
+    [
+        ("", 0, "empty"),
+        ("  \n ", 0, "empty"),
+        ("<a>\n<b></a>", 2, "mismatched tag"),
+        ("<a/>\n<b/>", 2, "junk after document element"),
+        ("hello", 1, "syntax error"),
+    ],
+)
+def test_malformed_documents_name_the_line(text, line, words):
+    with pytest.raises(DescriptionError, match=words) as caught:
+        parse_markup(text, "x.urdf")
+    assert (caught.value.source, caught.value.line) == ("x.urdf", line)
+
+
+def test_errors_read_as_one_line():
+    element = parse_markup("<robot>\n<joint name='elbow'/></robot>", "arm.urdf").require("joint")
+    assert str(element.error("needs <limit>")) == 'arm.urdf:2: <joint name="elbow">: needs <limit>'
+
+
+@pytest.mark.parametrize("text", ["x", "", "nan", "1 2"])
+def test_a_number_must_be_one(text):
+    with pytest.raises(DescriptionError, match="should be a"):
+        parse_markup(f"<a r='{text}'/>").number_attribute("r")
+
+
+def test_numbers_vectors_and_flags():
+    root = parse_markup("<a><x> 1.5 </x><v>1, 2  3</v><y>True</y><n> 0 </n><e/></a>")
+    assert root.number_of("x", default=0) == 1.5
+    assert root.number_of("missing", "x", default=0) == 1.5
+    assert root.vector_of("v", size=3, default=(0, 0, 0)) == (1, 2, 3)
+    assert root.flag_of("y", default=False) is True
+    assert root.flag_of("n", default=True) is False
+    assert root.number_of("e", default=7) == 7
+    with pytest.raises(DescriptionError, match="should be 2 numbers"):
+        root.vector_of("v", size=2, default=(0, 0))
+    with pytest.raises(DescriptionError, match="expected true or false"):
+        root.flag_of("x", default=False)
+    with pytest.raises(DescriptionError, match="expected an integer"):
+        root.integer_of("x", default=0)

@@ -1,0 +1,126 @@
+import numpy as np
+import pytest
+import trimesh
+
+from daidalos.description.errors import DescriptionError
+from daidalos.description.geometry import (
+    Box,
+    Capsule,
+    Cone,
+    Cylinder,
+    Ellipsoid,
+    Mesh,
+    Plane,
+    Polyline,
+    Sphere,
+)
+from daidalos.description.meshes import load_mesh, triangles_of
+from description.robots import SHARE
+
+SQUARE = ((0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0))
+HOLE = ((0.5, 0.5), (1.0, 0.5), (1.0, 1.0), (0.5, 1.0))
+
+
+@pytest.mark.parametrize(
+    ("shape", "volume", "extent"),
+    [
+        (Box((1, 2, 3)), 6, (1, 2, 3)),
+        (Sphere(1), 4 / 3 * np.pi, (2, 2, 2)),
+        (Ellipsoid((1, 2, 3)), 8 * np.pi, (2, 4, 6)),
+        (Cylinder(1, 3), 3 * np.pi, (2, 2, 3)),
+        (Capsule(0.5, 2), np.pi * 0.25 * 2 + np.pi / 6, (1, 1, 3)),
+        (Cone(1, 3), np.pi, (2, 2, 3)),
+        (Polyline((SQUARE,), 2), 8, (2, 2, 2)),
+        (Polyline((SQUARE, HOLE), 2), 7.5, (2, 2, 2)),
+    ],
+)
+def test_solids_have_their_volume(shape, volume, extent):
+    mesh = triangles_of(shape, segments=200)
+    solid = trimesh.Trimesh(mesh.vertices, mesh.faces)
+    assert solid.is_watertight
+    assert solid.volume == pytest.approx(volume, rel=2e-3)
+    assert tuple(np.ptp(mesh.vertices, axis=0)) == pytest.approx(extent, rel=1e-3)
+    if not isinstance(shape, Polyline):
+        np.testing.assert_allclose(mesh.vertices.max(axis=0) + mesh.vertices.min(axis=0), 0, atol=1e-9)
+
+
+def test_a_plane_has_no_inside():
+    with pytest.raises(TypeError, match="Plane has no closed surface"):
+        triangles_of(Plane())
+
+
+@pytest.fixture
+def wedge(tmp_path):
+    """A body without symmetry: a box with one corner pulled out."""
+    solid = trimesh.creation.box((1, 1, 1))
+    solid.vertices[np.argmax(solid.vertices.sum(axis=1))] *= 2
+    return tmp_path, solid
+
+
+@pytest.mark.parametrize("kind", ["stl", "stl_ascii", "obj", "glb", "dae", "ply"])
+def test_formats_hold_the_same_solid(wedge, kind):
+    folder, solid = wedge
+    path = folder / f"w.{kind.partition('_')[0]}"
+    path.write_bytes(b"")
+    exported = solid.export(file_type=kind)
+    path.write_bytes(exported.encode() if isinstance(exported, str) else exported)
+    mesh = load_mesh(Mesh(path.name, path))
+    assert len(mesh.vertices) == 8
+    assert trimesh.Trimesh(mesh.vertices, mesh.faces).volume == pytest.approx(solid.volume, rel=1e-5)
+
+
+def test_mirrored_meshes_still_look_outwards(wedge):
+    folder, solid = wedge
+    solid.export(folder / "w.stl")
+    mesh = load_mesh(Mesh("w.stl", folder / "w.stl", scale=(1, -2, 1)))
+    mirrored = trimesh.Trimesh(mesh.vertices, mesh.faces)
+    assert mirrored.volume == pytest.approx(2 * solid.volume, rel=1e-5)
+    assert mesh.vertices[:, 1].min() == pytest.approx(-2 * solid.vertices[:, 1].max())
+
+
+def test_parts_and_centring(tmp_path):
+    scene = trimesh.Scene()
+    scene.add_geometry(trimesh.creation.box((1, 1, 1)), node_name="near", geom_name="near")
+    far = trimesh.transformations.translation_matrix((5, 0, 0))
+    scene.add_geometry(trimesh.creation.box((2, 2, 2)), node_name="far", geom_name="far", transform=far)
+    scene.export(tmp_path / "two.glb")
+    part = load_mesh(Mesh("two.glb", tmp_path / "two.glb", submesh="far"))
+    assert part.vertices[:, 0].min() == pytest.approx(4)
+    centred = load_mesh(Mesh("two.glb", tmp_path / "two.glb", submesh="far", center=True))
+    assert centred.vertices[:, 0].min() == pytest.approx(-1)
+    with pytest.raises(DescriptionError, match="has no part 'middle'"):
+        load_mesh(Mesh("two.glb", tmp_path / "two.glb", submesh="middle"))
+
+
+@pytest.mark.parametrize(
+    ("name", "content"), [("a.stl", b"solid nonsense"), ("a.dae", b"<x>"), ("a.glb", b"")]
+)
+def test_broken_files_are_named(tmp_path, name, content):
+    (tmp_path / name).write_bytes(content)
+    with pytest.raises(DescriptionError, match=name):
+        load_mesh(Mesh(name, tmp_path / name, where="r.urdf:3"))
+
+
+def test_missing_files_are_named_with_the_description():
+    with pytest.raises(DescriptionError, match=r"r.urdf:3: mesh package://x/a.stl not found"):
+        load_mesh(Mesh("package://x/a.stl", None, where="r.urdf:3"))
+
+
+def test_unknown_formats_are_named(tmp_path):
+    (tmp_path / "a.step").touch()
+    with pytest.raises(DescriptionError, match="step format; known are stl, dae"):
+        load_mesh(Mesh("a.step", tmp_path / "a.step"))
+
+
+@pytest.mark.parametrize(
+    ("name", "size"),
+    [
+        ("wheel", (0.066, 0.066, 0.018)),
+        ("lidar", (0.07, 0.07, 0.041)),
+        ("waffle_plate", (0.266, 0.266, 0.004)),
+    ],
+)
+def test_the_turtlebots_meshes_have_their_size(name, size):
+    path = SHARE / f"turtlebot3_description/meshes/{name}.dae"
+    assert path.stat().st_size < 300_000
+    assert np.ptp(load_mesh(Mesh(name, path)).vertices, axis=0) == pytest.approx(size, abs=1e-3)

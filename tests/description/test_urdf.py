@@ -1,0 +1,145 @@
+import math
+import re
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from daidalos.description import urdf
+from daidalos.description.errors import DescriptionError
+from daidalos.description.geometry import Box, Capsule, Cylinder, Mesh
+from daidalos.description.joint import JointType
+from daidalos.description.markup import parse_markup
+from daidalos.description.pose import Pose
+from description.robots import ARM, SHARE, problem_of, share_of
+
+
+def test_everything_in_a_robot_is_read():
+    robot = urdf.parse(ARM)
+    assert (robot.name, robot.root) == ("arm", "base")
+    assert list(robot.links) == ["base", "upper", "fore", "finger", "thumb"]
+    base = robot.links["base"]
+    assert base.visuals[0].geometry == Box((1, 2, 3))
+    assert base.visuals[0].material.color == (0, 0, 0.8, 1)
+    assert base.collisions[0].geometry == Cylinder(0.1, 1)
+    assert base.collisions[0].pose == Pose((0, 0, 0.5))
+    assert base.inertial.mass == 2
+    shoulder = robot.joints["shoulder"]
+    assert shoulder.type is JointType.REVOLUTE
+    assert shoulder.axis.xyz == (0, 1, 0)
+    assert (shoulder.axis.lower, shoulder.axis.upper) == (-1, 2)
+    assert (shoulder.axis.effort, shoulder.axis.velocity) == (10, 3)
+    assert (shoulder.axis.damping, shoulder.axis.friction) == (0.5, 0.1)
+    assert shoulder.safety.k_velocity == 4
+    assert shoulder.calibration.rising == 0.2
+    assert shoulder.calibration.falling is None
+    assert robot.joints["elbow"].axis.upper == math.inf
+    assert robot.joints["grip_mirror"].mimic.multiplier == 2
+    assert robot.transmissions[0].joints[0].hardware_interfaces == ("EffortJointInterface",)
+    assert robot.transmissions[0].actuators[0].mechanical_reduction == 50
+    assert robot.gazebo[0].reference == "upper"
+    assert robot.ros2_control[0].attribute("name") == "c"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "line", "words"),
+    [
+        ('<link name="upper"/>', '<link name="base"/>', 9, "defined before"),
+        ('<link name="upper"/>', "<link/>", 9, '"name" is missing'),
+        ('<parent link="upper"/>', '<parent link="uper"/>', 20, "parent link 'uper' does not exist"),
+        ('type="continuous"', 'type="spinning"', 20, "unknown joint type 'spinning'"),
+        ('xyz="0 2 0"', 'xyz="0 0 0"', 13, "no direction"),
+        ('xyz="0 2 0"', 'xyz="0 2"', 15, "should be 3 numbers"),
+        ('<mass value="2"/>', '<mass value="two"/>', 7, "should be a number, got 'two'"),
+        ('<mass value="2"/>', "", 7, "<mass> is missing"),
+        ('<box size="1 2 3"/>', '<bax size="1 2 3"/>', 5, "expected one of box"),
+        ('<mimic joint="grip"', '<mimic joint="grap"', 27, "mimics joint 'grap'"),
+        ('<child link="thumb"/>', '<child link="finger"/>', 27, "child of more than one joint"),
+        ('<link name="thumb"/>', '<link name="thumb"/><link name="lost"/>', 2, "nobody's child: base, lost"),
+    ],
+)
+def test_mistakes_are_named_with_their_place(old, new, line, words):
+    assert ARM.count(old) == 1
+    with pytest.raises(DescriptionError) as caught:
+        urdf.parse(ARM.replace(old, new), "arm.urdf")
+    assert words in str(caught.value)
+    assert (caught.value.source, caught.value.line) == ("arm.urdf", line)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_revolute_joint_needs_limits():
+    with pytest.raises(DescriptionError, match="a revolute joint needs <limit>"):
+        urdf.parse(ARM.replace('<limit lower="-1" upper="2" effort="10" velocity="3"/>', ""))
+
+
+def test_a_loop_is_no_tree():
+    joints = "".join(
+        f"<joint name='{p}{c}' type='fixed'><parent link='{p}'/><child link='{c}'/></joint>"
+        for p, c in ("ab", "ba")
+    )
+    with pytest.raises(DescriptionError, match="form a loop"):
+        urdf.parse(f"<robot name='r'><link name='a'/><link name='b'/>{joints}</robot>")
+    with pytest.raises(DescriptionError, match="does not reach: a, b"):
+        urdf.parse(f"<robot name='r'><link name='r'/><link name='a'/><link name='b'/>{joints}</robot>")
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("<sdf/>", "expected <robot>"),
+        ("<robot name='r'/>", "no link"),
+        ("<robot><link name='a'/></robot>", "missing"),
+    ],
+)
+def test_what_is_no_robot(text, words):
+    with pytest.raises(DescriptionError, match=words):
+        urdf.parse(text)
+
+
+def test_missing_file(tmp_path):
+    with pytest.raises(DescriptionError, match="no such file"):
+        urdf.load(tmp_path / "no.urdf")
+
+
+def test_mesh_addresses_scales_and_capsules(tmp_path):
+    (tmp_path / "m.stl").touch()
+    shapes = (
+        '<mesh filename="m.stl" scale="1 -1 2"/>',
+        '<mesh filename="package://nowhere/m.stl"/>',
+        '<capsule radius="1" length="2"/>',
+    )
+    visuals = "".join(f"<visual><geometry>{shape}</geometry></visual>" for shape in shapes)
+    file = tmp_path / "r.urdf"
+    file.write_text(f"<robot name='r'><link name='a'>{visuals}</link></robot>")
+    near, unknown, capsule = (visual.geometry for visual in urdf.load(file).links["a"].visuals)
+    assert near == Mesh("m.stl", tmp_path / "m.stl", (1, -1, 2))
+    assert near.where == f"{file}:1"
+    assert unknown.path is None
+    assert capsule == Capsule(1, 2)
+
+
+@pytest.mark.parametrize("name", ["waffle", "burger"])
+def test_the_turtlebots_load(name):
+    path = SHARE / f"turtlebot3_description/urdf/turtlebot3_{name}.urdf.xacro"
+    robot = urdf.load(path, resolve=share_of)
+    assert robot.root == "base_footprint"
+    assert {"base_link", "wheel_left_link", "wheel_right_link", "imu_link", "base_scan"} <= set(robot.links)
+    meshes = [v.geometry for link in robot.links.values() for v in link.visuals]
+    assert meshes
+    assert all(mesh.path is not None for mesh in meshes)
+    assert not robot.warnings
+
+
+@settings(max_examples=200, deadline=None)
+@given(st.data())
+def test_damaged_robots_give_robots_or_descriptions_errors(data):
+    """Change one attribute or drop one element: either it still is a robot or the error has a place."""
+    root = parse_markup(ARM, "arm.urdf")
+    element = data.draw(st.sampled_from(list(root.walk())))
+    if element.children and data.draw(st.booleans()):
+        element.children.remove(data.draw(st.sampled_from(element.children)))
+    elif element.attributes:
+        key = data.draw(st.sampled_from(sorted(element.attributes)))
+        element.attributes[key] = data.draw(st.text(st.characters(codec="ascii", categories=["L", "N", "P"])))
+    problem = problem_of(lambda: urdf.read_robot(root))
+    assert problem is None or re.match(r"arm.urdf:\d+: <", problem)

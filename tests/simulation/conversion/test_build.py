@@ -1,0 +1,157 @@
+import math
+
+import numpy as np
+import pytest
+from description.robots import ARM
+
+from daidalos.description import sdf, urdf
+from daidalos.description.pose import Pose
+from daidalos.simulation import Simulation
+from simulation.models import world
+
+SECOND = 1_000_000_000
+
+
+def weightless(body, **options):
+    text = f"<sdf version='1.9'><world name='w'><gravity>0 0 0</gravity><model name='m'>{body}</model></world></sdf>"
+    return Simulation(sdf.parse(text), **options)
+
+
+def two_links(kind, axis="<axis><xyz>0 0 1</xyz></axis>", extra=""):
+    return (
+        "<link name='a'><pose>0 0 1 0 0 0</pose></link><link name='b'><pose>1 0 1 0 0 0</pose></link>"
+        "<joint name='w' type='fixed'><parent>world</parent><child>a</child></joint>"
+        f"<joint name='j' type='{kind}'><pose>-0.5 0 0 0 0 0</pose><parent>a</parent><child>b</child>"
+        f"{axis}{extra}</joint>"
+    )
+
+
+def push(simulation, dof, speed=1.0):
+    """Give one degree of freedom a speed and return where b is after a tenth of a second."""
+    simulation._data.qvel[dof] = speed
+    simulation.advance(SECOND // 10)
+    return simulation.pose("m", "b")
+
+
+TWO_AXES = "<axis><xyz>0 0 1</xyz></axis><axis2><xyz>0 1 0</xyz></axis2>"
+
+
+@pytest.mark.parametrize(
+    ("kind", "axis", "dof", "expected"),
+    [
+        ("revolute", None, 0, Pose.from_xyz_rpy((0.5 + 0.5 * math.cos(0.1), 0.5 * math.sin(0.1), 1), (0, 0, 0.1))),
+        ("prismatic", None, 0, Pose((1, 0, 1.1))),
+        ("continuous", None, 0, Pose.from_xyz_rpy((0.5 + 0.5 * math.cos(0.1), 0.5 * math.sin(0.1), 1), (0, 0, 0.1))),
+        ("universal", TWO_AXES, 1, Pose.from_xyz_rpy((0.5 + 0.5 * math.cos(0.1), 0, 1 - 0.5 * math.sin(0.1)),
+                                                     (0, 0.1, 0))),
+        ("ball", "", 1, Pose.from_xyz_rpy((0.5 + 0.5 * math.cos(0.1), 0, 1 - 0.5 * math.sin(0.1)), (0, 0.1, 0))),
+    ],
+)  # fmt: skip
+def test_joints_move_about_their_anchor(kind, axis, dof, expected):
+    simulation = weightless(two_links(kind) if axis is None else two_links(kind, axis))
+    pose = push(simulation, dof)
+    np.testing.assert_allclose(pose.matrix, expected.matrix, atol=2e-3)
+    assert simulation.pose("m", "a") == Pose((0, 0, 1))
+
+
+def test_fixed_joints_hold():
+    simulation = weightless(two_links("fixed", ""))
+    assert simulation._model.nv == 0
+
+
+def test_limits_hold():
+    limits = "<axis><xyz>0 0 1</xyz><limit><lower>-0.2</lower><upper>0.3</upper></limit></axis>"
+    simulation = weightless(two_links("revolute", limits))
+    simulation._data.qvel[0] = 3.0
+    positions = []
+    for _ in range(50):
+        simulation.advance(SECOND // 100)
+        positions.append(simulation.joint("m", "j").position)
+    assert 0.29 < max(positions) < 0.32
+    assert min(positions) > -0.22
+
+
+def test_springs_and_damping():
+    """A spring pulls to its reference; with damping it gets there."""
+    axis = (
+        "<axis><xyz>0 0 1</xyz><dynamics><damping>5</damping><spring_stiffness>20</spring_stiffness>"
+        "<spring_reference>0.4</spring_reference></dynamics></axis>"
+    )
+    simulation = weightless(two_links("revolute", axis))
+    simulation.advance(10 * SECOND)
+    assert simulation.joint("m", "j").position == pytest.approx(0.4, abs=1e-3)
+
+
+def test_mimics_follow():
+    robot = urdf.parse(ARM.replace('<link name="base">', '<link name="world"/><link name="base">', 1).replace(
+        "</robot>",
+        '<joint name="w" type="fixed"><parent link="world"/><child link="base"/></joint></robot>'))  # fmt: skip
+    simulation = Simulation(sdf.parse("<sdf version='1.9'><world name='w'><gravity>0 0 0</gravity></world></sdf>"))
+    simulation.spawn(robot, "arm")
+    simulation._data.qvel[simulation.joint("arm", "grip").dof] = 0.05
+    simulation.advance(SECOND)
+    grip, mirror = simulation.joint("arm", "grip").position, simulation.joint("arm", "grip_mirror").position
+    assert mirror == pytest.approx(2 * grip + 0.01, abs=2e-3)
+
+
+def test_links_without_mass_that_move_get_some():
+    lines = []
+    solid = "<collision><geometry><box size='1 1 1'/></geometry></collision>"
+    robot = urdf.parse(f"<robot name='r'><link name='a'>{solid}</link></robot>", "r.urdf")
+    simulation = Simulation(world(), warn=lines.append)
+    simulation.spawn(robot, pose=Pose((0, 0, 0.5)))
+    assert lines == ["r.urdf:1: link 'a' moves but has no mass; assumed 200 kg/m^3 for its collisions"]
+    assert simulation._model.body("r::a").mass[0] == pytest.approx(200)
+    simulation.advance(SECOND)
+    assert simulation.pose("r").position[2] == pytest.approx(0.5, abs=1e-2)
+
+
+def test_a_footprint_without_mass_is_no_problem():
+    mass = "<inertial><mass value='1'/><inertia ixx='1' iyy='1' izz='1'/></inertial>"
+    robot = urdf.parse(
+        f"<robot name='r'><link name='foot'/><link name='body'>{mass}</link><joint name='j' type='fixed'>"
+        "<parent link='foot'/><child link='body'/></joint></robot>"
+    )
+    simulation = Simulation(world())
+    simulation.spawn(robot)
+    assert not simulation.warnings
+
+
+def test_gravity_can_be_switched_off_for_a_link():
+    model = "<model name='m'><pose>0 0 3 0 0 0</pose><link name='l'><gravity>false</gravity></link></model>"
+    simulation = Simulation(world(model))
+    simulation.advance(SECOND)
+    assert simulation.pose("m").position == pytest.approx((0, 0, 3), abs=1e-6)
+
+
+@pytest.mark.parametrize("collide", [False, True])
+def test_self_collision_is_off_unless_asked_for(collide):
+    ball = "<collision name='c'><geometry><sphere><radius>0.3</radius></sphere></geometry></collision>"
+    links = "".join(f"<link name='{n}'><pose>{x} 0 0 0 0 0</pose>{ball}</link>" for n, x in (("a", 0), ("b", 0.5)))
+    simulation = weightless(f"<self_collide>{str(collide).lower()}</self_collide>{links}")
+    simulation.advance(SECOND // 10)
+    distance = simulation.pose("m", "b").position[0] - simulation.pose("m", "a").position[0]
+    assert distance == pytest.approx(0.5) if not collide else distance > 0.55
+
+
+def test_missing_collision_meshes_are_left_out_with_a_line():
+    lines = []
+    robot = urdf.parse(
+        "<robot name='r'><link name='a'><collision><geometry><mesh filename='package://x/a.stl'/></geometry>"
+        "</collision></link></robot>",
+        "r.urdf",
+    )
+    Simulation(world(), warn=lines.append).spawn(robot)
+    assert lines[-1] == "r.urdf:1: mesh package://x/a.stl not found; the collision is left out"
+
+
+def test_floating_joints_bind_nothing():
+    simulation = Simulation(world())
+    robot = urdf.parse(
+        "<robot name='r'><link name='a'/><link name='b'/><joint name='j' type='floating'><parent link='a'/>"
+        "<child link='b'/><origin xyz='2 0 0'/></joint></robot>"
+    )
+    simulation.spawn(robot, pose=Pose((0, 0, 5)))
+    assert simulation.pose("r", "b") == Pose((2, 0, 5))
+    simulation.advance(SECOND // 10)
+    assert simulation._model.nv == 12

@@ -1,0 +1,79 @@
+import pytest
+
+from daidalos.simulation import Simulation, registry
+from daidalos.simulation.plugins.base import Plugin, library_name
+from daidalos.simulation.plugins.diff_drive import DiffDrive
+from daidalos.simulation.samples import TransformSample
+from daidalos.simulation.sensors.base import Sensor
+from daidalos.simulation.sensors.lidar import Lidar
+from simulation.models import box, world
+
+
+@pytest.mark.parametrize(
+    ("written", "name"),
+    [
+        ("libgazebo_ros_imu.so", "gazebo_ros_imu"),
+        (" gazebo_ros_imu ", "gazebo_ros_imu"),
+        ("/opt/lib/libgazebo_ros_imu.so", "gazebo_ros_imu"),
+        ("gz-sim-diff-drive-system", "gz-sim-diff-drive-system"),
+        ("gz-sim8-diff-drive-system", "gz-sim-diff-drive-system"),
+        ("libignition-gazebo6-diff-drive-system.so", "gz-sim-diff-drive-system"),
+        ("ignition-gazebo-diff-drive-system", "gz-sim-diff-drive-system"),
+    ],
+)
+def test_libraries_by_any_of_their_names(written, name):
+    assert library_name(written) == name
+
+
+def test_ours_are_found():
+    assert registry.sensor_class("gpu_lidar") is Lidar
+    assert registry.plugin_class("libgazebo_ros_diff_drive.so") is DiffDrive
+    assert registry.plugin_class("libnothing.so") is None
+    assert registry.sensor_class("nose") is None
+
+
+class Greeter(Plugin):
+    period = 0.5
+
+    def update(self, now_ns):
+        self.memory = (self.memory or 0) + 1
+        yield TransformSample(now_ns, "/hello", "a", "b", (self.memory, 0, 0), (0, 0, 0, 1))
+
+
+class Nose(Sensor):
+    types = ("nose",)
+
+    def measure(self, now_ns):
+        yield TransformSample(now_ns, self.topic, self.frame_id, "smell", (0, 0, 0), (0, 0, 0, 1))
+
+
+class Entry:
+    def __init__(self, name, target):
+        self.name = name
+        self.load = lambda: target
+
+
+@pytest.fixture
+def entries(monkeypatch):
+    groups = {"daidalos.plugins": [Entry("greeter", Greeter)], "daidalos.sensors": [Entry("nose", Nose)]}
+    monkeypatch.setattr(registry, "entry_points", lambda group: groups[group])
+    registry._plugins.cache_clear()
+    registry._sensors.cache_clear()
+    yield
+    registry._plugins.cache_clear()
+    registry._sensors.cache_clear()
+
+
+@pytest.mark.usefixtures("entries")
+def test_the_users_own_come_by_entry_point():
+    text = box("b", extra="<sensor name='s' type='nose'><update_rate>1</update_rate></sensor>")
+    text = text.replace("</model>", "<plugin name='g' filename='libgreeter.so'/></model>")
+    simulation = Simulation(world(text))
+    samples = simulation.advance(1_000_000_000)
+    assert [(s.stamp_ns, s.topic) for s in samples] == [
+        (500_000_000, "/hello"),
+        (1_000_000_000, "/hello"),
+        (1_000_000_000, "/b/link/s/data"),
+    ]
+    assert samples[1].translation[0] == 2
+    assert not simulation.warnings
