@@ -6,6 +6,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.mapping.grid import OccupancyGrid
 from daidalos.mapping.scan import LaserScanData
 
 Array = NDArray[np.float64]
@@ -76,9 +77,7 @@ def drive(corners: Array, *, speed: float = 0.5, turn_rate: float = 1.5, rate: f
     return np.array(poses)
 
 
-def wheel_odometry(
-    truth: Array, rng: np.random.Generator, *, scale: float = 0.01, noise: float = 0.02
-) -> Array:
+def wheel_odometry(truth: Array, rng: np.random.Generator, *, scale: float = 0.01, noise: float = 0.02) -> Array:
     """Truth as wheels would tell it: a wrong radius and base, and slip in proportion to the motion."""
     odometry = [truth[0].copy()]
     for before, after in pairwise(truth):
@@ -86,10 +85,7 @@ def wheel_odometry(
         turn = (after[2] - before[2] + np.pi) % (2.0 * np.pi) - np.pi
         forward = np.cos(before[2]) * dx + np.sin(before[2]) * dy
         forward *= 1.0 + scale + noise * rng.standard_normal()
-        turn = (
-            turn * (1.0 - scale + noise * rng.standard_normal())
-            + 0.002 * abs(forward) * rng.standard_normal()
-        )
+        turn = turn * (1.0 - scale + noise * rng.standard_normal()) + 0.002 * abs(forward) * rng.standard_normal()
         x, y, yaw = odometry[-1]
         odometry.append(np.array([x + forward * np.cos(yaw), y + forward * np.sin(yaw), yaw + turn]))
     return np.array(odometry)
@@ -116,3 +112,22 @@ class Lidar:
         angles = robot[2] + yaw - self.field / 2 + self.increment * np.arange(self.beams)
         ranges = cast(segments, origin, angles) + self.noise * rng.standard_normal(self.beams)
         return LaserScanData(ranges, -self.field / 2, self.increment, 0.05, 25.0, 0.0, self.pose)
+
+
+def raster(segments: Array, resolution: float) -> OccupancyGrid:
+    """The walls as occupied cells of a grid that covers them, found by walking along each in small steps."""
+    step = 0.1 * resolution
+    points = np.concatenate(
+        [np.linspace(s[:2], s[2:], max(2, int(np.ceil(np.hypot(*(s[2:] - s[:2])) / step)))) for s in segments]
+    )
+    corner = np.floor(points.min(axis=0) / resolution) * resolution
+    cells = np.floor((points - corner) / resolution).astype(int)
+    data = np.zeros(cells.max(axis=0)[::-1] + 1, np.int8)
+    data[cells[:, 1], cells[:, 0]] = 100
+    return OccupancyGrid(data, resolution, (float(corner[0]), float(corner[1]), 0.0))
+
+
+def room_scan(pose: Array, *, beams: int = 360, noise: float = 0.0, seed: int = 0) -> LaserScanData:
+    """A full-circle scan of the arena from a pose."""
+    lidar = Lidar(beams=beams, field=2.0 * np.pi * (beams - 1) / beams, noise=noise)
+    return lidar.scan(arena(), np.asarray(pose, dtype=np.float64), np.random.default_rng(seed))

@@ -67,6 +67,8 @@ class ScanGrid:
     def classify(self, occupancy_threshold: float = 0.1, min_pass_through: int = 2) -> OccupancyGrid:
         """Occupied, free or unknown by the share of beams that ended among those that reached a cell.
 
+        The grid spans the known cells; without any it has none.
+
         Parameters
         ----------
         occupancy_threshold : float
@@ -75,13 +77,19 @@ class ScanGrid:
             Beams that must have reached a cell for it to be known.
         """
         if self._used is None:
-            empty = np.zeros((0, 0), np.int8)
-            return OccupancyGrid(empty, self.resolution, (0.0, 0.0, 0.0))
-        left, bottom = self._used[:2]
+            return self._empty()
         bounds = self._used - np.tile(self._corner, 2)
         data = _classify(self._hits, self._misses, bounds, float(occupancy_threshold), int(min_pass_through))
-        origin = (float(left * self.resolution), float(bottom * self.resolution), 0.0)
-        return OccupancyGrid(data, self.resolution, origin)
+        rows = np.flatnonzero((data != UNKNOWN).any(axis=1))
+        columns = np.flatnonzero((data != UNKNOWN).any(axis=0))
+        if rows.size == 0:
+            return self._empty()
+        known = np.ascontiguousarray(data[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1])
+        left, bottom = (self._used[:2] + np.array([columns[0], rows[0]])) * self.resolution
+        return OccupancyGrid(known, self.resolution, (float(left), float(bottom), 0.0))
+
+    def _empty(self) -> OccupancyGrid:
+        return OccupancyGrid(np.zeros((0, 0), np.int8), self.resolution, (0.0, 0.0, 0.0))
 
     def _trace(self, cloud: Cloud, pose: Array, sign: int) -> None:
         placed = np.array(pose, dtype=np.float64)
@@ -140,9 +148,7 @@ def _copy_known(old: Counts, new: Counts, row: int, column: int) -> None:
 
 
 @compiled
-def _bounds(
-    points: Array, cleared: Array, origin: Array, pose: Array, resolution: float
-) -> NDArray[np.int64]:
+def _bounds(points: Array, cleared: Array, origin: Array, pose: Array, resolution: float) -> NDArray[np.int64]:
     """First and last column and row that the beams touch: left, bottom, right, top."""
     cosine, sine = np.cos(pose[2]), np.sin(pose[2])
     x = pose[0] + cosine * origin[0] - sine * origin[1]
@@ -209,9 +215,7 @@ def _count(
 
 
 @compiled
-def _classify(
-    hits: Counts, misses: Counts, bounds: NDArray[np.int64], threshold: float, minimum: int
-) -> Occupancy:
+def _classify(hits: Counts, misses: Counts, bounds: NDArray[np.int64], threshold: float, minimum: int) -> Occupancy:
     left, bottom, right, top = bounds
     data = np.full((top - bottom + 1, right - left + 1), np.int8(-1), np.int8)
     for r in range(data.shape[0]):

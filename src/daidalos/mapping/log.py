@@ -106,9 +106,7 @@ def _collect(bag: Path, reader: Any, scan_topic: str | None, odom_topic: str | N
     times = np.array([_stamp(message.header) for message in scans], dtype=np.int64)
     covered = (times >= stamps[0] - LATEST_ODOMETRY) & (times <= stamps[-1] + LATEST_ODOMETRY)
     if not covered.any():
-        raise LogError(
-            bag, f"no scan on {scan_topic} has odometry at its time: {source} covers another period"
-        )
+        raise LogError(bag, f"no scan on {scan_topic} has odometry at its time: {source} covers another period")
     kept = [_scan(bag, message, mounts) for message, use in zip(scans, covered, strict=True) if use]
     return Log(times[covered], kept, poses_at(stamps, poses, times[covered]), scan_topic, source)
 
@@ -143,14 +141,10 @@ def _odometry(
     else:
         moving = [t for t in transforms if _frame(t.header.frame_id) == "odom"]
         if not moving:
-            raise LogError(
-                bag, f"no odometry: expected a topic of type {ODOMETRY} or a transform from odom in /tf"
-            )
+            raise LogError(bag, f"no odometry: expected a topic of type {ODOMETRY} or a transform from odom in /tf")
         base = moving[0].child_frame_id
         source = f"/tf odom -> {_frame(base)}"
-        stamped = [
-            (_stamp(t.header), _planar_transform(t.transform)) for t in moving if t.child_frame_id == base
-        ]
+        stamped = [(_stamp(t.header), _planar_transform(t.transform)) for t in moving if t.child_frame_id == base]
     stamped.sort(key=lambda item: item[0])
     stamps = np.array([stamp for stamp, _ in stamped], dtype=np.int64)
     poses = np.array([pose for _, pose in stamped])
@@ -181,9 +175,7 @@ def _scan(bag: Path, message: Any, mounts: dict[str, Array]) -> LaserScanData:
     # Without any transforms the scanner is taken to sit at the base; with some, its own must be there.
     mount = mounts.get(frame) if len(mounts) > 1 else np.zeros(3)
     if mount is None:
-        raise LogError(
-            bag, f"no transform from the base to the frame {frame!r} of the scans in /tf_static or /tf"
-        )
+        raise LogError(bag, f"no transform from the base to the frame {frame!r} of the scans in /tf_static or /tf")
     return LaserScanData(
         message.ranges,
         message.angle_min,

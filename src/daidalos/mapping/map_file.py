@@ -106,11 +106,7 @@ def _to_occupancy(grey: Image, mode: str, negate: bool, occupied: float, free: f
     if mode == "raw":
         return np.where(grey <= OCCUPIED, grey.astype(np.int16), UNKNOWN).astype(np.int8)
     share = grey / 255.0 if negate else (255 - grey.astype(np.int16)) / 255.0
-    middle = (
-        np.rint(100.0 * (share - free) / (occupied - free))
-        if mode == "scale"
-        else np.full(grey.shape, UNKNOWN)
-    )
+    middle = np.rint(100.0 * (share - free) / (occupied - free)) if mode == "scale" else np.full(grey.shape, UNKNOWN)
     return np.select([share > occupied, share < free], [OCCUPIED, FREE], middle).astype(np.int8)
 
 
@@ -123,9 +119,7 @@ def _to_grey(data: NDArray[np.int8], mode: Mode, path: Path) -> Image:
         free = known & (data <= 100 * FREE_THRESHOLD)
         return np.select([occupied, free], [OCCUPIED_GREY, FREE_GREY], UNKNOWN_GREY).astype(np.uint8)
     if not known.all():
-        raise MapFileError(
-            path, "mode", "scale can not hold unknown cells in a PGM image; use trinary or raw"
-        )
+        raise MapFileError(path, "mode", "scale can not hold unknown cells in a PGM image; use trinary or raw")
     share = FREE_THRESHOLD + (OCCUPIED_THRESHOLD - FREE_THRESHOLD) * data / 100.0
     share = np.select([data == FREE, data == OCCUPIED], [0.0, 1.0], share)
     grey: Image = np.rint(255.0 * (1.0 - share)).astype(np.uint8)
@@ -200,9 +194,7 @@ def _read_pgm(path: Path) -> Image:
     body = content[header.end() :]
     values = _read_text_pixels(path, body) if header.group(1) == b"P2" else np.frombuffer(body, np.uint8)
     if values.size < rows * columns:
-        raise MapFileError(
-            path, "pixels", f"expected {columns} x {rows} = {rows * columns}, found {values.size}"
-        )
+        raise MapFileError(path, "pixels", f"expected {columns} x {rows} = {rows * columns}, found {values.size}")
     grey = values[: rows * columns].reshape(rows, columns)
     if brightest == 255:
         return grey

@@ -34,9 +34,7 @@ class LogMap:
     closures: int
 
 
-def map_log(
-    log: Log, config: SlamConfig | None = None, progress: Callable[[int], None] = lambda done: None
-) -> LogMap:
+def map_log(log: Log, config: SlamConfig | None = None, progress: Callable[[int], None] = lambda done: None) -> LogMap:
     """Run SLAM over a log, matching every scan, and refine all poses at the end.
 
     Parameters

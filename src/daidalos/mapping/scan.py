@@ -69,9 +69,7 @@ class Cloud:
     origin: Array
 
 
-def to_cloud(
-    scan: LaserScanData, max_range: float, twist: tuple[float, float, float] = (0.0, 0.0, 0.0)
-) -> Cloud:
+def to_cloud(scan: LaserScanData, max_range: float, twist: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> Cloud:
     """Turn ranges into points with normals.
 
     Parameters
@@ -138,7 +136,11 @@ def _ends_and_normals(
         if elapsed > 0.0:
             yaw = twist[2] * elapsed
             cosine, sine = np.cos(yaw), np.sin(yaw)
-            x, y = cosine * x - sine * y + twist[0] * elapsed, sine * x + cosine * y + twist[1] * elapsed
+            x, y = cosine * x - sine * y, sine * x + cosine * y
+            # On the way the robot headed, on average, to where it headed after half of it.
+            cosine, sine = np.cos(0.5 * yaw), np.sin(0.5 * yaw)
+            x += (cosine * twist[0] - sine * twist[1]) * elapsed
+            y += (sine * twist[0] + cosine * twist[1]) * elapsed
         if hit:
             points[hits, 0] = x
             points[hits, 1] = y

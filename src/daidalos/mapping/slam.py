@@ -12,7 +12,7 @@ from daidalos.mapping.loop_closing import LoopCloser
 from daidalos.mapping.pose_graph import Edge, optimize
 from daidalos.mapping.scan import Cloud, LaserScanData, to_cloud
 from daidalos.mapping.scan_matching.matcher import PointMap, Window
-from daidalos.mapping.scan_matching.point_to_line import match_information
+from daidalos.mapping.scan_matching.point_to_line import Refinement, match_information
 
 __all__ = ["ScanResult", "Slam", "SlamConfig"]
 
@@ -124,6 +124,11 @@ class Slam:
         """Poses of the key scans in the map, shape (n, 3)."""
         return np.array(self._poses[: len(self._keys)])
 
+    @property
+    def key_clouds(self) -> list[Cloud]:
+        """Points of the key scans in the frame of the base."""
+        return [key.cloud for key in self._keys]
+
     def key_pose(self, index: int) -> Array:
         """Pose (x, y, yaw) of one key scan in the map."""
         return np.array(self._poses[index])
@@ -144,8 +149,15 @@ class Slam:
             The ranges.
         odom_pose : array_like, shape (3,)
             Pose (x, y, yaw) of the base in the odometry frame at that time.
+
+        Raises
+        ------
+        ValueError
+            When the pose is not finite.
         """
         odom = np.array(odom_pose, dtype=np.float64)
+        if odom.shape != (3,) or not np.isfinite(odom).all():
+            raise ValueError(f"expected a finite odometry pose (x, y, yaw), found {odom.tolist()}")
         if not self._keys:
             return self._begin(stamp_ns, scan, odom)
         step = pose2.between(self._last_odom, odom)
@@ -153,13 +165,14 @@ class Slam:
         predicted = pose2.compose(self._last_pose, step)
         self._last_pose, self._last_odom, self._last_stamp_ns = predicted, odom, stamp_ns
         is_key = self._has_moved(odom)
-        early = stamp_ns - self._matched_stamp_ns < round(self.config.minimum_time_interval * 1e9)
+        # A stamp before the last one is a clock that was set back, not an early scan.
+        early = 0 <= stamp_ns - self._matched_stamp_ns < round(self.config.minimum_time_interval * 1e9)
         if early or not (is_key or self.config.match_every_scan):
             return ScanResult(predicted)
         cloud = to_cloud(scan, self.config.max_laser_range, twist)
         if cloud.points.shape[0] < LEAST_POINTS:
             return ScanResult(predicted)
-        match = self._match(cloud, predicted, thorough=is_key)
+        match = self._match(cloud, predicted, _odometry_information(step), thorough=is_key)
         self._matched_stamp_ns = stamp_ns
         self._last_pose = match.pose
         if not is_key:
@@ -194,7 +207,7 @@ class Slam:
         from daidalos.mapping.refinement import refine_poses
 
         if len(self._keys) > 1:
-            self._move(refine_poses([key.cloud for key in self._keys], self.key_poses, self._edges))
+            self._move(refine_poses(self.key_clouds, self.key_poses, self._edges))
 
     def _begin(self, stamp_ns: int, scan: LaserScanData, odom: Array) -> ScanResult:
         cloud = to_cloud(scan, self.config.max_laser_range)
@@ -220,13 +233,13 @@ class Slam:
         travelled = np.hypot(x, y) >= self.config.minimum_travel_distance
         return bool(travelled or abs(turn) >= self.config.minimum_travel_heading)
 
-    def _match(self, cloud: Cloud, predicted: Array, *, thorough: bool) -> _Match:
+    def _match(self, cloud: Cloud, predicted: Array, certainty: Array, *, thorough: bool) -> _Match:
         """Match a scan against the latest key scans; unless thorough, search only where it does not fit."""
         local = self._local_map()
         if not thorough:
             near = local.refine(cloud.points, cloud.normals, predicted, iterations=15)
             if near.share > CERTAIN_SHARE:
-                return _Match(near.pose, match_information(near.normal_matrix), accepted=True)
+                return _fuse(predicted, certainty, near)
         config = self.config
         window = Window(
             distance=0.5 * config.correlation_search_space_dimension,
@@ -238,7 +251,7 @@ class Slam:
         fine = local.refine(cloud.points, cloud.normals, predicted if found is None else found.pose)
         if fine.share < config.link_match_minimum_response_fine:
             return _Match(predicted, np.zeros((3, 3)), accepted=False)
-        return _Match(fine.pose, match_information(fine.normal_matrix), accepted=True)
+        return _fuse(predicted, certainty, fine)
 
     def _local_map(self) -> PointMap:
         if self._local is None:
@@ -264,7 +277,7 @@ class Slam:
     def _close_loops(self) -> tuple[bool, bool]:
         """Look for closures of the newest key scan: whether there are any, and whether they moved poses."""
         poses = self._poses[: len(self._keys)]
-        closures = self._closer.search([key.cloud for key in self._keys], poses, self._edges)
+        closures = self._closer.search(self.key_clouds, poses, self._edges)
         if not closures:
             return False, False
         self._edges.extend(closures)
@@ -292,8 +305,16 @@ class Slam:
             self._stale = np.flatnonzero(far | (np.abs(gaps[:, 2]) > DRAWN_TURN)).tolist()
 
 
+def _fuse(predicted: Array, certainty: Array, match: Refinement) -> _Match:
+    """Weigh a match against odometry, which decides where lines do not: along a corridor."""
+    information = match_information(match.normal_matrix)
+    gap = pose2.between(match.pose, predicted)
+    shift = np.linalg.solve(information + certainty, certainty @ gap)
+    return _Match(pose2.compose(match.pose, shift), information, accepted=True)
+
+
 def _odometry_information(moved: Array) -> Array:
     """Inverse covariance of a motion by odometry alone, taken to be poor: wheels slip and are never round."""
     distance, turn = float(np.hypot(moved[0], moved[1])), abs(float(moved[2]))
-    deviation = np.array([0.05 + 0.2 * distance, 0.05 + 0.2 * distance, 0.05 + 0.2 * turn])
+    deviation = np.array([0.05 + 0.2 * distance, 0.05 + 0.2 * distance, 0.2 + 0.2 * turn])
     return np.diag(1.0 / deviation**2)

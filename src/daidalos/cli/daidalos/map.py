@@ -57,12 +57,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default="trinary",
         help="what the grey values mean (default: trinary)",
     )
-    parser.add_argument(
-        "--scan-topic", metavar="TOPIC", help="topic of the scans (default: /scan or the only one)"
-    )
-    parser.add_argument(
-        "--odom-topic", metavar="TOPIC", help="topic of the odometry (default: /odom or the only one)"
-    )
+    parser.add_argument("--scan-topic", metavar="TOPIC", help="topic of the scans (default: /scan or the only one)")
+    parser.add_argument("--odom-topic", metavar="TOPIC", help="topic of the odometry (default: /odom or the only one)")
     parser.add_argument(
         "--relations", type=Path, metavar="FILE", help="ground-truth relations to print the error against"
     )
@@ -79,6 +75,8 @@ def main(args: argparse.Namespace) -> int:
     except (MappingError, _UserError) as error:
         print(f"daidalos map: {error}", file=sys.stderr)
         return 2
+    except KeyboardInterrupt:
+        return 130
     print(json.dumps(report) if args.json else _as_text(report))
     return 0
 
@@ -116,7 +114,12 @@ def _map(log: "Log", args: argparse.Namespace) -> tuple["LogMap", float]:
     from daidalos.mapping.offline import map_log
     from daidalos.mapping.slam import SlamConfig
 
-    config = SlamConfig(resolution=args.resolution, max_laser_range=args.max_range)
+    config = SlamConfig(
+        resolution=args.resolution,
+        max_laser_range=args.max_range,
+        minimum_travel_distance=0.3,
+        minimum_travel_heading=0.3,
+    )
     with _progress_bar(len(log.scans)) as (prepare, advance):
         warm_up(prepare)
         start = time.perf_counter()
@@ -137,9 +140,7 @@ def _progress_bar(total: int) -> Iterator[tuple[Callable[[float, str], None], Ca
         scans = bar.add_task("mapping", total=total, visible=False)
 
         def prepare(share: float, step: str) -> None:
-            bar.update(
-                preparing, completed=round(100 * share), description=f"compiling {step}", visible=share < 1.0
-            )
+            bar.update(preparing, completed=round(100 * share), description=f"compiling {step}", visible=share < 1.0)
             bar.update(scans, visible=share >= 1.0)
 
         def advance(done: int) -> None:
@@ -163,8 +164,7 @@ def _write_trajectory(path: Path, log: "Log", mapped: "LogMap") -> None:
     import numpy as np
 
     lines = [
-        f"{stamp // 10**9}.{stamp % 10**9:09d} {x:.6f} {y:.6f} 0 "
-        f"0 0 {np.sin(yaw / 2):.9f} {np.cos(yaw / 2):.9f}\n"
+        f"{stamp // 10**9}.{stamp % 10**9:09d} {x:.6f} {y:.6f} 0 0 0 {np.sin(yaw / 2):.9f} {np.cos(yaw / 2):.9f}\n"
         for stamp, (x, y, yaw) in zip(log.stamps_ns.tolist(), mapped.poses, strict=True)
     ]
     try:
@@ -196,8 +196,7 @@ def _as_text(report: dict[str, Any]) -> str:
         f"{report['scans']} scans ({report['log_s']:.0f} s of log) mapped in {report['seconds']:.1f} s, "
         f"{report['real_time_factor']:.0f} times real time; {report['key_scans']} key scans, "
         f"{report['closures']} loop closures",
-        f"{', '.join(report['files'])}: {report['columns']} x {report['rows']} cells of "
-        f"{report['resolution']:g} m",
+        f"{', '.join(report['files'])}: {report['columns']} x {report['rows']} cells of {report['resolution']:g} m",
     ]
     for name, key in (("odometry", "odometry_error"), ("slam", "slam_error")):
         if key in report:

@@ -106,9 +106,7 @@ def _search(
         _rotate(points, corner, resolution, centre, half, (a - turns) * step, columns[a], rows[a])
         for by in range(blocks):
             for bx in range(blocks):
-                penalty = turn_penalty * (a - turns) ** 2 + shift_penalty * _shift(
-                    bx * width, by * width, width, half
-                )
+                penalty = turn_penalty * (a - turns) ** 2 + shift_penalty * _shift(bx * width, by * width, width, half)
                 bounds[(a * blocks + by) * blocks + bx] = (
                     _score(levels[top], columns[a], rows[a], bx * width, by * width) - penalty
                 )

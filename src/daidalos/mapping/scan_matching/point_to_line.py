@@ -25,6 +25,9 @@ LEAST_MATCHES = 6
 SAME_FACE = 0.7
 """Least cosine of the angle between the normals of a point and its line: a wall's far side is no match."""
 
+NORMAL_NOISE = 0.1
+"""Standard deviation [rad] of a normal: by it, a straight wall seems to tell something about the way along it."""
+
 DAMPING = 1e-5
 """Share of the points' weight that holds back what no line constrains, as the way along a corridor."""
 
@@ -97,8 +100,17 @@ def refine(
 
 
 def match_information(normal_matrix: Array) -> Array:
-    """Inverse covariance (3, 3) of a match; a direction that no line constrains has ten metres."""
-    information: Array = normal_matrix / POINT_DEVIATION**2 + 0.01 * np.eye(3)
+    """Inverse covariance (3, 3) of a match; a direction that no line constrains has ten metres.
+
+    What noisy normals alone would seem to tell is taken off every direction.
+    """
+    weight = max(float(normal_matrix[0, 0] + normal_matrix[1, 1]), 1e-9)
+    # Yaw is measured at the typical distance of the points, so that all directions are in metres.
+    metres = np.array([1.0, 1.0, np.sqrt(weight / max(float(normal_matrix[2, 2]), 1e-9))])
+    values, vectors = np.linalg.eigh(normal_matrix * metres[:, None] * metres)
+    told = np.maximum(values - weight * NORMAL_NOISE**2, 0.0)
+    cleaned = (vectors * told) @ vectors.T / metres[:, None] / metres
+    information: Array = cleaned / POINT_DEVIATION**2 + 0.01 * np.eye(3)
     return information
 
 
@@ -208,9 +220,7 @@ def _nearest(
 
 
 @compiled
-def _add_row(
-    matrix: Array, vector: Array, ax: float, ay: float, at: float, weight: float, error: float
-) -> None:
+def _add_row(matrix: Array, vector: Array, ax: float, ay: float, at: float, weight: float, error: float) -> None:
     """Add one row of the Jacobian to the normal equations."""
     matrix[0, 0] += weight * ax * ax
     matrix[0, 1] += weight * ax * ay
