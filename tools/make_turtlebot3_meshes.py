@@ -47,9 +47,7 @@ def waffle_plate() -> list[Part]:
         outline = outline.difference(affinity.translate(well, 0.064, side * 0.133))
     window = rounded_rectangle(0.0145, 0.0145, 0.003, 1)
     holes = [
-        affinity.translate(window, x * 0.024, y * 0.024)
-        if (x + y) % 2
-        else disc(x * 0.024, y * 0.024, 0.004, 2)
+        affinity.translate(window, x * 0.024, y * 0.024) if (x + y) % 2 else disc(x * 0.024, y * 0.024, 0.004, 2)
         for x in range(-5, 6)
         for y in range(-5, 6)
         if math.hypot(x, y) < 6.4
@@ -155,12 +153,8 @@ def lidar() -> list[Part]:
         extrude(base, 0.008, LIDAR, -0.0245),
         revolve([(0.0, -0.0165), (0.0340, -0.0165), (0.0345, -0.0080), (0.0, -0.0080)], LIDAR, 48),
         revolve([(0.0, -0.0080), (0.0325, -0.0080), (0.0325, 0.0080), (0.0, 0.0080)], WINDOW, 48),
-        revolve(
-            [(0.0, 0.0080), (0.0345, 0.0080), (0.0345, 0.0130), (0.0310, 0.0155), (0.0, 0.0160)], LIDAR, 48
-        ),
-        revolve(
-            [(0.0180, 0.0157), (0.0200, 0.0157), (0.0200, 0.0163), (0.0180, 0.0163), (0.0180, 0.0157)], GLOW
-        ),
+        revolve([(0.0, 0.0080), (0.0345, 0.0080), (0.0345, 0.0130), (0.0310, 0.0155), (0.0, 0.0160)], LIDAR, 48),
+        revolve([(0.0180, 0.0157), (0.0200, 0.0157), (0.0200, 0.0163), (0.0180, 0.0163), (0.0180, 0.0157)], GLOW),
     ]
 
 
@@ -182,9 +176,7 @@ def _upright(part: Part) -> Part:
     return part.turned(math.pi / 2, (1, 0, 0)).turned(math.pi / 2, (0, 0, 1))
 
 
-def _pierced(
-    outline: shapely.Polygon, holes: list[shapely.Polygon], border: float = 0.004
-) -> shapely.Polygon:
+def _pierced(outline: shapely.Polygon, holes: list[shapely.Polygon], border: float = 0.004) -> shapely.Polygon:
     """Cut the holes that leave a border to the outline."""
     rim = outline.buffer(-border)
     return outline.difference(shapely.union_all([hole for hole in holes if rim.contains(hole)]))
@@ -220,10 +212,7 @@ def _casters(x: float, y: float) -> list[Part]:
 
 def _ball(radius: float) -> list[tuple[float, float]]:
     steps = 8
-    return [
-        (radius * math.sin(math.pi * i / steps), -radius * math.cos(math.pi * i / steps))
-        for i in range(steps + 1)
-    ]
+    return [(radius * math.sin(math.pi * i / steps), -radius * math.cos(math.pi * i / steps)) for i in range(steps + 1)]
 
 
 def _board(x: float, y: float, z: float, paint: Paint, width: float, depth: float) -> list[Part]:

@@ -75,9 +75,7 @@ def extrude(outline: shapely.Polygon, height: float, paint: Paint, bottom: float
     return Part(mesh, paint)
 
 
-def box(
-    size: Sequence[float], center: Sequence[float], paint: Paint, radius: float = 0.0, segments: int = 3
-) -> Part:
+def box(size: Sequence[float], center: Sequence[float], paint: Paint, radius: float = 0.0, segments: int = 3) -> Part:
     """Build a box, its upright edges rounded when `radius` is given."""
     x, y, z = center
     if radius:
@@ -93,13 +91,9 @@ def revolve(profile: Sequence[tuple[float, float]], paint: Paint, segments: int 
     return Part(trimesh.creation.revolve(np.array(profile, dtype=float), sections=segments), paint)
 
 
-def rod(
-    start: Sequence[float], end: Sequence[float], radius: float, paint: Paint, segments: int = 12
-) -> Part:
+def rod(start: Sequence[float], end: Sequence[float], radius: float, paint: Paint, segments: int = 12) -> Part:
     """Build a round bar between two points."""
-    return Part(
-        trimesh.creation.cylinder(radius=radius, segment=[list(start), list(end)], sections=segments), paint
-    )
+    return Part(trimesh.creation.cylinder(radius=radius, segment=[list(start), list(end)], sections=segments), paint)
 
 
 def save(parts: Sequence[Part], path: Path) -> None:
@@ -113,9 +107,7 @@ def save(parts: Sequence[Part], path: Path) -> None:
     for paint in paints:
         material = _material(document, paint)
         geometry = _geometry(document, paint.name, [part for part in parts if part.paint == paint])
-        placed = collada.scene.GeometryNode(
-            geometry, [collada.scene.MaterialNode(paint.name, material, inputs=[])]
-        )
+        placed = collada.scene.GeometryNode(geometry, [collada.scene.MaterialNode(paint.name, material, inputs=[])])
         nodes.append(collada.scene.Node(paint.name, children=[placed]))
     document.scene = collada.scene.Scene("scene", nodes)
     document.scenes.append(document.scene)

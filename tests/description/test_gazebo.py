@@ -17,9 +17,7 @@ EXTRA = """
 
 @pytest.fixture
 def model():
-    shape = (
-        '<link name="fore"><visual><geometry><sphere radius="1"/></geometry></visual><collision><geometry>'
-    )
+    shape = '<link name="fore"><visual><geometry><sphere radius="1"/></geometry></visual><collision><geometry>'
     text = ARM.replace('<link name="fore"/>', f'{shape}<sphere radius="1"/></geometry></collision></link>')
     return model_from_robot(urdf.parse(text.replace("</robot>", EXTRA)))
 

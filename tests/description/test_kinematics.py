@@ -42,9 +42,7 @@ def readable_poses(robot, values):
             motion[:3, 3] = q * np.array(joint.axis.xyz)
         elif joint.type is not JointType.FIXED:
             motion[:3, :3] = Rotation.from_rotvec(q * np.array(joint.axis.xyz)).as_matrix()
-        poses[joint.child] = (
-            poses[joint.parent] @ joint.origin.matrix @ motion @ np.linalg.inv(joint.anchor.matrix)
-        )
+        poses[joint.child] = poses[joint.parent] @ joint.origin.matrix @ motion @ np.linalg.inv(joint.anchor.matrix)
     return poses
 
 
@@ -95,9 +93,7 @@ def test_fixed_joints_do_not_move():
 
 def test_unknown_joint_names_those_there_are():
     tree = KinematicTree(urdf.parse(ARM))
-    with pytest.raises(
-        UnknownJointError, match="'wrist' is not in the robot; movable are shoulder, elbow, grip"
-    ):
+    with pytest.raises(UnknownJointError, match="'wrist' is not in the robot; movable are shoulder, elbow, grip"):
         tree.positions({"wrist": 1.0})
 
 

@@ -35,10 +35,7 @@ def test_lines_are_kept():
 def test_byte_order_mark_and_declared_encoding():
     assert parse_markup(b"\xef\xbb\xbf<a/>").tag == "a"
     assert parse_markup('<?xml version="1.0" encoding="latin-1"?><a b="ü"/>').attribute("b") == "ü"
-    assert (
-        parse_markup('<?xml version="1.0" encoding="latin-1"?><a b="ü"/>'.encode("latin-1")).attribute("b")
-        == "ü"
-    )
+    assert parse_markup('<?xml version="1.0" encoding="latin-1"?><a b="ü"/>'.encode("latin-1")).attribute("b") == "ü"
 
 
 @pytest.mark.parametrize(

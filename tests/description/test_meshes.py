@@ -92,9 +92,7 @@ def test_parts_and_centring(tmp_path):
         load_mesh(Mesh("two.glb", tmp_path / "two.glb", submesh="middle"))
 
 
-@pytest.mark.parametrize(
-    ("name", "content"), [("a.stl", b"solid nonsense"), ("a.dae", b"<x>"), ("a.glb", b"")]
-)
+@pytest.mark.parametrize(("name", "content"), [("a.stl", b"solid nonsense"), ("a.dae", b"<x>"), ("a.glb", b"")])
 def test_broken_files_are_named(tmp_path, name, content):
     (tmp_path / name).write_bytes(content)
     with pytest.raises(DescriptionError, match=name):

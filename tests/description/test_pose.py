@@ -49,9 +49,7 @@ def test_matrix_round_trip(pose):
 @pytest.mark.parametrize("axis", [(1, 0, 0), (0, 1, 0), (0, 0, 1)])
 def test_half_turns_convert_from_matrices(axis):
     turn = Rotation.from_rotvec(np.pi * np.array(axis))
-    np.testing.assert_allclose(
-        rotation_matrix(quaternion_from_matrix(turn.as_matrix())), turn.as_matrix(), atol=1e-9
-    )
+    np.testing.assert_allclose(rotation_matrix(quaternion_from_matrix(turn.as_matrix())), turn.as_matrix(), atol=1e-9)
 
 
 @pytest.mark.parametrize("end", [(1, 0, 0), (-1, 0, 0), (0, 0, -1), (0.6, 0.8, 0.0)])

@@ -32,9 +32,7 @@ def test_each_kind_of_address(tree):
     assert find(str(mesh)) == mesh
 
 
-@pytest.mark.parametrize(
-    "uri", ["package://nowhere/a.stl", "model://nowhere", "missing.stl", "https://x.org/a"]
-)
+@pytest.mark.parametrize("uri", ["package://nowhere/a.stl", "model://nowhere", "missing.stl", "https://x.org/a"])
 def test_what_is_not_there_is_none(tree, uri):
     assert resolve_uri(uri, tree, lambda name: None, [tree]) is None
 

@@ -74,8 +74,7 @@ def test_a_revolute_joint_needs_limits():
 
 def test_a_loop_is_no_tree():
     joints = "".join(
-        f"<joint name='{p}{c}' type='fixed'><parent link='{p}'/><child link='{c}'/></joint>"
-        for p, c in ("ab", "ba")
+        f"<joint name='{p}{c}' type='fixed'><parent link='{p}'/><child link='{c}'/></joint>" for p, c in ("ab", "ba")
     )
     with pytest.raises(DescriptionError, match="form a loop"):
         urdf.parse(f"<robot name='r'><link name='a'/><link name='b'/>{joints}</robot>")

@@ -140,9 +140,7 @@ class Element:
             return default
         return self._number(self.attribute(key), f'attribute "{key}"', finite)
 
-    def vector_attribute(
-        self, key: str, size: int, default: tuple[float, ...] | None = None
-    ) -> tuple[float, ...]:
+    def vector_attribute(self, key: str, size: int, default: tuple[float, ...] | None = None) -> tuple[float, ...]:
         """Return an attribute as `size` numbers; without `default` it must exist."""
         value = self.attributes.get(key)
         if value is None and default is not None:

@@ -159,9 +159,7 @@ def _cylinder(shape: Cylinder, segments: int) -> Any:
 def _capsule(shape: Capsule, segments: int) -> Any:
     import trimesh
 
-    capsule = trimesh.creation.capsule(
-        radius=shape.radius, height=shape.length, count=(segments // 2, segments)
-    )
+    capsule = trimesh.creation.capsule(radius=shape.radius, height=shape.length, count=(segments // 2, segments))
     capsule.apply_translation(-capsule.bounds.mean(axis=0))
     return capsule
 

@@ -82,9 +82,7 @@ def _file(uri: str, rest: str, base: Path | None, model_path: Sequence[Path]) ->
     return _relative(unquote(rest), base, model_path)
 
 
-def _named(
-    scheme: str, rest: str, packages: PackageResolver | None, model_path: Sequence[Path]
-) -> list[Path]:
+def _named(scheme: str, rest: str, packages: PackageResolver | None, model_path: Sequence[Path]) -> list[Path]:
     name, _, inside = rest.partition("/")
     share = packages(name) if packages is not None else None
     in_package = [] if share is None else [Path(share) / inside]

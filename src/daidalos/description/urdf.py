@@ -67,9 +67,7 @@ def load(
     return read_robot(parse_markup(text, str(path)), resolve)
 
 
-def parse(
-    text: str | bytes, source: str = "robot_description", resolve: PackageResolver | None = None
-) -> Robot:
+def parse(text: str | bytes, source: str = "robot_description", resolve: PackageResolver | None = None) -> Robot:
     """Read a robot from text.
 
     Parameters
@@ -137,9 +135,7 @@ def _material(element: Element) -> Material:
     )
 
 
-def _links(
-    root: Element, materials: Mapping[str, Material], resolve: PackageResolver | None
-) -> dict[str, Link]:
+def _links(root: Element, materials: Mapping[str, Material], resolve: PackageResolver | None) -> dict[str, Link]:
     links: dict[str, Link] = {}
     for element in root.all("link"):
         name = element.name()
@@ -337,9 +333,7 @@ def _safety(element: Element | None) -> Safety | None:
 def _calibration(element: Element | None) -> Calibration | None:
     if element is None:
         return None
-    edges = [
-        element.number_attribute(key) if key in element.attributes else None for key in ("rising", "falling")
-    ]
+    edges = [element.number_attribute(key) if key in element.attributes else None for key in ("rising", "falling")]
     return Calibration(*edges)
 
 

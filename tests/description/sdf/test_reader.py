@@ -146,9 +146,7 @@ def folder_of_models(tmp_path):
     arm = "<link name='base'/><link name='tip'><pose>0 0 1 0 0 0</pose></link>"
     joint = "<joint name='j' type='revolute'><parent>base</parent><child>tip</child></joint>"
     for name, body in {
-        "arm": arm
-        + joint
-        + "<frame name='mount'><pose>0 0 0.5 0 0 0</pose></frame><plugin name='p' filename='x'/>",
+        "arm": arm + joint + "<frame name='mount'><pose>0 0 0.5 0 0 0</pose></frame><plugin name='p' filename='x'/>",
         "robot": "<link name='chassis'/><include><uri>model://arm</uri><name>left</name>"
         "<pose>0 1 0 0 0 0</pose></include><joint name='weld' type='fixed'><parent>chassis</parent>"
         "<child>left::base</child></joint>",

@@ -26,9 +26,7 @@ class Included:
     pose: RelativePose
 
 
-def read_include(
-    element: Element, context: Context, read_model: Callable[[Element, Context], Model]
-) -> Included:
+def read_include(element: Element, context: Context, read_model: Callable[[Element, Context], Model]) -> Included:
     """Read ``<include>``; name, pose, static and plugins written in it win over those of the file."""
     uri = element.text_of("uri")
     if not uri:

@@ -71,9 +71,7 @@ def read_joint(element: Element, context: Context, frame: FramePose, link_of: Li
     )
     return replace(
         joint,
-        sensors=tuple(
-            read_sensor(sensor, lambda e: in_child @ read_pose(e).pose) for sensor in element.all("sensor")
-        ),
+        sensors=tuple(read_sensor(sensor, lambda e: in_child @ read_pose(e).pose) for sensor in element.all("sensor")),
     )
 
 

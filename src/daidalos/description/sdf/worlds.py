@@ -54,8 +54,7 @@ class _WorldReader:
             name=element.attribute("name", base.name),
             models=tuple(self._placed(model, child) for model, child in self._models),
             lights=tuple(
-                replace(light, pose=self._graph.place(pose, ROOT, child))
-                for light, pose, child in self._lights
+                replace(light, pose=self._graph.place(pose, ROOT, child)) for light, pose, child in self._lights
             ),
             joints={joint.name: joint for joint in map(self._joint, element.all("joint"))},
             frames={name: self._graph.pose(name, element) for name in self._graph.names()},
