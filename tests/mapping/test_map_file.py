@@ -102,6 +102,11 @@ def test_thresholds_and_negation_decide(tmp_path: Path) -> None:
     assert scaled[0, 1] == round(100 * (share - 0.196) / (0.65 - 0.196))
 
 
+def test_numbers_may_have_an_exponent_without_a_dot(tmp_path: Path) -> None:
+    grid = load_map(write(tmp_path, GOOD.replace("0.05", "5e-2").replace("-2.0", "1e-05")))
+    assert (grid.resolution, grid.origin[1]) == (0.05, 1e-5)
+
+
 def test_text_images_and_other_white_values_are_read(tmp_path: Path) -> None:
     image = b"P2 # by hand\n2 2\n# white\n100\n0 100\n80 40"
     assert load_map(write(tmp_path, image=image)).data.tolist() == [[-1, -1], [100, 0]]

@@ -1,5 +1,6 @@
 """Map files of map_server: a YAML file that says what the grey values of a PGM image mean."""
 
+import contextlib
 import math
 import re
 from pathlib import Path
@@ -84,6 +85,8 @@ def save_map(grid: OccupancyGrid, stem: str | Path, mode: Mode = "trinary") -> t
     MapFileError
         When the folder can not be written to, or the mode can not hold the map.
     """
+    import yaml
+
     base = Path(stem)
     if base.suffix in (".yaml", ".pgm"):
         base = base.with_suffix("")
@@ -92,11 +95,18 @@ def save_map(grid: OccupancyGrid, stem: str | Path, mode: Mode = "trinary") -> t
         raise MapFileError(image_path, None, "the map has no cells")
     grey = np.flipud(_to_grey(grid.data, mode, image_path))
     header = f"P5\n{grey.shape[1]} {grey.shape[0]}\n255\n".encode()
-    origin = ", ".join(repr(float(value)) for value in grid.origin)
-    description = (
-        f"image: {image_path.name}\nmode: {mode}\n"
-        f"resolution: {float(grid.resolution)!r}\norigin: [{origin}]\nnegate: 0\n"
-        f"occupied_thresh: {OCCUPIED_THRESHOLD}\nfree_thresh: {FREE_THRESHOLD}\n"
+    description = yaml.safe_dump(
+        {
+            "image": image_path.name,
+            "mode": mode,
+            "resolution": float(grid.resolution),
+            "origin": [float(value) for value in grid.origin],
+            "negate": 0,
+            "occupied_thresh": OCCUPIED_THRESHOLD,
+            "free_thresh": FREE_THRESHOLD,
+        },
+        sort_keys=False,
+        default_flow_style=None,
     )
     _write_together({image_path: header + grey.tobytes(), yaml_path: description.encode()})
     return yaml_path, image_path
@@ -155,9 +165,14 @@ def _text(path: Path, fields: dict[str, Any], name: str) -> str:
 
 def _number(path: Path, fields: dict[str, Any], name: str) -> float:
     value = _field(path, fields, name)
-    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+    number = math.nan
+    # PyYAML takes 1e-05 for text, where YAML 1.2 and map_server read a number.
+    if isinstance(value, int | float | str) and not isinstance(value, bool):
+        with contextlib.suppress(ValueError, OverflowError):
+            number = float(value)
+    if not math.isfinite(number):
         raise MapFileError(path, name, f"expected a number, found {value!r}")
-    return float(value)
+    return number
 
 
 def _share(path: Path, fields: dict[str, Any], name: str) -> float:
