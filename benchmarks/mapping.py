@@ -15,7 +15,7 @@ from daidalos.mapping.evaluation import read_relations, relation_errors
 from daidalos.mapping.grid import ScanGrid
 from daidalos.mapping.log import Log, read_log
 from daidalos.mapping.offline import map_log
-from daidalos.mapping.scan import LaserScanData, to_cloud
+from daidalos.mapping.scan import Cloud, LaserScanData, to_cloud
 from daidalos.mapping.scan_matching.matcher import PointMap, Window
 from daidalos.mapping.slam import Slam, SlamConfig
 
@@ -83,10 +83,9 @@ def measure_parts() -> dict[str, float | str]:
     }
 
 
-def prepare(clouds: list, poses: np.ndarray, window: Window) -> None:
+def prepare(clouds: list[Cloud], poses: np.ndarray, window: Window) -> object:
     points = PointMap(clouds, poses)
-    points.likelihood(window)
-    points.reference  # noqa: B018
+    return points.likelihood(window), points.reference
 
 
 def measure_online() -> dict[str, float | str]:

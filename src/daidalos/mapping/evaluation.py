@@ -60,7 +60,7 @@ class RelationErrors:
             "translation_std_m": float(self.translation.std()),
             "rotation_mean_deg": float(degrees.mean()),
             "rotation_std_deg": float(degrees.std()),
-            "relations": float(self.translation.size),
+            "relations": self.translation.size,
         }
 
 

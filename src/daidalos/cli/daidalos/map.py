@@ -140,7 +140,7 @@ def _progress_bar(total: int) -> Iterator[tuple[Callable[[float, str], None], Ca
         scans = bar.add_task("mapping", total=total, visible=False)
 
         def prepare(share: float, step: str) -> None:
-            bar.update(preparing, completed=round(100 * share), description=f"compiling {step}", visible=share < 1.0)
+            bar.update(preparing, completed=round(100 * share), description=f"preparing {step}", visible=share < 1.0)
             bar.update(scans, visible=share >= 1.0)
 
         def advance(done: int) -> None:
@@ -204,7 +204,7 @@ def _as_text(report: dict[str, Any]) -> str:
             lines.append(
                 f"error of {name + ':':<9} translation {error['translation_mean_m']:.4f} +- "
                 f"{error['translation_std_m']:.4f} m, rotation {error['rotation_mean_deg']:.3f} +- "
-                f"{error['rotation_std_deg']:.3f} deg over {error['relations']:.0f} relations"
+                f"{error['rotation_std_deg']:.3f} deg over {error['relations']} relations"
             )
     return "\n".join(lines)
 
