@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 import aiohttp
+import pytest
 
 T = TypeVar("T")
 
@@ -45,6 +46,15 @@ def find_chromium() -> str | None:
     return next((found for name in candidates if (found := shutil.which(name))), None)
 
 
+def require_chromium() -> None:
+    """Skip the test where there is no browser, unless `DAIDALOS_REQUIRE_BROWSER` says that there must be one."""
+    if find_chromium() is None:
+        text = "no Chromium found; install it, or name it in DAIDALOS_CHROMIUM"
+        if os.environ.get("DAIDALOS_REQUIRE_BROWSER"):
+            pytest.fail(text)
+        pytest.skip(text)
+
+
 class PageError(Exception):
     """The page threw, or did not become what was waited for."""
 
@@ -63,6 +73,7 @@ class Chromium:
         self._size = (width, height)
         self._numbers = 0
         self._answers: dict[int, asyncio.Future[dict[str, Any]]] = {}
+        self._loaded = asyncio.Event()
         self._loop = asyncio.new_event_loop()
         self._thread = threading.Thread(target=self._loop.run_forever, name="cdp", daemon=True)
         self._thread.start()
@@ -84,9 +95,12 @@ class Chromium:
         self.close()
 
     def open(self, url: str) -> None:
-        """Go to an address and wait until the document is there."""
-        self._run(self._command("Page.navigate", url=url))
-        self.wait_for("document.readyState === 'complete'")
+        """Go to an address and wait until the page is loaded."""
+        self._run(self._load("Page.navigate", url=url))
+
+    def reload(self) -> None:
+        """Load the page again, as the user's key does."""
+        self._run(self._load("Page.reload"))
 
     def resize(self, width: int, height: int) -> None:
         """Give the page another size."""
@@ -219,6 +233,13 @@ class Chromium:
         await self._socket.send_json({"id": number, "method": method, "params": parameters})
         return await asyncio.wait_for(self._answers[number], ANSWER_S + 60)
 
+    async def _load(self, method: str, **parameters: Any) -> None:
+        self._loaded.clear()
+        answer = await self._command(method, **parameters)
+        if "errorText" in answer:
+            raise PageError(answer["errorText"])
+        await asyncio.wait_for(self._loaded.wait(), ANSWER_S)
+
     async def _read(self) -> None:
         async for message in self._socket:
             content = json.loads(message.data)
@@ -232,13 +253,13 @@ class Chromium:
                 self._note(content["method"], content["params"])
 
     def _note(self, method: str, parameters: dict[str, Any]) -> None:
-        if method == "Runtime.exceptionThrown":
+        if method == "Page.loadEventFired":
+            self._loaded.set()
+        elif method == "Runtime.exceptionThrown":
             details = parameters["exceptionDetails"]
             self.errors.append(details.get("exception", {}).get("description") or details["text"])
         elif method == "Runtime.consoleAPICalled" and parameters["type"] in ("error", "warning", "assert"):
-            self.errors.append(
-                " ".join(str(each.get("value", each.get("description"))) for each in parameters["args"])
-            )
+            self.errors.append(" ".join(str(each.get("value", each.get("description"))) for each in parameters["args"]))
         elif method == "Log.entryAdded" and parameters["entry"]["level"] == "error":
             entry = parameters["entry"]
             self.errors.append(f"{entry['text']} {entry.get('url', '')}")

@@ -334,17 +334,14 @@ class DemoRobot:
             polygon=make(
                 "geometry_msgs/msg/Polygon",
                 points=[
-                    make(point, x=self.x + cos * x - sin * y, y=self.y + sin * x + cos * y, z=0.0)
-                    for x, y in corners
+                    make(point, x=self.x + cos * x - sin * y, y=self.y + sin * x + cos * y, z=0.0) for x, y in corners
                 ],
             ),
         )
 
     def _send_plan(self) -> None:
         header = self._header("map")
-        poses = [
-            make("geometry_msgs/msg/PoseStamped", header=header, pose=_pose(x, y, 0.0)) for x, y in self._path
-        ]
+        poses = [make("geometry_msgs/msg/PoseStamped", header=header, pose=_pose(x, y, 0.0)) for x, y in self._path]
         self._send("/plan", "nav_msgs/msg/Path", header=header, poses=poses)
 
     def _send_markers(self) -> None:
@@ -356,9 +353,7 @@ class DemoRobot:
         text.text = "dock"
         self._send("/markers", "visualization_msgs/msg/MarkerArray", markers=[*markers, text])
 
-    def _marker(
-        self, kind: int, number: int, x: float, y: float, z: float, scale: tuple, color: tuple
-    ) -> object:
+    def _marker(self, kind: int, number: int, x: float, y: float, z: float, scale: tuple, color: tuple) -> object:
         return make(
             "visualization_msgs/msg/Marker",
             header=self._header("map"),

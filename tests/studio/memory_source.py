@@ -209,9 +209,7 @@ class MemorySource:
     def get_parameters(self, names: Sequence[str]) -> Future[Sequence[Parameter]]:
         future: Future[Sequence[Parameter]] = Future()
         wanted = names or list(self._parameters)
-        future.set_result(
-            [Parameter(name, self._parameters[name]) for name in wanted if name in self._parameters]
-        )
+        future.set_result([Parameter(name, self._parameters[name]) for name in wanted if name in self._parameters])
         return future
 
     def set_parameters(self, parameters: Sequence[Parameter]) -> Future[Sequence[Parameter]]:

@@ -210,9 +210,6 @@ def _apply(graph, frame):
 def _without_nobody(graph):
     """A name with nobody behind it says as much as no name."""
     return Graph(
-        *(
-            {name: nodes for name, nodes in part.items() if nodes}
-            for part in (graph.publishers, graph.subscribers)
-        ),
+        *({name: nodes for name, nodes in part.items() if nodes} for part in (graph.publishers, graph.subscribers)),
         services={name: nodes for name, nodes in graph.services.items() if nodes},
     )

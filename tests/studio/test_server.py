@@ -173,9 +173,7 @@ def test_clients_publish(server, source, name):
     payload = encode(STRING, make(STRING, data="from the page"))
 
     async def conversation(client):
-        await client.say(
-            "advertise", channels=[{"id": 5, "topic": "/out", "encoding": "cdr", "schemaName": name}]
-        )
+        await client.say("advertise", channels=[{"id": 5, "topic": "/out", "encoding": "cdr", "schemaName": name}])
         await client.socket.send_bytes(b"\x01" + (5).to_bytes(4, "little") + payload)
         await client.sync()
         assert source.published == [("/out", "geometry_msgs/msg/PointStamped", payload)]

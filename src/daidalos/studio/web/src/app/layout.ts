@@ -34,6 +34,7 @@ export class Layout {
     });
     this.restore();
     this.dock.onDidLayoutChange(() => this.saveSoon());
+    addEventListener("pagehide", () => this.save());
   }
 
   /** Show a panel: the one that is there, else a new one. */
@@ -111,7 +112,11 @@ export class Layout {
 
   private saveSoon(): void {
     clearTimeout(this.saving);
-    this.saving = window.setTimeout(() => write(KEY, this.dock.toJSON()), 300);
+    this.saving = window.setTimeout(() => this.save(), 300);
+  }
+
+  private save(): void {
+    write(KEY, this.dock.toJSON());
   }
 }
 

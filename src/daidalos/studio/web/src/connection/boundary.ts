@@ -43,7 +43,7 @@ export type LinkState = "connecting" | "connected" | "lost";
 export type ToWorker =
   | { kind: "open"; url: string }
   | { kind: "ready" }
-  /** Also for a topic that is subscribed already: what is kept for late listeners then comes again. */
+  /** Also to change how many messages of a topic are kept; with 0 they are only counted. */
   | { kind: "subscribe"; topic: string; keep: number }
   | { kind: "unsubscribe"; topic: string }
   | { kind: "publish"; topic: string; type: string; message: unknown }

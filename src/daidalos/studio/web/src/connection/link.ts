@@ -233,16 +233,21 @@ export class Link {
   }
 
   private subscribe(topic: string, keep: number): void {
-    const subscription = this.subscriptions.get(topic) ?? { keep };
+    const known = this.subscriptions.get(topic);
+    const subscription = known ?? { keep };
+    const wasCountedOnly = known?.keep === 0 && keep > 0;
     subscription.keep = keep;
     this.subscriptions.set(topic, subscription);
     this.backlog.open(topic, keep);
     this.meter.open(topic, performance.now() / 1000);
-    const before = subscription.number;
-    this.connect(topic, subscription);
-    // The new subscription first: a stream must not have a gap because one more listens.
-    if (before !== undefined) {
-      this.disconnect(before);
+    if (wasCountedOnly && subscription.number !== undefined) {
+      // What is kept for late listeners was not looked at when it came: ask for it again.
+      // Servers may refuse a second subscription to a channel, so the first one ends before.
+      this.disconnect(subscription.number);
+      delete subscription.number;
+    }
+    if (subscription.number === undefined) {
+      this.connect(topic, subscription);
     }
   }
 

@@ -43,6 +43,8 @@ export class Session {
   onNewServer: () => void = () => undefined;
 
   private readonly subscribers = new Map<string, Set<Subscriber>>();
+  /** The newest message of each topic, for who begins to listen: latched ones do not come a second time. */
+  private readonly latest = new Map<string, Received>();
   private readonly requests = new Map<number, (message: FromWorker) => void>();
   private batch: Extract<FromWorker, { kind: "batch" }> | undefined;
   private server = "";
@@ -63,12 +65,23 @@ export class Session {
     const others = this.subscribers.get(topic) ?? new Set();
     this.subscribers.set(topic, others.add(subscriber));
     this.send({ kind: "subscribe", topic, keep: mostOf(others) });
+    const latest = this.latest.get(topic);
+    if (latest && keep > 0) {
+      queueMicrotask(() => {
+        if (others.has(subscriber)) {
+          received(latest.message as M, latest.time);
+        }
+      });
+    }
     return () => {
       if (!others.delete(subscriber)) {
         return;
       }
-      if (others.size === 0 && this.subscribers.get(topic) === others) {
+      if (others.size > 0) {
+        this.send({ kind: "subscribe", topic, keep: mostOf(others) });
+      } else if (this.subscribers.get(topic) === others) {
         this.subscribers.delete(topic);
+        this.latest.delete(topic);
         this.send({ kind: "unsubscribe", topic });
       }
     };
@@ -128,7 +141,11 @@ export class Session {
     this.send({ kind: "ready" });
   }
 
-  private deliver({ topic, time, message }: Received): void {
+  private deliver(newest: Received): void {
+    const { topic, time, message } = newest;
+    if (this.subscribers.has(topic)) {
+      this.latest.set(topic, newest);
+    }
     for (const subscriber of this.subscribers.get(topic) ?? []) {
       subscriber.received(message as never, time);
     }
@@ -160,6 +177,9 @@ export class Session {
         break;
       case "link":
         this.link.value = message.state;
+        if (message.state === "lost") {
+          this.latest.clear();
+        }
         break;
       case "server":
         this.serverName.value = message.name;

@@ -1,0 +1,255 @@
+"""The page in a real browser, against the real server and a robot that drives."""
+
+import math
+import os
+import queue
+import time
+from collections.abc import Iterator
+
+import foxglove
+import pytest
+from browser.cdp import Chromium, require_chromium
+
+from daidalos.studio.assets import AssetResolver
+from daidalos.studio.build import build, is_fresh
+from daidalos.studio.server import StudioServer
+
+from .demo_robot import SHARE, DemoRobot
+from .memory_source import MemorySource, decode, encode, make, schema
+
+pytestmark = [pytest.mark.browser, pytest.mark.slow]
+
+READY = "window.daidalos && daidalos.state().connected"
+SEES = "daidalos.state().scanPoints > 700 && daidalos.state().maps.Map?.[0] === 160"
+
+
+@pytest.fixture(scope="module", autouse=True)
+def built_page() -> None:
+    words: list[str] = []
+    if not is_fresh() and not build(words.append):
+        if os.environ.get("DAIDALOS_REQUIRE_BROWSER"):
+            pytest.fail(f"the page can not be built: {words}")
+        pytest.skip(f"the page is not built: {words}")
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Chromium]:
+    require_chromium()
+    with Chromium(1280, 800) as browser:
+        yield browser
+
+
+@pytest.fixture
+def source() -> MemorySource:
+    return MemorySource()
+
+
+@pytest.fixture
+def robot(source: MemorySource) -> Iterator[DemoRobot]:
+    with DemoRobot(source) as robot:
+        yield robot
+
+
+def serve(source: MemorySource, port: int = 0) -> StudioServer:
+    assets = AssetResolver(lambda package: SHARE / package if (SHARE / package).is_dir() else None)
+    return StudioServer(source, name="demo robot", port=port, assets=assets)
+
+
+@pytest.fixture
+def page(browser: Chromium, source: MemorySource, robot: DemoRobot) -> Iterator[Chromium]:
+    with serve(source) as server:
+        show(browser, server.url)
+        browser.wait_for(SEES, 60)
+        yield browser
+        assert browser.errors == []
+
+
+def show(browser: Chromium, url: str) -> None:
+    """Open the page as someone who was never there."""
+    browser.open(url)
+    browser.evaluate("localStorage.clear()")
+    browser.open("about:blank")
+    browser.errors.clear()
+    browser.open(url)
+    browser.wait_for(READY, 60)
+
+
+def at(page: Chromium, x: float, y: float) -> tuple[float, float]:
+    """Where a point of the ground is in the window."""
+    place = page.evaluate(f"daidalos.project({x}, {y})")
+    return place["x"], place["y"]
+
+
+def test_shows_a_robot_without_anybodys_help(page, robot):
+    page.wait_for("daidalos.state().displays.Robot.text === '11 links'", 60)
+    state = page.evaluate("daidalos.state()")
+    assert state["serverName"] == "demo robot"
+    assert state["fixedFrame"] == "map"
+    assert {"map", "odom", "base_footprint", "base_scan", "wheel_left_link"} <= set(state["frames"])
+    assert state["maps"]["Global costmap"] == [160, 160]
+    assert state["maps"]["Local costmap"] == [60, 60]
+    wrong = {name: each for name, each in state["displays"].items() if each["level"] in ("error", "warning")}
+    assert wrong == {}
+    for shown in ("Robot", "Laser scan", "Map", "Plan", "TF", "Footprint", "markers"):
+        assert state["displays"][shown]["level"] == "ok", shown
+    assert state["time"] == pytest.approx(robot.now, abs=2)
+    pose = state["robotPose"]
+    assert math.hypot(pose["x"] - robot.x, pose["y"] - robot.y) < 0.5
+
+
+@pytest.mark.parametrize("view", ["orbit", "top"])
+def test_a_goal_that_is_dragged_with_the_mouse_is_driven_to(page, robot, view):
+    if view == "top":
+        page.press("t")
+        page.wait_for("document.querySelector('[data-test=top-down]').ariaPressed === 'true'")
+    goal = (round(robot.x + 0.4, 1), round(robot.y - 0.3, 1))
+    page.click_on("[data-tool=goal]")
+    page.wait_for("daidalos.state().tool === 'goal'")
+    start, end = at(page, *goal), at(page, goal[0], goal[1] + 0.6)
+    page.drag([start, ((start[0] + end[0]) / 2, (start[1] + end[1]) / 2), end])
+    page.wait_for("daidalos.state().tool === 'move'")
+    page.wait_for("daidalos.state().published['/goal_pose']")
+    page.wait_for("daidalos.state().displays.Goal.level === 'ok'")
+    ((x, y, yaw),) = robot.goals
+    assert (x, y) == pytest.approx(goal, abs=0.02)
+    assert yaw == pytest.approx(math.pi / 2, abs=0.05)
+    near = f"Math.hypot(daidalos.state().robotPose.x - {x}, daidalos.state().robotPose.y - {y}) < 0.1"
+    page.wait_for(f"{near} && Math.abs(daidalos.state().robotPose.yaw - {yaw}) < 0.1", 60)
+
+
+def test_the_other_tools_publish_what_rviz_publishes(page, source):
+    page.press("p")
+    page.drag([at(page, 0.5, 0.5), at(page, 0.0, 0.5)])
+    page.wait_for("daidalos.state().published['/initialpose']")
+    page.press("u")
+    page.click(*at(page, -0.5, 0.25))
+    page.wait_for("daidalos.state().published['/clicked_point']")
+    page.wait_for("daidalos.state().tool === 'move'")
+    page.press("n")
+    page.click(*at(page, 0, 0))
+    page.click(*at(page, 0, 1))
+    page.wait_for("/Length (0.9[89]|1.0[012])/.test(document.querySelector('[data-test=hint]').textContent)")
+    page.press("Escape")
+    page.wait_for("daidalos.state().tool === 'move'")
+    published = {topic: decode(type_name, payload) for topic, type_name, payload in source.published}
+    pose = published["/initialpose"]
+    assert pose.header.frame_id == "map"
+    assert pose.pose.pose.position.x == pytest.approx(0.5, abs=0.02)
+    assert abs(pose.pose.pose.orientation.z) == pytest.approx(1, abs=0.01)
+    assert pose.pose.covariance[0] == 0.25
+    assert pose.pose.covariance[35] == pytest.approx((math.pi / 12) ** 2)
+    point = published["/clicked_point"].point
+    assert (point.x, point.y) == pytest.approx((-0.5, 0.25), abs=0.02)
+
+
+def test_topics_messages_and_plots_are_alive(page):
+    page.wait_for("/Hz/.test(document.querySelector('[data-topic=\"/odom\"]').textContent)")
+    page.wait_for("document.querySelectorAll('.u-over').length > 0")
+    page.wait_for("[...document.querySelectorAll('.legend .figures')].every((e) => e.textContent)")
+    page.click_on("[data-topic='/scan'] button")
+    page.wait_for("/angle_increment/.test(document.querySelector('[data-test=message]').textContent)")
+    assert "820 items" in page.evaluate("document.querySelector('[data-test=message]').textContent")
+
+
+def test_a_display_can_be_switched_off_and_stays_off(page):
+    page.click_on("input[aria-label='Show Laser scan']")
+    page.wait_for("daidalos.state().scanPoints === 0")
+    page.reload()
+    page.wait_for(f"{READY} && daidalos.state().maps.Map?.[0] === 160", 60)
+    assert page.evaluate("daidalos.state().scanPoints") == 0
+    page.click_on("input[aria-label='Show Laser scan']")
+    page.wait_for("daidalos.state().scanPoints > 700")
+
+
+def test_theme_and_layout_are_remembered_and_the_layout_can_be_reset(page):
+    assert page.evaluate("document.documentElement.dataset.theme") == "dark"
+    page.click_on("[data-test=theme]")
+    page.wait_for("document.documentElement.dataset.theme === 'light'")
+    page.evaluate("document.querySelector('.dv-tab .dv-default-tab-action').click()")
+    page.wait_for("localStorage.getItem('daidalos.layout')")
+    before = page.evaluate("document.querySelectorAll('.dv-tab').length")
+    page.reload()
+    page.wait_for(READY, 60)
+    assert page.evaluate("document.documentElement.dataset.theme") == "light"
+    assert page.wait_for("document.querySelectorAll('.dv-tab').length") == before
+    page.evaluate("[...document.querySelectorAll('button')].find((b) => b.textContent === 'Panels').click()")
+    page.wait_for("document.querySelector('.menu-item')")
+    page.evaluate("[...document.querySelectorAll('.menu-item')].find((b) => b.textContent === 'Reset layout').click()")
+    page.wait_for(f"document.querySelectorAll('.dv-tab').length === {before + 1}")
+    page.wait_for(SEES, 60)
+
+
+def test_comes_back_after_the_server_was_away(browser, source, robot):
+    with serve(source) as server:
+        port = server.port
+        show(browser, server.url)
+        browser.wait_for(SEES, 60)
+    browser.wait_for("document.querySelector('[data-test=connection]').textContent.includes('Reconnecting')")
+    with serve(source, port) as server:
+        assert server.port == port
+        browser.wait_for(READY, 60)
+        browser.wait_for("daidalos.state().topics.length > 10")
+        browser.wait_for(f"{SEES} && daidalos.state().displays.Robot.level === 'ok'", 60)
+
+
+def test_a_small_window_still_shows_the_view_and_the_displays(browser, source, robot):
+    browser.resize(1024, 700)
+    try:
+        with serve(source) as server:
+            show(browser, server.url)
+            browser.wait_for(SEES, 60)
+            width = browser.evaluate("document.querySelector('.scene-canvas').clientWidth")
+            assert width > 600
+            assert browser.evaluate("document.documentElement.scrollWidth") == 1024
+    finally:
+        browser.resize(1280, 800)
+
+
+class Listener(foxglove.websocket.ServerListener):
+    """Notes what the page does at Foxglove's server."""
+
+    def __init__(self) -> None:
+        self.published: queue.Queue[bytes] = queue.Queue()
+
+    def on_message_data(self, client, client_channel_id, data):
+        self.published.put(bytes(data))
+
+
+def test_speaks_with_foxgloves_server(browser, source):
+    """The page is a client like any other: `?connect=` takes it to a server that is not ours."""
+    listener = Listener()
+    context = foxglove.Context()
+    theirs = foxglove.start_server(
+        name="theirs",
+        host="127.0.0.1",
+        port=0,
+        context=context,
+        server_listener=listener,
+        capabilities=[foxglove.websocket.Capability.ClientPublish],
+        supported_encodings=["cdr"],
+    )
+    name = "geometry_msgs/msg/PointStamped"
+    definition = foxglove.Schema(name=name, encoding="ros2msg", data=schema(name).encode())
+    channel = foxglove.Channel("/clicked_point", schema=definition, message_encoding="cdr", context=context)
+    header = make("std_msgs/msg/Header", stamp=make("builtin_interfaces/msg/Time", sec=1, nanosec=0), frame_id="map")
+    point = make("geometry_msgs/msg/Point", x=1.0, y=2.0, z=3.0)
+    payload = encode(name, make(name, header=header, point=point))
+    try:
+        with serve(source) as ours:
+            show(browser, f"{ours.url}?connect=ws://127.0.0.1:{theirs.port}")
+            browser.wait_for("daidalos.state().serverName === 'theirs'")
+            browser.wait_for("daidalos.state().topics.includes('/clicked_point')")
+            browser.click_on("[data-topic='/clicked_point'] button")
+            # The list of topics subscribes as well, to measure: say it until the message panel listens.
+            until = time.monotonic() + 30
+            text = ""
+            while "x1y2z3" not in text and time.monotonic() < until:
+                channel.log(payload)
+                text = browser.evaluate("document.querySelector('[data-test=message]')?.textContent ?? ''")
+            assert "x1y2z3" in text
+            browser.press("u")
+            browser.click(*at(browser, 0.3, 0.2))
+            data = listener.published.get(timeout=30)
+    finally:
+        theirs.stop()
+    assert decode(name, data).point.x == pytest.approx(0.3, abs=0.02)
