@@ -14,6 +14,7 @@ from daidalos.studio.assets import AssetResolver
 from daidalos.studio.build import build, is_fresh
 from daidalos.studio.server import StudioServer
 
+from . import display_zoo
 from .demo_robot import SHARE, DemoRobot
 from .memory_source import MemorySource, decode, encode, make, schema
 
@@ -190,6 +191,56 @@ def test_comes_back_after_the_server_was_away(browser, source, robot):
         browser.wait_for(READY, 60)
         browser.wait_for("daidalos.state().topics.length > 10")
         browser.wait_for(f"{SEES} && daidalos.state().displays.Robot.level === 'ok'", 60)
+
+
+def test_every_kind_of_display_draws(browser, source, tmp_path):
+    display_zoo.fill(source, tmp_path)
+    with StudioServer(source, port=0, assets=AssetResolver(lambda _: tmp_path)) as server:
+        show(browser, server.url)
+        browser.wait_for("document.querySelector('[data-topic=\"/amcl_pose\"] button.icon-button')")
+        for topic in ("/amcl_pose", "/point", "/polygon"):
+            browser.click_on(f"[data-topic='{topic}'] button.icon-button")
+        browser.click_on("input[aria-label='Show Odometry']")
+        texts = {
+            "Map": "80 × 80 cells of 0.1 m",
+            "Robot": "1 links",
+            "TF": "2 frames",
+            "Goal": "in map",
+            "Odometry": "in map",
+            "amcl_pose": "in map",
+            "cloud": "4000 points in map",
+            "marker": "1 markers",
+            "markers": "12 markers",
+            "particles": "300 poses",
+            "path": "60 poses, 4.68 m",
+            "point": "in map",
+            "polygon": "6 corners",
+        }
+        for name, text in texts.items():
+            browser.wait_for(f"daidalos.state().displays[{name!r}]?.text === {text!r}")
+        assert browser.errors == []
+
+
+@pytest.mark.parametrize(
+    ("description", "complaint"),
+    [
+        ("<robot name='r'><link name='a'></robot>", "not well-formed"),
+        ("<sdf/>", "expected <robot>, found <sdf>"),
+        (
+            "<robot name='r'><link name='a'><visual><geometry><mesh filename='package://no/a.stl'/>"
+            "</geometry></visual></link></robot>",
+            "package://no/a.stl: no such file",
+        ),
+    ],
+)
+def test_a_bad_robot_description_is_told_at_its_display(browser, source, tmp_path, description, complaint):
+    name = "std_msgs/msg/String"
+    source.add_topic("/robot_description", name, latched=True)
+    source.send("/robot_description", encode(name, make(name, data=description)))
+    with StudioServer(source, port=0, assets=AssetResolver(lambda _: tmp_path)) as server:
+        show(browser, server.url)
+        browser.wait_for("daidalos.state().displays.Robot.level === 'error'")
+        assert complaint in browser.evaluate("daidalos.state().displays.Robot.text")
 
 
 def test_a_small_window_still_shows_the_view_and_the_displays(browser, source, robot):

@@ -9,8 +9,10 @@ import type { DisplayConfig, Settings, Value } from "./settings";
 const KEY = "displays";
 
 /** What appears by itself when its topic exists and nothing shows it yet. */
-const DISCOVERED = new Set(["LaserScan", "Map", "Path", "PointCloud2", "Marker", "MarkerArray", "Polygon", "PoseArray"]);
+const DISCOVERED = new Set(["LaserScan", "Map", "Path", "PointCloud2", "Marker", "MarkerArray", "PoseArray"]);
 const DISCOVERED_MOST = 24;
+/** What navigation publishes of its inner life repeats the plan: listed, but switched off. */
+const INNER_LIFE = /(received|transformed)_global_plan|(un)?smoothed/;
 
 interface Saved {
   configs: DisplayConfig[];
@@ -72,7 +74,7 @@ export class DisplayList {
     });
     if (found.length && configs.length < DISCOVERED_MOST) {
       const made = found.map(({ display, name }) =>
-        makeConfig(display, { topic: name, ...looksOf(name) }, shortName(name)),
+        makeConfig(display, { topic: name, ...looksOf(name) }, shortName(name), !INNER_LIFE.test(name)),
       );
       this.saved.value = { configs: [...configs, ...made], seen: [...seen, ...found.map(({ name }) => name)] };
     }

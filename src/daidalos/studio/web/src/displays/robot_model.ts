@@ -98,7 +98,7 @@ class RobotModel extends TopicDisplay<StringMessage> {
         });
     };
     try {
-      const robot = loader.parse(description);
+      const robot = loader.parse(robotElement(description));
       for (const [name, link] of Object.entries(robot.links)) {
         this.addLink(name, link);
       }
@@ -133,6 +133,18 @@ class RobotModel extends TopicDisplay<StringMessage> {
     }
     this.context.invalidate();
   }
+}
+
+function robotElement(description: string): Element {
+  const { documentElement: root } = new DOMParser().parseFromString(description, "text/xml");
+  const flaw = root.querySelector("parsererror");
+  if (flaw) {
+    throw new Error(`not well-formed XML: ${(flaw.textContent ?? "").trim().split("\n")[1] ?? ""}`);
+  }
+  if (root.nodeName !== "robot") {
+    throw new Error(`expected <robot>, found <${root.nodeName}>`);
+  }
+  return root;
 }
 
 /** The loader's materials are Phong with colours taken as linear; URDF's are what a screen shows. */

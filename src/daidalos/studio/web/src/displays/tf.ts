@@ -136,7 +136,7 @@ export const TF: DisplayType = {
   properties: [
     { key: "axes", label: "Axes", kind: "toggle" },
     { key: "names", label: "Names", kind: "toggle" },
-    { key: "links", label: "Links to parents", kind: "toggle" },
+    { key: "links", label: "Links", kind: "toggle" },
     { key: "scale", label: "Axis length", kind: "number", min: 0.01, max: 10, step: 0.05, unit: "m" },
   ],
   defaults: { axes: true, names: false, links: false, scale: 0.12 },

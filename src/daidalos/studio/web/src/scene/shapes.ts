@@ -55,7 +55,10 @@ export function setLinePoints(line: Line2, points: number[] | Float32Array): voi
   line.visible = points.length >= 6;
 }
 
-/** Text that faces the camera and keeps its size on the screen. */
+const LETTERS_PX = 32;
+const MARGIN_PX = 7;
+
+/** Text that faces the camera. */
 export class Label extends Sprite {
   private shown = "";
   private ratio = 1;
@@ -67,6 +70,7 @@ export class Label extends Sprite {
   ) {
     super(new SpriteMaterial({ transparent: true, depthTest: false, depthWrite: false, sizeAttenuation: true }));
     this.renderOrder = Layer.LABEL;
+    this.userData.sharesGeometry = true; // all sprites have one
     this.center.set(-0.04, -0.2);
     this.write(text);
   }
@@ -78,18 +82,18 @@ export class Label extends Sprite {
     [this.shown, this.color, this.halo] = [text, color, halo];
     const canvas = document.createElement("canvas");
     const pen = canvas.getContext("2d") as CanvasRenderingContext2D;
-    const font = "500 26px system-ui, sans-serif";
+    const font = `500 ${LETTERS_PX}px system-ui, sans-serif`;
     pen.font = font;
-    canvas.width = Math.ceil(pen.measureText(text).width) + 12;
-    canvas.height = 38;
+    canvas.width = Math.ceil(pen.measureText(text).width) + 2 * MARGIN_PX;
+    canvas.height = LETTERS_PX + 2 * MARGIN_PX;
     pen.font = font;
     pen.textBaseline = "middle";
     pen.lineJoin = "round";
-    pen.lineWidth = 6;
+    pen.lineWidth = MARGIN_PX * 0.8;
     pen.strokeStyle = halo;
-    pen.strokeText(text, 6, 20);
+    pen.strokeText(text, MARGIN_PX, canvas.height * 0.53);
     pen.fillStyle = color;
-    pen.fillText(text, 6, 20);
+    pen.fillText(text, MARGIN_PX, canvas.height * 0.53);
     this.ratio = canvas.width / canvas.height;
     this.material.map?.dispose();
     this.material.map = new CanvasTexture(canvas);
