@@ -14,9 +14,7 @@ from typing import Any
 _IMPORT = re.compile(r"^from \.(\S*) import \(?\s*(\w+) as \2", re.MULTILINE)
 
 
-def attach_stub(
-    package: str, init_file: str
-) -> tuple[Callable[[str], Any], Callable[[], list[str]], list[str]]:
+def attach_stub(package: str, init_file: str) -> tuple[Callable[[str], Any], Callable[[], list[str]], list[str]]:
     """Return `__getattr__`, `__dir__` and `__all__` for a package whose `__init__.pyi` lists its names.
 
     Parameters

@@ -196,9 +196,7 @@ async def start_process(
         return child
     output, errors = _open_channel(emulate_tty), _open_channel(emulate_tty)
     try:
-        await _spawn(
-            child, cmd, shell, {**options, "stdout": output[1], "stderr": errors[1], "process_group": 0}
-        )
+        await _spawn(child, cmd, shell, {**options, "stdout": output[1], "stderr": errors[1], "process_group": 0})
     except BaseException:
         os.close(output[0])
         os.close(errors[0])

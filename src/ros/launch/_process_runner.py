@@ -33,9 +33,7 @@ if TYPE_CHECKING:
     from .launch_context import LaunchContext
 
 _STOPPING_SIGNALS = {
-    getattr(signal, name)
-    for name in ("SIGINT", "SIGTERM", "SIGKILL", "SIGQUIT", "SIGHUP")
-    if hasattr(signal, name)
+    getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGKILL", "SIGQUIT", "SIGHUP") if hasattr(signal, name)
 }
 _SIGKILL = getattr(signal, "SIGKILL", signal.SIGTERM)
 
@@ -241,9 +239,7 @@ class ProcessRunner:
             self._emit_signal(signum)
 
     def _emit_signal(self, signum: signal.Signals) -> None:
-        self._context.emit_event_sync(
-            SignalProcess(signal_number=signum, process_matcher=matches_action(self._action))
-        )
+        self._context.emit_event_sync(SignalProcess(signal_number=signum, process_matcher=matches_action(self._action)))
 
     def _send_signal(self, signum: signal.Signals) -> None:
         name = self._description.final_name
@@ -293,9 +289,7 @@ class TextOutput:
 class _ProcessEventHandler(BaseEventHandler):
     """Lets a runner know of the events that concern its process."""
 
-    def __init__(
-        self, action: ExecuteLocal, react: Callable[[Event, LaunchContext], SomeEntitiesType | None]
-    ) -> None:
+    def __init__(self, action: ExecuteLocal, react: Callable[[Event, LaunchContext], SomeEntitiesType | None]) -> None:
         self.__action = action
         self.__react = react
         super().__init__(matcher=self.__concerns)

@@ -25,9 +25,6 @@ class InvalidLaunchFileError(Exception):
         if not self._likely_errors:
             return f"The launch file may have a syntax error, or its format [{self._extension}] is unknown"
         if len(self._likely_errors) == 1:
-            return (
-                f"Caught exception when trying to load file of format [{self._extension}]: "
-                f"{self._likely_errors[0]}"
-            )
+            return f"Caught exception when trying to load file of format [{self._extension}]: {self._likely_errors[0]}"
         listed = "".join(f"\n - {type(error).__name__}: {error}" for error in self._likely_errors)
         return f"Caught multiple exceptions when trying to load file of format [{self._extension}]:{listed}"

@@ -35,9 +35,7 @@ class LaunchFileError(InvalidLaunchFileError):
     def __str__(self) -> str:
         if self.file is None:
             return self.reason if self.line is None else f"line {self.line}: {self.reason}"
-        return (
-            f"{self.file}: {self.reason}" if self.line is None else f"{self.file}:{self.line}: {self.reason}"
-        )
+        return f"{self.file}: {self.reason}" if self.line is None else f"{self.file}:{self.line}: {self.reason}"
 
     @classmethod
     def from_exception(cls, error: BaseException, file: str | None = None) -> LaunchFileError:
@@ -52,9 +50,7 @@ class LaunchFileError(InvalidLaunchFileError):
         location = getattr(error, _LOCATION_ATTRIBUTE, None)
         frame = _innermost_launch_frame(error)
         known_file, line = location or frame
-        return cls(
-            known_file or file, line, _reason(error, in_python=location is None and frame[0] is not None)
-        )
+        return cls(known_file or file, line, _reason(error, in_python=location is None and frame[0] is not None))
 
 
 def add_location(error: BaseException, file: str | None, line: int | None) -> None:
@@ -95,9 +91,7 @@ def _reason(error: BaseException, *, in_python: bool) -> str:
     missing_key = isinstance(error, KeyError)
     text = " ".join(str(error.args[0] if missing_key and error.args else error).split())
     # Launch's own errors explain themselves; those of a user's Python code, and keys, need the kind of error.
-    if type(error) is KeyError or (
-        in_python and not isinstance(error, RuntimeError | InvalidLaunchFileError)
-    ):
+    if type(error) is KeyError or (in_python and not isinstance(error, RuntimeError | InvalidLaunchFileError)):
         text = f"{kind}: {text}"
     notes = "".join(f" ({note})" for note in getattr(error, "__notes__", []))
     return (text or kind) + notes

@@ -75,9 +75,7 @@ def _format_process(process: ExecuteProcess) -> str:
     cwd = "None" if description.cwd is None else format_substitutions(description.cwd)
     env = "None"
     if description.env is not None:
-        pairs = [
-            f"{format_substitutions(name)}: {format_substitutions(value)}" for name, value in description.env
-        ]
+        pairs = [f"{format_substitutions(name)}: {format_substitutions(value)}" for name, value in description.env]
         env = f"{{{', '.join(pairs)}}}"
     return f"{type(process).__name__}(cmd=[{cmd}], cwd={cwd}, env={env}, shell={process.shell})"
 
@@ -94,6 +92,4 @@ class LaunchIntrospector:
 
     def format_launch_description(self, launch_description: LaunchDescription) -> str:
         """Return the description as a tree of text."""
-        return "\n".join(
-            [f"{launch_description}", *tree_like_indent(format_entities(launch_description.entities))]
-        )
+        return "\n".join([f"{launch_description}", *tree_like_indent(format_entities(launch_description.entities))])

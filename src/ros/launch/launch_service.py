@@ -39,9 +39,7 @@ class LaunchService:
         Whether everything that happens is logged.
     """
 
-    def __init__(
-        self, *, argv: Iterable[str] | None = None, noninteractive: bool = False, debug: bool = False
-    ) -> None:
+    def __init__(self, *, argv: Iterable[str] | None = None, noninteractive: bool = False, debug: bool = False) -> None:
         if debug:
             launch_config.level = logging.DEBUG
         self.__logger = get_logger("launch")
@@ -174,9 +172,7 @@ class LaunchService:
             if hasattr(signal, "SIGHUP"):
                 manager.handle(signal.SIGHUP, lambda signum: self.__interrupt("SIGHUP"))
             if hasattr(signal, "SIGQUIT"):
-                manager.handle(
-                    signal.SIGQUIT, lambda signum: self.__interrupt("ctrl-\\ (SIGQUIT)", at_once=True)
-                )
+                manager.handle(signal.SIGQUIT, lambda signum: self.__interrupt("ctrl-\\ (SIGQUIT)", at_once=True))
             yield
 
     def __is_idle(self) -> bool:
@@ -218,9 +214,7 @@ class LaunchService:
                 entities = [] if entities is None else [entities]
             for entity in [entity for entity in entities if entity is not None]:
                 if not is_a_subclass(entity, LaunchDescriptionEntity):
-                    raise RuntimeError(
-                        f"expected a LaunchDescriptionEntity from event_handler, got '{entity}'"
-                    )
+                    raise RuntimeError(f"expected a LaunchDescriptionEntity from event_handler, got '{entity}'")
                 self.__visit(entity)
         finally:
             self.__context._pop_locals()
@@ -281,9 +275,7 @@ class LaunchService:
             harder = "SIGKILL"
         if harder is not None:
             self.__logger.warning(f"sending '{harder}' to all processes that are left")
-            self.__context.emit_event_sync(
-                SignalProcess(signal_number=harder, process_matcher=lambda _: True)
-            )
+            self.__context.emit_event_sync(SignalProcess(signal_number=harder, process_matcher=lambda _: True))
 
 
 def _loop_of_this_thread() -> asyncio.AbstractEventLoop:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import xml.etree.ElementTree as ET
+from collections.abc import Callable
+from copy import deepcopy
 from typing import Any
 
 from launch.frontend.entity import Entity as BaseEntity
@@ -50,6 +52,28 @@ class Entity(BaseEntity):
         self.__read_children.update(child.tag for child in self.__element)
         return [Entity(child, parent=self) for child in self.__element]
 
+    def without_children(self, leave_out: Callable[[Entity], bool], ignored: tuple[str, ...]) -> Entity:
+        """Hand over to a copy: nothing of this element is left to be read.
+
+        Parameters
+        ----------
+        leave_out
+            Tells of which elements inside there is none in the copy.
+        ignored
+            Attributes that the elements inside do not have in the copy.
+        """
+        copy = type(self.__element)(self.type_name, dict(self.__element.attrib))
+        if hasattr(self.__element, "location"):
+            copy.location = self.__element.location
+        for child, element in zip(self.children, self.__element, strict=True):
+            if not leave_out(child):
+                kept = deepcopy(element)
+                for name in ignored:
+                    kept.attrib.pop(name, None)
+                copy.append(kept)
+        self.__read_attributes.update(self.__element.attrib)
+        return Entity(copy, parent=self.__parent)
+
     def assert_entity_completely_parsed(self) -> None:
         """Check that every attribute and child was read.
 
@@ -63,13 +87,9 @@ class Entity(BaseEntity):
             raise ValueError(f"Unexpected attribute(s) found in `{self.type_name}`: {_listed(attributes)}")
         children = {child.tag for child in self.__element} - self.__read_children
         if children:
-            raise ValueError(
-                f"Unexpected nested entity(ies) found in `{self.type_name}`: {_listed(children)}"
-            )
+            raise ValueError(f"Unexpected nested entity(ies) found in `{self.type_name}`: {_listed(children)}")
 
-    def get_attr(
-        self, name: str, *, data_type: Any = str, optional: bool = False, can_be_str: bool = True
-    ) -> Any:
+    def get_attr(self, name: str, *, data_type: Any = str, optional: bool = False, can_be_str: bool = True) -> Any:
         """Return an attribute; see `launch.frontend.Entity.get_attr`."""
         value = self.__find(name, data_type)
         if value is None:

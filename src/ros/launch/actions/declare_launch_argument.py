@@ -52,9 +52,7 @@ class DeclareLaunchArgument(Action):
         super().__init__(**kwargs)
         self.__name = name
         self.__choices = None if choices is None else list(choices)
-        self.__default_value = (
-            None if default_value is None else normalize_to_list_of_substitutions(default_value)
-        )
+        self.__default_value = None if default_value is None else normalize_to_list_of_substitutions(default_value)
         self.__check_choices(default_value)
         self.__description = "no description given" if description is None else description
         if self.__choices is not None:
@@ -118,13 +116,11 @@ class DeclareLaunchArgument(Action):
         if self.name not in configurations:
             if self.default_value is None:
                 raise RuntimeError(
-                    f"Required launch argument '{self.name}' (description: '{self.description}') "
-                    "was not provided"
+                    f"Required launch argument '{self.name}' (description: '{self.description}') was not provided"
                 )
             configurations[self.name] = perform_substitutions(context, self.default_value)
         value = configurations[self.name]
         if self.choices is not None and value not in self.choices:
             raise RuntimeError(
-                f"Argument '{self.name}' provided value '{value}' is not valid. "
-                f"Valid options are: {self.choices}"
+                f"Argument '{self.name}' provided value '{value}' is not valid. Valid options are: {self.choices}"
             )

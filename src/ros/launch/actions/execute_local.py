@@ -95,18 +95,14 @@ class ExecuteLocal(Action):
         self.__sigkill_timeout = _as_text(sigkill_timeout)
         self.__emulate_tty = emulate_tty
         output = os.environ.get("OVERRIDE_LAUNCH_PROCESS_OUTPUT", output)
-        self.__output: Any = (
-            output if isinstance(output, Mapping) else normalize_to_list_of_substitutions(output)
-        )
+        self.__output: Any = output if isinstance(output, Mapping) else normalize_to_list_of_substitutions(output)
         self.__output_format = output_format
         self.__cached_output = cached_output
         self.__log_cmd = log_cmd
         self.__on_exit = on_exit
         self.__exit_handler = None if on_exit is None else OnProcessExit(target_action=self, on_exit=on_exit)
         self.__respawn = normalize_typed_substitution(respawn, bool)
-        self.__respawn_delay = normalize_typed_substitution(
-            0.0 if respawn_delay is None else respawn_delay, float
-        )
+        self.__respawn_delay = normalize_typed_substitution(0.0 if respawn_delay is None else respawn_delay, float)
         self.__respawn_max_retries = normalize_typed_substitution(respawn_max_retries, int)
         self.__executed = False
         self.__runner: ProcessRunner | None = None

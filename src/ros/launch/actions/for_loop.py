@@ -166,9 +166,7 @@ def _collect(function: Callable[..., Entities], sets: list[dict[str, Any]]) -> E
         try:
             signature.bind(**values)
         except TypeError as error:
-            raise ValueError(
-                f"the function of the loop does not take the values {values}: {error}"
-            ) from error
+            raise ValueError(f"the function of the loop does not take the values {values}: {error}") from error
         entities.extend(function(**values) or [])
     return entities
 

@@ -45,7 +45,5 @@ class Shutdown(EmitEvent):
         if isinstance(event, ProcessExited):
             from ..logging import get_logger
 
-            get_logger("launch").info(
-                f"process[{event.process_name}] was required: shutting down launched system"
-            )
+            get_logger("launch").info(f"process[{event.process_name}] was required: shutting down launched system")
         super().execute(context)

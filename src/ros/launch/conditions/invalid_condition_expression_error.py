@@ -23,6 +23,5 @@ class InvalidConditionExpressionError(ValueError):
     ) -> None:
         source = " + ".join(substitution.describe() for substitution in unexpanded_expression)
         super().__init__(
-            f"invalid condition expression '{expression}' from [{source}]: "
-            f"expected one of {valid_expressions}"
+            f"invalid condition expression '{expression}' from [{source}]: expected one of {valid_expressions}"
         )

@@ -25,15 +25,11 @@ class LaunchConfigurationEquals(Condition):
 
     def __init__(self, launch_configuration_name: str, expected_value: SomeSubstitutionsType | None) -> None:
         self.__name = launch_configuration_name
-        self.__expected_value = (
-            None if expected_value is None else normalize_to_list_of_substitutions(expected_value)
-        )
+        self.__expected_value = None if expected_value is None else normalize_to_list_of_substitutions(expected_value)
         super().__init__(predicate=self._predicate_func)
 
     def _predicate_func(self, context: LaunchContext) -> bool:
-        expected = (
-            None if self.__expected_value is None else perform_substitutions(context, self.__expected_value)
-        )
+        expected = None if self.__expected_value is None else perform_substitutions(context, self.__expected_value)
         return context.launch_configurations.get(self.__name) == expected
 
     def describe(self) -> str:

@@ -55,9 +55,7 @@ class Executable:
         additional_env: Mapping[SomeSubstitutionsType, SomeSubstitutionsType] | None = None,
         arguments: Iterable[SomeSubstitutionsType] | None = None,
     ) -> None:
-        self.__arguments = (
-            None if arguments is None else [normalize_to_list_of_substitutions(a) for a in arguments]
-        )
+        self.__arguments = None if arguments is None else [normalize_to_list_of_substitutions(a) for a in arguments]
         self.__cmd = [*(normalize_to_list_of_substitutions(part) for part in cmd), *(self.__arguments or [])]
         self.__prefix_is_default = prefix is None
         self.__prefix = (
@@ -70,6 +68,7 @@ class Executable:
         self.__cwd = _optional(cwd)
         self.__env = _pairs(env)
         self.__additional_env = _pairs(additional_env)
+        self.__program: str | None = None
         self.__final_name: str | None = None
         self.__final_cmd: list[str] | None = None
         self.__final_cwd: str | None = None
@@ -130,6 +129,19 @@ class Executable:
         """The whole environment; None before `prepare`."""
         return self.__final_env
 
+    def _set_program(self, command: list[str], *, name: str) -> None:
+        """Replace the program by a command that runs it, and keep the name that people know it by.
+
+        Parameters
+        ----------
+        command
+            The command, to which the arguments are appended.
+        name
+            The program's name.
+        """
+        self.__cmd[:1] = [normalize_to_list_of_substitutions(part) for part in command]
+        self.__program = os.path.basename(name)
+
     def prepare(self, context: LaunchContext, action: Action) -> None:
         """Work out all texts for an action that is about to execute this.
 
@@ -143,7 +155,7 @@ class Executable:
         cmd = [perform_substitutions(context, part) for part in self.__cmd]
         # A shell's command line may be one text.
         first = cmd[0].split()[0] if getattr(action, "shell", False) and cmd[0].strip() else cmd[0]
-        program = os.path.basename(first)
+        program = self.__program or os.path.basename(first)
         self.__final_cmd = [*self.__prefix_for(program, context), *cmd]
         name = program if self.__name is None else perform_substitutions(context, self.__name)
         self.__final_name = f"{name}-{next(_process_numbers)}"
@@ -177,6 +189,4 @@ def _pairs(
 
 
 def _perform_pairs(context: LaunchContext, pairs: list[tuple[_Text, _Text]]) -> dict[str, str]:
-    return {
-        perform_substitutions(context, name): perform_substitutions(context, value) for name, value in pairs
-    }
+    return {perform_substitutions(context, name): perform_substitutions(context, value) for name, value in pairs}

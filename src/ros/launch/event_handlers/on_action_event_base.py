@@ -42,11 +42,7 @@ class OnActionEventBase(BaseEventHandler):
         target_action_cls: type[Action],
         **kwargs: Any,
     ) -> None:
-        if not (
-            action_matcher is None
-            or callable(action_matcher)
-            or is_a_subclass(action_matcher, target_action_cls)
-        ):
+        if not (action_matcher is None or callable(action_matcher) or is_a_subclass(action_matcher, target_action_cls)):
             raise ValueError(
                 f"{type(self).__name__} is for an instance of {target_action_cls.__name__}, a function "
                 f"that picks some, or None for all, but it got {action_matcher!r}"
@@ -64,8 +60,7 @@ class OnActionEventBase(BaseEventHandler):
                 self.__entities = normalize_to_list_of_entities(on_event)
             except TypeError as error:
                 raise ValueError(
-                    f"{type(self).__name__} expects a function or entities for its event, "
-                    f"but it got {on_event!r}"
+                    f"{type(self).__name__} expects a function or entities for its event, but it got {on_event!r}"
                 ) from error
 
     def __is_meant(self, event: Event) -> bool:

@@ -31,8 +31,7 @@ class OnExecutionComplete(OnActionEventBase):
         self,
         *,
         target_action: Callable[[Action], bool] | Action | None = None,
-        on_completion: SomeEntitiesType
-        | Callable[[ExecutionComplete, LaunchContext], SomeEntitiesType | None],
+        on_completion: SomeEntitiesType | Callable[[ExecutionComplete, LaunchContext], SomeEntitiesType | None],
         **kwargs: Any,
     ) -> None:
         from ..action import Action

@@ -28,9 +28,7 @@ class Entity:
         """File and line of the element, where they are known."""
         return None, None
 
-    def get_attr(
-        self, name: str, *, data_type: Any = str, optional: bool = False, can_be_str: bool = True
-    ) -> Any:
+    def get_attr(self, name: str, *, data_type: Any = str, optional: bool = False, can_be_str: bool = True) -> Any:
         """Return an attribute.
 
         Parameters

@@ -31,15 +31,12 @@ def instantiate_action(entity: Entity, parser: Parser) -> Action:
     parse = _look_up(entity.type_name, action_parse_methods, "launch.actions")
     if parse is None:
         raise RuntimeError(
-            f"Unrecognized entity of the type: {entity.type_name}"
-            f"{_suggestion(entity.type_name, action_parse_methods)}"
+            f"Unrecognized entity of the type: {entity.type_name}{_suggestion(entity.type_name, action_parse_methods)}"
         )
     return _construct(parse(entity, parser))
 
 
-def instantiate_substitution(
-    type_name: str, args: Iterable[SomeSubstitutionsType] | None = None
-) -> Substitution:
+def instantiate_substitution(type_name: str, args: Iterable[SomeSubstitutionsType] | None = None) -> Substitution:
     """Make the substitution that `$(type_name args...)` stands for.
 
     Raises
@@ -49,9 +46,7 @@ def instantiate_substitution(
     """
     parse = _look_up(type_name, substitution_parse_methods, "launch.substitutions")
     if parse is None:
-        raise RuntimeError(
-            f"Unknown substitution: {type_name}{_suggestion(type_name, substitution_parse_methods)}"
-        )
+        raise RuntimeError(f"Unknown substitution: {type_name}{_suggestion(type_name, substitution_parse_methods)}")
     return _construct(parse([] if args is None else list(args)))
 
 
@@ -73,9 +68,7 @@ def expose_action(name: str) -> Callable[[T], T]:
     return __expose_impl(name, action_parse_methods, "action")
 
 
-def __expose_impl(
-    name: str, parse_methods_map: dict[str, Callable[..., Any]], exposed_type: str
-) -> Callable[[T], T]:
+def __expose_impl(name: str, parse_methods_map: dict[str, Callable[..., Any]], exposed_type: str) -> Callable[[T], T]:
     def expose(exposed: T) -> T:
         if isinstance(exposed, type):
             if not callable(getattr(exposed, "parse", None)):
@@ -88,8 +81,7 @@ def __expose_impl(
             parse = exposed
         else:
             raise RuntimeError(
-                f"the {exposed_type} '{name}' can not be exposed: "
-                f"{exposed!r} is neither a class nor a function"
+                f"the {exposed_type} '{name}' can not be exposed: {exposed!r} is neither a class nor a function"
             )
         known = parse_methods_map.setdefault(name, parse)
         if not _same(known, parse):

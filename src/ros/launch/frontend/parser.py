@@ -53,9 +53,7 @@ class Parser:
         """Find the parsers of all markup languages."""
         if Parser.frontend_parsers is None:
             found = _load_all("launch.frontend.parser", _BUILT_IN_PARSERS)
-            Parser.frontend_parsers = {
-                name: getattr(parser, "Parser", parser) for name, parser in found.items()
-            }
+            Parser.frontend_parsers = {name: getattr(parser, "Parser", parser) for name, parser in found.items()}
 
     # From elements to actions ---------------------------------------------------------------------
 

@@ -232,18 +232,14 @@ def _read_output_config(output_config: str | Mapping[str, str | set[str]]) -> di
             raise ValueError(f"'{output_config}' is not a valid output configuration; these are: {standard}")
         output_config = _STANDARD_OUTPUTS[output_config]
     elif not isinstance(output_config, Mapping):
-        raise ValueError(
-            f"{output_config!r} is not a valid output configuration: neither a name nor a mapping"
-        )
+        raise ValueError(f"{output_config!r} is not a valid output configuration: neither a name nor a mapping")
     read: dict[str, set[str]] = {}
     for source in _SOURCES:
         value = output_config.get(source, set())
         read[source] = {value} if isinstance(value, str) else set(value)
     unknown = (set(output_config) - set(_SOURCES)) | (set().union(*read.values()) - _DESTINATIONS)
     if unknown:
-        raise ValueError(
-            f"{output_config!r} is not a valid output configuration: {', '.join(sorted(unknown))}"
-        )
+        raise ValueError(f"{output_config!r} is not a valid output configuration: {', '.join(sorted(unknown))}")
     return read
 
 

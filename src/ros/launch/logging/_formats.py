@@ -28,9 +28,7 @@ def screen_formatter(screen_format: str, style: str | None) -> logging.Formatter
     """
     text, style = _choose(screen_format, style, _SCREEN_FORMATS)
     return (
-        _ColoredLevels(text, style=style)
-        if screen_format in _SCREEN_FORMATS
-        else logging.Formatter(text, style=style)
+        _ColoredLevels(text, style=style) if screen_format in _SCREEN_FORMATS else logging.Formatter(text, style=style)
     )
 
 

@@ -66,9 +66,7 @@ class Command(Substitution):
         line = perform_substitutions(context, self.command)
         on_stderr = perform_substitutions(context, self.on_stderr)
         if on_stderr not in _ON_STDERR:
-            raise SubstitutionFailure(
-                f"on_stderr is '{on_stderr}', but it should be one of {', '.join(_ON_STDERR)}"
-            )
+            raise SubstitutionFailure(f"on_stderr is '{on_stderr}', but it should be one of {', '.join(_ON_STDERR)}")
         try:
             arguments = shlex.split(line) if os.name != "nt" else shlex.split(line.replace("\\", "/"))
         except ValueError as error:
@@ -83,8 +81,7 @@ class Command(Substitution):
             )
         if result.stderr and on_stderr in ("fail", "warn"):
             complaint = (
-                f"executed command showed stderr output. Command: {line}\n"
-                f"Captured stderr output:\n{result.stderr}"
+                f"executed command showed stderr output. Command: {line}\nCaptured stderr output:\n{result.stderr}"
             )
             if on_stderr == "fail":
                 raise SubstitutionFailure(complaint)

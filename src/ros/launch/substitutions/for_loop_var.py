@@ -28,13 +28,9 @@ class ForEachVar(Substitution):
         The value in rounds that do not have it. Without one, that is an error.
     """
 
-    def __init__(
-        self, name: SomeSubstitutionsType, *, default_value: SomeSubstitutionsType | None = None
-    ) -> None:
+    def __init__(self, name: SomeSubstitutionsType, *, default_value: SomeSubstitutionsType | None = None) -> None:
         self.__name = normalize_to_list_of_substitutions(name)
-        self.__default_value = (
-            None if default_value is None else normalize_to_list_of_substitutions(default_value)
-        )
+        self.__default_value = None if default_value is None else normalize_to_list_of_substitutions(default_value)
 
     @classmethod
     def parse(cls, data: Sequence[SomeSubstitutionsType]) -> tuple[type[ForEachVar], dict[str, Any]]:
@@ -72,9 +68,7 @@ class ForEachVar(Substitution):
         if key in variables:
             return str(variables[key])
         if self.default_value is None:
-            raise SubstitutionFailure(
-                f"the loop has no value '{name}' in this round, and there is no default"
-            )
+            raise SubstitutionFailure(f"the loop has no value '{name}' in this round, and there is no default")
         return perform_substitutions(context, self.default_value)
 
 

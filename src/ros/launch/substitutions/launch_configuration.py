@@ -29,9 +29,7 @@ class LaunchConfiguration(Substitution):
         The value where it is not set; may be anything that has a text. Without one, that is an error.
     """
 
-    def __init__(
-        self, variable_name: SomeSubstitutionsType, *, default: Any | Iterable[Any] | None = None
-    ) -> None:
+    def __init__(self, variable_name: SomeSubstitutionsType, *, default: Any | Iterable[Any] | None = None) -> None:
         self.__variable_name = normalize_to_list_of_substitutions(variable_name)
         self.__default = None if default is None else _as_substitutions(default)
 

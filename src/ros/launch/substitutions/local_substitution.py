@@ -47,6 +47,4 @@ class LocalSubstitution(Substitution):
         try:
             return str(eval(f"context.locals.{self.expression}", {}, {"context": context}))
         except (AttributeError, KeyError, IndexError) as error:
-            raise SubstitutionFailure(
-                f"local variable '{self.expression}' does not exist: {error}"
-            ) from error
+            raise SubstitutionFailure(f"local variable '{self.expression}' does not exist: {error}") from error

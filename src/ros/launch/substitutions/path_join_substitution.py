@@ -30,9 +30,7 @@ class PathJoinSubstitution(Substitution):
         self.__substitutions = [normalize_to_list_of_substitutions(part) for part in substitutions]
 
     @classmethod
-    def parse(
-        cls, data: Sequence[SomeSubstitutionsType]
-    ) -> tuple[type[PathJoinSubstitution], dict[str, Any]]:
+    def parse(cls, data: Sequence[SomeSubstitutionsType]) -> tuple[type[PathJoinSubstitution], dict[str, Any]]:
         """Read `$(path-join part ...)`."""
         return cls, {"substitutions": data}
 

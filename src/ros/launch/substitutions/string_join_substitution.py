@@ -27,21 +27,15 @@ class StringJoinSubstitution(Substitution):
         What stands between two of them.
     """
 
-    def __init__(
-        self, substitutions: Iterable[SomeSubstitutionsType], delimiter: SomeSubstitutionsType = ""
-    ) -> None:
+    def __init__(self, substitutions: Iterable[SomeSubstitutionsType], delimiter: SomeSubstitutionsType = "") -> None:
         self.__substitutions = [normalize_to_list_of_substitutions(text) for text in substitutions]
         self.__delimiter = normalize_to_list_of_substitutions(delimiter)
 
     @classmethod
-    def parse(
-        cls, data: Sequence[SomeSubstitutionsType]
-    ) -> tuple[type[StringJoinSubstitution], dict[str, Any]]:
+    def parse(cls, data: Sequence[SomeSubstitutionsType]) -> tuple[type[StringJoinSubstitution], dict[str, Any]]:
         """Read `$(string-join delimiter text ...)`."""
         if len(data) < 2:
-            raise TypeError(
-                f"$(string-join ...) takes a delimiter and texts, but it was given {len(data)} arguments"
-            )
+            raise TypeError(f"$(string-join ...) takes a delimiter and texts, but it was given {len(data)} arguments")
         return cls, {"delimiter": data[0], "substitutions": data[1:]}
 
     @property

@@ -96,9 +96,7 @@ def is_instance_of_valid_type(value: Any, *, can_be_str: bool = False) -> bool:
     return any(_is_list(value, scalar, can_be_str) for scalar in ScalarTypesTuple)
 
 
-def is_instance_of(
-    value: Any, data_type: AllowedTypesType | None = None, *, can_be_str: bool = False
-) -> bool:
+def is_instance_of(value: Any, data_type: AllowedTypesType | None = None, *, can_be_str: bool = False) -> bool:
     """Tell whether a value is of a type (None: of any); with `can_be_str` a string may stand for a scalar."""
     if data_type is None:
         return is_instance_of_valid_type(value, can_be_str=can_be_str)
@@ -175,18 +173,14 @@ def _load_yaml(value: str, data_type: AllowedTypesType | None) -> Any:
         return yaml.safe_load(value)
     except yaml.YAMLError as error:
         problem = " ".join(str(error).split())
-        raise ValueError(
-            f"failed to convert '{value}' to {_name(data_type)}: it is not YAML: {problem}"
-        ) from error
+        raise ValueError(f"failed to convert '{value}' to {_name(data_type)}: it is not YAML: {problem}") from error
 
 
 def _name(data_type: AllowedTypesType | None) -> str:
     return getattr(data_type, "__name__", str(data_type)) if not is_typing_list(data_type) else str(data_type)
 
 
-def coerce_list(
-    value: Iterable[str], data_type: ScalarType | None = None, *, can_be_str: bool = False
-) -> list[Any]:
+def coerce_list(value: Iterable[str], data_type: ScalarType | None = None, *, can_be_str: bool = False) -> list[Any]:
     """Convert texts to a uniform list of a scalar type.
 
     Parameters
@@ -209,9 +203,7 @@ def coerce_list(
     raise ValueError(f"the items of {list(value)} are not of one type")
 
 
-def get_typed_value(
-    value: str | list[str], data_type: AllowedTypesType | None, *, can_be_str: bool = False
-) -> Any:
+def get_typed_value(value: str | list[str], data_type: AllowedTypesType | None, *, can_be_str: bool = False) -> Any:
     """Convert text, or a list of texts, to a type.
 
     Raises
@@ -249,9 +241,7 @@ def is_normalized_substitution(x: Any) -> bool:
     return isinstance(x, list) and len(x) > 0 and all(isinstance(item, Substitution) for item in x)
 
 
-def normalize_typed_substitution(
-    value: SomeValueType, data_type: AllowedTypesType | None
-) -> NormalizedValueType:
+def normalize_typed_substitution(value: SomeValueType, data_type: AllowedTypesType | None) -> NormalizedValueType:
     """Bring a value that may hold substitutions into the form that `perform_typed_substitution` takes.
 
     Scalars stay what they are, a text becomes a list of substitutions, and a list becomes a list of these

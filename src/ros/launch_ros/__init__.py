@@ -1,0 +1,5 @@
+"""Launch ROS nodes: their names, parameters, remappings and life cycles."""
+
+from launch._lazy import attach_stub
+
+__getattr__, __dir__, __all__ = attach_stub(__name__, __file__)

@@ -1,0 +1,14 @@
+from .composable_node_container import ComposableNodeContainer as ComposableNodeContainer
+from .lifecycle_node import LifecycleNode as LifecycleNode
+from .lifecycle_transition import LifecycleTransition as LifecycleTransition
+from .load_composable_nodes import LoadComposableNodes as LoadComposableNodes
+from .node import Node as Node
+from .push_ros_namespace import PushROSNamespace as PushROSNamespace
+from .push_ros_namespace import PushRosNamespace as PushRosNamespace
+from .ros_timer import ROSTimer as ROSTimer
+from .ros_timer import RosTimer as RosTimer
+from .set_parameter import SetParameter as SetParameter
+from .set_parameters_from_file import SetParametersFromFile as SetParametersFromFile
+from .set_remap import SetRemap as SetRemap
+from .set_ros_log_dir import SetROSLogDir as SetROSLogDir
+from .set_use_sim_time import SetUseSimTime as SetUseSimTime

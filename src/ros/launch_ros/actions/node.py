@@ -1,0 +1,475 @@
+"""The action that runs a ROS node."""
+
+from __future__ import annotations
+
+import atexit
+import contextlib
+import os
+import pathlib
+import tempfile
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
+
+from launch.actions import ExecuteProcess
+from launch.frontend import Entity
+from launch.frontend.expose import expose_action
+from launch.frontend.type_utils import get_data_type_from_identifier
+from launch.launch_description_entity import LaunchDescriptionEntity
+from launch.some_substitutions_type import SomeSubstitutionsType
+from launch.substitution import Substitution
+from launch.substitutions import SubstitutionFailure, TextSubstitution
+from launch.utilities import normalize_to_list_of_substitutions, perform_substitutions
+
+from ..parameter_descriptions import ParameterFile, ParameterValue
+from ..parameters_type import SomeParameters
+from ..remap_rule_type import SomeRemapRules
+from ..utilities.evaluate_parameters import evaluate_parameters
+from ..utilities.namespace_utils import (
+    check_namespace,
+    check_node_name,
+    make_namespace_absolute,
+    prefix_namespace,
+)
+from ..utilities.normalize_parameters import normalize_parameters
+from ..utilities.normalize_remap_rule import normalize_remap_rules
+from ..utilities.track_node_names import add_node_name, get_node_name_count
+
+if TYPE_CHECKING:
+    import logging
+
+    from launch import LaunchContext
+    from launch.frontend import Parser
+
+
+# Operating systems limit the length of an argument; a robot's description may well be longer.
+_LONGEST_RULE = 8192
+
+
+class NodeActionExtension:
+    """The base of extensions that take part in how nodes are run; found by entry points of `launch_ros.node_action`."""
+
+    NAME: str | None = None
+    EXTENSION_POINT_VERSION = "0.1"
+
+    def __init__(self) -> None:
+        from ..utilities.plugin_support import satisfies_version
+
+        satisfies_version(self.EXTENSION_POINT_VERSION, "^0.1")
+
+    def prepare_for_execute(
+        self, context: LaunchContext, ros_specific_arguments: dict[str, Any], node_action: Node
+    ) -> tuple[list[SomeSubstitutionsType], dict[str, Any]]:
+        """Take part in what happens before a node is run.
+
+        Parameters
+        ----------
+        context
+            The launch context.
+        ros_specific_arguments
+            What other extensions returned.
+        node_action
+            The node's action.
+
+        Returns
+        -------
+            Arguments to add to the command line, and the arguments for the next extensions.
+        """
+        return [], ros_specific_arguments
+
+
+@expose_action("node")
+class Node(ExecuteProcess):
+    """Runs a ROS node.
+
+    Parameters
+    ----------
+    executable
+        The node's executable; a path where there is no package.
+    package
+        The package that has it.
+    name
+        The node's name, its own if not said.
+    namespace
+        The node's namespace, inside the one of the present scope unless it begins with a slash.
+    exec_name
+        The process's name without its number; the executable's if not said.
+    parameters
+        Files, dictionaries and descriptions of parameters; for each name the last counts. A text becomes what it
+        looks like by the rules of YAML, see `launch_ros.parameter_descriptions.ParameterValue` for other wishes.
+    remappings
+        Pairs of names.
+    ros_arguments
+        Arguments for ROS.
+    arguments
+        Arguments for the node.
+    **kwargs
+        As for `launch.actions.ExecuteProcess`.
+    """
+
+    UNSPECIFIED_NODE_NAME = "<node_name_unspecified>"
+    UNSPECIFIED_NODE_NAMESPACE = "<node_namespace_unspecified>"
+
+    def __init__(
+        self,
+        *,
+        executable: SomeSubstitutionsType,
+        package: SomeSubstitutionsType | None = None,
+        name: SomeSubstitutionsType | None = None,
+        namespace: SomeSubstitutionsType | None = None,
+        exec_name: SomeSubstitutionsType | None = None,
+        parameters: SomeParameters | None = None,
+        remappings: SomeRemapRules | None = None,
+        ros_arguments: Iterable[SomeSubstitutionsType] | None = None,
+        arguments: Iterable[SomeSubstitutionsType] | None = None,
+        **kwargs: Any,
+    ) -> None:
+        self.__package = None if package is None else normalize_to_list_of_substitutions(package)
+        self.__node_executable = normalize_to_list_of_substitutions(executable)
+        self.__node_name = None if name is None else normalize_to_list_of_substitutions(name)
+        self.__node_namespace = None if namespace is None else normalize_to_list_of_substitutions(namespace)
+        self.__parameters = [] if parameters is None else list(normalize_parameters(parameters))
+        self.__remappings = [] if remappings is None else list(normalize_remap_rules(remappings))
+        self.__ros_arguments = [] if ros_arguments is None else list(ros_arguments)
+
+        self.__expanded_node_name = self.UNSPECIFIED_NODE_NAME
+        self.__expanded_node_namespace = self.UNSPECIFIED_NODE_NAMESPACE
+        self.__expanded_parameter_arguments: list[tuple[Any, bool]] | None = None
+        self.__expanded_remappings: list[tuple[str, str]] | None = None
+        self.__final_node_name: str | None = None
+        self.__substitutions_performed = False
+
+        cmd: list[SomeSubstitutionsType] = [self.__node_executable, *(arguments or [])]
+        if self.__ros_arguments:
+            cmd += ["--ros-args", *self.__ros_arguments, "--"]
+        super().__init__(cmd=cmd, name=exec_name, **kwargs)
+
+    # Launch files in markup -------------------------------------------------------------------------
+
+    @classmethod
+    def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Node], dict[str, Any]]:
+        """Read an element `node`."""
+        # The command line is the node's own business, and `name` is that of the node, not of the process.
+        _, kwargs = super().parse(entity, parser, ["cmd", "name"])
+        kwargs["package"] = parser.parse_substitution(entity.get_attr("pkg"))
+        kwargs["executable"] = parser.parse_substitution(entity.get_attr("exec"))
+        for attribute, argument in (
+            ("name", "name"),
+            ("exec_name", "exec_name"),
+            ("ns", "namespace"),
+            ("namespace", "namespace"),
+        ):
+            text = entity.get_attr(attribute, optional=True)
+            if text is not None:
+                kwargs[argument] = parser.parse_substitution(text)
+        for attribute, argument in (("args", "arguments"), ("ros_args", "ros_arguments")):
+            text = entity.get_attr(attribute, optional=True)
+            if text is not None:
+                kwargs[argument] = cls._parse_cmdline(text, parser)
+        remappings = entity.get_attr("remap", data_type=list[Entity], optional=True)
+        if remappings is not None:
+            kwargs["remappings"] = [_parse_remapping(remapping, parser) for remapping in remappings]
+        parameters = entity.get_attr("param", data_type=list[Entity], optional=True)
+        if parameters is not None:
+            kwargs["parameters"] = cls.parse_nested_parameters(parameters, parser)
+        return cls, kwargs
+
+    @staticmethod
+    def parse_nested_parameters(params: Iterable[Entity], parser: Parser) -> list[Any]:
+        """Read elements `param`: files, and names with values or with elements of the same kind.
+
+        Raises
+        ------
+        RuntimeError
+            If one is neither.
+        """
+        return [_parse_parameter(param, parser) for param in params]
+
+    # What is known of the node ----------------------------------------------------------------------
+
+    @property
+    def node_package(self) -> list[Substitution] | None:
+        """The package that has the executable."""
+        return self.__package
+
+    @property
+    def node_executable(self) -> list[Substitution]:
+        """The executable."""
+        return self.__node_executable
+
+    @property
+    def node_name(self) -> str:
+        """The node's full name, with marks for what its program itself decides.
+
+        Raises
+        ------
+        RuntimeError
+            If it is not known yet.
+        """
+        if self.__final_node_name is None:
+            raise RuntimeError("cannot access 'node_name' before executing action")
+        return self.__final_node_name
+
+    def is_node_name_fully_specified(self) -> bool:
+        """Tell whether nothing of the full name is left to the program."""
+        unspecified = (self.UNSPECIFIED_NODE_NAME, self.UNSPECIFIED_NODE_NAMESPACE)
+        return all(mark not in self.node_name for mark in unspecified)
+
+    @property
+    def expanded_node_namespace(self) -> str:
+        """The node's namespace, with a mark if its program itself decides."""
+        return self.__expanded_node_namespace
+
+    @property
+    def expanded_remapping_rules(self) -> list[tuple[str, str]] | None:
+        """The node's remappings, with those of the present scope; None before the action is executed."""
+        return self.__expanded_remappings
+
+    # Running it -------------------------------------------------------------------------------------
+
+    def execute(self, context: LaunchContext) -> list[LaunchDescriptionEntity] | None:
+        """Start the node."""
+        self._perform_substitutions(context)
+        self.__find_executable(context)
+        self.__ask_extensions(context)
+        entities = super().execute(context)
+        if self.is_node_name_fully_specified():
+            add_node_name(context, self.node_name)
+            count = get_node_name_count(context, self.node_name)
+            if count > 1:
+                _logger().warning(
+                    f"there are now at least {count} nodes with the name {self.node_name} created within this "
+                    "launch context"
+                )
+        return entities
+
+    def _perform_substitutions(self, context: LaunchContext) -> None:
+        """Work out the node's names, parameters and remappings, and append them to the command line."""
+        if self.__substitutions_performed:
+            return
+        self.__substitutions_performed = True
+        self.__expand_names(context)
+        arguments = ["--ros-args"]
+        if self.__node_name is not None:
+            arguments += ["-r", f"__node:={self.__expanded_node_name}"]
+        if self.__expanded_node_namespace != self.UNSPECIFIED_NODE_NAMESPACE:
+            arguments += ["-r", f"__ns:={self.__expanded_node_namespace}"]
+        self.__expanded_parameter_arguments = self.__expand_parameters(context)
+        for argument, is_file in self.__expanded_parameter_arguments:
+            arguments += ["--params-file" if is_file else "-p", argument]
+        self.__expanded_remappings = self.__expand_remappings(context)
+        for source, destination in self.__expanded_remappings:
+            arguments += ["-r", f"{source}:={destination}"]
+        self.process_description.cmd.extend([TextSubstitution(text=argument)] for argument in arguments)
+
+    def __expand_names(self, context: LaunchContext) -> None:
+        if self.__node_name is not None:
+            self.__expanded_node_name = perform_substitutions(context, self.__node_name)
+            check_node_name(self.__expanded_node_name)
+        own = None if self.__node_namespace is None else perform_substitutions(context, self.__node_namespace)
+        namespace = prefix_namespace(context.launch_configurations.get("ros_namespace"), own)
+        if namespace:
+            namespace = make_namespace_absolute(namespace)
+            check_namespace(namespace)
+            self.__expanded_node_namespace = namespace
+        elif own is not None:
+            # An empty namespace is the root.
+            self.__expanded_node_namespace = "/"
+        if self.__expanded_node_namespace == self.UNSPECIFIED_NODE_NAMESPACE:
+            self.__final_node_name = f"{self.__expanded_node_namespace}/{self.__expanded_node_name}"
+        else:
+            self.__final_node_name = prefix_namespace(self.__expanded_node_namespace, self.__expanded_node_name)
+
+    def __expand_parameters(self, context: LaunchContext) -> list[tuple[Any, bool]]:
+        """Return rules and files; each with whether it is a file."""
+        arguments: list[tuple[Any, bool]] = []
+        for entry in context.launch_configurations.get("global_params", []):
+            if isinstance(entry, tuple):
+                arguments.append(self.__rule_or_file(*entry))
+            else:
+                arguments += self.__existing_file(os.path.abspath(entry))
+        for parameters in evaluate_parameters(context, self.__parameters):
+            if isinstance(parameters, dict):
+                arguments.append((self._create_params_file_from_dict(parameters), True))
+            elif isinstance(parameters, pathlib.Path):
+                arguments += self.__existing_file(str(parameters))
+            else:
+                arguments.append(self.__rule_or_file(*parameters.evaluate(context)))
+        return arguments
+
+    def __rule_or_file(self, name: str, value: Any) -> tuple[str, bool]:
+        rule = f"{name}:={_dump_yaml(value, quoted=False)}"
+        if len(rule) > _LONGEST_RULE:
+            return self._create_params_file_from_dict({name: value}), True
+        return rule, False
+
+    def __existing_file(self, path: str) -> list[tuple[str, bool]]:
+        if os.path.isfile(path):
+            return [(path, True)]
+        _logger().warning(f"Parameter file path is not a file: {path}")
+        return []
+
+    def _create_params_file_from_dict(self, params: dict[str, Any]) -> str:
+        """Write parameters to a temporary file, which is there as long as this program runs."""
+        node = self.node_name if self.is_node_name_fully_specified() else "/**"
+        with tempfile.NamedTemporaryFile("w", prefix="launch_params_", delete=False, encoding="utf-8") as file:
+            file.write(_dump_yaml({node: {"ros__parameters": params}}, quoted=True))
+        atexit.register(_remove, file.name)
+        return file.name
+
+    def __expand_remappings(self, context: LaunchContext) -> list[tuple[str, str]]:
+        own = [
+            (perform_substitutions(context, source), perform_substitutions(context, destination))
+            for source, destination in self.__remappings
+        ]
+        return [*context.launch_configurations.get("ros_remaps", []), *own]
+
+    def __find_executable(self, context: LaunchContext) -> None:
+        if self.__package is None:
+            return
+        from daidalos.nodes.executables import find_executable
+
+        package = perform_substitutions(context, self.__package)
+        executable = perform_substitutions(context, self.__node_executable)
+        try:
+            command = find_executable(package, executable)
+        except LookupError as error:
+            raise SubstitutionFailure(error.args[0] if error.args else str(error)) from error
+        self.process_description._set_program(command, name=executable)
+
+    def __ask_extensions(self, context: LaunchContext) -> None:
+        ros_specific_arguments: dict[str, Any] = {}
+        for extension in get_extensions(_logger()).values():
+            added, ros_specific_arguments = extension.prepare_for_execute(context, ros_specific_arguments, self)
+            self.process_description.cmd.extend(normalize_to_list_of_substitutions(text) for text in added)
+
+
+def instantiate_extension(
+    group_name: str,
+    extension_name: str,
+    extension_class: type[NodeActionExtension],
+    extensions: dict[str, NodeActionExtension],
+    logger: logging.Logger,
+    *,
+    unique_instance: bool = False,
+) -> NodeActionExtension | None:
+    """Return an instance of an extension, None if it can not be made.
+
+    Parameters
+    ----------
+    group_name, extension_name
+        The extension, for messages.
+    extension_class
+        Its class.
+    extensions
+        The instances made so far.
+    logger
+        Where problems go.
+    unique_instance
+        Whether to make another instance if there is one.
+    """
+    if not unique_instance and extension_name in extensions:
+        return extensions[extension_name]
+    try:
+        extension = extension_class()
+    # Somebody else's package must not keep nodes from being run.
+    except Exception as error:
+        logger.error(f"Exception instantiating extension '{group_name}.{extension_name}': {error}")
+        return None
+    if not unique_instance:
+        extensions[extension_name] = extension
+    return extension
+
+
+def get_extensions(logger: logging.Logger) -> dict[str, NodeActionExtension]:
+    """Return the extensions that take part in how nodes are run, by their names."""
+    group = "launch_ros.node_action"
+    if _extension_classes is None:
+        _load_extension_classes(group, logger)
+    extensions: dict[str, NodeActionExtension] = {}
+    for name, extension_class in (_extension_classes or {}).items():
+        extension = instantiate_extension(group, name, extension_class, extensions, logger)
+        if extension is not None:
+            extension.NAME = name
+    return extensions
+
+
+_extension_classes: dict[str, type[NodeActionExtension]] | None = None
+
+
+def _load_extension_classes(group: str, logger: logging.Logger) -> None:
+    from importlib.metadata import entry_points
+
+    global _extension_classes
+    _extension_classes = {}
+    for entry_point in sorted(entry_points(group=group), key=lambda found: found.name):
+        try:
+            _extension_classes[entry_point.name] = entry_point.load()
+        # Somebody else's package must not keep nodes from being run.
+        except Exception as error:
+            logger.error(f"Exception loading extension '{group}.{entry_point.name}': {error}")
+
+
+def _logger() -> logging.Logger:
+    from launch.logging import get_logger
+
+    return get_logger("launch_ros.actions.node")
+
+
+def _parse_remapping(entity: Entity, parser: Parser) -> tuple[list[Substitution], list[Substitution]]:
+    rule = parser.parse_substitution(entity.get_attr("from")), parser.parse_substitution(entity.get_attr("to"))
+    entity.assert_entity_completely_parsed()
+    return rule
+
+
+def _parse_parameter(param: Entity, parser: Parser) -> Any:
+    source = param.get_attr("from", optional=True)
+    name = param.get_attr("name", optional=True)
+    if (source is None) == (name is None):
+        raise RuntimeError("a parameter must have either 'name' or 'from', and not both")
+    if source is not None:
+        allow_substs = param.get_attr("allow_substs", data_type=bool, optional=True, can_be_str=True)
+        kwargs = {} if allow_substs is None else {"allow_substs": parser.parse_if_substitutions(allow_substs)}
+        param.assert_entity_completely_parsed()
+        return ParameterFile(parser.parse_substitution(source), **kwargs)
+    parsed_name = tuple(parser.parse_substitution(name))
+    nested = param.get_attr("param", data_type=list[Entity], optional=True)
+    identifier = param.get_attr("type", optional=True)
+    data_type = None if identifier is None else get_data_type_from_identifier(identifier)
+    value = param.get_attr("value", data_type=data_type, optional=True, can_be_str=True)
+    if (nested is None) == (value is None):
+        raise RuntimeError(f"the parameter '{name}' must have either 'value' or elements 'param', and not both")
+    param.assert_entity_completely_parsed()
+    if nested is None:
+        parsed = parser.parse_if_substitutions(value)
+        return {parsed_name: parsed if data_type is None else ParameterValue(parsed, value_type=data_type)}
+    inner: dict[Any, Any] = {}
+    for entry in nested:
+        entry_value = _parse_parameter(entry, parser)
+        if not isinstance(entry_value, dict):
+            raise RuntimeError(f"inside the parameter '{name}' there can be no files")
+        inner.update(entry_value)
+    return {parsed_name: inner}
+
+
+def _dump_yaml(value: Any, *, quoted: bool) -> str:
+    """Return a value as YAML; with `quoted` in a form in which no other reader takes a text for something else."""
+    # Only nodes with parameters pay for YAML.
+    import yaml
+
+    class Dumper(yaml.SafeDumper):
+        def ignore_aliases(self, data: Any) -> bool:
+            return True
+
+    if quoted:
+        Dumper.add_representer(
+            str, lambda dumper, text: dumper.represent_scalar("tag:yaml.org,2002:str", text, style="'")
+        )
+    Dumper.add_representer(tuple, lambda dumper, items: dumper.represent_list(items))
+    style = None if quoted else True
+    text = yaml.dump(value, Dumper=Dumper, width=float("inf"), default_flow_style=style, sort_keys=False)
+    return text if quoted else text.removesuffix("...\n").rstrip("\n")
+
+
+def _remove(path: str) -> None:
+    with contextlib.suppress(OSError):
+        os.unlink(path)

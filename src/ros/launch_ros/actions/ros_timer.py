@@ -1,0 +1,63 @@
+"""The action that waits by ROS's clock and then executes others."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import TYPE_CHECKING, Any
+
+from launch.actions import TimerAction
+from launch.events import TimerEvent
+from launch.frontend.expose import expose_action
+
+from ..ros_adapters import get_ros_node
+
+if TYPE_CHECKING:
+    from launch import LaunchContext
+    from launch.frontend import Entity, Parser
+
+
+@expose_action("ros_timer")
+class ROSTimer(TimerAction):
+    """Executes actions after a time that ROS's clock measures, which may be simulated.
+
+    Parameters
+    ----------
+    period
+        The time in seconds.
+    actions
+        The actions.
+    **kwargs
+        As for `launch.actions.TimerAction`.
+    """
+
+    def __init__(self, *, period: Any, actions: Any, **kwargs: Any) -> None:
+        super().__init__(period=period, actions=actions, **kwargs)
+
+    @classmethod
+    def parse(cls, entity: Entity, parser: Parser) -> tuple[type[ROSTimer], dict[str, Any]]:
+        """Read an element `ros_timer`."""
+        _, kwargs = super().parse(entity, parser)
+        return cls, kwargs
+
+    def describe(self) -> str:
+        """Return the action in words."""
+        return f"ROSTimer(period={self.period}, actions=<actions>)"
+
+    async def _wait_to_fire_event(self, context: LaunchContext, period: float) -> None:
+        loop = context.asyncio_loop
+        elapsed = loop.create_future()
+
+        def on_timer() -> None:
+            timer.cancel()
+            loop.call_soon_threadsafe(lambda: elapsed.done() or elapsed.set_result(None))
+
+        node = get_ros_node(context)
+        timer = node.create_timer(period, on_timer)
+        await asyncio.wait([self._canceled_future, elapsed], return_when=asyncio.FIRST_COMPLETED)
+        if not self._canceled_future.done():
+            await context.emit_event(TimerEvent(timer_action=self))
+        timer.cancel()
+        self._completed_future.set_result(None)
+
+
+RosTimer = ROSTimer

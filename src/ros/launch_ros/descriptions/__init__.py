@@ -1,0 +1,5 @@
+"""What can be loaded into a process, and the descriptions of parameters."""
+
+from launch._lazy import attach_stub
+
+__getattr__, __dir__, __all__ = attach_stub(__name__, __file__)

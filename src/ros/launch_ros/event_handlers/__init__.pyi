@@ -1,0 +1,1 @@
+from .on_state_transition import OnStateTransition as OnStateTransition

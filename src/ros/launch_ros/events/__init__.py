@@ -1,0 +1,5 @@
+"""What can happen to nodes, and what can be asked of them."""
+
+from launch._lazy import attach_stub
+
+__getattr__, __dir__, __all__ = attach_stub(__name__, __file__)

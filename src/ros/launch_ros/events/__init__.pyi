@@ -1,0 +1,2 @@
+from . import lifecycle as lifecycle
+from . import matchers as matchers

@@ -1,0 +1,5 @@
+"""The life cycle of nodes."""
+
+from launch._lazy import attach_stub
+
+__getattr__, __dir__, __all__ = attach_stub(__name__, __file__)

@@ -1,0 +1,176 @@
+"""Descriptions of parameters: a value with a type, a name with such a value, and a file."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import pathlib
+import tempfile
+from typing import TYPE_CHECKING, Any
+
+from launch.frontend.parse_substitution import parse_substitution
+from launch.some_substitutions_type import SomeSubstitutionsType
+from launch.substitution import Substitution
+from launch.substitutions import SubstitutionFailure
+from launch.utilities import normalize_to_list_of_substitutions, perform_substitutions
+from launch.utilities.type_utils import (
+    AllowedTypesType,
+    NormalizedValueType,
+    SomeValueType,
+    normalize_typed_substitution,
+    perform_typed_substitution,
+)
+from launch.utilities.typing_file_path import FilePath
+
+if TYPE_CHECKING:
+    from launch import LaunchContext
+
+    from .parameters_type import EvaluatedParameterValue
+
+
+class ParameterValue:
+    """A parameter's value with its type.
+
+    Parameters
+    ----------
+    value
+        The value, or a text.
+    value_type
+        What the text is made into: `int`, `float`, `bool`, `str`, a list of these, or None for whatever it looks
+        like by the rules of YAML.
+    """
+
+    def __init__(self, value: SomeValueType, *, value_type: AllowedTypesType | None = None) -> None:
+        self.__value = normalize_typed_substitution(value, value_type)
+        self.__value_type = value_type
+        self.__evaluated: EvaluatedParameterValue | None = None
+
+    @property
+    def value(self) -> Any:
+        """The value, or the substitutions for it as long as it was not worked out."""
+        return self.__value if self.__evaluated is None else self.__evaluated
+
+    @property
+    def value_type(self) -> AllowedTypesType | None:
+        """What a text is made into."""
+        return self.__value_type
+
+    def evaluate(self, context: LaunchContext) -> EvaluatedParameterValue:
+        """Work out the value."""
+        self.__evaluated = perform_typed_substitution(context, self.__value, self.value_type)
+        return self.__evaluated
+
+
+class Parameter:
+    """A parameter.
+
+    Parameters
+    ----------
+    name
+        Its name.
+    value, value_type
+        Its value, as for `ParameterValue`.
+    """
+
+    def __init__(
+        self, name: SomeSubstitutionsType, value: SomeValueType, *, value_type: AllowedTypesType | None = None
+    ) -> None:
+        self.__name = normalize_to_list_of_substitutions(name)
+        self.__value = ParameterValue(value, value_type=value_type)
+        self.__evaluated_name: str | None = None
+
+    @property
+    def name(self) -> list[Substitution] | str:
+        """The name, or the substitutions for it as long as it was not worked out."""
+        return self.__name if self.__evaluated_name is None else self.__evaluated_name
+
+    @property
+    def value(self) -> NormalizedValueType:
+        """The value, or the substitutions for it as long as it was not worked out."""
+        return self.__value.value
+
+    @property
+    def value_type(self) -> AllowedTypesType | None:
+        """What a text is made into."""
+        return self.__value.value_type
+
+    def evaluate(self, context: LaunchContext) -> tuple[str, EvaluatedParameterValue]:
+        """Work out name and value."""
+        self.__evaluated_name = perform_substitutions(context, self.__name)
+        return self.__evaluated_name, self.__value.evaluate(context)
+
+
+class ParameterFile:
+    """A file of parameters.
+
+    Parameters
+    ----------
+    param_file
+        The file.
+    allow_substs
+        Whether `$(...)` in it is replaced as in a launch file.
+    """
+
+    def __init__(
+        self, param_file: FilePath | SomeSubstitutionsType, *, allow_substs: bool | SomeSubstitutionsType = False
+    ) -> None:
+        path: Any = param_file
+        if isinstance(path, bytes | os.PathLike):
+            path = os.fsdecode(path)
+        self.__param_file = normalize_to_list_of_substitutions(path)
+        self.__allow_substs = normalize_typed_substitution(allow_substs, bool)
+        self.__evaluated_allow_substs: bool | None = None
+        self.__evaluated_param_file: pathlib.Path | None = None
+        self.__created_file: pathlib.Path | None = None
+
+    @property
+    def param_file(self) -> list[Substitution] | pathlib.Path:
+        """The file, or the substitutions for it as long as it was not worked out."""
+        return self.__param_file if self.__evaluated_param_file is None else self.__evaluated_param_file
+
+    @property
+    def allow_substs(self) -> Any:
+        """Whether `$(...)` in the file is replaced."""
+        return self.__allow_substs if self.__evaluated_allow_substs is None else self.__evaluated_allow_substs
+
+    def __str__(self) -> str:
+        return f"launch_ros.description.ParameterFile(param_file={self.param_file}, allow_substs={self.allow_substs})"
+
+    def evaluate(self, context: LaunchContext) -> pathlib.Path:
+        """Return the file, or a temporary one in which `$(...)` has been replaced."""
+        path = pathlib.Path(perform_substitutions(context, self.__param_file))
+        self.__evaluated_allow_substs = bool(perform_typed_substitution(context, self.__allow_substs, bool))
+        if self.__evaluated_allow_substs:
+            self.cleanup()
+            path = self.__created_file = self.__replace_substitutions(context, path)
+        self.__evaluated_param_file = path
+        return path
+
+    def __replace_substitutions(self, context: LaunchContext, path: pathlib.Path) -> pathlib.Path:
+        # Only such files pay for YAML.
+        import yaml
+
+        text = perform_substitutions(context, parse_substitution(path.read_text(encoding="utf-8")))
+        try:
+            yaml.safe_load(text)
+        except yaml.YAMLError as error:
+            raise SubstitutionFailure(
+                f"the parameter file {path} is not YAML after its substitutions were performed: {error}"
+            ) from error
+        with tempfile.NamedTemporaryFile(
+            "w", prefix="launch_params_", suffix=".yaml", delete=False, encoding="utf-8"
+        ) as file:
+            file.write(text)
+        return pathlib.Path(file.name)
+
+    def cleanup(self) -> None:
+        """Delete the temporary file."""
+        if self.__created_file is not None:
+            with contextlib.suppress(OSError):
+                self.__created_file.unlink()
+            self.__created_file = None
+            self.__evaluated_param_file = None
+
+    def __del__(self) -> None:
+        if getattr(self, "_ParameterFile__created_file", None) is not None:
+            self.cleanup()

@@ -1,5 +1,0 @@
-"""ROS1 placeholder."""
-
-
-def is_ros1(root):
-    return False

@@ -1,0 +1,207 @@
+"""What became of the packages, nodes, parameters and launch files of ROS 1: the table to extend.
+
+A node that is not listed keeps its package and name.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+
+
+@dataclass(frozen=True)
+class NodeMapping:
+    """What a node of ROS 1 is today.
+
+    Parameters
+    ----------
+    package, executable
+        Where it is found.
+    parameters
+        New names of parameters; None for one that is of no use any more. Others keep their names.
+    values
+        New values of parameters, by their new names.
+    arguments
+        Takes the old command line; returns the new one and parameters taken from the old one.
+    note
+        What else to know.
+    """
+
+    package: str
+    executable: str
+    parameters: Mapping[str, str | None] = field(default_factory=dict)
+    values: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
+    arguments: Callable[[str], tuple[str, dict[str, str]]] | None = None
+    note: str = ""
+
+
+@dataclass(frozen=True)
+class IncludeMapping:
+    """What a launch file of ROS 1 is today.
+
+    Parameters
+    ----------
+    package, path
+        Where it is found, the path below the package's share folder.
+    arguments
+        New names of arguments; None for one that is of no use any more. Others keep their names.
+    """
+
+    package: str
+    path: str
+    arguments: Mapping[str, str | None] = field(default_factory=dict)
+
+
+def _map_file(arguments: str) -> tuple[str, dict[str, str]]:
+    """Take `map_server`'s one argument for the parameter that it is today."""
+    words = _words(arguments)
+    return "", {"yaml_filename": words[0]} if words else {}
+
+
+def _without_period(arguments: str) -> tuple[str, dict[str, str]]:
+    """Drop the last of `static_transform_publisher`'s arguments: transforms that do not change are sent once."""
+    words = _words(arguments)
+    return " ".join(words[:-1] if len(words) in (9, 10) else words), {}
+
+
+def _spawn(arguments: str) -> tuple[str, dict[str, str]]:
+    """Name the model and its source as they are named today; the pose keeps its names."""
+    words = _words(arguments)
+    new: list[str] = []
+    while words:
+        word = words.pop(0)
+        if word in ("-urdf", "-sdf", "-gazebo", "-unpause"):
+            continue
+        if word == "-param" and words:
+            new += ["-topic", words.pop(0)]
+        else:
+            new.append({"-model": "-name"}.get(word, word))
+    return " ".join(new), {}
+
+
+def _words(arguments: str) -> list[str]:
+    """Split a command line; quotes and substitutions hold words together."""
+    return re.findall(r"""(?:\$\([^)]*\)|"[^"]*"|'[^']*'|\S)+""", arguments)
+
+
+_AMCL = {
+    "use_map_topic": None,
+    "first_map_only": "first_map_only",
+    "gui_publish_rate": None,
+    "kld_err": "pf_err",
+    "kld_z": "pf_z",
+    "laser_max_beams": "max_beams",
+    "laser_z_hit": "z_hit",
+    "laser_z_short": "z_short",
+    "laser_z_max": "z_max",
+    "laser_z_rand": "z_rand",
+    "laser_sigma_hit": "sigma_hit",
+    "laser_lambda_short": "lambda_short",
+    "laser_min_range": "laser_min_range",
+    "laser_max_range": "laser_max_range",
+    "laser_model_type": "laser_model_type",
+    "odom_model_type": "robot_model_type",
+    "odom_alpha1": "alpha1",
+    "odom_alpha2": "alpha2",
+    "odom_alpha3": "alpha3",
+    "odom_alpha4": "alpha4",
+    "odom_alpha5": "alpha5",
+}
+
+_AMCL_VALUES = {
+    "robot_model_type": {
+        "diff": "nav2_amcl::DifferentialMotionModel",
+        "diff-corrected": "nav2_amcl::DifferentialMotionModel",
+        "omni": "nav2_amcl::OmniMotionModel",
+        "omni-corrected": "nav2_amcl::OmniMotionModel",
+    }
+}
+
+_HECTOR_MAPPING = {
+    "map_resolution": "resolution",
+    "map_pub_period": "map_update_interval",
+    "map_update_distance_thresh": "minimum_travel_distance",
+    "map_update_angle_thresh": "minimum_travel_heading",
+    "map_frame": "map_frame",
+    "base_frame": "base_frame",
+    "odom_frame": "odom_frame",
+    "scan_topic": "scan_topic",
+    "pub_map_odom_transform": None,
+    "use_tf_scan_transformation": None,
+    "use_tf_pose_start_estimate": None,
+    "map_size": None,
+    "map_start_x": None,
+    "map_start_y": None,
+    "map_multi_res_levels": None,
+    "update_factor_free": None,
+    "update_factor_occupied": None,
+    "advertise_map_service": None,
+}
+
+_GMAPPING = {
+    "delta": "resolution",
+    "map_update_interval": "map_update_interval",
+    "linearUpdate": "minimum_travel_distance",
+    "angularUpdate": "minimum_travel_heading",
+    "maxUrange": "max_laser_range",
+}
+
+#: Nodes by their package and type in ROS 1.
+NODES: dict[tuple[str, str], NodeMapping] = {
+    ("amcl", "amcl"): NodeMapping("nav2_amcl", "amcl", _AMCL, _AMCL_VALUES),
+    ("gazebo_ros", "spawn_model"): NodeMapping("ros_gz_sim", "create", arguments=_spawn),
+    ("gmapping", "slam_gmapping"): NodeMapping("slam_toolbox", "async_slam_toolbox_node", _GMAPPING),
+    ("hector_mapping", "hector_mapping"): NodeMapping("slam_toolbox", "async_slam_toolbox_node", _HECTOR_MAPPING),
+    ("joint_state_publisher_gui", "joint_state_publisher_gui"): NodeMapping(
+        "joint_state_publisher_gui", "joint_state_publisher_gui"
+    ),
+    ("joy", "joy_node"): NodeMapping("joy", "joy_node"),
+    ("key_teleop", "key_teleop.py"): NodeMapping("key_teleop", "key_teleop"),
+    ("map_server", "map_saver"): NodeMapping("nav2_map_server", "map_saver_cli"),
+    ("map_server", "map_server"): NodeMapping("nav2_map_server", "map_server", arguments=_map_file),
+    ("move_base", "move_base"): NodeMapping(
+        "nav2_bringup",
+        "move_base",
+        note="the planners, the controller and both costmaps of Nav2 stand in for it",
+    ),
+    ("robot_state_publisher", "state_publisher"): NodeMapping("robot_state_publisher", "robot_state_publisher"),
+    ("rosbag", "play"): NodeMapping("rosbag2", "play"),
+    ("rosbag", "record"): NodeMapping("rosbag2", "record"),
+    ("rqt_graph", "rqt_graph"): NodeMapping("rqt_graph", "rqt_graph"),
+    ("rviz", "rviz"): NodeMapping("rviz2", "rviz2"),
+    ("teleop_twist_keyboard", "teleop_twist_keyboard.py"): NodeMapping(
+        "teleop_twist_keyboard", "teleop_twist_keyboard"
+    ),
+    ("tf", "static_transform_publisher"): NodeMapping(
+        "tf2_ros", "static_transform_publisher", arguments=_without_period
+    ),
+    ("tf2_ros", "static_transform_publisher"): NodeMapping(
+        "tf2_ros", "static_transform_publisher", arguments=_without_period
+    ),
+}
+
+#: Launch files by their package and path in ROS 1.
+INCLUDES: dict[tuple[str, str], IncludeMapping] = {
+    ("gazebo_ros", "launch/empty_world.launch"): IncludeMapping(
+        "gazebo_ros",
+        "launch/gazebo.launch.py",
+        {
+            "world_name": "world",
+            "paused": "pause",
+            "debug": None,
+            "headless": None,
+            "recording": None,
+            "use_sim_time": None,
+        },
+    ),
+}
+
+#: Programs that were called by a path inside of a package.
+PROGRAMS: dict[tuple[str, str], str] = {
+    ("xacro", "xacro"): "xacro",
+    ("xacro", "xacro.py"): "xacro",
+}
+
+#: Options of programs that are of no use any more.
+DROPPED_OPTIONS: dict[str, tuple[str, ...]] = {"xacro": ("--inorder",)}
