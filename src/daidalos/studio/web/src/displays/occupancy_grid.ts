@@ -3,12 +3,11 @@ import {
   DataTexture,
   LinearMipmapLinearFilter,
   Mesh,
-  MeshBasicMaterial,
   NearestFilter,
   NearestMipmapNearestFilter,
   PlaneGeometry,
   RGBAFormat,
-  SRGBColorSpace,
+  ShaderMaterial,
   UnsignedByteType,
 } from "three";
 import type { OccupancyGrid, OccupancyGridUpdate } from "../ros/messages";
@@ -22,8 +21,33 @@ import { StampedDisplay } from "./topic_display";
 
 const LARGEST_TEXTURE = 8192;
 
+// Colours go from the palette to the screen as they are: maps fill it, and every conversion would cost.
+const VERTEX = /* glsl */ `
+  varying vec2 at;
+  void main() {
+    at = uv;
+    gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+  }`;
+const FRAGMENT = /* glsl */ `
+  uniform sampler2D cells;
+  uniform float alpha;
+  varying vec2 at;
+  void main() {
+    gl_FragColor = texture2D(cells, at) * vec4(1.0, 1.0, 1.0, alpha);
+  }`;
+
 class MapDisplay extends StampedDisplay<OccupancyGrid> {
-  private readonly mesh: Mesh<PlaneGeometry, MeshBasicMaterial>;
+  private readonly uniforms = { cells: { value: null as DataTexture | null }, alpha: { value: 1 } };
+  private readonly mesh = new Mesh(
+    new PlaneGeometry(1, 1).translate(0.5, 0.5, 0),
+    new ShaderMaterial({
+      vertexShader: VERTEX,
+      fragmentShader: FRAGMENT,
+      uniforms: this.uniforms,
+      transparent: true,
+      depthWrite: false,
+    }),
+  );
   private readonly stopUpdates: () => void;
   private texture: DataTexture | undefined;
   private pixels = new Uint32Array();
@@ -32,8 +56,6 @@ class MapDisplay extends StampedDisplay<OccupancyGrid> {
 
   constructor(context: DisplayContext, settings: Settings) {
     super(context, settings, "latest");
-    const material = new MeshBasicMaterial({ transparent: true, depthWrite: false, toneMapped: false });
-    this.mesh = new Mesh(new PlaneGeometry(1, 1).translate(0.5, 0.5, 0), material);
     this.object.add(this.mesh);
     const updates = `${text(settings, "topic")}_updates`;
     this.stopUpdates = text(settings, "topic")
@@ -101,14 +123,12 @@ class MapDisplay extends StampedDisplay<OccupancyGrid> {
     this.pixels = new Uint32Array(width * height);
     const bytes = new Uint8Array(this.pixels.buffer);
     this.texture = new DataTexture(bytes, width, height, RGBAFormat, UnsignedByteType);
-    this.texture.colorSpace = SRGBColorSpace;
     // Cells stay sharp from near, and do not shimmer from afar.
     this.texture.magFilter = NearestFilter;
     this.texture.minFilter = beginsFine ? LinearMipmapLinearFilter : NearestMipmapNearestFilter;
     this.texture.generateMipmaps = true;
     this.texture.anisotropy = beginsFine ? 4 : 1;
-    this.mesh.material.map = this.texture;
-    this.mesh.material.needsUpdate = true;
+    this.uniforms.cells.value = this.texture;
   }
 
   private paint(grid: OccupancyGrid, x: number, y: number, width: number, height: number, data: Int8Array): void {
@@ -134,7 +154,7 @@ class MapDisplay extends StampedDisplay<OccupancyGrid> {
     const behind = text(this.settings, "layer") === "behind";
     const costs = ["costmap", "glow"].includes(text(this.settings, "scheme"));
     this.mesh.renderOrder = behind ? Layer.BEHIND : costs ? Layer.COSTMAP : Layer.MAP;
-    this.mesh.material.opacity = number(this.settings, "alpha");
+    this.uniforms.alpha.value = number(this.settings, "alpha");
   }
 }
 

@@ -139,6 +139,6 @@ export const TF: DisplayType = {
     { key: "links", label: "Links", kind: "toggle" },
     { key: "scale", label: "Axis length", kind: "number", min: 0.01, max: 10, step: 0.05, unit: "m" },
   ],
-  defaults: { axes: true, names: false, links: false, scale: 0.12 },
+  defaults: { axes: true, names: false, links: false, scale: 0.09 },
   create: (context, settings) => new TfDisplay(context, settings),
 };

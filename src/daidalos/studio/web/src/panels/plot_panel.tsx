@@ -5,6 +5,7 @@ import { isRecord } from "../app/stored";
 import type { Studio } from "../app/studio";
 import { theme } from "../app/theme";
 import { numberAt, splitPath } from "../ros/fields";
+import { beginsFine } from "../scene/graphics";
 import { Choice } from "../ui/editors";
 import { Empty } from "../ui/empty";
 import { Icon } from "../ui/icons";
@@ -19,7 +20,7 @@ const WINDOWS = [5, 10, 30, 60, 300] as const;
 const KEPT_S = 600;
 /** What everyone's robot has: a plot that moves is a better first sight than an empty one. */
 const FIRST_PATHS = ["/odom/twist/twist/linear/x", "/odom/twist/twist/angular/z"];
-const DRAW_EVERY_S = 1 / 30;
+const DRAW_EVERY_S = beginsFine ? 1 / 30 : 1 / 10;
 
 function PlotPanel({ studio, visible, params, remember }: PanelProps) {
   const paths = useSignal<readonly string[]>(pathsOf(params));

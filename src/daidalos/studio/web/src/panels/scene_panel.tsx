@@ -1,6 +1,7 @@
 // 3D: the view of the robot's world, with RViz's tools and views.
 import { useSignal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
+import type { Studio } from "../app/studio";
 import { attachWorld } from "../app/test_hooks";
 import { followed, World } from "../scene/world";
 import { TOOLS } from "../tools/registry";
@@ -43,7 +44,7 @@ function ScenePanel({ studio, visible }: PanelProps) {
           <span>{failure.value}. WebGL 2 must be switched on in its settings.</span>
         </div>
       )}
-      {studio.session.link.value !== "connected" && <Waiting state={studio.session.link.value} />}
+      <Note studio={studio} />
     </div>
   );
 }
@@ -108,11 +109,20 @@ function Hint({ world }: { world: World }) {
   );
 }
 
-function Waiting({ state }: { state: "connecting" | "lost" }) {
+/** What to say while there is nothing to see. */
+function Note({ studio }: { studio: Studio }) {
+  const { link, topics } = studio.session;
+  if (link.value === "connected") {
+    return topics.value.length === 0 ? (
+      <div class="scene-note" role="status">
+        Nothing is published yet. What robots and simulators publish appears here by itself.
+      </div>
+    ) : null;
+  }
   return (
-    <div class="waiting" role="status">
+    <div class="scene-note" role="status">
       <span class="spinner" />
-      {state === "connecting" ? "Connecting to the robot…" : "Connection lost, trying again…"}
+      {link.value === "connecting" ? "Connecting…" : "Connection lost, trying again…"}
     </div>
   );
 }
