@@ -78,8 +78,8 @@ def _is_executable(path: Path) -> bool:
 def _modules(package: str) -> dict[str, str]:
     """Return the built-in executables of a package: name -> module.
 
-    A module stands for the executable of its name. ROS 2 calls some executables ``name.py``: such a name is listed
-    where the package's ``__init__`` says so in ``EXECUTABLES`` (executable -> module).
+    A module stands for the executable of its name. ROS 2 calls some executables ``name.py``: such a name is
+    listed where the package's ``__init__`` says so in ``EXECUTABLES`` (executable -> module).
     """
     folder = BUILT_IN / package
     if not (folder / "__init__.py").is_file():

@@ -1,7 +1,7 @@
 """ROS 2's client library for Python.
 
-A program begins with `init`, makes a `Node` with publishers, subscriptions, services, clients, actions, timers and
-parameters, has their callbacks run by `spin`, and ends with `shutdown`.
+A program begins with `init`, makes a `Node` with publishers, subscriptions, services, clients, actions,
+timers and parameters, has their callbacks run by `spin`, and ends with `shutdown`.
 """
 
 from __future__ import annotations

@@ -1,7 +1,8 @@
 """Executors: they wait until something is ready and run its callback.
 
-Nothing is polled. Whatever becomes ready puts itself, once, into its executor's queue (`rclpy.impl.ready`), timers
-stand in a heap by deadline, and the waiting thread sleeps until the queue or the earliest deadline wakes it.
+Nothing is polled. Whatever becomes ready puts itself, once, into its executor's queue (`rclpy.impl.ready`),
+timers stand in a heap by deadline, and the waiting thread sleeps until the queue or the earliest deadline
+wakes it.
 """
 
 from __future__ import annotations
@@ -98,6 +99,7 @@ class Executor(AbstractContextManager["Executor"]):
         self._timer_count = itertools.count().__next__
         self._deferred: deque[ReadyHook] = deque()
         self._is_shutdown = False
+        self._spins = False  # within `spin`, where nobody counts the callbacks that run
         self._waiting_thread: int | None = None
         self._active = 0
         self._idle = threading.Condition()
@@ -196,8 +198,12 @@ class Executor(AbstractContextManager["Executor"]):
         ExternalShutdownException
             When the context was shut down.
         """
-        while self._context.ok() and not self._is_shutdown:
-            self._spin_once(None, None)
+        self._spins = True
+        try:
+            while self._context.ok() and not self._is_shutdown:
+                self._spin_once(None, None)
+        finally:
+            self._spins = False
 
     def spin_until_future_complete(self, future: Future, timeout_sec: float | None = None) -> None:
         """Run callbacks until a future is done or cancelled, for at most `timeout_sec` seconds."""

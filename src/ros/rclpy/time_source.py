@@ -22,8 +22,8 @@ USE_SIM_TIME_NAME = "use_sim_time"
 class TimeSource:
     """Sets the clocks of a node.
 
-    The time that a simulator publishes takes effect on the thread that receives it: clocks show it, and sleepers
-    wake, whether or not anybody spins the node.
+    The time that a simulator publishes takes effect on the thread that receives it: clocks show it, and
+    sleepers wake, whether or not anybody spins the node.
     """
 
     def __init__(self, *, node: Node | None = None) -> None:

@@ -63,8 +63,8 @@ class NumberOfEntities:
 class Waitable:
     """Something made of entities that becomes ready when one of them does.
 
-    An executor calls `add_to_wait_set` to learn of its entities, `is_ready` when one of them is ready, and then
-    `take_data` and `execute`.
+    An executor calls `add_to_wait_set` to learn of its entities, `is_ready` when one of them is ready, and
+    then `take_data` and `execute`.
     """
 
     def __init__(self, callback_group: CallbackGroup) -> None:

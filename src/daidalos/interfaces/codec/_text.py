@@ -33,8 +33,8 @@ class Variant:
 def fixed_size(kind: type[Message]) -> tuple[int, int] | None:
     """Return (size, alignment) of a message whose instances all have one layout wherever they start, else None.
 
-    CDR aligns values, not messages. The layout is the same everywhere only if the first value is among those of
-    the greatest alignment and the size is a multiple of it, so that neighbours in an array repeat.
+    CDR aligns values, not messages. The layout is the same everywhere only if the first value is among those
+    of the greatest alignment and the size is a multiple of it, so that neighbours in an array repeat.
     """
     offset, alignment, first = 0, 1, 0
     for _, base, many, size, _ in kind._FIELDS:

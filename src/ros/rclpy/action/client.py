@@ -96,7 +96,8 @@ class ActionClient(Waitable):
         Its name, relative to the node unless it begins with a slash.
     callback_group
         The node's default where None.
-    goal_service_qos_profile, result_service_qos_profile, cancel_service_qos_profile, feedback_sub_qos_profile, \
+    goal_service_qos_profile, result_service_qos_profile, cancel_service_qos_profile,
+    feedback_sub_qos_profile, \
 status_sub_qos_profile
         Quality of service of the parts.
     """

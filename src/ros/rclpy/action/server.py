@@ -186,7 +186,8 @@ class ActionServer(Waitable):
         ``callback(goal_handle)``: called with every accepted goal; carries it out at once by default.
     cancel_callback
         ``callback(goal_handle) -> CancelResponse``: lets a goal be cancelled or not.
-    goal_service_qos_profile, result_service_qos_profile, cancel_service_qos_profile, feedback_pub_qos_profile, \
+    goal_service_qos_profile, result_service_qos_profile, cancel_service_qos_profile,
+    feedback_pub_qos_profile, \
 status_pub_qos_profile
         Quality of service of the parts.
     result_timeout

@@ -12,8 +12,8 @@ from rclpy.impl.errors import InvalidHandle
 class Destroyable:
     """Base of handles.
 
-    ``with handle:`` keeps what is behind it alive; `destroy_when_not_in_use` takes effect when the last such block
-    ends, and from then on entering raises `InvalidHandle`.
+    ``with handle:`` keeps what is behind it alive; `destroy_when_not_in_use` takes effect when the last such
+    block ends, and from then on entering raises `InvalidHandle`.
     """
 
     def __init__(self) -> None:

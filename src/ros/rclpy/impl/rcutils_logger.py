@@ -212,8 +212,8 @@ class RcutilsLogger:
         severity
             How important it is.
         **kwargs
-            ``once``, ``skip_first``, ``throttle_duration_sec``, ``throttle_time_source_type``; they apply to the
-            place that the call is made from and must be the same at every call there. ``name`` logs under
+            ``once``, ``skip_first``, ``throttle_duration_sec``, ``throttle_time_source_type``; they apply to
+            the place that the call is made from and must be the same at every call there. ``name`` logs under
             another name.
 
         Returns

@@ -9,8 +9,8 @@ from typing import Any
 class ReadyHook:
     """Calling it, from any thread, makes its entity ready.
 
-    An entity stands in its executor's queue at most once; what becomes ready while no executor is attached is put
-    into the queue when one is. An executor may find an entity with nothing to do: it then passes over it.
+    An entity stands in its executor's queue at most once; what becomes ready while no executor is attached is
+    put into the queue when one is. An executor may find an entity with nothing to do: it then passes over it.
     """
 
     __slots__ = ("entity", "queued", "sink")

@@ -169,7 +169,7 @@ class LifecycleNodeMixin(ManagedEntity):
         node: Any = self
         try:
             outcome = getattr(self, callback)(state)
-        except Exception as error:  # noqa: BLE001 - a broken callback is an error of the transition
+        except Exception as error:
             node.get_logger().error(f"Error raised in {callback}: {error}")
             traceback.print_exc()
             return TransitionCallbackReturn.ERROR

@@ -1,0 +1,178 @@
+"""Between messages and the arrays that the libraries take: poses, stamps, paths, grids, scans."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from daidalos.mapping.scan import LaserScanData
+
+Array = NDArray[np.float64]
+
+
+def time_message(stamp_ns: int) -> Any:
+    """Return nanoseconds as a ``builtin_interfaces/msg/Time``."""
+    from builtin_interfaces.msg import Time
+
+    seconds, nanoseconds = divmod(int(stamp_ns), 1_000_000_000)
+    return Time(sec=seconds, nanosec=nanoseconds)
+
+
+def nanoseconds(stamp: Any) -> int:
+    """Return a ``builtin_interfaces/msg/Time`` or ``Duration`` as nanoseconds."""
+    return int(stamp.sec) * 1_000_000_000 + int(stamp.nanosec)
+
+
+def seconds(stamp: Any) -> float:
+    """Return a ``builtin_interfaces/msg/Time`` or ``Duration`` as seconds."""
+    return float(stamp.sec) + 1e-9 * float(stamp.nanosec)
+
+
+def duration_message(value: float) -> Any:
+    """Return seconds as a ``builtin_interfaces/msg/Duration``."""
+    from builtin_interfaces.msg import Duration
+
+    whole, nanosec = divmod(round(value * 1e9), 1_000_000_000)
+    return Duration(sec=whole, nanosec=nanosec)
+
+
+def twist_message(velocity: Any, frame: str | None, stamp: Any) -> Any:
+    """Return (x, y, yaw) velocities as a ``Twist``, or a ``TwistStamped`` where a frame is given."""
+    from geometry_msgs.msg import Twist, TwistStamped, Vector3
+    from std_msgs.msg import Header
+
+    x, y, yaw = (float(value) for value in velocity)
+    twist = Twist(linear=Vector3(x=x, y=y, z=0.0), angular=Vector3(x=0.0, y=0.0, z=yaw))
+    return twist if frame is None else TwistStamped(header=Header(frame_id=frame, stamp=stamp), twist=twist)
+
+
+def yaw_of(quaternion: Any) -> float:
+    """Return the heading of a ``geometry_msgs/msg/Quaternion`` [rad]."""
+    q = quaternion
+    return math.atan2(2.0 * (q.w * q.z + q.x * q.y), 1.0 - 2.0 * (q.y * q.y + q.z * q.z))
+
+
+def quaternion_message(yaw: float) -> Any:
+    """Return a heading [rad] as a ``geometry_msgs/msg/Quaternion``."""
+    from geometry_msgs.msg import Quaternion
+
+    return Quaternion(x=0.0, y=0.0, z=math.sin(0.5 * yaw), w=math.cos(0.5 * yaw))
+
+
+def pose2_of(pose: Any) -> Array:
+    """Return (x, y, yaw) of a ``geometry_msgs/msg/Pose``."""
+    return np.array([pose.position.x, pose.position.y, yaw_of(pose.orientation)])
+
+
+def pose2_of_transform(transform: Any) -> Array:
+    """Return (x, y, yaw) of a ``geometry_msgs/msg/Transform``."""
+    return np.array([transform.translation.x, transform.translation.y, yaw_of(transform.rotation)])
+
+
+def pose_message(pose: Any) -> Any:
+    """Return (x, y, yaw) as a ``geometry_msgs/msg/Pose``."""
+    from geometry_msgs.msg import Point, Pose
+
+    x, y, yaw = (float(value) for value in pose)
+    return Pose(position=Point(x=x, y=y, z=0.0), orientation=quaternion_message(yaw))
+
+
+def pose_stamped(pose: Any, frame: str, stamp: Any) -> Any:
+    """Return (x, y, yaw) in a frame as a ``geometry_msgs/msg/PoseStamped``."""
+    from geometry_msgs.msg import PoseStamped
+    from std_msgs.msg import Header
+
+    return PoseStamped(header=Header(frame_id=frame, stamp=stamp), pose=pose_message(pose))
+
+
+def transform_stamped(pose: Any, frame: str, child: str, stamp: Any) -> Any:
+    """Return (x, y, yaw) of `child` in `frame` as a ``geometry_msgs/msg/TransformStamped``."""
+    from geometry_msgs.msg import Transform, TransformStamped, Vector3
+    from std_msgs.msg import Header
+
+    x, y, yaw = (float(value) for value in pose)
+    return TransformStamped(
+        header=Header(frame_id=frame, stamp=stamp),
+        child_frame_id=child,
+        transform=Transform(translation=Vector3(x=x, y=y, z=0.0), rotation=quaternion_message(yaw)),
+    )
+
+
+def path_message(poses: Array, frame: str, stamp: Any) -> Any:
+    """Return poses (n, 3) in a frame as a ``nav_msgs/msg/Path``."""
+    from nav_msgs.msg import Path
+    from std_msgs.msg import Header
+
+    return Path(header=Header(frame_id=frame, stamp=stamp), poses=[pose_stamped(pose, frame, stamp) for pose in poses])
+
+
+def path_array(path: Any) -> Array:
+    """Return the poses (n, 3) of a ``nav_msgs/msg/Path``."""
+    return np.array([pose2_of(stamped.pose) for stamped in path.poses]).reshape(-1, 3)
+
+
+def grid_message(values: NDArray[np.int8], resolution: float, origin: Any, frame: str, stamp: Any) -> Any:
+    """Return occupancies as a ``nav_msgs/msg/OccupancyGrid``.
+
+    Parameters
+    ----------
+    values : array (rows, columns) of int8
+        -1 unknown, 0 free to 100 occupied; row 0 is at the origin.
+    resolution : float
+        Side of a cell [m].
+    origin : sequence of 2 floats
+        Lower left corner [m].
+    frame, stamp
+        Of the header.
+    """
+    from array import array
+
+    from nav_msgs.msg import MapMetaData, OccupancyGrid
+    from std_msgs.msg import Header
+
+    data = array("b")
+    data.frombytes(np.ascontiguousarray(values, dtype=np.int8).tobytes())
+    rows, columns = values.shape
+    return OccupancyGrid(
+        header=Header(frame_id=frame, stamp=stamp),
+        info=MapMetaData(
+            map_load_time=stamp,
+            resolution=float(resolution),
+            width=int(columns),
+            height=int(rows),
+            origin=pose_message((origin[0], origin[1], 0.0)),
+        ),
+        data=data,
+    )
+
+
+def grid_array(grid: Any) -> NDArray[np.int8]:
+    """Return the occupancies (rows, columns) of a ``nav_msgs/msg/OccupancyGrid``."""
+    return np.frombuffer(grid.data, dtype=np.int8).reshape(grid.info.height, grid.info.width)
+
+
+def scan_data(scan: Any, sensor_pose: Array) -> LaserScanData:
+    """Return a ``sensor_msgs/msg/LaserScan`` as arrays.
+
+    Parameters
+    ----------
+    scan
+        The message.
+    sensor_pose : array (3,)
+        Pose (x, y, yaw) of the sensor in the base.
+    """
+    from daidalos.mapping.scan import LaserScanData
+
+    return LaserScanData(
+        ranges=np.frombuffer(scan.ranges, dtype=np.float32),
+        angle_min=scan.angle_min,
+        angle_increment=scan.angle_increment,
+        range_min=scan.range_min,
+        range_max=scan.range_max,
+        time_increment=scan.time_increment,
+        sensor_pose=tuple(float(value) for value in sensor_pose),
+    )

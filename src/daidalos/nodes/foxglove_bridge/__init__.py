@@ -1,0 +1,1 @@
+"""The graph for the browser studio, over the Foxglove WebSocket protocol."""

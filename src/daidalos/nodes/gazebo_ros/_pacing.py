@@ -1,0 +1,161 @@
+"""A simulation that runs in a thread of its own at a wanted speed, and takes requests between its steps."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections import deque
+from collections.abc import Callable
+from typing import Any, TypeVar
+
+from daidalos.simulation import Simulation
+from daidalos.simulation.samples import Sample
+
+T = TypeVar("T")
+_LONGEST_LAG_NS = 200_000_000
+"""Delay after which lost time is not made up for."""
+
+
+class PacedSimulation:
+    """Advances a simulation in real time, or as fast as wanted.
+
+    Parameters
+    ----------
+    simulation : Simulation
+        Used by the thread alone from `start` on.
+    publish : callable
+        Takes the time [ns] and the samples of each advance, on the thread.
+    period_ns : int
+        How much is simulated at once.
+    real_time_factor : float
+        Simulated seconds in a second; 0 means as fast as possible.
+    failed : callable
+        Takes the error when the simulation cannot go on.
+    """
+
+    def __init__(
+        self,
+        simulation: Simulation,
+        publish: Callable[[int, list[Sample]], None],
+        period_ns: int,
+        real_time_factor: float = 1.0,
+        failed: Callable[[Exception], None] = lambda error: None,
+    ) -> None:
+        self.simulation = simulation
+        self.real_time_factor = real_time_factor
+        self._publish = publish
+        self._period_ns = period_ns
+        self._failed = failed
+        self._requests: deque[Callable[[], None]] = deque()
+        self._wake = threading.Condition()
+        self._paused = False
+        self._running = False
+        self._thread = threading.Thread(target=self._run, name="simulation", daemon=True)
+        self.measured_factor = 0.0
+
+    @property
+    def paused(self) -> bool:
+        """Whether time stands still."""
+        return self._paused
+
+    def start(self, *, paused: bool = False) -> None:
+        """Begin to run."""
+        self._paused = paused
+        self._running = True
+        self._thread.start()
+
+    def stop(self) -> None:
+        """End; waits for the step that is being made."""
+        with self._wake:
+            self._running = False
+            self._wake.notify_all()
+        if self._thread.is_alive() and self._thread is not threading.current_thread():
+            self._thread.join(timeout=5.0)
+
+    def set_paused(self, paused: bool) -> None:
+        """Let time stand still, or go on."""
+        with self._wake:
+            self._paused = paused
+            self._wake.notify_all()
+
+    def post(self, request: Callable[[], Any]) -> None:
+        """Have a function called between two steps; nobody waits for it."""
+        with self._wake:
+            self._requests.append(request)
+            self._wake.notify_all()
+
+    def call(self, request: Callable[[Simulation], T]) -> T:
+        """Have a function called with the simulation between two steps, and return what it returns.
+
+        Raises
+        ------
+        Exception
+            What the function raised.
+        """
+        done = threading.Event()
+        result: list[T] = []
+        problem: list[Exception] = []
+
+        def work() -> None:
+            try:
+                result.append(request(self.simulation))
+            except Exception as error:  # handed to the caller, whose request it was
+                problem.append(error)
+            finally:
+                done.set()
+
+        self.post(work)
+        done.wait()
+        if problem:
+            raise problem[0]
+        return result[0]
+
+    def _run(self) -> None:
+        due = time.monotonic_ns()
+        mark = (due, self.simulation.time_ns)
+        while self._wait_until(due):
+            now = time.monotonic_ns()
+            if self._paused:
+                due = now
+                continue
+            if now < due:
+                continue  # woken by a request
+            try:
+                samples = self.simulation.advance(self._period_ns)
+            except Exception as error:  # the simulation is over, the process is not
+                self._paused = True
+                self._failed(error)
+                continue
+            self._publish(self.simulation.time_ns, samples)
+            mark = self._measure(mark)
+            due = self._next_due(due)
+
+    def _wait_until(self, due: int) -> bool:
+        """Sleep until the next step is due or a request comes, and do what was requested; False at the end."""
+        with self._wake:
+            if self._paused:
+                self._wake.wait_for(lambda: not self._running or self._requests or not self._paused)
+            else:
+                left = due - time.monotonic_ns()
+                if left > 0:
+                    self._wake.wait_for(lambda: not self._running or self._requests, left * 1e-9)
+        while self._requests:
+            self._requests.popleft()()
+        return self._running
+
+    def _next_due(self, due: int) -> int:
+        """Return when the next step is due so that the wanted speed is kept."""
+        now = time.monotonic_ns()
+        if self.real_time_factor <= 0.0:
+            return now
+        due += int(self._period_ns / self.real_time_factor)
+        return now if due < now - _LONGEST_LAG_NS else due
+
+    def _measure(self, mark: tuple[int, int]) -> tuple[int, int]:
+        """Update the measured speed once a second."""
+        wall, simulated = mark
+        now = time.monotonic_ns()
+        if now - wall < 1_000_000_000:
+            return mark
+        self.measured_factor = (self.simulation.time_ns - simulated) / (now - wall)
+        return now, self.simulation.time_ns

@@ -1,0 +1,57 @@
+"""Poses, velocities and contacts of the simulation as messages."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
+
+from daidalos.description.pose import Pose
+from daidalos.nodes.conversions import time_message
+
+if TYPE_CHECKING:
+    from daidalos.simulation.contacts import Touch
+
+
+def pose_message(pose: Pose) -> Any:
+    """Return a pose as a ``geometry_msgs/msg/Pose``."""
+    from geometry_msgs.msg import Point, Quaternion
+    from geometry_msgs.msg import Pose as PoseMessage
+
+    x, y, z = (float(value) for value in pose.position)
+    qx, qy, qz, qw = (float(value) for value in pose.orientation)
+    return PoseMessage(position=Point(x=x, y=y, z=z), orientation=Quaternion(x=qx, y=qy, z=qz, w=qw))
+
+
+def pose_of(message: Any) -> Pose:
+    """Return a ``geometry_msgs/msg/Pose``; an all-zero quaternion means no rotation."""
+    p, q = message.position, message.orientation
+    orientation = (q.x, q.y, q.z, q.w) if any((q.x, q.y, q.z, q.w)) else (0.0, 0.0, 0.0, 1.0)
+    return Pose((p.x, p.y, p.z), orientation)
+
+
+def twist_message(linear: Any, angular: Any) -> Any:
+    """Return velocities [m/s, rad/s] as a ``geometry_msgs/msg/Twist``."""
+    from geometry_msgs.msg import Twist, Vector3
+
+    return Twist(linear=_vector(Vector3, linear), angular=_vector(Vector3, angular))
+
+
+def _vector(kind: Any, values: Any) -> Any:
+    x, y, z = (float(value) for value in values)
+    return kind(x=x, y=y, z=z)
+
+
+def contacts_message(touches: Iterable[tuple[str, Touch]], now_ns: int) -> Any:
+    """Return what models have touched as a ``gazebo_msgs/msg/ContactsState``."""
+    from gazebo_msgs.msg import ContactsState, ContactState
+    from std_msgs.msg import Header
+
+    states = [
+        ContactState(
+            info=f"first at {touch.first_ns * 1e-9:.3f} s, last at {touch.last_ns * 1e-9:.3f} s",
+            collision1_name=f"{name}::{touch.link}",
+            collision2_name=f"{touch.other_model}::{touch.other_link}",
+        )
+        for name, touch in touches
+    ]
+    return ContactsState(header=Header(stamp=time_message(now_ns), frame_id="world"), states=states)

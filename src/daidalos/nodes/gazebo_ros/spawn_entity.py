@@ -1,0 +1,166 @@
+"""`spawn_entity.py`: puts a robot or model into the running simulation."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+from typing import Any
+
+from rclpy.utilities import remove_ros_args
+
+from daidalos.nodes.runner import UserError
+
+
+def _arguments() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(prog="spawn_entity.py", description="Spawn an entity in the simulation.")
+    source = parser.add_mutually_exclusive_group(required=True)
+    source.add_argument("-file", metavar="FILE", help="a URDF, xacro or SDF file")
+    source.add_argument("-topic", metavar="TOPIC", help="a topic with the description, such as robot_description")
+    source.add_argument("-database", metavar="NAME", help="a model of the model path")
+    source.add_argument("-stdin", action="store_true", help="read the description from standard input")
+    parser.add_argument("-entity", required=True, metavar="NAME", help="name of the entity")
+    parser.add_argument("-reference_frame", default="", metavar="NAME", help="entity that the pose is relative to")
+    parser.add_argument("-gazebo_namespace", default="", metavar="NAMESPACE", help="namespace of the simulator")
+    parser.add_argument("-robot_namespace", default="", metavar="NAMESPACE", help="namespace of the entity's topics")
+    parser.add_argument("-timeout", type=float, default=30.0, metavar="SECONDS", help="how long to wait")
+    parser.add_argument("-unpause", action="store_true", help="let time go on after spawning")
+    parser.add_argument("-wait", metavar="NAME", help="wait for this entity before spawning")
+    parser.add_argument(
+        "-spawn_service_timeout", type=float, default=None, metavar="SECONDS", help="old name of -timeout"
+    )
+    parser.add_argument("-x_vel", type=float, default=0.0, help=argparse.SUPPRESS)
+    parser.add_argument("-package_to_model", action="store_true", help="accepted: package:// addresses are understood")
+    parser.add_argument("-b", dest="bond", action="store_true", help="delete the entity when this program ends")
+    for name in ("x", "y", "z", "R", "P", "Y"):
+        parser.add_argument(f"-{name}", type=float, default=0.0, help="pose [m, rad]")
+    return parser.parse_args(remove_ros_args(sys.argv)[1:])
+
+
+def _description(arguments: argparse.Namespace, node: Any) -> str:
+    """Return the URDF or SDF text."""
+    if arguments.stdin:
+        return sys.stdin.read()
+    if arguments.topic:
+        return _from_topic(node, arguments.topic, arguments.timeout)
+    path = _model_file(arguments.database) if arguments.database else Path(arguments.file)
+    if path.suffix == ".xacro":
+        from daidalos.description.errors import DescriptionError
+        from daidalos.description.xacro import load_xacro
+        from daidalos.nodes.packages import package_share
+
+        try:
+            return load_xacro(path, resolve=package_share)
+        except DescriptionError as error:
+            raise UserError(str(error)) from None
+    try:
+        return path.read_text(encoding="utf-8")
+    except OSError as error:
+        raise UserError(f"cannot read '{path}': {error.strerror}") from None
+
+
+def _model_file(name: str) -> Path:
+    from daidalos.description.resolve import default_model_path, resolve_uri
+
+    folder = resolve_uri(f"model://{name}", model_path=default_model_path())
+    if folder is None:
+        raise UserError(f"there is no model '{name}' in the model path (GAZEBO_MODEL_PATH)")
+    return folder / "model.sdf"
+
+
+def _from_topic(node: Any, topic: str, timeout: float) -> str:
+    from rclpy.qos import DurabilityPolicy, QoSProfile
+    from rclpy.wait_for_message import wait_for_message
+    from std_msgs.msg import String
+
+    latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    node.get_logger().info(f"Waiting for entity xml on {topic}")
+    found, message = wait_for_message(String, node, topic, qos_profile=latched, time_to_wait=timeout)
+    if not found:
+        raise UserError(f"nothing came on '{topic}' within {timeout:g} s")
+    return str(message.data)
+
+
+def _request(arguments: argparse.Namespace, text: str) -> Any:
+    from gazebo_msgs.srv import SpawnEntity
+
+    from daidalos.description.pose import Pose
+    from daidalos.nodes.gazebo_ros._states import pose_message
+
+    pose = Pose.from_xyz_rpy((arguments.x, arguments.y, arguments.z), (arguments.R, arguments.P, arguments.Y))
+    return SpawnEntity.Request(
+        name=arguments.entity,
+        xml=text,
+        robot_namespace=arguments.robot_namespace,
+        initial_pose=pose_message(pose),
+        reference_frame=arguments.reference_frame,
+    )
+
+
+def _spawn(arguments: argparse.Namespace, node: Any) -> None:
+    from gazebo_msgs.srv import SpawnEntity
+    from std_srvs.srv import Empty
+
+    base = arguments.gazebo_namespace
+    timeout = arguments.spawn_service_timeout or arguments.timeout
+    text = _description(arguments, node)
+    client = node.create_client(SpawnEntity, f"{base}/spawn_entity")
+    node.get_logger().info(f"Waiting for service {base}/spawn_entity, timeout = {timeout:g}")
+    if not client.wait_for_service(timeout):
+        raise UserError(f"the service {base}/spawn_entity is not there; was the simulator started?")
+    response = client.call(_request(arguments, text), timeout)
+    if response is None:
+        raise UserError(f"the simulator did not answer within {timeout:g} s")
+    if not response.success:
+        raise UserError(f"spawning '{arguments.entity}' failed: {response.status_message}")
+    node.get_logger().info(response.status_message)
+    if arguments.unpause:
+        unpause = node.create_client(Empty, f"{base}/unpause_physics")
+        if unpause.wait_for_service(timeout):
+            unpause.call(Empty.Request(), timeout)
+
+
+def _delete_at_end(arguments: argparse.Namespace, node: Any) -> None:
+    """Wait until the process is asked to end, then delete the entity."""
+    import rclpy
+    from gazebo_msgs.srv import DeleteEntity
+    from rclpy.executors import ExternalShutdownException
+
+    try:
+        rclpy.spin(node)
+    except (KeyboardInterrupt, ExternalShutdownException):
+        # The context has been shut down: the last call goes out with one of its own.
+        context = rclpy.Context()
+        rclpy.init(context=context)
+        helper = rclpy.create_node("spawn_entity", context=context)
+        client = helper.create_client(DeleteEntity, f"{arguments.gazebo_namespace}/delete_entity")
+        if client.wait_for_service(2.0):
+            client.call(DeleteEntity.Request(name=arguments.entity), 2.0)
+        helper.destroy_node()
+        rclpy.shutdown(context=context)
+
+
+def main() -> int:
+    """Run the program."""
+    import rclpy
+
+    arguments = _arguments()
+    rclpy.init()
+    node = rclpy.create_node("spawn_entity")
+    try:
+        _spawn(arguments, node)
+        if arguments.bond:
+            _delete_at_end(arguments, node)
+    except UserError as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 2
+    except KeyboardInterrupt:
+        return 130
+    finally:
+        node.destroy_node()
+        rclpy.try_shutdown()
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

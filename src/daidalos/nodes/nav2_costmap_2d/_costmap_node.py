@@ -1,0 +1,351 @@
+"""A costmap as a managed node: parameters, sensors and maps in, costs out."""
+
+from __future__ import annotations
+
+import threading
+from dataclasses import fields
+from typing import Any
+
+import numpy as np
+from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
+from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
+from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy, QoSProfile, qos_profile_sensor_data
+from rclpy.time import Time
+from tf2_ros import Buffer, TransformException, TransformListener
+
+from daidalos.mapping.grid import OccupancyGrid
+from daidalos.navigation.costmap.costmap import Costmap
+from daidalos.navigation.costmap.footprint import Footprint
+from daidalos.navigation.costmap.layered_costmap import CostmapParameters, LayeredCostmap
+from daidalos.navigation.costmap.layers.inflation_layer import InflationLayer
+from daidalos.navigation.costmap.layers.layer import Layer
+from daidalos.navigation.costmap.layers.obstacle_layer import (
+    Observation,
+    ObservationSource,
+    ObstacleLayer,
+    ObstacleLayerParameters,
+)
+from daidalos.navigation.costmap.layers.static_layer import StaticLayer
+from daidalos.navigation.costmap.occupancy import to_occupancy
+from daidalos.navigation.plugins import find_plugin
+from daidalos.nodes.conversions import (
+    grid_array,
+    grid_message,
+    pose2_of,
+    pose2_of_transform,
+    pose_message,
+    scan_data,
+    seconds,
+)
+from daidalos.nodes.parameters import declare_dataclass
+
+_LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+_DEFAULT_PLUGINS = {
+    "static_layer": "nav2_costmap_2d::StaticLayer",
+    "obstacle_layer": "nav2_costmap_2d::ObstacleLayer",
+    "inflation_layer": "nav2_costmap_2d::InflationLayer",
+}
+
+
+class CostmapNode(LifecycleNode):
+    """Keeps a costmap up to date and publishes it; Nav2's `Costmap2DROS`.
+
+    Parameters of the node are Nav2's. They are taken from the process's arguments, such as a parameter file for
+    the container, under the costmap's own name.
+
+    Parameters
+    ----------
+    name : str
+        Such as ``local_costmap``; the node is ``local_costmap/local_costmap``.
+    parent : Node
+        The server that the costmap is for.
+
+    Attributes
+    ----------
+    layered : LayeredCostmap
+        The costmap; hold `lock` while using it.
+    lock : RLock
+    """
+
+    def __init__(self, name: str, parent: Node) -> None:
+        namespace = f"{parent.get_namespace().rstrip('/')}/{name}"
+        sim_time = str(parent.get_parameter("use_sim_time").value).lower()
+        # The names are said again for the case that the process's arguments rename its nodes.
+        super().__init__(
+            name,
+            context=parent.context,
+            cli_args=[
+                "-r", f"{name}:__node:={name}", "-r", f"{name}:__ns:={namespace}", "-p", f"use_sim_time:={sim_time}"
+            ],
+        )  # fmt: skip
+        self.lock = threading.RLock()
+        self.layered: LayeredCostmap | None = None
+        self.global_frame = self.declare_parameter("global_frame", "map").value
+        self.base_frame = self.declare_parameter("robot_base_frame", "base_link").value
+        self.declare_parameter("update_frequency", 5.0)
+        self.declare_parameter("publish_frequency", 1.0)
+        self.declare_parameter("transform_tolerance", 0.3)
+        self.declare_parameter("robot_radius", 0.1)
+        self.declare_parameter("footprint", "[]")
+        self.declare_parameter("footprint_padding", 0.01)
+        self.declare_parameter("plugins", list(_DEFAULT_PLUGINS))
+        self.declare_parameter("map_topic", "/map")
+        self._parameters_of_grid = declare_dataclass(self, CostmapParameters)
+        self.footprint = self._read_footprint()
+        self.buffer = Buffer(node=self)
+        self._listener = TransformListener(self.buffer, self)
+        self._sensor_poses: dict[str, Any] = {}
+        self._timers: list[Any] = []
+        self._entities: list[Any] = []
+
+    def _read_footprint(self) -> Footprint:
+        return Footprint.from_parameters(
+            self.get_parameter("footprint").value,
+            self.get_parameter("robot_radius").value,
+            self.get_parameter("footprint_padding").value,
+        )
+
+    # Transitions.
+
+    def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Make the layers, the subscriptions that they need and the publishers."""
+        from geometry_msgs.msg import PolygonStamped
+        from nav2_msgs.msg import Costmap as CostmapMessage
+        from nav_msgs.msg import OccupancyGrid as GridMessage
+
+        layers = [self._make_layer(name) for name in self.get_parameter("plugins").value]
+        self.layered = LayeredCostmap(self._parameters_of_grid, layers)
+        name = self.get_name()
+        self._grid_publisher = self.create_publisher(GridMessage, "costmap", _LATCHED)
+        self._raw_publisher = self.create_publisher(CostmapMessage, "costmap_raw", _LATCHED)
+        self._footprint_publisher = self.create_publisher(PolygonStamped, "published_footprint", 1)
+        self._create_services(name)
+        return super().on_configure(state)
+
+    def _create_services(self, name: str) -> None:
+        from nav2_msgs.srv import (
+            ClearCostmapAroundRobot,
+            ClearCostmapExceptRegion,
+            ClearEntireCostmap,
+            GetCostmap,
+        )
+
+        self.create_service(ClearEntireCostmap, f"clear_entirely_{name}", self._on_clear_entirely)
+        self.create_service(ClearCostmapAroundRobot, f"clear_around_{name}", self._on_clear_around)
+        self.create_service(ClearCostmapExceptRegion, f"clear_except_{name}", self._on_clear_except)
+        self.create_service(GetCostmap, "get_costmap", self._on_get_costmap)
+
+    def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Begin to update and publish."""
+        self._timers = [
+            self.create_timer(1.0 / self.get_parameter(name).value, callback)
+            for name, callback in (
+                ("update_frequency", self._update),
+                ("publish_frequency", self._publish),
+            )
+            if self.get_parameter(name).value > 0.0
+        ]
+        return super().on_activate(state)
+
+    def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Cease to update and publish."""
+        for timer in self._timers:
+            self.destroy_timer(timer)
+        self._timers = []
+        return super().on_deactivate(state)
+
+    # Layers.
+
+    def _make_layer(self, name: str) -> Layer:
+        kind = self.declare_parameter(f"{name}.plugin", _DEFAULT_PLUGINS.get(name, "")).value
+        plugin = find_plugin(kind)
+        if issubclass(plugin.made_by, ObstacleLayer):
+            return self._make_obstacle_layer(name, plugin.made_by)
+        parameters = declare_dataclass(self, plugin.parameters, name) if plugin.parameters else None
+        if issubclass(plugin.made_by, StaticLayer):
+            return self._make_static_layer(name, plugin.made_by(parameters))
+        if issubclass(plugin.made_by, InflationLayer):
+            return plugin.made_by(self.footprint.inscribed_radius, parameters)
+        return plugin.made_by(parameters)
+
+    def _make_static_layer(self, name: str, layer: StaticLayer) -> StaticLayer:
+        from nav_msgs.msg import OccupancyGrid as GridMessage
+
+        topic = self.declare_parameter(f"{name}.map_topic", "").value or self.get_parameter("map_topic").value
+
+        def take(message: Any) -> None:
+            info = message.info
+            origin = pose2_of(info.origin)
+            grid = OccupancyGrid(grid_array(message), info.resolution, tuple(float(value) for value in origin))
+            with self.lock:
+                layer.set_map(grid)
+
+        self._entities.append(self.create_subscription(GridMessage, topic, take, _LATCHED))
+        return layer
+
+    def _make_obstacle_layer(self, name: str, kind: type[ObstacleLayer]) -> ObstacleLayer:
+        names = self.declare_parameter(f"{name}.observation_sources", "scan").value.split()
+        sources = {source: declare_dataclass(self, ObservationSource, f"{name}.{source}") for source in names}
+        plain = {field.name for field in fields(ObstacleLayerParameters)} - {"sources"}
+        values = {
+            field: self.declare_parameter(f"{name}.{field}", getattr(ObstacleLayerParameters(), field)).value
+            for field in sorted(plain)
+        }
+        unknown = self._parameters_of_grid.track_unknown_space
+        parameters = ObstacleLayerParameters(sources=sources, **values)
+        layer = kind(self.footprint, parameters, track_unknown_space=unknown)
+        for source in names:
+            self._listen(name, source, layer, sources[source])
+        return layer
+
+    def _listen(self, name: str, source: str, layer: ObstacleLayer, settings: ObservationSource) -> None:
+        from sensor_msgs.msg import LaserScan
+
+        topic = self.declare_parameter(f"{name}.{source}.topic", source).value
+        kind = self.declare_parameter(f"{name}.{source}.data_type", "LaserScan").value
+        if kind != "LaserScan":
+            raise ValueError(f"the data_type '{kind}' of {name}.{source} is not supported; expected LaserScan")
+        if not topic.startswith("/"):
+            topic = f"/{topic}"
+
+        async def take(scan: Any) -> None:
+            sensor_pose = await self._sensor_pose(scan.header.frame_id)
+            stamp = scan.header.stamp
+            found = await self.buffer.lookup_transform_async(self.global_frame, self.base_frame, stamp)
+            base = pose2_of_transform(found.transform)
+            observation = Observation.from_scan(
+                scan_data(scan, sensor_pose), base, seconds(stamp), inf_is_valid=settings.inf_is_valid
+            )
+            with self.lock:
+                layer.add_observation(observation, source)
+
+        # A scan waits for its transform; updates and services do not wait with it.
+        group = MutuallyExclusiveCallbackGroup()
+        self._entities.append(
+            self.create_subscription(LaserScan, topic, take, qos_profile_sensor_data, callback_group=group)
+        )
+
+    async def _sensor_pose(self, frame: str) -> Any:
+        if frame not in self._sensor_poses:
+            found = await self.buffer.lookup_transform_async(self.base_frame, frame, Time())
+            self._sensor_poses[frame] = pose2_of_transform(found.transform)
+        return self._sensor_poses[frame]
+
+    # Cycle.
+
+    def robot_pose(self) -> Any | None:
+        """Return the latest pose (x, y, yaw) of the robot in the costmap's frame, None while it is not known."""
+        try:
+            found = self.buffer.lookup_transform(self.global_frame, self.base_frame, Time())
+        except TransformException:
+            return None
+        return pose2_of_transform(found.transform)
+
+    @property
+    def is_current(self) -> bool:
+        """Whether there is a map or a pose to speak of: the first update was made."""
+        return self._updates > 0
+
+    _updates = 0
+
+    def _update(self) -> None:
+        pose = self.robot_pose()
+        if pose is None or self.layered is None:
+            self.get_logger().info(
+                f"waiting for the transform from {self.base_frame} to {self.global_frame}", throttle_duration_sec=5.0
+            )
+            return
+        with self.lock:
+            self.layered.update(pose, self.get_clock().now().nanoseconds * 1e-9)
+            self._updates += 1
+
+    def snapshot(self) -> Costmap:
+        """Return a copy of the costmap."""
+        assert self.layered is not None
+        with self.lock:
+            return self.layered.costmap.copy()
+
+    def _publish(self) -> None:
+        if not self._updates:
+            return
+        stamp = self.get_clock().now().to_msg()
+        if self._grid_publisher.handle.impl.is_heard:
+            costmap = self.snapshot()
+            values = to_occupancy(costmap.costs)
+            self._grid_publisher.publish(
+                grid_message(values, costmap.resolution, costmap.origin, self.global_frame, stamp)
+            )
+        if self._raw_publisher.handle.impl.is_heard:
+            self._raw_publisher.publish(self._raw_message(stamp))
+        self._publish_footprint(stamp)
+
+    def _raw_message(self, stamp: Any) -> Any:
+        from array import array
+
+        from nav2_msgs.msg import Costmap as CostmapMessage
+        from nav2_msgs.msg import CostmapMetaData
+        from std_msgs.msg import Header
+
+        costmap = self.snapshot()
+        data = array("B")
+        data.frombytes(np.ascontiguousarray(costmap.costs).tobytes())
+        metadata = CostmapMetaData(
+            map_load_time=stamp,
+            update_time=stamp,
+            layer="master",
+            resolution=costmap.resolution,
+            size_x=costmap.width,
+            size_y=costmap.height,
+            origin=pose_message((*costmap.origin, 0.0)),
+        )
+        return CostmapMessage(header=Header(frame_id=self.global_frame, stamp=stamp), metadata=metadata, data=data)
+
+    def _publish_footprint(self, stamp: Any) -> None:
+        if not self._footprint_publisher.handle.impl.is_heard:
+            return
+        from geometry_msgs.msg import Point32, Polygon, PolygonStamped
+        from std_msgs.msg import Header
+
+        pose = self.robot_pose()
+        if pose is None:
+            return
+        cos, sin = np.cos(pose[2]), np.sin(pose[2])
+        corners = self.footprint.polygon @ np.array([[cos, sin], [-sin, cos]]) + pose[:2]
+        points = [Point32(x=float(x), y=float(y), z=0.0) for x, y in corners]
+        header = Header(frame_id=self.global_frame, stamp=stamp)
+        self._footprint_publisher.publish(PolygonStamped(header=header, polygon=Polygon(points=points)))
+
+    # Services.
+
+    def _on_clear_entirely(self, request: Any, response: Any) -> Any:
+        with self.lock:
+            if self.layered is not None:
+                self.layered.clear_entirely()
+        return response
+
+    def _on_clear_around(self, request: Any, response: Any) -> Any:
+        pose = self.robot_pose()
+        with self.lock:
+            if self.layered is not None and pose is not None:
+                self.layered.clear_around(pose, request.reset_distance)
+        return response
+
+    def _on_clear_except(self, request: Any, response: Any) -> Any:
+        pose = self.robot_pose()
+        with self.lock:
+            if self.layered is not None and pose is not None:
+                self.layered.clear_except(pose, request.reset_distance)
+        return response
+
+    def _on_get_costmap(self, request: Any, response: Any) -> Any:
+        response.map = self._raw_message(self.get_clock().now().to_msg())
+        return response
+
+
+def costmap_of(message: Any) -> Costmap:
+    """Return the costmap that a ``nav2_msgs/msg/Costmap`` holds."""
+    metadata = message.metadata
+    costs = np.frombuffer(message.data, dtype=np.uint8).reshape(metadata.size_y, metadata.size_x)
+    origin = (metadata.origin.position.x, metadata.origin.position.y)
+    return Costmap(costs.copy(), metadata.resolution, origin)

@@ -1,0 +1,1 @@
+"""Bringing managed nodes up and down together."""

@@ -1,0 +1,30 @@
+"""A node that another one contains, spun in a thread of its own."""
+
+from __future__ import annotations
+
+import threading
+
+from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+from rclpy.node import Node
+
+
+class NodeThread:
+    """Spins a node until `stop`."""
+
+    def __init__(self, node: Node) -> None:
+        self._executor = SingleThreadedExecutor(context=node.context)
+        self._executor.add_node(node)
+        self._thread = threading.Thread(target=self._spin, name=node.get_name(), daemon=True)
+        self._thread.start()
+
+    def _spin(self) -> None:
+        try:
+            self._executor.spin()
+        except ExternalShutdownException:
+            return
+
+    def stop(self) -> None:
+        """End; the node's callbacks have returned afterwards."""
+        self._executor.shutdown()
+        if self._thread is not threading.current_thread():
+            self._thread.join(timeout=5.0)

@@ -1,0 +1,1 @@
+"""Containers that several nodes share a process in."""

@@ -1,0 +1,1 @@
+"""Transforms of a robot from its joint states."""

@@ -1,0 +1,153 @@
+"""`robot_state_publisher`: transforms of all links from joint states and a URDF."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+from rclpy.qos import DurabilityPolicy, QoSProfile
+from rclpy.utilities import remove_ros_args
+
+from daidalos.description import urdf
+from daidalos.description.errors import DescriptionError
+from daidalos.description.kinematics import KinematicTree
+from daidalos.nodes.conversions import nanoseconds
+from daidalos.nodes.packages import package_share
+from daidalos.nodes.runner import UserError, run
+
+_LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+
+
+class RobotStatePublisher(Node):
+    """Publishes ``/tf``, ``/tf_static`` and ``/robot_description``.
+
+    Parameters of the node are those of ROS 2's: ``robot_description``, ``publish_frequency`` [Hz],
+    ``ignore_timestamp``, ``frame_prefix``.
+
+    Raises
+    ------
+    UserError
+        When the description is missing or faulty.
+    """
+
+    def __init__(self, **kwargs: Any) -> None:
+        super().__init__("robot_state_publisher", **kwargs)
+        from sensor_msgs.msg import JointState
+        from std_msgs.msg import String
+        from tf2_ros import StaticTransformBroadcaster, TransformBroadcaster
+
+        self.declare_parameter("robot_description", "")
+        self.declare_parameter("publish_frequency", 20.0)
+        self.declare_parameter("ignore_timestamp", False)
+        self.declare_parameter("frame_prefix", "")
+        self._description_publisher = self.create_publisher(String, "robot_description", _LATCHED)
+        self._broadcaster = TransformBroadcaster(self)
+        self._static_broadcaster = StaticTransformBroadcaster(self)
+        self._read(self.get_parameter("robot_description").value)
+        self.create_subscription(JointState, "joint_states", self._on_joint_states, 10)
+        self.add_on_set_parameters_callback(self._on_set_parameters)
+
+    def _read(self, text: str) -> None:
+        """Take a description and publish what does not move."""
+        from std_msgs.msg import String
+
+        if not text:
+            raise UserError("the parameter 'robot_description' must hold a URDF document, it is empty")
+        try:
+            robot = urdf.parse(text, "robot_description", package_share)
+        except DescriptionError as error:
+            raise UserError(str(error)) from None
+        self._tree = KinematicTree(robot)
+        self._positions = np.zeros(len(self._tree.joint_names))
+        self._index = {name: i for i, name in enumerate(self._tree.joint_names)}
+        self._moving = np.flatnonzero(self._tree.moving)
+        self._last_ns = -1
+        self._static_broadcaster.sendTransform(
+            self._transforms(np.flatnonzero(~self._tree.moving), self.get_clock().now().to_msg())
+        )
+        self._description_publisher.publish(String(data=text))
+
+    def _transforms(self, rows: Any, stamp: Any) -> list[Any]:
+        from geometry_msgs.msg import Quaternion, Transform, TransformStamped, Vector3
+        from std_msgs.msg import Header
+
+        prefix = self.get_parameter("frame_prefix").value
+        translations, rotations = self._tree.joint_transforms(self._positions)
+        result = []
+        for row in rows.tolist():
+            x, y, z = translations[row].tolist()
+            qx, qy, qz, qw = rotations[row].tolist()
+            result.append(
+                TransformStamped(
+                    header=Header(stamp=stamp, frame_id=prefix + self._tree.parents[row]),
+                    child_frame_id=prefix + self._tree.children[row],
+                    transform=Transform(
+                        translation=Vector3(x=x, y=y, z=z), rotation=Quaternion(x=qx, y=qy, z=qz, w=qw)
+                    ),
+                )
+            )
+        return result
+
+    def _on_joint_states(self, message: Any) -> None:
+        if len(message.position) < len(message.name):
+            self.get_logger().error(
+                "Robot state publisher ignored an invalid JointState message: it has fewer positions than names",
+                throttle_duration_sec=5.0,
+            )
+            return
+        index, positions = self._index, self._positions
+        for name, position in zip(message.name, message.position, strict=False):
+            row = index.get(name)
+            if row is not None:
+                positions[row] = position
+        if self._is_due(nanoseconds(message.header.stamp)):
+            stamp = message.header.stamp
+            if self.get_parameter("ignore_timestamp").value:
+                stamp = self.get_clock().now().to_msg()
+            self._broadcaster.sendTransform(self._transforms(self._moving, stamp))
+
+    def _is_due(self, stamp_ns: int) -> bool:
+        """Tell whether the last transforms are old enough, by the stamps of joint states."""
+        if self.get_parameter("ignore_timestamp").value:
+            stamp_ns = self.get_clock().now().nanoseconds
+        frequency = self.get_parameter("publish_frequency").value
+        period = 0.0 if frequency <= 0.0 else 1e9 / frequency
+        # A stamp before the last one is a clock that was set back.
+        if self._last_ns <= stamp_ns < self._last_ns + period:
+            return False
+        self._last_ns = stamp_ns
+        return True
+
+    def _on_set_parameters(self, parameters: list[Parameter[Any]]) -> Any:
+        from rcl_interfaces.msg import SetParametersResult
+
+        for parameter in parameters:
+            if parameter.name == "robot_description":
+                try:
+                    self._read(parameter.value)
+                except UserError as error:
+                    return SetParametersResult(successful=False, reason=str(error))
+        return SetParametersResult(successful=True)
+
+
+def _from_file(path: str) -> list[Parameter[Any]]:
+    """Return the description in a file as a parameter: the node's old command line names one."""
+    try:
+        text = Path(path).read_text(encoding="utf-8")
+    except OSError as error:
+        raise UserError(f"cannot read '{path}': {error.strerror}") from None
+    return [Parameter("robot_description", value=text)]
+
+
+def main() -> int:
+    """Run the node."""
+    files = remove_ros_args(sys.argv)[1:]
+    return run(lambda: RobotStatePublisher(parameter_overrides=_from_file(files[0]) if files else None))
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,183 @@
+"""`async_slam_toolbox_node`: the map and the robot's place in it from scans and odometry."""
+
+from __future__ import annotations
+
+import sys
+import threading
+from dataclasses import replace
+from typing import Any
+
+from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
+from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy, QoSProfile
+
+from daidalos.mapping.config import SlamConfig
+from daidalos.nodes.conversions import (
+    grid_message,
+    nanoseconds,
+    pose2_of_transform,
+    scan_data,
+    time_message,
+    transform_stamped,
+)
+from daidalos.nodes.parameters import declare_dataclass
+from daidalos.nodes.runner import run
+from daidalos.nodes.warming import warm_up_in_background
+
+_LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+_SCANS_A_MAP = 100
+"""Scans that one publication of the map may move to where a loop closure wants them."""
+
+
+class SlamToolbox(Node):
+    """Publishes ``map`` and the transform from ``map_frame`` to ``odom_frame``.
+
+    Parameters of the node are slam_toolbox's: those of `SlamConfig`, and ``odom_frame``, ``map_frame``,
+    ``base_frame``, ``scan_topic``, ``map_update_interval`` [s], ``transform_publish_period`` [s],
+    ``transform_timeout`` [s], ``throttle_scans``, ``scan_queue_size``.
+    """
+
+    def __init__(self, **kwargs: Any) -> None:
+        super().__init__("slam_toolbox", **kwargs)
+        from tf2_ros import Buffer, TransformBroadcaster, TransformListener
+
+        self._config = declare_dataclass(self, SlamConfig, match_every_scan=True)
+        self._map_frame = self.declare_parameter("map_frame", "map").value
+        self._odom_frame = self.declare_parameter("odom_frame", "odom").value
+        self._base_frame = self.declare_parameter("base_frame", "base_footprint").value
+        self._throttle = max(self.declare_parameter("throttle_scans", 1).value, 1)
+        self._tolerance_ns = int(1e9 * self.declare_parameter("transform_timeout", 0.2).value)
+        self.declare_parameter("scan_topic", "/scan")
+        self.declare_parameter("scan_queue_size", 5)
+        self.declare_parameter("map_update_interval", 1.0)
+        self.declare_parameter("transform_publish_period", 0.02)
+        self._slam: Any = None
+        self._lock = threading.Lock()
+        self._sensor_poses: dict[str, Any] = {}
+        self._scans = 0
+        self._drawn_keys = -1
+        self._map_to_odom: Any = None
+        self._buffer = Buffer()
+        self._listener = TransformListener(self._buffer, self)
+        self._broadcaster = TransformBroadcaster(self)
+        self._compiler = warm_up_in_background(_warm_up, self.get_logger(), self._begin)
+
+    def _begin(self) -> None:
+        """Make what needs compiled kernels; called once they are there."""
+        from nav_msgs.msg import MapMetaData, OccupancyGrid
+        from nav_msgs.srv import GetMap
+        from sensor_msgs.msg import LaserScan
+        from slam_toolbox.srv import Reset, SaveMap
+
+        self._slam = self._new_slam()
+        self._map_publisher = self.create_publisher(OccupancyGrid, "map", _LATCHED)
+        self._metadata_publisher = self.create_publisher(MapMetaData, "map_metadata", _LATCHED)
+        depth = self.get_parameter("scan_queue_size").value
+        # A scan may wait for its odometry; the map and the services do not wait with it.
+        scans = MutuallyExclusiveCallbackGroup()
+        topic = self.get_parameter("scan_topic").value
+        self.create_subscription(LaserScan, topic, self._on_scan, depth, callback_group=scans)
+        self.create_timer(self.get_parameter("map_update_interval").value, self._publish_map)
+        period = self.get_parameter("transform_publish_period").value
+        if period > 0.0:
+            own = MutuallyExclusiveCallbackGroup()
+            self.create_timer(period, self._publish_transform, callback_group=own)
+        self.create_service(SaveMap, "~/save_map", self._on_save)
+        self.create_service(GetMap, "~/dynamic_map", self._on_get_map)
+        self.create_service(Reset, "~/reset", self._on_reset)
+        self.get_logger().info("ready for scans")
+
+    def _new_slam(self) -> Any:
+        from daidalos.mapping.slam import Slam
+
+        return Slam(replace(self._config))
+
+    async def _on_scan(self, scan: Any) -> None:
+        self._scans += 1
+        if self._scans % self._throttle:
+            return
+        sensor_pose = await self._sensor_pose(scan.header.frame_id)
+        # Odometry comes a little later than the scan that it belongs to.
+        odometry = await self._buffer.lookup_transform_async(self._odom_frame, self._base_frame, scan.header.stamp)
+        stamp_ns = nanoseconds(scan.header.stamp)
+        data = scan_data(scan, sensor_pose)
+        with self._lock:
+            self._slam.add_scan(stamp_ns, data, pose2_of_transform(odometry.transform))
+            self._map_to_odom = self._slam.map_to_odom
+
+    async def _sensor_pose(self, frame: str) -> Any:
+        """Return the sensor's pose in the base, which does not change."""
+        if frame not in self._sensor_poses:
+            from rclpy.time import Time
+
+            found = await self._buffer.lookup_transform_async(self._base_frame, frame, Time())
+            self._sensor_poses[frame] = pose2_of_transform(found.transform)
+        return self._sensor_poses[frame]
+
+    def _publish_transform(self) -> None:
+        if self._map_to_odom is None:
+            return
+        # Stamped ahead, as slam_toolbox does: those who ask for "now" need not wait for the next one.
+        stamp = time_message(self.get_clock().now().nanoseconds + self._tolerance_ns)
+        self._broadcaster.sendTransform(transform_stamped(self._map_to_odom, self._map_frame, self._odom_frame, stamp))
+
+    def _map_message(self) -> Any:
+        with self._lock:
+            grid = self._slam.grid(_SCANS_A_MAP)
+        stamp = self.get_clock().now().to_msg()
+        return grid_message(grid.data, grid.resolution, grid.origin, self._map_frame, stamp)
+
+    def _publish_map(self) -> None:
+        # After a loop closure the grid goes on changing although no scan is added.
+        with self._lock:
+            if self._slam.key_count == self._drawn_keys and not self._slam.render(0):
+                return
+        self._drawn_keys = self._slam.key_count
+        message = self._map_message()
+        if message.info.width and message.info.height:
+            self._map_publisher.publish(message)
+            self._metadata_publisher.publish(message.info)
+
+    def _on_get_map(self, request: Any, response: Any) -> Any:
+        response.map = self._map_message()
+        return response
+
+    def _on_save(self, request: Any, response: Any) -> Any:
+        from daidalos.mapping.errors import MappingError
+        from daidalos.mapping.map_file import save_map
+
+        name = request.name.data or "map"
+        if not self._slam.key_count:
+            response.result = response.RESULT_NO_MAP_RECEIEVD
+            return response
+        try:
+            save_map(self._slam.grid(), name)
+        except (OSError, MappingError) as error:
+            self.get_logger().error(f"cannot save the map: {error}")
+            response.result = response.RESULT_UNDEFINED_FAILURE
+            return response
+        response.result = response.RESULT_SUCCESS
+        self.get_logger().info(f"saved the map to {name}.pgm and {name}.yaml")
+        return response
+
+    def _on_reset(self, request: Any, response: Any) -> Any:
+        self._slam = self._new_slam()
+        self._map_to_odom = None
+        self._drawn_keys = -1
+        response.result = response.RESULT_SUCCESS
+        return response
+
+
+def _warm_up(progress: Any) -> None:
+    from daidalos import mapping
+
+    mapping.warm_up(progress)
+
+
+def main() -> int:
+    """Run the node."""
+    return run(SlamToolbox)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
