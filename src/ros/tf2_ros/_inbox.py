@@ -1,0 +1,71 @@
+"""A subscription that needs no executor."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from rclpy.event_handler import SubscriptionEventCallbacks
+from rclpy.impl.entities import SubscriptionHandle
+from rclpy.impl.node_graph import checked_name
+from rclpy.qos import QoSProfile
+from rclpy.subscription import Subscription
+
+if TYPE_CHECKING:
+    from rclpy.callback_groups import CallbackGroup
+    from rclpy.node import Node
+
+
+class Inbox(Subscription):
+    """Hands messages to its callback on the thread that receives them.
+
+    So they are there while another callback waits for them, and cost no round through the executor. Who calls
+    `spin_once` counts on it to return when a message came, so the executor gets an empty piece of work for
+    each; one that spins for good is left to sleep.
+    """
+
+    def __init__(self, handle: SubscriptionHandle, *arguments: Any) -> None:
+        self._arrivals: deque[None] = deque(maxlen=100)
+        super().__init__(handle, *arguments)
+        handle.set_on_ready(self._receive)
+
+    def _receive(self) -> None:
+        node = self._node() if self._node is not None else None
+        executor = node.executor if node is not None else None
+        counted = executor is None or not executor._spins
+        taken = self._impl.take()
+        while taken is not None:
+            self._callback(taken[0])
+            if counted:
+                self._arrivals.append(None)
+            taken = self._impl.take()
+        if counted:
+            self._hook()
+
+    def _take(self) -> None:
+        if self._arrivals:
+            self._arrivals.popleft()
+
+    def _has_more(self) -> bool:
+        return bool(self._arrivals)
+
+
+def create_inbox(
+    node: Node,
+    message_type: Any,
+    topic: str,
+    callback: Callable[[Any], None],
+    qos: QoSProfile | int,
+    group: CallbackGroup,
+) -> Inbox:
+    """Subscribe as `Node.create_subscription` does, but with an `Inbox`."""
+    profile = qos if isinstance(qos, QoSProfile) else QoSProfile(depth=qos)
+    with node.handle as handle:
+        name = checked_name(handle, topic, is_service=False)
+        subscription = SubscriptionHandle(handle, message_type, name, profile)
+    inbox = Inbox(subscription, message_type, topic, callback, group, profile, False, SubscriptionEventCallbacks())
+    for handler in inbox.event_handlers:
+        node.add_waitable(handler)
+    node._add("subscription", inbox, group)
+    return inbox
