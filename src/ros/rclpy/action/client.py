@@ -280,15 +280,15 @@ status_sub_qos_profile
             return None
         return self._get_result(goal_handle)
 
-    def _wait(self, call: Callable[[], Future]) -> Any:
-        """Return the result of a call's future, taking care of responses ourselves meanwhile."""
+    def _wait(self, call: Callable[[], Future], timeout_s: float | None = None) -> Any:
+        """Return the result of a call's future, taking care of responses ourselves meanwhile; None when it is late."""
         done = threading.Event()
         with self._lock:
             self._own_waiters += 1
         try:
             future = call()
             future.on_wake(done.set)
-            done.wait()
+            done.wait(timeout_s)
         finally:
             with self._lock:
                 self._own_waiters -= 1
