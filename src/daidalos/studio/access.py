@@ -27,9 +27,7 @@ class AccessPolicy:
         Whether the server listens beyond loopback, so that it is reached by address.
     """
 
-    def __init__(
-        self, hosts: Iterable[str] = (), origins: Iterable[str] = (), *, exposed: bool = False
-    ) -> None:
+    def __init__(self, hosts: Iterable[str] = (), origins: Iterable[str] = (), *, exposed: bool = False) -> None:
         self._hosts = LOOPBACK_NAMES | {host.lower().strip("[]") for host in hosts}
         self._origins = frozenset(origin.rstrip("/").lower() for origin in origins)
         self._exposed = exposed

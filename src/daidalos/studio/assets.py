@@ -33,9 +33,7 @@ class AssetResolver:
         More directories whose files may be read by ``file://``.
     """
 
-    def __init__(
-        self, share_directory: Callable[[str], Path | None], directories: Iterable[Path] = ()
-    ) -> None:
+    def __init__(self, share_directory: Callable[[str], Path | None], directories: Iterable[Path] = ()) -> None:
         self._share_directory = share_directory
         self._directories = {_normal(Path(directory)) for directory in directories}
 

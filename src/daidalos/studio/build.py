@@ -184,9 +184,7 @@ def _is_installed(web: Path) -> bool:
     """Tell whether node_modules holds what the lock file names (a developer's has more)."""
     try:
         wanted = json.loads((web / "package-lock.json").read_text(encoding="utf-8"))["packages"]
-        present = json.loads((web / "node_modules/.package-lock.json").read_text(encoding="utf-8"))[
-            "packages"
-        ]
+        present = json.loads((web / "node_modules/.package-lock.json").read_text(encoding="utf-8"))["packages"]
     except (OSError, ValueError, KeyError):
         return False
     return all(
@@ -237,7 +235,8 @@ def _run(command: Sequence[str], web: Path, node: _Node, timeout: float) -> None
     except subprocess.TimeoutExpired:
         raise BuildError(f"{Path(command[0]).name} took longer than {timeout:.0f} s") from None
     if done.returncode != 0:
-        words = [line for line in done.stdout.splitlines() if line.strip()][-6:]
+        lines = [line.strip() for line in done.stdout.splitlines() if line.strip()]
+        words = [line for line in lines if "error" in line.lower()][:3] or lines[-3:]
         raise BuildError(" | ".join(words) or f"{command[0]} ended with {done.returncode}")
 
 

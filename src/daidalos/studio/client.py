@@ -242,9 +242,7 @@ class Client:
     def _set_parameters(self, message: dict[str, Any]) -> None:
         wanted = [protocol.parse_parameter(entry) for entry in _entries(message, "parameters")]
         request = _request_id(message)
-        self._start(
-            self._answer_parameters(self._source.set_parameters(wanted), request, silent=request is None)
-        )
+        self._start(self._answer_parameters(self._source.set_parameters(wanted), request, silent=request is None))
 
     async def _answer_parameters(
         self, future: Future[Sequence[Parameter]], request: str | None, *, silent: bool = False

@@ -58,9 +58,7 @@ class Hub:
             self._shared[channel] = shared
         return shared.join(received)
 
-    def _update(
-        self, known: dict[int, Entry], now: Sequence[Entry]
-    ) -> tuple[dict[int, Entry], dict[int, Entry]]:
+    def _update(self, known: dict[int, Entry], now: Sequence[Entry]) -> tuple[dict[int, Entry], dict[int, Entry]]:
         wanted = set(now)
         gone = {number: entry for number, entry in known.items() if entry not in wanted}
         for number in gone:

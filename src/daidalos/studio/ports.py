@@ -69,9 +69,9 @@ def _open_on_all(hosts: Sequence[str], port: int) -> list[socket.socket] | None:
 
 
 def _listen(host: str, port: int) -> socket.socket:
-    family, kind, number, _, address = socket.getaddrinfo(
-        host, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE
-    )[0]
+    family, kind, number, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE)[
+        0
+    ]
     opened = socket.socket(family, kind, number)
     try:
         if sys.platform == "win32":

@@ -37,7 +37,11 @@ function next(name, condition = () => true) {
 
 const bytes = (data) => Buffer.from(data.buffer ?? data, data.byteOffset ?? 0, data.byteLength);
 
-const [info, channels, services] = await Promise.all([next("serverInfo"), next("advertise"), next("advertiseServices")]);
+const [info, channels, services] = await Promise.all([
+  next("serverInfo"),
+  next("advertise"),
+  next("advertiseServices"),
+]);
 const result = { name: info.name, capabilities: info.capabilities };
 
 const channel = channels.find(({ topic }) => topic === "/chatter");

@@ -8,7 +8,6 @@ import type { Layout } from "./layout";
 import type { Studio } from "./studio";
 import { theme, toggleTheme } from "./theme";
 
-
 const LINK_WORDS = { connecting: "Connecting", connected: "Connected", lost: "Reconnecting" } as const;
 
 export function TopBar({ studio, layout }: { studio: Studio; layout: () => Layout }) {

@@ -14,3 +14,12 @@ export function makeWriter(definition: string): Writer {
   const writer = new MessageWriter(parse(definition, { ros2: true }));
   return (message) => writer.writeMessage(message);
 }
+
+/** Run what may fail because of a definition or a message that others wrote. */
+export function attempt<T>(run: () => T): T | Error {
+  try {
+    return run();
+  } catch (error) {
+    return error instanceof Error ? error : new Error(String(error));
+  }
+}

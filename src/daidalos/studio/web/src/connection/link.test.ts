@@ -124,6 +124,11 @@ describe("subscriptions", () => {
   });
 });
 
+it("frames that are not understood are told and do not stop the rest", () => {
+  link.receiveBinary(new Uint8Array([99]).buffer);
+  expect(heard("status")[0]?.status.text).toContain("99");
+});
+
 describe("publishing", () => {
   it("advertises once and writes what others can read", () => {
     for (const x of [1, 2]) {
@@ -154,7 +159,9 @@ describe("services", () => {
     link.receiveText(
       JSON.stringify({
         op: "advertiseServices",
-        services: [{ id: 3, name: "/s", type: "p/srv/S", request: { schema: STRING }, response: { schema: "bool ok" } }],
+        services: [
+          { id: 3, name: "/s", type: "p/srv/S", request: { schema: STRING }, response: { schema: "bool ok" } },
+        ],
       }),
     );
 

@@ -1,10 +1,11 @@
 // The worker's conversation with the server: the protocol's state, independent of what carries it.
 import type { FromWorker, ParameterInfo, Received, ToWorker } from "./boundary";
 import { Backlog } from "./backlog";
-import { makeReader, makeWriter, type Reader, type Writer } from "./codecs";
-import { parseFrame, publishFrame, serviceRequestFrame, type ServerFrame } from "./frames";
+import { Calls, type Service } from "./calls";
+import { attempt, makeReader, type Reader } from "./codecs";
+import { parseFrame } from "./frames";
+import { Publishers } from "./publishers";
 import { TrafficMeter } from "./traffic";
-import { DEFINITIONS } from "../ros/definitions";
 
 /** Frames larger than this are handed to the page, not copied. */
 const TRANSFER_BYTES = 2048;
@@ -15,16 +16,6 @@ export interface Channel {
   schemaName: string;
   schema: string;
   schemaEncoding?: string;
-}
-
-interface Service {
-  id: number;
-  name: string;
-  type: string;
-  request?: { schema: string };
-  response?: { schema: string };
-  requestSchema?: string;
-  responseSchema?: string;
 }
 
 type ServerMessage =
@@ -52,19 +43,24 @@ export interface Output {
 
 export class Link {
   private readonly channels = new Map<number, Channel>();
-  private readonly services = new Map<number, Service>();
   private readonly subscriptions = new Map<string, Subscription>();
   private readonly topicOf = new Map<number, string>();
   private readonly readers = new Map<string, Reader | Error>();
-  private readonly writers = new Map<string, { number: number; write: Writer }>();
-  private readonly calls = new Map<number, Service>();
+  private readonly calls: Calls;
+  private readonly publishers: Publishers;
   private readonly backlog = new Backlog();
   private readonly meter = new TrafficMeter();
   private time: number | undefined;
   private hasClock = false;
   private numbers = 0;
 
-  constructor(private readonly out: Output) {}
+  constructor(private readonly out: Output) {
+    this.calls = new Calls(out);
+    this.publishers = new Publishers(out, {
+      number: () => ++this.numbers,
+      definitionOf: (type) => [...this.channels.values()].find((channel) => channel.schemaName === type)?.schema,
+    });
+  }
 
   /** Whether the page has something to take. */
   get hasNews(): boolean {
@@ -74,17 +70,13 @@ export class Link {
   /** The connection is gone; what the page wants stays, to be asked for again. */
   reset(): void {
     this.channels.clear();
-    this.services.clear();
     this.topicOf.clear();
-    this.writers.clear();
+    this.publishers.reset();
+    this.calls.reset();
     this.readers.clear();
     this.backlog.clear();
     this.hasClock = false;
     this.time = undefined;
-    for (const id of this.calls.keys()) {
-      this.out.toPage({ kind: "response", id, error: "the connection was lost" });
-    }
-    this.calls.clear();
     for (const subscription of this.subscriptions.values()) {
       delete subscription.number;
       delete subscription.channel;
@@ -116,20 +108,13 @@ export class Link {
         this.forgetChannels(new Set(message.channelIds));
         break;
       case "advertiseServices":
-        for (const service of message.services) {
-          this.services.set(service.id, service);
-        }
-        this.tellServices();
+        this.calls.offer(message.services);
         break;
       case "unadvertiseServices":
-        for (const id of message.serviceIds) {
-          this.services.delete(id);
-        }
-        this.tellServices();
+        this.calls.withdraw(message.serviceIds);
         break;
       case "serviceCallFailure":
-        this.calls.delete(message.callId);
-        this.out.toPage({ kind: "response", id: message.callId, error: message.message });
+        this.calls.fail(message.callId, message.message);
         break;
       case "status": {
         const { level, message: text, id } = message;
@@ -146,7 +131,12 @@ export class Link {
   }
 
   receiveBinary(buffer: ArrayBuffer): void {
-    const frame = parseFrame(buffer);
+    const frame = attempt(() => parseFrame(buffer));
+    if (frame instanceof Error) {
+      // A newer protocol may have more to say; what we know goes on.
+      this.complain(frame.message, "frame");
+      return;
+    }
     switch (frame.op) {
       case "message": {
         const topic = this.topicOf.get(frame.subscription);
@@ -160,7 +150,7 @@ export class Link {
         this.time = frame.time;
         break;
       case "serviceResponse":
-        this.answerCall(frame);
+        this.calls.answer(frame.call, frame.payload);
         break;
       case "asset": {
         const data = frame.data.slice().buffer;
@@ -182,10 +172,10 @@ export class Link {
         this.unsubscribe(message.topic);
         break;
       case "publish":
-        this.publish(message.topic, message.type, message.message);
+        this.publishers.publish(message.topic, message.type, message.message);
         break;
       case "call":
-        this.call(message.id, message.service, message.request);
+        this.calls.call(message.id, message.service, message.request);
         break;
       case "fetchAsset":
         this.say({ op: "fetchAsset", requestId: message.id, uri: message.uri });
@@ -327,74 +317,6 @@ export class Link {
     return reader instanceof Error ? undefined : reader;
   }
 
-  private publish(topic: string, type: string, message: unknown): void {
-    const done = attempt(() => {
-      const writer = this.writerFor(topic, type);
-      this.out.toServer(publishFrame(writer.number, writer.write(message)));
-    });
-    this.out.toPage({ kind: "published", topic, ...(done instanceof Error ? { error: done.message } : {}) });
-  }
-
-  private writerFor(topic: string, type: string): { number: number; write: Writer } {
-    const key = `${topic} ${type}`;
-    let writer = this.writers.get(key);
-    if (!writer) {
-      const known = [...this.channels.values()].find((channel) => channel.schemaName === type);
-      const definition = known?.schema ?? DEFINITIONS[type];
-      if (definition === undefined) {
-        throw new Error(`the definition of ${type} is not known here`);
-      }
-      writer = { number: ++this.numbers, write: makeWriter(definition) };
-      this.writers.set(key, writer);
-      this.say({
-        op: "advertise",
-        channels: [
-          {
-            id: writer.number,
-            topic,
-            encoding: "cdr",
-            schemaName: type,
-            schema: definition,
-            schemaEncoding: "ros2msg",
-          },
-        ],
-      });
-    }
-    return writer;
-  }
-
-  private call(id: number, name: string, request: unknown): void {
-    const service = [...this.services.values()].find((each) => each.name === name);
-    if (!service) {
-      this.out.toPage({ kind: "response", id, error: `there is no service ${name}` });
-      return;
-    }
-    const done = attempt(() => {
-      const write = makeWriter(service.request?.schema ?? service.requestSchema ?? "");
-      this.out.toServer(serviceRequestFrame(service.id, id, write(request)));
-    });
-    if (done instanceof Error) {
-      this.out.toPage({ kind: "response", id, error: done.message });
-    } else {
-      this.calls.set(id, service);
-    }
-  }
-
-  private answerCall(frame: Extract<ServerFrame, { op: "serviceResponse" }>): void {
-    const service = this.calls.get(frame.call);
-    this.calls.delete(frame.call);
-    if (service) {
-      const message = attempt(() =>
-        makeReader(service.response?.schema ?? service.responseSchema ?? "")(frame.payload),
-      );
-      this.out.toPage({
-        kind: "response",
-        id: frame.call,
-        ...(message instanceof Error ? { error: message.message } : { message }),
-      });
-    }
-  }
-
   private tellTopics(): void {
     const topics = [...this.channels.values()].map((channel) => ({
       name: channel.topic,
@@ -405,26 +327,11 @@ export class Link {
     this.out.toPage({ kind: "topics", topics });
   }
 
-  private tellServices(): void {
-    const services = [...this.services.values()].map(({ name, type }) => ({ name, type }));
-    services.sort((a, b) => a.name.localeCompare(b.name));
-    this.out.toPage({ kind: "services", services });
-  }
-
   private complain(text: string, id?: string): void {
     this.out.toPage({ kind: "status", status: { level: 1, text, ...(id === undefined ? {} : { id }) } });
   }
 
   private say(message: { op: string; [field: string]: unknown }): void {
     this.out.toServer(JSON.stringify(message));
-  }
-}
-
-/** Run what may fail because of a definition or a message that others wrote. */
-function attempt<T>(run: () => T): T | Error {
-  try {
-    return run();
-  } catch (error) {
-    return error instanceof Error ? error : new Error(String(error));
   }
 }

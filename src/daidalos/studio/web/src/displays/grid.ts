@@ -20,7 +20,12 @@ class Grid extends Display {
     disposeTree(this.object);
     this.object.clear();
     const lines = new LineSegments(
-      gridGeometry(number(settings, "cells"), number(settings, "size"), text(settings, "color"), flag(settings, "fade")),
+      gridGeometry(
+        number(settings, "cells"),
+        number(settings, "size"),
+        text(settings, "color"),
+        flag(settings, "fade"),
+      ),
       new LineBasicMaterial({
         vertexColors: true,
         transparent: true,

@@ -30,7 +30,11 @@ export class DisplayList {
   }
 
   add(type: DisplayType, topic?: string): void {
-    const config = makeConfig(type, { ...(topic === undefined ? {} : { topic }) }, topic ? shortName(topic) : undefined);
+    const config = makeConfig(
+      type,
+      { ...(topic === undefined ? {} : { topic }) },
+      topic ? shortName(topic) : undefined,
+    );
     this.change([...this.configs, config]);
   }
 

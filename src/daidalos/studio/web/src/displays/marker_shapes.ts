@@ -222,13 +222,17 @@ function mesh(marker: Marker, { assets, changed, complain }: MarkerContext): Obj
 function triangles(marker: Marker): Object3D {
   const corners = marker.points.length - (marker.points.length % 3);
   const geometry = new BufferGeometry();
-  const positions = marker.points.slice(0, corners).flatMap(({ x, y, z }) => [x * marker.scale.x, y * marker.scale.y, z * marker.scale.z]);
+  const positions = marker.points
+    .slice(0, corners)
+    .flatMap(({ x, y, z }) => [x * marker.scale.x, y * marker.scale.y, z * marker.scale.z]);
   geometry.setAttribute("position", new Float32BufferAttribute(positions, 3));
   // One colour for each corner, or for each triangle.
   const each = marker.colors.length * 3 === corners ? 3 : 1;
   const painted = marker.colors.length * each >= corners && corners > 0;
   if (painted) {
-    const tints = Array.from({ length: corners }, (_, i) => linear(marker.colors[Math.floor(i / each)] as ColorRGBA)).flat();
+    const tints = Array.from({ length: corners }, (_, i) =>
+      linear(marker.colors[Math.floor(i / each)] as ColorRGBA),
+    ).flat();
     geometry.setAttribute("color", new Float32BufferAttribute(tints, 3));
   }
   geometry.computeVertexNormals();

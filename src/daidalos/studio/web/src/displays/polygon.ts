@@ -18,7 +18,10 @@ class PolygonDisplay extends StampedDisplay<PolygonStamped> {
 
   protected override show({ polygon: { points } }: PolygonStamped): void {
     const closed = points.length > 2 ? [...points, points[0] as (typeof points)[number]] : points;
-    setLinePoints(this.line, closed.flatMap(({ x, y, z }) => [x, y, z + 0.012]));
+    setLinePoints(
+      this.line,
+      closed.flatMap(({ x, y, z }) => [x, y, z + 0.012]),
+    );
     this.line.material.color.set(text(this.settings, "color"));
     this.line.material.linewidth = number(this.settings, "width");
     this.line.material.opacity = number(this.settings, "alpha");

@@ -163,7 +163,8 @@ function useStandardMaterials(root: Object3D): void {
 function standardFrom(old: MeshPhongMaterial): Material {
   const { r, g, b } = old.color;
   // White is what the loader gives to shapes without a material of their own.
-  const material = old.name || r + g + b < 3 ? plainMaterial(new Color().setRGB(r, g, b, SRGBColorSpace)) : plainMaterial();
+  const material =
+    old.name || r + g + b < 3 ? plainMaterial(new Color().setRGB(r, g, b, SRGBColorSpace)) : plainMaterial();
   material.map = old.map;
   material.opacity = old.opacity;
   material.userData.opacity = old.opacity;

@@ -57,7 +57,9 @@ class TfDisplay extends Display {
     this.drawAxes([...poses.values()]);
     this.drawLinks(poses);
     this.drawLabels(poses, frame);
-    const state = [...poses.values()].map(({ position: p, rotation: r }) => p.toArray().concat(r.toArray()).join()).join();
+    const state = [...poses.values()]
+      .map(({ position: p, rotation: r }) => p.toArray().concat(r.toArray()).join())
+      .join();
     if (state !== this.before) {
       this.before = state;
       this.context.invalidate();

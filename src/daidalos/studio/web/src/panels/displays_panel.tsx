@@ -94,7 +94,10 @@ function DisplayRow({ studio, config, open, onToggle }: RowProps) {
   const status = statusOf(studio, config);
   const type = displayType(config.type);
   return (
-    <section class={`display ${config.enabled ? status.level : "off"} ${open ? "open" : ""}`} data-display={config.name}>
+    <section
+      class={`display ${config.enabled ? status.level : "off"} ${open ? "open" : ""}`}
+      data-display={config.name}
+    >
       <div class="display-head">
         <button class="bare grow" aria-expanded={open} onClick={onToggle} title={status.text}>
           <span class="turn">
@@ -167,7 +170,13 @@ function PropertyRow({ studio, config, property }: PropertyProps) {
   );
 }
 
-function Editor({ studio, config, property, value, change }: PropertyProps & { value: Value; change(value: Value): void }) {
+function Editor({
+  studio,
+  config,
+  property,
+  value,
+  change,
+}: PropertyProps & { value: Value; change(value: Value): void }) {
   switch (property.kind) {
     case "toggle":
       return <Toggle label={property.label} on={Boolean(value)} onChange={change} />;

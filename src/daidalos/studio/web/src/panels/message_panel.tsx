@@ -177,7 +177,9 @@ function leaf(value: unknown): string {
 function summary(value: unknown): string {
   if (isArray(value)) {
     const numbers = value.length > 0 && typeof value[0] !== "object";
-    const preview = numbers ? `: ${head(value, ARRAY_PREVIEW).map(leaf).join(", ")}${value.length > ARRAY_PREVIEW ? ", …" : ""}` : "";
+    const preview = numbers
+      ? `: ${head(value, ARRAY_PREVIEW).map(leaf).join(", ")}${value.length > ARRAY_PREVIEW ? ", …" : ""}`
+      : "";
     return `${value.length} items${preview}`;
   }
   const fields = entries(value);

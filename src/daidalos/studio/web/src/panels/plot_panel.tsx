@@ -98,7 +98,11 @@ function PlotPanel({ studio, visible, params, remember }: PanelProps) {
             <span class="swatch" style={{ background: COLORS[i % COLORS.length] }} />
             <span class="ellipsis">{path}</span>
             <span class="figures">{reading(readings.value[i])}</span>
-            <button class="bare" title="Remove" onClick={() => (paths.value = paths.value.filter((each) => each !== path))}>
+            <button
+              class="bare"
+              title="Remove"
+              onClick={() => (paths.value = paths.value.filter((each) => each !== path))}
+            >
               <Icon name="close" size={11} />
             </button>
           </span>
@@ -170,7 +174,9 @@ function reading(value: number | undefined): string {
 }
 
 function pathsOf(params: unknown): readonly string[] {
-  return isRecord(params) && Array.isArray(params.paths) ? params.paths.filter((path) => typeof path === "string") : FIRST_PATHS;
+  return isRecord(params) && Array.isArray(params.paths)
+    ? params.paths.filter((path) => typeof path === "string")
+    : FIRST_PATHS;
 }
 
 function spanOf(params: unknown): number {

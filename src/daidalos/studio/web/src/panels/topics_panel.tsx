@@ -43,7 +43,11 @@ function TopicsPanel({ studio, visible }: PanelProps) {
   return (
     <div class="column">
       <div class="bar">
-        <SearchField value={filter.value} placeholder="Filter by name or type" onChange={(text) => (filter.value = text)} />
+        <SearchField
+          value={filter.value}
+          placeholder="Filter by name or type"
+          onChange={(text) => (filter.value = text)}
+        />
         <span class="faint figures">{topics.length}</span>
       </div>
       <div class="scroll" role="list">
@@ -66,7 +70,11 @@ function TopicRow({ studio, topic }: { studio: Studio; topic: TopicInfo }) {
   };
   return (
     <div class={`topic-row ${selected ? "selected" : ""}`} role="listitem" data-topic={topic.name}>
-      <button class="bare grow" onClick={select} title={topic.known ? "Show its messages" : "Its definition is not known"}>
+      <button
+        class="bare grow"
+        onClick={select}
+        title={topic.known ? "Show its messages" : "Its definition is not known"}
+      >
         <span class="topic-name ellipsis">{topic.name}</span>
         <span class="topic-type ellipsis">{shortType(topic.type)}</span>
       </button>

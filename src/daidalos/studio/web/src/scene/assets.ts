@@ -102,9 +102,8 @@ export class Assets {
     const urls = new Map<string, string>();
     await Promise.all(
       references.map(async (reference) => {
-        const file = decodeURI(reference);
         try {
-          urls.set(reference, await this.imageUrl(new URL(file, uri.replace("package://", "http://")).href.replace("http://", "package://")));
+          urls.set(reference, await this.imageUrl(beside(uri, decodeURI(reference))));
         } catch (error) {
           console.warn(`${uri}: ${String(error)}`);
         }
@@ -150,6 +149,23 @@ function gltfReferences(data: ArrayBuffer): string[] {
   return [...(document.buffers ?? []), ...(document.images ?? [])]
     .map((entry) => entry.uri)
     .filter((uri): uri is string => uri !== undefined && !uri.startsWith("data:"));
+}
+
+/** The URI of a file that another one names relative to itself. */
+export function beside(uri: string, reference: string): string {
+  if (/^[a-z]+:\/\//.test(reference)) {
+    return reference;
+  }
+  const [scheme, path] = uri.split("://", 2) as [string, string];
+  const parts = path.split("/").slice(0, -1);
+  for (const part of reference.split("/")) {
+    if (part === "..") {
+      parts.pop();
+    } else if (part !== "." && part !== "") {
+      parts.push(part);
+    }
+  }
+  return `${scheme}://${parts.join("/")}`;
 }
 
 function extensionOf(uri: string): string {

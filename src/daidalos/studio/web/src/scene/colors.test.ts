@@ -1,5 +1,14 @@
 import { expect, it } from "vitest";
-import { costmapPalette, glowPalette, mapPalette, parseColor, planPalette, rawPalette, TURBO, type Palette } from "./colors";
+import {
+  costmapPalette,
+  glowPalette,
+  mapPalette,
+  parseColor,
+  planPalette,
+  rawPalette,
+  TURBO,
+  type Palette,
+} from "./colors";
 
 const at = (palette: Palette, value: number) => [...palette.slice(4 * (value & 255), 4 * (value & 255) + 4)];
 
@@ -34,7 +43,11 @@ it.each([[planPalette(true)], [planPalette(false)], [glowPalette()]])("leaves un
 });
 
 it("runs Turbo from dark blue over green to dark red", () => {
-  const [low, middle, high] = [26, 128, 255].map((i) => [...TURBO.slice(3 * i, 3 * i + 3)]) as [number[], number[], number[]];
+  const [low, middle, high] = [26, 128, 255].map((i) => [...TURBO.slice(3 * i, 3 * i + 3)]) as [
+    number[],
+    number[],
+    number[],
+  ];
   expect(Math.max(...low)).toBe(low[2]);
   expect(Math.max(...middle)).toBe(middle[1]);
   expect(Math.max(...high)).toBe(high[0]);

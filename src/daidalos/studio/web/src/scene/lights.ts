@@ -1,13 +1,5 @@
 // Light that shapes the robot, and a soft shadow that puts it on the ground.
-import {
-  DirectionalLight,
-  Group,
-  HemisphereLight,
-  Mesh,
-  PlaneGeometry,
-  ShadowMaterial,
-  type Vector3,
-} from "three";
+import { DirectionalLight, Group, HemisphereLight, Mesh, PlaneGeometry, ShadowMaterial, type Vector3 } from "three";
 import { Layer } from "./layers";
 
 /** The shadow is drawn only near what the camera follows: software renderers pay for every pixel of it. */

@@ -1,12 +1,5 @@
 // The cameras and how the mouse moves them: RViz's orbit view and its top-down orthographic view.
-import {
-  MOUSE,
-  OrthographicCamera,
-  PerspectiveCamera,
-  TOUCH,
-  Vector3,
-  type Camera,
-} from "three";
+import { MOUSE, OrthographicCamera, PerspectiveCamera, TOUCH, Vector3, type Camera } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 
 export type ViewKind = "orbit" | "top";
@@ -76,7 +69,9 @@ export class View {
 
   /** How far one sees around the focus, in metres. */
   get reach(): number {
-    return this.kindNow === "orbit" ? this.perspective.position.distanceTo(this.orbit.target) : 1 / this.orthographic.zoom;
+    return this.kindNow === "orbit"
+      ? this.perspective.position.distanceTo(this.orbit.target)
+      : 1 / this.orthographic.zoom;
   }
 
   /** Metres that one pixel spans at a point. */

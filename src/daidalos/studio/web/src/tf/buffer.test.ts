@@ -55,7 +55,11 @@ describe("lookup", () => {
       );
     }
     const back = new Transform();
-    for (const [a, b] of [["f3", "f29"], ["f0", "f17"], ["f11", "f28"]] as const) {
+    for (const [a, b] of [
+      ["f3", "f29"],
+      ["f0", "f17"],
+      ["f11", "f28"],
+    ] as const) {
       expect(buffer.lookup(a, b, 1, out)).toBe(true);
       expect(buffer.lookup(b, a, 1, back)).toBe(true);
       back.premultiply(out);
@@ -75,7 +79,10 @@ describe("lookup", () => {
   it("does not extrapolate unless told to clamp", () => {
     buffer.set(transform("odom", "base", 10, 1), false);
     buffer.set(transform("odom", "base", 11, 2), false);
-    for (const [time, x] of [[9, 1], [12, 2]] as const) {
+    for (const [time, x] of [
+      [9, 1],
+      [12, 2],
+    ] as const) {
       expect(buffer.lookup("odom", "base", time, out)).toBe(false);
       expect(buffer.lookup("odom", "base", time, out, { clamp: true })).toBe(true);
       expect(out.position.x).toBe(x);
@@ -85,7 +92,12 @@ describe("lookup", () => {
   });
 
   it("takes samples that arrive out of order and replaces those of the same time", () => {
-    for (const [time, x] of [[1, 1], [3, 3], [2, 2], [3, 3.5]] as const) {
+    for (const [time, x] of [
+      [1, 1],
+      [3, 3],
+      [2, 2],
+      [3, 3.5],
+    ] as const) {
       buffer.set(transform("odom", "base", time, x), false);
     }
     expect(buffer.lookup("odom", "base", 2.5, out)).toBe(true);

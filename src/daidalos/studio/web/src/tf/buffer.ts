@@ -193,7 +193,7 @@ export class TransformBuffer {
   /** Find where a frame is, seen from one of its ancestors. */
   private climb(frame: string, ancestor: string, when: When, options: LookupOptions, out: Transform): boolean {
     out.identity();
-    for (let at = frame; at !== ancestor; ) {
+    for (let at = frame; at !== ancestor;) {
       const edge = this.edges.get(at);
       if (!edge || !sampleAt(edge, when, options.clamp ?? false, STEP)) {
         return false;

@@ -1,0 +1,87 @@
+// Services: which there are, and the calls that wait for an answer.
+import { attempt, makeReader, makeWriter } from "./codecs";
+import { serviceRequestFrame } from "./frames";
+import type { Output } from "./link";
+
+export interface Service {
+  id: number;
+  name: string;
+  type: string;
+  request?: { schema: string };
+  response?: { schema: string };
+  /** The protocol's first version. */
+  requestSchema?: string;
+  responseSchema?: string;
+}
+
+export class Calls {
+  private readonly services = new Map<number, Service>();
+  private readonly waiting = new Map<number, Service>();
+
+  constructor(private readonly out: Output) {}
+
+  /** The connection is gone, and with it every answer. */
+  reset(): void {
+    this.services.clear();
+    for (const id of [...this.waiting.keys()]) {
+      this.fail(id, "the connection was lost");
+    }
+  }
+
+  offer(services: Service[]): void {
+    for (const service of services) {
+      this.services.set(service.id, service);
+    }
+    this.tell();
+  }
+
+  withdraw(ids: number[]): void {
+    for (const id of ids) {
+      this.services.delete(id);
+    }
+    this.tell();
+  }
+
+  call(id: number, name: string, request: unknown): void {
+    const service = [...this.services.values()].find((each) => each.name === name);
+    if (!service) {
+      this.fail(id, `there is no service ${name}`);
+      return;
+    }
+    const done = attempt(() => {
+      const write = makeWriter(service.request?.schema ?? service.requestSchema ?? "");
+      this.out.toServer(serviceRequestFrame(service.id, id, write(request)));
+    });
+    if (done instanceof Error) {
+      this.fail(id, done.message);
+    } else {
+      this.waiting.set(id, service);
+    }
+  }
+
+  answer(id: number, payload: Uint8Array): void {
+    const service = this.waiting.get(id);
+    if (!service) {
+      return;
+    }
+    const read = () => makeReader(service.response?.schema ?? service.responseSchema ?? "")(payload);
+    const message = attempt(read);
+    if (message instanceof Error) {
+      this.fail(id, message.message);
+    } else {
+      this.waiting.delete(id);
+      this.out.toPage({ kind: "response", id, message });
+    }
+  }
+
+  fail(id: number, error: string): void {
+    this.waiting.delete(id);
+    this.out.toPage({ kind: "response", id, error });
+  }
+
+  private tell(): void {
+    const services = [...this.services.values()].map(({ name, type }) => ({ name, type }));
+    services.sort((a, b) => a.name.localeCompare(b.name));
+    this.out.toPage({ kind: "services", services });
+  }
+}

@@ -1,0 +1,62 @@
+// What the page publishes: each topic is advertised once, then messages go out as CDR.
+import { DEFINITIONS } from "../ros/definitions";
+import { attempt, makeWriter, type Writer } from "./codecs";
+import { publishFrame } from "./frames";
+import type { Output } from "./link";
+
+interface Publisher {
+  number: number;
+  write: Writer;
+}
+
+export interface Surroundings {
+  /** A number that no other channel or subscription of ours has. */
+  number(): number;
+  /** The definition of a type, where a channel of the server's carries it. */
+  definitionOf(type: string): string | undefined;
+}
+
+export class Publishers {
+  private readonly publishers = new Map<string, Publisher>();
+
+  constructor(
+    private readonly out: Output,
+    private readonly around: Surroundings,
+  ) {}
+
+  reset(): void {
+    this.publishers.clear();
+  }
+
+  publish(topic: string, type: string, message: unknown): void {
+    const done = attempt(() => {
+      const { number, write } = this.publisherFor(topic, type);
+      this.out.toServer(publishFrame(number, write(message)));
+    });
+    this.out.toPage({ kind: "published", topic, ...(done instanceof Error ? { error: done.message } : {}) });
+  }
+
+  private publisherFor(topic: string, type: string): Publisher {
+    const key = `${topic} ${type}`;
+    const known = this.publishers.get(key);
+    if (known) {
+      return known;
+    }
+    const schema = this.around.definitionOf(type) ?? DEFINITIONS[type];
+    if (schema === undefined) {
+      throw new Error(`the definition of ${type} is not known here`);
+    }
+    const publisher = { number: this.around.number(), write: makeWriter(schema) };
+    this.publishers.set(key, publisher);
+    const channel = {
+      id: publisher.number,
+      topic,
+      encoding: "cdr",
+      schemaName: type,
+      schema,
+      schemaEncoding: "ros2msg",
+    };
+    this.out.toServer(JSON.stringify({ op: "advertise", channels: [channel] }));
+    return publisher;
+  }
+}
