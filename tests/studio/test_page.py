@@ -180,6 +180,15 @@ def test_theme_and_layout_are_remembered_and_the_layout_can_be_reset(page):
     page.wait_for(SEES, 60)
 
 
+def test_goes_on_when_time_is_turned_back(page, robot):
+    page.wait_for("daidalos.state().time > 12")
+    robot.now = 2.0
+    page.wait_for("daidalos.state().time < 8 && daidalos.state().time > 2.5")
+    page.wait_for(f"{SEES} && daidalos.state().displays.Robot.text === '11 links'")
+    pose = page.evaluate("daidalos.state().robotPose")
+    assert math.hypot(pose["x"] - robot.x, pose["y"] - robot.y) < 0.5
+
+
 def test_comes_back_after_the_server_was_away(browser, source, robot):
     with serve(source) as server:
         port = server.port

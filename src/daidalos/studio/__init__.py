@@ -1,1 +1,1 @@
-"""The browser studio's server and page."""
+"""The browser studio: `server.StudioServer` serves the page and the data of any `source.GraphSource`."""

@@ -52,9 +52,6 @@ export abstract class Display {
   /** Bring the scene up to date; once per drawn frame. */
   update(_frame: FrameInfo): void {}
 
-  /** Forget what was received: time was turned back, or the server is another. */
-  reset(): void {}
-
   dispose(): void {
     disposeTree(this.object);
     this.object.removeFromParent();

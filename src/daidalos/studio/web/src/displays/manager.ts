@@ -32,20 +32,23 @@ export class DisplayManager {
     }
   }
 
+  /** Begin anew: time was turned back, or the server is another. What is kept for late listeners comes again. */
   reset(): void {
-    for (const { display } of this.made.values()) {
-      display.reset();
-    }
-    this.context.invalidate();
+    this.clear();
+    this.apply(this.list.configs);
   }
 
   dispose(): void {
     this.stop();
+    this.clear();
+    this.tell();
+  }
+
+  private clear(): void {
     for (const { display } of this.made.values()) {
       display.dispose();
     }
     this.made.clear();
-    this.tell();
   }
 
   private apply(configs: readonly DisplayConfig[]): void {

@@ -51,12 +51,6 @@ class MarkerDisplay extends TopicDisplay<Marker | MarkerArray> {
     }
   }
 
-  override reset(): void {
-    for (const key of [...this.shown.keys()]) {
-      this.remove(key);
-    }
-  }
-
   private apply(marker: Marker): void {
     const key = `${marker.ns}\0${marker.id}`;
     if (marker.action === Action.DELETE_ALL) {

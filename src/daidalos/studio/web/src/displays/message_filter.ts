@@ -26,11 +26,6 @@ export class MessageFilter<M extends Stamped> {
     }
   }
 
-  clear(): void {
-    this.held = [];
-    this.complaint = "";
-  }
-
   /** Return the messages that can be placed now, oldest first. */
   take(tf: TransformBuffer, fixed: string, page: number): M[] {
     const ready: M[] = [];

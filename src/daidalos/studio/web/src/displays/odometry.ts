@@ -37,11 +37,6 @@ class OdometryDisplay extends StampedDisplay<Odometry> {
     this.arrows.paint(text(this.settings, "color"), number(this.settings, "alpha"));
     this.arrows.setPoses(this.trail);
   }
-
-  override reset(): void {
-    super.reset();
-    this.trail = [];
-  }
 }
 
 function isFar(a: Pose, b: Pose, distance: number, angle: number): boolean {

@@ -69,17 +69,12 @@ export abstract class PointsDisplay<M extends Stamped> extends Display {
     }
   }
 
-  override reset(): void {
-    this.filter.clear();
-    for (const shot of this.shots.splice(0)) {
-      this.retire(shot);
-    }
-    this.report("idle", "no messages yet");
-  }
-
   override dispose(): void {
     this.unsubscribe();
-    this.reset();
+    for (const sprites of this.spare) {
+      sprites.geometry.dispose();
+      sprites.material.dispose();
+    }
     super.dispose();
   }
 

@@ -30,11 +30,6 @@ class RobotModel extends TopicDisplay<StringMessage> {
     this.style();
   }
 
-  override reset(): void {
-    this.description = "";
-    this.clear();
-  }
-
   override update(frame: FrameInfo): void {
     const missing: string[] = [];
     for (const [name, link] of this.links) {

@@ -73,14 +73,6 @@ export abstract class StampedDisplay<M extends Stamped> extends TopicDisplay<M> 
     }
   }
 
-  override reset(): void {
-    this.filter.clear();
-    this.newest = [];
-    this.shown = undefined;
-    this.object.visible = false;
-    this.report("idle", "no messages yet");
-  }
-
   override update(frame: FrameInfo): void {
     const waiting = this.anchor === "stamp" ? this.filter.take(this.context.tf, frame.fixed, frame.page) : this.newest;
     this.newest = [];

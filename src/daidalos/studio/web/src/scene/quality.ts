@@ -9,7 +9,8 @@ const EARLY_FRAMES = 600;
 const LEVELS = [
   { share: 1, shadows: true, period: 1 / 30, late: 1 / 22 },
   { share: 1, shadows: false, period: 1 / 30, late: 1 / 15 },
-  { share: 0.75, shadows: false, period: 1 / 20, late: Infinity },
+  { share: 0.75, shadows: false, period: 1 / 20, late: 1 / 11 },
+  { share: 0.75, shadows: false, period: 1 / 12, late: Infinity },
 ] as const;
 const SHARPEST = 2;
 

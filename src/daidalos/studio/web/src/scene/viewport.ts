@@ -25,6 +25,7 @@ export class Viewport {
     this.renderer.shadowMap.type = PCFShadowMap;
     this.canvas = this.renderer.domElement;
     this.canvas.tabIndex = 0;
+    this.canvas.addEventListener("webglcontextrestored", this.invalidate);
     container.append(this.canvas);
     this.view = new View(this.canvas);
     this.view.onChange = () => this.invalidate();
