@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import array
-import sys
 from collections import OrderedDict
 from typing import Any
 
 from daidalos.interfaces.message import Message
 
-_DEFAULT_TRUNCATE_LENGTH = 128
+_NO_LINE_BREAKS = 2**31 - 1
 
 
 def get_message_slot_types(msg: Any) -> OrderedDict[str, Any]:
@@ -84,7 +83,8 @@ def _summary(values: Any, kind: str, inner: str) -> str:
     if "/" in inner:
         package, _, short = inner.partition("/")
         name = f"{package}/msg/{short}"
-    return f"<{'array' if is_array else 'sequence'} type: {name}{f'[{len(values)}]' if is_array else f', length: {len(values)}'}>"
+    length = f"[{len(values)}]" if is_array else f", length: {len(values)}"
+    return f"<{'array' if is_array else 'sequence'} type: {name}{length}>"
 
 
 def message_to_yaml(
@@ -106,7 +106,7 @@ def message_to_yaml(
         _FlowLists.applied(content) if flow_style else _plain_dicts(content),
         Dumper=_dumper(),
         allow_unicode=True,
-        width=sys.maxsize,
+        width=_NO_LINE_BREAKS,
         default_flow_style=False,
         sort_keys=False,
     )

@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterable
 from pathlib import Path
 
-from ament_index_python.packages import get_search_paths
+from ament_index_python.search_paths import get_all_prefixes
 
 from daidalos.interfaces.library import BUILT_IN, InterfaceNotFound, Library
 
 
 def interface_library() -> Library:
     """Return the definitions of the user's workspaces and the built-in ones."""
-    shares = [Path(prefix) / "share" for prefix in get_search_paths()]
+    shares = [Path(prefix) / "share" for prefix in get_all_prefixes()]
     return Library(dict.fromkeys([*shares, BUILT_IN]))
 
 

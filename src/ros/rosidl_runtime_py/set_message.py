@@ -42,7 +42,8 @@ def set_message_fields(
     stampers: list[Callable[[Any], None]] = []
     for name, value in values.items():
         if not hasattr(type(msg), name) or name not in msg.get_fields_and_field_types():
-            raise AttributeError(f"'{type(msg).__name__}' object has no attribute '{name}'")
+            fault = f"'{type(msg).__name__}' object has no attribute '{name}'"
+            raise AttributeError(fault, name=str(name), obj=msg)
         spec = next(field for field in msg._FIELDS if field[0] == name)
         _set(msg, spec, value, expand_header_auto, expand_time_now, stampers)
     return stampers

@@ -1,0 +1,28 @@
+"""The commands that are built in."""
+
+from __future__ import annotations
+
+from importlib import import_module
+
+from daidalos.cli.ros2.extension import COMMAND_GROUP, Command, Extensions
+from daidalos.cli.ros2.verbs import class_name
+
+BUILT_IN = {
+    "daemon": "Various daemon related sub-commands",
+    "launch": "Run a launch file",
+    "node": "Various node related sub-commands",
+    "run": "Run a package specific executable",
+    "topic": "Various topic related sub-commands",
+}
+"""Descriptions by name; each is the class ``<Name>Command`` in the module of its name beside this one."""
+
+
+def commands() -> Extensions:
+    """Return the commands, built-in and added."""
+    return Extensions(COMMAND_GROUP, BUILT_IN, _load)
+
+
+def _load(name: str) -> Command:
+    module = import_module(f"daidalos.cli.ros2.{name}")
+    command: Command = getattr(module, class_name(name, "Command"))()
+    return command

@@ -1,0 +1,80 @@
+"""Asking the daemon, starting it and stopping it."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from typing import TYPE_CHECKING, Any
+
+from daidalos.cli.ros2.daemon.wire import Address, Station, ask, graph_from_json
+
+if TYPE_CHECKING:
+    from daidalos.transport.graph import Graph
+
+_START_TIMEOUT_S = 10.0
+
+
+def fetch_graph() -> Graph | None:
+    """Return the graph as the daemon knows it, None where no daemon runs."""
+    answer = _ask("graph")
+    return None if answer is None else graph_from_json(answer)
+
+
+def is_running() -> bool:
+    """Tell whether the daemon runs."""
+    return _ask("status") is not None
+
+
+def start(debug: bool = False) -> bool:
+    """Start the daemon, to stay for two hours after it was last asked; False when it does not come up.
+
+    With `debug` its messages go to our standard error.
+    """
+    process = subprocess.Popen(
+        [*_COMMAND, "--stay"],
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=None if debug else subprocess.DEVNULL,
+        start_new_session=True,
+    )
+    assert process.stdout is not None
+    with process.stdout as output:
+        return output.readline().strip() == b"ready"
+
+
+def keep() -> bool:
+    """Have a daemon that was started by the way stay as if it had been started on purpose; False where none runs."""
+    return _ask("stay") is not None
+
+
+def spawn_quietly() -> None:
+    """Start a daemon that goes when the last node of the domain does, and do not wait for it."""
+    try:
+        subprocess.Popen(
+            _COMMAND,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+            start_new_session=True,
+        )
+    except OSError:
+        return  # the command has done its work without it, and so will the next
+
+
+def stop() -> bool:
+    """Stop the daemon and wait until it has left; False where none runs."""
+    return _ask("stop", _START_TIMEOUT_S) is not None
+
+
+_COMMAND = [sys.executable, "-m", "daidalos.cli.ros2.daemon.server"]
+
+
+def _ask(question: str, timeout_s: float = 1.0) -> Any:
+    station = Station()
+    address: Address | None = station.read()
+    if address is None:
+        return None
+    try:
+        return ask(address, question, timeout_s)
+    except (OSError, ValueError):
+        return None

@@ -1,0 +1,17 @@
+"""`ros2 daemon status`."""
+
+from __future__ import annotations
+
+from argparse import Namespace
+
+from daidalos.cli.ros2.daemon import client
+from daidalos.cli.ros2.extension import Status, Verb
+
+
+class StatusVerb(Verb):
+    """Output the status of the daemon."""
+
+    def main(self, *, args: Namespace) -> Status:
+        """Print it."""
+        print("The daemon is running" if client.is_running() else "The daemon is not running")
+        return 0

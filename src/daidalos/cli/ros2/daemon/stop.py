@@ -1,0 +1,17 @@
+"""`ros2 daemon stop`."""
+
+from __future__ import annotations
+
+from argparse import Namespace
+
+from daidalos.cli.ros2.daemon import client
+from daidalos.cli.ros2.extension import Status, Verb
+
+
+class StopVerb(Verb):
+    """Stop the daemon if it is running."""
+
+    def main(self, *, args: Namespace) -> Status:
+        """Stop it."""
+        print("The daemon has been stopped" if client.stop() else "The daemon is not running")
+        return 0

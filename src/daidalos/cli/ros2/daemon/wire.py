@@ -1,0 +1,125 @@
+"""What passes between the daemon and its clients: one line with a question, one line with the answer, both JSON."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import socket
+from pathlib import Path
+from typing import Any
+
+from daidalos.transport.environment import Environment, read_environment
+from daidalos.transport.graph import EndpointInfo, EndpointKind, Graph, NodeInfo
+from daidalos.transport.qos import Durability, History, Liveliness, Qos, Reliability
+from daidalos.transport.zenoh.registry import Registry, runtime_folder
+
+MAX_QUESTION = 4096
+
+
+@dataclasses.dataclass(frozen=True)
+class Address:
+    """Where a daemon listens on this machine, and the word by which it knows that we may ask."""
+
+    port: int
+    token: str
+
+
+class Station:
+    """The place where the daemon of a domain leaves its address.
+
+    Parameters
+    ----------
+    environment
+        What the environment variables say; each middleware and discovery range has a daemon of its own.
+    """
+
+    def __init__(self, environment: Environment | None = None) -> None:
+        self.environment = environment or read_environment()
+        # A registry of its own beside the sessions': it brings the folder and its lock.
+        self._registry = Registry(self.environment.domain, runtime_folder() / "ros2cli")
+        self.locked = self._registry.locked
+
+    @property
+    def file(self) -> Path:
+        """The file with the address."""
+        where = self.environment
+        peers = "_".join(peer.replace("/", "-").replace(":", "-") for peer in where.static_peers)
+        return self._registry.folder / f"daemon-{where.middleware}-{where.discovery.value}-{peers}.json"
+
+    def read(self) -> Address | None:
+        """Return the address that was left, None when there is none."""
+        try:
+            return Address(**json.loads(self.file.read_text(encoding="utf-8")))
+        except (OSError, ValueError, TypeError):
+            return None
+
+    def write(self, address: Address) -> None:
+        """Leave an address, all at once."""
+        draft = self.file.with_suffix(".new")
+        draft.touch(mode=0o600)
+        draft.write_text(json.dumps(dataclasses.asdict(address)), encoding="utf-8")
+        draft.replace(self.file)
+
+    def clear(self) -> None:
+        """Take the address away."""
+        self.file.unlink(missing_ok=True)
+
+
+def ask(address: Address, question: str, timeout_s: float = 1.0) -> Any:
+    """Return a daemon's answer.
+
+    Raises
+    ------
+    OSError, ValueError
+        When nobody listens there or what answers is no daemon.
+    """
+    with socket.create_connection(("127.0.0.1", address.port), timeout_s) as connection:
+        connection.sendall(json.dumps({"token": address.token, "ask": question}).encode() + b"\n")
+        with connection.makefile("rb") as file:
+            return json.loads(file.readline())
+
+
+def graph_to_json(graph: Graph) -> dict[str, Any]:
+    """Return a graph as what JSON can hold."""
+    endpoints = graph.endpoints()
+    nodes = {node.key: node for node in (*graph.nodes(), *(endpoint.node for endpoint in endpoints))}
+    return {
+        "nodes": [[node.key, node.name, node.namespace, node.enclave] for node in nodes.values()],
+        "alone": [node.key for node in graph.nodes()],
+        "endpoints": [
+            [
+                endpoint.kind.value, endpoint.node.key, endpoint.name, endpoint.type_name, endpoint.type_hash,
+                list(dataclasses.astuple(endpoint.qos)), endpoint.gid.hex(),
+            ]
+            for endpoint in endpoints
+        ],
+    }  # fmt: skip
+
+
+def graph_from_json(content: dict[str, Any]) -> Graph:
+    """Undo `graph_to_json`."""
+    graph = Graph()
+    nodes = {key: NodeInfo(key, *rest) for key, *rest in content["nodes"]}
+    for key in content["alone"]:
+        graph.add_node(nodes[key])
+    for kind, node, name, type_name, type_hash, qos, gid in content["endpoints"]:
+        endpoint = EndpointInfo(
+            EndpointKind(kind), nodes[node], name, type_name, type_hash, _qos(*qos), bytes.fromhex(gid)
+        )
+        graph.add_endpoint(gid, endpoint)
+    return graph
+
+
+def _qos(
+    reliability: int, durability: int, history: int, depth: int, deadline: int, lifespan: int, live: int, lease: int
+) -> Qos:
+    return Qos(
+        Reliability(reliability),
+        Durability(durability),
+        History(history),
+        depth,
+        deadline,
+        lifespan,
+        Liveliness(live),
+        lease,
+    )

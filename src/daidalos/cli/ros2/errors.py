@@ -1,0 +1,19 @@
+"""What a command says when it cannot do what it was asked."""
+
+from __future__ import annotations
+
+
+class CliError(Exception):
+    """Something that the user can mend.
+
+    Parameters
+    ----------
+    message
+        Goes to standard error as it is; empty to say nothing.
+    status
+        The command's exit status.
+    """
+
+    def __init__(self, message: str = "", status: int = 1) -> None:
+        super().__init__(message)
+        self.status = status

@@ -1,0 +1,74 @@
+"""What verbs want to know of the graph."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable
+
+from daidalos.transport.graph import EndpointInfo, EndpointKind, Graph, NodeInfo, names_and_types
+
+NamesAndTypes = list[tuple[str, list[str]]]
+
+TOPIC_KINDS = (EndpointKind.PUBLISHER, EndpointKind.SUBSCRIPTION)
+SERVICE_KINDS = (EndpointKind.SERVICE, EndpointKind.CLIENT)
+_FEEDBACK = "/_action/feedback"
+_FEEDBACK_TYPE = "_FeedbackMessage"
+
+
+def is_hidden(name: str) -> bool:
+    """Tell whether a token of the name of a topic, a service or a node begins with an underscore."""
+    return any(token.startswith("_") for token in name.split("/"))
+
+
+def visible(found: NamesAndTypes, include_hidden: bool) -> NamesAndTypes:
+    """Return what is not hidden, or all."""
+    return found if include_hidden else [(name, types) for name, types in found if not is_hidden(name)]
+
+
+def topics(graph: Graph, include_hidden: bool = True) -> NamesAndTypes:
+    """Return the topics: [(name, [types])]."""
+    return visible(names_and_types(graph.endpoints(*TOPIC_KINDS)), include_hidden)
+
+
+def services(graph: Graph, include_hidden: bool = True) -> NamesAndTypes:
+    """Return the services: [(name, [types])]."""
+    return visible(names_and_types(graph.endpoints(*SERVICE_KINDS)), include_hidden)
+
+
+def actions(endpoints: Iterable[EndpointInfo]) -> NamesAndTypes:
+    """Return the actions behind the feedback topics among some endpoints: [(name, [types])]."""
+    feedback = [one for one in endpoints if one.name.endswith(_FEEDBACK) and one.type_name.endswith(_FEEDBACK_TYPE)]
+    return [
+        (name.removesuffix(_FEEDBACK), [one.removesuffix(_FEEDBACK_TYPE) for one in types])
+        for name, types in names_and_types(feedback)
+    ]
+
+
+def all_actions(graph: Graph) -> NamesAndTypes:
+    """Return every action: [(name, [types])]."""
+    return actions(graph.endpoints(*TOPIC_KINDS))
+
+
+def action_parties(graph: Graph, action: str, kind: EndpointKind) -> list[EndpointInfo]:
+    """Return the endpoints by which an action is served (kind PUBLISHER) or called (kind SUBSCRIPTION)."""
+    return graph.endpoints(kind, name=f"{action}{_FEEDBACK}")
+
+
+def nodes(graph: Graph, include_hidden: bool = True) -> list[NodeInfo]:
+    """Return the nodes, ordered by full name."""
+    return [node for node in graph.nodes() if include_hidden or not node.name.startswith("_")]
+
+
+def duplicate_names(found: Iterable[NodeInfo]) -> list[str]:
+    """Return the full names that more than one node has."""
+    return [name for name, count in Counter(node.full_name for node in found).items() if count > 1]
+
+
+def absolute(name: str) -> str:
+    """Return a name with a slash before it."""
+    return name if name.startswith("/") else f"/{name}"
+
+
+def types_of(found: NamesAndTypes, name: str) -> list[str]:
+    """Return the types of a topic, service or action; none where it is not there."""
+    return next((types for other, types in found if other == name), [])

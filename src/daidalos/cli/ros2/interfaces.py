@@ -1,0 +1,137 @@
+"""From the names and values on the command line to classes and messages."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable
+from typing import Any
+
+from daidalos.cli.ros2.errors import CliError
+from daidalos.cli.ros2.suggestions import did_you_mean, near
+
+
+def message_class(name: str, fault: str = "The passed message type is invalid") -> Any:
+    """Return the class of a message; CliError with `fault` and what may help when there is none."""
+    return _class("msg", name, fault)
+
+
+def service_class(name: str, fault: str = "The passed service type is invalid") -> Any:
+    """Return the class of a service; see `message_class`."""
+    return _class("srv", name, fault)
+
+
+def action_class(name: str, fault: str = "The passed action type is invalid") -> Any:
+    """Return the class of an action; see `message_class`."""
+    return _class("action", name, fault)
+
+
+def interface_names(kind: str) -> list[str]:
+    """Return the full names of the interfaces of a kind: ``msg``, ``srv`` or ``action``."""
+    from rosidl_runtime_py.get_interfaces import get_interfaces
+
+    found = get_interfaces()
+    return [f"{package}/{name}" for package, names in found.items() for name in names if name.startswith(f"{kind}/")]
+
+
+def _class(kind: str, name: str, fault: str) -> Any:
+    from rosidl_runtime_py import utilities
+
+    find = {"msg": utilities.get_message, "srv": utilities.get_service, "action": utilities.get_action}[kind]
+    try:
+        return find(name)
+    except (ImportError, AttributeError, ValueError):
+        raise CliError(f"{fault}{_help(kind, name)}") from None
+
+
+def _help(kind: str, name: str) -> str:
+    """Return lines that say what to do about an unknown type; empty where the package is known and no name is near."""
+    known = interface_names(kind)
+    if near(name, known):
+        return did_you_mean(name, known)
+    parts = name.split("/")
+    package = parts[0]
+    if len(parts) in (2, 3) and all(parts) and not any(one.startswith(f"{package}/") for one in known):
+        return (
+            f"\nThe package '{package}' is not here. Install it, or build it in a workspace with "
+            f"`colcon build --packages-select {package}` and source its install/setup.bash."
+        )
+    return ""
+
+
+def parse_values(text: str) -> dict[str, Any]:
+    """Return the dictionary that YAML on the command line means; CliError, with the position, when it means none."""
+    import yaml
+
+    try:
+        values = yaml.load(text, getattr(yaml, "CSafeLoader", yaml.SafeLoader))
+    except yaml.YAMLError as error:
+        raise CliError(f"The passed value is no YAML: {_yaml_fault(error)}") from None
+    if values is None:
+        return {}
+    if not isinstance(values, dict):
+        raise CliError("The passed value needs to be a dictionary in YAML format")
+    return values
+
+
+def _yaml_fault(error: Exception) -> str:
+    mark = getattr(error, "problem_mark", None)
+    problem = getattr(error, "problem", None) or str(error)
+    context = getattr(error, "context", None)
+    what = f"{context}, {problem}" if context else problem
+    return f"line {mark.line + 1}, column {mark.column + 1}: {what}" if mark else what.replace("\n", " ")
+
+
+def fill(
+    message: Any, values: dict[str, Any], fault: Callable[[Exception], str] = "Failed to populate field: {}".format
+) -> list[Callable[[Any], None]]:
+    """Set a message's fields.
+
+    Parameters
+    ----------
+    message
+        What is changed.
+    values
+        By field name.
+    fault
+        Makes the text of the CliError from what went wrong.
+
+    Returns
+    -------
+    list of functions
+        Each sets one time to the stamp it is called with: those given as ``now``, and headers given as
+        ``auto``.
+    """
+    from rosidl_runtime_py import set_message_fields
+
+    try:
+        stampers: list[Callable[[Any], None]] = set_message_fields(
+            message, values, expand_header_auto=True, expand_time_now=True
+        )
+    except (AttributeError, TypeError, ValueError, AssertionError, OverflowError) as error:
+        raise CliError(fault(error) + _near_fields(error)) from None
+    return stampers
+
+
+def _near_fields(error: Exception) -> str:
+    holder = getattr(error, "obj", None)
+    if holder is None or not hasattr(holder, "get_fields_and_field_types"):
+        return ""
+    return did_you_mean(error.name, holder.get_fields_and_field_types())  # type: ignore[attr-defined]
+
+
+@functools.cache
+def prototype(name: str) -> str:
+    """Return a message, a service's request or an action's goal with default values, as one line of YAML."""
+    import yaml
+    from rosidl_runtime_py import message_to_ordereddict
+    from rosidl_runtime_py.utilities import get_interface
+
+    found = get_interface(name)
+    instance = getattr(found, "Request", None) or getattr(found, "Goal", None) or found
+    return yaml.safe_dump(_plain(message_to_ordereddict(instance())), default_flow_style=True, sort_keys=False).strip()
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {key: _plain(item) for key, item in value.items()}
+    return [_plain(item) for item in value] if isinstance(value, list) else value

@@ -1,0 +1,237 @@
+"""`ros2 launch`."""
+
+from __future__ import annotations
+
+import os
+from argparse import ArgumentParser, Namespace
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from daidalos.cli.ros2.completion import complete, complete_packages
+from daidalos.cli.ros2.errors import CliError
+from daidalos.cli.ros2.extension import Command, Status
+from daidalos.cli.ros2.suggestions import did_you_mean
+
+if TYPE_CHECKING:
+    from launch import LaunchDescription
+    from launch.launch_description_source import LaunchDescriptionSource
+
+_FAULTY_FILE = 2
+_ENDINGS = (
+    ".launch.py",
+    "_launch.py",
+    ".launch.xml",
+    "_launch.xml",
+    ".launch.yaml",
+    "_launch.yaml",
+    ".launch.yml",
+    ".launch",
+)
+
+
+class LaunchCommand(Command):
+    """Run a launch file."""
+
+    def add_arguments(self, parser: ArgumentParser, cli_name: str) -> None:
+        """Declare the arguments."""
+        parser.add_argument(
+            "-n",
+            "--noninteractive",
+            action="store_true",
+            help="Run the launch system non-interactively, with no terminal associated",
+        )
+        parser.add_argument(
+            "-d",
+            "--debug",
+            action="store_true",
+            help="Put the launch system in debug mode, provides more verbose output.",
+        )
+        shown = parser.add_mutually_exclusive_group()
+        shown.add_argument(
+            "-p",
+            "--print",
+            "--print-description",
+            action="store_true",
+            help="Print the launch description to the console without launching it.",
+        )
+        shown.add_argument(
+            "-s",
+            "--show-args",
+            "--show-arguments",
+            action="store_true",
+            help="Show arguments that may be given to the launch file.",
+        )
+        parser.add_argument(
+            "-a",
+            "--show-all-subprocesses-output",
+            action="store_true",
+            help="Show all launched subprocesses' output by overriding their output configuration using the "
+            "OVERRIDE_LAUNCH_PROCESS_OUTPUT envvar.",
+        )
+        parser.add_argument(
+            "--launch-prefix",
+            help="Prefix command, which should go before all executables. Command must be wrapped in quotes if it "
+            "contains spaces (e.g. --launch-prefix 'xterm -e gdb -ex run --args').",
+        )
+        parser.add_argument(
+            "--launch-prefix-filter",
+            help="Regex pattern for filtering which executables the --launch-prefix is applied to by matching the "
+            "executable name.",
+        )
+        complete_packages(
+            parser.add_argument("package_name", help="Name of the ROS package which contains the launch file")
+        )
+        complete(
+            parser.add_argument("launch_file_name", nargs="?", help="Name of the launch file"),
+            lambda parsed_args, **_: [file.name for file in launch_files(parsed_args.package_name)],
+        )
+        complete(
+            parser.add_argument(
+                "launch_arguments",
+                nargs="*",
+                help="Arguments to the launch file; '<name>:=<value>' (for duplicates, last one wins)",
+            ),
+            lambda parsed_args, **_: _argument_names(parsed_args),
+        )
+
+    def main(self, *, parser: ArgumentParser, args: Namespace) -> Status:
+        """Launch, or show what would be launched."""
+        path, words = _file_and_arguments(args)
+        arguments = parse_arguments(words)
+        source, description = _load(path)
+        if args.show_args:
+            print(arguments_text(description))
+            return 0
+        if args.print:
+            from launch.launch_introspector import LaunchIntrospector
+
+            print(LaunchIntrospector().format_launch_description(description))
+            return 0
+        return _launch(args, source, arguments, words)
+
+
+def _launch(
+    args: Namespace, source: LaunchDescriptionSource, arguments: list[tuple[str, str]], words: list[str]
+) -> int:
+    from launch import LaunchDescription, LaunchService
+    from launch.actions import IncludeLaunchDescription
+
+    if args.show_all_subprocesses_output:
+        os.environ["OVERRIDE_LAUNCH_PROCESS_OUTPUT"] = "both"
+    options = {"launch-prefix": args.launch_prefix, "launch-prefix-filter": args.launch_prefix_filter}
+    arguments = [*arguments, *((name, value) for name, value in options.items() if value is not None)]
+    service = LaunchService(argv=words, noninteractive=args.noninteractive, debug=args.debug)
+    service.include_launch_description(
+        LaunchDescription([IncludeLaunchDescription(source, launch_arguments=arguments)])
+    )
+    return service.run()
+
+
+def _file_and_arguments(args: Namespace) -> tuple[Path, list[str]]:
+    """Return the launch file that is meant, and the words that stand for its arguments."""
+    rest = list(args.launch_arguments)
+    first, second = args.package_name, args.launch_file_name
+    if os.path.isfile(first) or second is None or ":=" in second:
+        words = rest if second is None else [second, *rest]
+        if not os.path.isfile(first):
+            raise CliError(_no_file(first), _FAULTY_FILE)
+        return Path(first), words
+    return find_launch_file(first, second), rest
+
+
+def _no_file(name: str) -> str:
+    from daidalos.cli.ros2.packages import package_names
+
+    if name in package_names():
+        there = ", ".join(file.name for file in launch_files(name)) or "none"
+        return f"The package '{name}' needs the name of one of its launch files: {there}"
+    return f"The launch file '{name}' does not exist{did_you_mean(name, package_names())}"
+
+
+def find_launch_file(package: str, name: str) -> Path:
+    """Return the launch file of a name in a package's share folder.
+
+    Raises
+    ------
+    CliError
+        When the package or the file is not there, or the name is that of several files.
+    """
+    from ament_index_python.packages import PackageNotFoundError, get_package_share_path
+
+    from daidalos.cli.ros2.packages import package_names
+
+    try:
+        share = get_package_share_path(package)
+    except (PackageNotFoundError, ValueError):
+        raise CliError(f"Package '{package}' not found{did_you_mean(package, package_names())}", _FAULTY_FILE) from None
+    found = [
+        path for path in sorted(share.rglob(Path(name).name)) if path.is_file() and path.as_posix().endswith(f"/{name}")
+    ]
+    if not found:
+        hint = did_you_mean(name, (file.name for file in launch_files(package)))
+        raise CliError(
+            f"file '{name}' was not found in the share directory of package '{package}' which is at '{share}'{hint}",
+            _FAULTY_FILE,
+        )
+    if len(found) > 1:
+        listed = "".join(f"\n- {path}" for path in found)
+        raise CliError(
+            f"file '{name}' was found more than once in the share directory of package '{package}':{listed}",
+            _FAULTY_FILE,
+        )
+    return found[0]
+
+
+def launch_files(package: str) -> list[Path]:
+    """Return the launch files of a package, none where it is not there."""
+    from ament_index_python.packages import PackageNotFoundError, get_package_share_path
+
+    try:
+        share = get_package_share_path(package)
+    except (PackageNotFoundError, ValueError):
+        return []
+    return [path for path in sorted(share.rglob("*")) if path.name.endswith(_ENDINGS)]
+
+
+def parse_arguments(words: Iterable[str]) -> list[tuple[str, str]]:
+    """Return launch arguments as (name, value); CliError for one that is not ``<name>:=<value>``."""
+    arguments = {}
+    for word in words:
+        name, separator, value = word.partition(":=")
+        if not separator or not name:
+            raise CliError(f"malformed launch argument '{word}', expected format '<name>:=<value>'", _FAULTY_FILE)
+        arguments[name] = value
+    return list(arguments.items())
+
+
+def _load(path: Path) -> tuple[LaunchDescriptionSource, LaunchDescription]:
+    """Read a launch file; CliError, with file and line, when that cannot be done."""
+    from launch import LaunchContext
+    from launch.launch_description_sources import AnyLaunchDescriptionSource
+    from launch.launch_file_error import LaunchFileError
+
+    source = AnyLaunchDescriptionSource(str(path))
+    try:
+        return source, source.get_launch_description(LaunchContext())
+    # A launch file is a program: it may raise anything.
+    except Exception as error:
+        raise CliError(str(LaunchFileError.from_exception(error, str(path))), _FAULTY_FILE) from error
+
+
+def arguments_text(description: LaunchDescription) -> str:
+    """Return the arguments that a launch description takes, in words."""
+    lines = ["Arguments (pass arguments as '<name>:=<value>'):"]
+    declared = description.get_launch_arguments()
+    for argument in declared:
+        lines += ["", f"    '{argument.name}':", f"        {argument.description}"]
+        if argument.default_value is not None:
+            default = " + ".join(part.describe() for part in argument.default_value)
+            lines.append(f"        (default: {default})")
+    return "\n".join(lines if declared else [*lines, "", "  No arguments."])
+
+
+def _argument_names(args: Any) -> Iterator[str]:
+    path, _ = _file_and_arguments(args)
+    for argument in _load(path)[1].get_launch_arguments():
+        yield f"{argument.name}:="

@@ -1,0 +1,39 @@
+"""`ros2 node list`."""
+
+from __future__ import annotations
+
+import sys
+from argparse import ArgumentParser, Namespace
+
+from daidalos.cli.ros2.direct import add_graph_arguments, graph_view
+from daidalos.cli.ros2.extension import Status, Verb
+from daidalos.cli.ros2.graph import duplicate_names, nodes
+
+
+class ListVerb(Verb):
+    """Output a list of available nodes."""
+
+    def add_arguments(self, parser: ArgumentParser, cli_name: str) -> None:
+        """Declare the arguments."""
+        add_graph_arguments(parser)
+        parser.add_argument("-a", "--all", action="store_true", help="Display all nodes even hidden ones")
+        parser.add_argument(
+            "-c", "--count-nodes", action="store_true", help="Only display the number of nodes discovered"
+        )
+
+    def main(self, *, args: Namespace) -> Status:
+        """Print the full names, or how many there are."""
+        with graph_view(args) as graph:
+            found = nodes(graph, include_hidden=args.all)
+        if args.count_nodes:
+            print(len(found))
+            return 0
+        if duplicate_names(found):
+            print(
+                "WARNING: Be aware that there are nodes in the graph that share an exact name, "
+                "which can have unintended side effects.",
+                file=sys.stderr,
+            )
+        for node in found:
+            print(node.full_name)
+        return 0

@@ -1,0 +1,25 @@
+"""Packages: which there are, where they are, and what they say of themselves."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from daidalos.cli.ros2.errors import CliError
+from daidalos.cli.ros2.suggestions import did_you_mean
+
+
+def package_names() -> list[str]:
+    """Return the names of all packages, sorted."""
+    from ament_index_python.packages import get_packages_with_prefixes
+
+    return sorted(get_packages_with_prefixes())
+
+
+def package_prefix(name: str) -> Path:
+    """Return a package's prefix; CliError where there is no such package."""
+    from ament_index_python.packages import PackageNotFoundError, get_package_prefix
+
+    try:
+        return Path(get_package_prefix(name))
+    except (PackageNotFoundError, ValueError):
+        raise CliError(f"Package not found{did_you_mean(name, package_names())}") from None

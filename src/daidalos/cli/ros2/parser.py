@@ -1,0 +1,90 @@
+"""The parser of the command line: commands and verbs that are made when they are chosen."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any
+
+from daidalos.cli.ros2.extension import Command, Extensions, Verb
+
+
+class Parser(argparse.ArgumentParser):
+    """An `ArgumentParser` whose list of subcommands is looked up only to be shown."""
+
+    subcommands: Extensions | None = None
+    _group: Any = None
+
+    def add_subcommands(
+        self, title: str, name: str, extensions: Extensions, make: Callable[[Any, Parser, str], None]
+    ) -> None:
+        """Take a subcommand.
+
+        Parameters
+        ----------
+        title
+            The heading above their list in the help.
+        name
+            What is typed before a subcommand, such as ``ros2 topic``.
+        extensions
+            The subcommands.
+        make
+            Completes the parser of a chosen subcommand: ``make(extension, parser, name)``.
+        """
+        self.subcommands = extensions
+        hint = f"Call `{name} <command> -h` for more detailed usage."
+        action = self.add_subparsers(title=title, description="", metavar=hint, parser_class=Parser)
+        action.required = False
+        parsers = _Subparsers(name, extensions, make)
+        # `choices` and this map are what argparse chooses the parser from.
+        action.choices = parsers  # type: ignore[assignment]
+        action._name_parser_map = parsers  # type: ignore[assignment]
+        self._group = self._action_groups[-1]
+
+    def format_help(self) -> str:
+        """Return the help, with the list of subcommands."""
+        if self.subcommands is not None:
+            width = max(map(len, self.subcommands))
+            lines = (f"{name:<{width}}  {self.subcommands.describe(name)}" for name in self.subcommands)
+            self._group.description = "\n".join(lines)
+        return super().format_help()
+
+
+class _Subparsers(Mapping[str, Parser]):
+    """Parsers of subcommands by name, made when asked for."""
+
+    def __init__(self, name: str, extensions: Extensions, make: Callable[[Any, Parser, str], None]) -> None:
+        self._name = name
+        self._extensions = extensions
+        self._make = make
+        self._made: dict[str, Parser] = {}
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._extensions
+
+    def __getitem__(self, name: str) -> Parser:
+        if name not in self._made:
+            extension = self._extensions[name]
+            full_name = f"{self._name} {name}"
+            parser = Parser(prog=full_name, description=self._extensions.describe(name))
+            self._make(extension, parser, full_name)
+            self._made[name] = parser
+        return self._made[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._extensions)
+
+    def __len__(self) -> int:
+        return len(self._extensions)
+
+
+def make_command(command: Command, parser: Parser, name: str) -> None:
+    """Complete the parser of a command."""
+    parser.set_defaults(_main=lambda args: command.main(parser=parser, args=args))
+    command.add_arguments(parser, name)
+
+
+def make_verb(verb: Verb, parser: Parser, name: str) -> None:
+    """Complete the parser of a verb."""
+    parser.set_defaults(_main=lambda args: verb.main(args=args))
+    verb.add_arguments(parser, name)

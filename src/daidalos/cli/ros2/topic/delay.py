@@ -1,0 +1,88 @@
+"""`ros2 topic delay`."""
+
+from __future__ import annotations
+
+import math
+from argparse import ArgumentParser, Namespace
+from collections import deque
+from typing import Any
+
+from daidalos.cli.ros2.completion import complete_topics
+from daidalos.cli.ros2.direct import add_graph_arguments, direct_node
+from daidalos.cli.ros2.errors import CliError
+from daidalos.cli.ros2.extension import Status, Verb
+from daidalos.cli.ros2.qos import add_qos_arguments
+from daidalos.cli.ros2.topic.bw import positive_int
+from daidalos.cli.ros2.topics import spin, subscribe, topic_class
+
+DEFAULT_WINDOW_SIZE = 10000
+_S = 1_000_000_000
+
+
+class DelayVerb(Verb):
+    """Display delay of topic from timestamp in header."""
+
+    def add_arguments(self, parser: ArgumentParser, cli_name: str) -> None:
+        """Declare the arguments."""
+        add_graph_arguments(parser)
+        complete_topics(
+            parser.add_argument("topic", metavar="topic_name", help="Topic name to calculate the delay for")
+        )
+        add_qos_arguments(parser, "subscribe with", "sensor_data")
+        parser.add_argument(
+            "--window",
+            "-w",
+            type=positive_int,
+            default=DEFAULT_WINDOW_SIZE,
+            metavar="WINDOW",
+            help=f"window size, in # of messages, for calculating rate, string to (default: {DEFAULT_WINDOW_SIZE})",
+        )
+
+    def main(self, *, args: Namespace) -> Status:
+        """Print the delay every second until Ctrl-C."""
+        meter = DelayMeter(args.window)
+        with direct_node(args) as node:
+            message_type = topic_class(node, args.topic, wait=True)
+            if "header" not in message_type.get_fields_and_field_types():
+                raise CliError("msg does not have header")
+            clock = node.get_clock()
+
+            def on_message(message: Any) -> None:
+                stamp = message.header.stamp
+                meter.add(clock.now().nanoseconds, stamp.sec * _S + stamp.nanosec)
+
+            def report() -> None:
+                text = meter.report()
+                if text:
+                    print(text)
+
+            subscribe(node, args, args.topic, message_type, on_message)
+            node.create_timer(1.0, report)
+            spin(node)
+        return 0
+
+
+class DelayMeter:
+    """Measures how old messages are when they come, by the last `window_size` of them."""
+
+    def __init__(self, window_size: int) -> None:
+        self._delays: deque[float] = deque(maxlen=window_size)
+        self._new = False
+
+    def add(self, now_ns: int, stamp_ns: int) -> None:
+        """Note a message."""
+        self._delays.append((now_ns - stamp_ns) / _S)
+        self._new = True
+
+    def report(self) -> str:
+        """Return what is to be printed; empty when nothing came since the last time."""
+        if not self._new:
+            return ""
+        self._new = False
+        count = len(self._delays)
+        mean = sum(self._delays) / count
+        deviation = math.sqrt(sum((delay - mean) ** 2 for delay in self._delays) / count)
+        return (
+            f"average delay: {mean:.3f}\n\tmin: {min(self._delays):.3f}s max: {max(self._delays):.3f}s "
+            f"std dev: {deviation:.5f}s window: {count}"
+        )

@@ -1,0 +1,41 @@
+"""`ros2 topic find`."""
+
+from __future__ import annotations
+
+from argparse import SUPPRESS, ArgumentParser, Namespace
+
+from daidalos.cli.ros2.completion import complete_types
+from daidalos.cli.ros2.direct import add_graph_arguments, graph_view
+from daidalos.cli.ros2.extension import Status, Verb
+from daidalos.cli.ros2.graph import topics
+
+
+class FindVerb(Verb):
+    """Output a list of available topics of a given type."""
+
+    def add_arguments(self, parser: ArgumentParser, cli_name: str) -> None:
+        """Declare the arguments."""
+        add_graph_arguments(parser)
+        complete_types(
+            parser.add_argument(
+                "topic_type", help="Name of the ROS topic type to filter for (e.g. 'std_msgs/msg/String')"
+            ),
+            "msg",
+        )
+        parser.add_argument(
+            "-c", "--count-topics", action="store_true", help="Only display the number of topics discovered"
+        )
+        parser.add_argument(
+            "--include-hidden-topics", action="store_true", default=SUPPRESS, help="Consider hidden topics as well"
+        )
+
+    def main(self, *, args: Namespace) -> Status:
+        """Print the names of the topics of the type, or how many there are."""
+        with graph_view(args) as graph:
+            found = [name for name, types in topics(graph, args.include_hidden_topics) if args.topic_type in types]
+        if args.count_topics:
+            print(len(found))
+            return 0
+        for name in found:
+            print(name)
+        return 0

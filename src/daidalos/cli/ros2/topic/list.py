@@ -1,0 +1,59 @@
+"""`ros2 topic list`."""
+
+from __future__ import annotations
+
+from argparse import SUPPRESS, ArgumentParser, Namespace
+
+from daidalos.cli.ros2.direct import add_graph_arguments, graph_view
+from daidalos.cli.ros2.extension import Status, Verb
+from daidalos.cli.ros2.graph import topics
+from daidalos.transport.graph import EndpointKind, Graph
+
+
+class ListVerb(Verb):
+    """Output a list of available topics."""
+
+    def add_arguments(self, parser: ArgumentParser, cli_name: str) -> None:
+        """Declare the arguments."""
+        add_graph_arguments(parser)
+        parser.add_argument("-t", "--show-types", action="store_true", help="Additionally show the topic type")
+        parser.add_argument(
+            "-c", "--count-topics", action="store_true", help="Only display the number of topics discovered"
+        )
+        # The command has the same option before the verb; a default of the verb's would undo it.
+        parser.add_argument(
+            "--include-hidden-topics", action="store_true", default=SUPPRESS, help="Consider hidden topics as well"
+        )
+        parser.add_argument(
+            "-v",
+            "--verbose",
+            action="store_true",
+            help="List full details about each topic",
+        )
+
+    def main(self, *, args: Namespace) -> Status:
+        """Print the names as asked."""
+        with graph_view(args) as graph:
+            found = topics(graph, args.include_hidden_topics)
+            if args.verbose:
+                names = {name for name, _ in found}
+                _print_side("Published topics:", "publisher", graph, EndpointKind.PUBLISHER, names)
+                print()
+                _print_side("Subscribed topics:", "subscriber", graph, EndpointKind.SUBSCRIPTION, names)
+                print()
+                return 0
+        if args.count_topics:
+            print(len(found))
+            return 0
+        for name, types in found:
+            print(f"{name} [{', '.join(types)}]" if args.show_types else name)
+        return 0
+
+
+def _print_side(title: str, what: str, graph: Graph, kind: EndpointKind, names: set[str]) -> None:
+    """Print the topics of `names` with their publishers or their subscribers."""
+    print(title)
+    for name, types in topics(graph):
+        count = len(graph.endpoints(kind, name=name))
+        if name in names and count:
+            print(f" * {name} [{', '.join(types)}] {count} {what}{'s' if count > 1 else ''}")

@@ -1,0 +1,33 @@
+"""`ros2 topic type`."""
+
+from __future__ import annotations
+
+import sys
+from argparse import ArgumentParser, Namespace
+
+from daidalos.cli.ros2.completion import complete_topics
+from daidalos.cli.ros2.direct import add_graph_arguments, graph_view
+from daidalos.cli.ros2.extension import Status, Verb
+from daidalos.cli.ros2.graph import absolute, topics, types_of
+from daidalos.cli.ros2.suggestions import did_you_mean
+
+
+class TypeVerb(Verb):
+    """Print a topic's type."""
+
+    def add_arguments(self, parser: ArgumentParser, cli_name: str) -> None:
+        """Declare the arguments."""
+        add_graph_arguments(parser)
+        complete_topics(parser.add_argument("topic_name", help="Name of the ROS topic to get type (e.g. '/chatter')"))
+
+    def main(self, *, args: Namespace) -> Status:
+        """Print the types; the status is 1 when the topic is not there."""
+        name = absolute(args.topic_name)
+        with graph_view(args) as graph:
+            known = topics(graph, args.include_hidden_topics)
+        types = types_of(known, name)
+        for one in types:
+            print(one)
+        if not types:
+            sys.stderr.write(did_you_mean(name, (other for other, _ in known)).lstrip("\n"))
+        return 0 if types else 1

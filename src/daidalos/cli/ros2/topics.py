@@ -1,0 +1,129 @@
+"""What the verbs of `ros2 topic` share: a topic's name, its type, waiting for it, and what of a message is asked."""
+
+from __future__ import annotations
+
+import re
+from argparse import Namespace
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from daidalos.cli.ros2.errors import CliError
+from daidalos.cli.ros2.graph import topics, types_of
+from daidalos.cli.ros2.interfaces import message_class
+from daidalos.cli.ros2.qos import qos_for_publishers, requested_qos
+from daidalos.cli.ros2.suggestions import did_you_mean
+from daidalos.transport.graph import EndpointKind
+
+if TYPE_CHECKING:
+    from rclpy.node import Node
+    from rclpy.task import Future
+
+
+def topic_class(node: Node, topic: str, message_type: str | None = None, *, wait: bool = False) -> Any:
+    """Return the class of a topic's messages.
+
+    Parameters
+    ----------
+    node
+        The node that asks.
+    topic
+        The topic.
+    message_type
+        The type where it is known.
+    wait
+        Whether to wait for a topic that is not there.
+
+    Raises
+    ------
+    CliError
+        When it has no type or more than one, or a type that is not known.
+    """
+    if message_type is not None:
+        return message_class(message_type)
+    graph = node.handle.graph
+    name = node.resolve_topic_name(topic)
+    types = types_of(topics(graph), name)
+    if not types:
+        print(f"WARNING: topic [{topic}] does not appear to be published yet", flush=True)
+        if not wait:
+            hint = did_you_mean(name, (known for known, _ in topics(graph)))
+            raise CliError(f"Could not determine the type for the passed topic{hint}")
+        graph.wait_for(lambda: bool(types_of(topics(graph), name)))
+        types = types_of(topics(graph), name)
+    if len(types) > 1:
+        raise CliError(f"Cannot echo topic '{topic}', as it contains more than one type: [{', '.join(types)}]")
+    return message_class(types[0], f"The message type '{types[0]}' is invalid")
+
+
+class Field:
+    """A part of a message, written as a path such as ``pose.position.x`` or ``ranges.[0]``.
+
+    Raises
+    ------
+    CliError
+        When a part of the path is empty.
+    """
+
+    def __init__(self, path: str) -> None:
+        self.path = path
+        self._parts = re.sub(r"(?<!\.)\[", ".[", path).split(".")
+        if not all(self._parts):
+            raise CliError(f"Invalid field value '{path}'")
+
+    def of(self, message: Any) -> Any:
+        """Return the part of a message; CliError when it has none such."""
+        value = message
+        for part in self._parts:
+            index = re.fullmatch(r"\[(-?\d+)\]", part)
+            try:
+                value = value[int(index.group(1))] if index else getattr(value, part)
+            except (AttributeError, IndexError, TypeError) as error:
+                fields = value.get_fields_and_field_types() if hasattr(value, "get_fields_and_field_types") else ()
+                raise CliError(f"Invalid field '{self.path}': {error}{did_you_mean(part, fields)}") from None
+        return value
+
+
+def filter_function(expression: str) -> Callable[[Any], bool]:
+    """Return a function of a message that evaluates a Python expression of ``m``.
+
+    Raises
+    ------
+    CliError
+        When the expression is no Python; the function raises it when it cannot be evaluated.
+    """
+    import math
+
+    try:
+        code = compile(expression, "<expression>", "eval")
+    except SyntaxError as error:
+        raise CliError(f"Invalid filter expression '{expression}': {error.msg}") from None
+    names = {name: getattr(math, name) for name in dir(math) if not name.startswith("_")}
+
+    def passes(message: Any) -> bool:
+        try:
+            return bool(eval(code, {**names, "m": message}))
+        except Exception as error:
+            raise CliError(f"Failed to evaluate the filter expression '{expression}': {error}") from None
+
+    return passes
+
+
+def subscribe(
+    node: Node, args: Namespace, topic: str, message_type: Any, on_message: Callable[..., Any], *, raw: bool = False
+) -> None:
+    """Have every message of a topic given to a function, by the QoS asked for or else by what the publishers offer."""
+    qos = requested_qos(args)
+    if qos is None:
+        name = node.resolve_topic_name(topic)
+        qos = qos_for_publishers(node.handle.graph.endpoints(EndpointKind.PUBLISHER, name=name))
+    node.create_subscription(message_type, topic, on_message, qos, raw=raw)
+
+
+def spin(node: Node, done: Future | None = None, timeout_s: float | None = None) -> None:
+    """Run a node's callbacks until Ctrl-C, the future is done or so many seconds have passed."""
+    from rclpy.executors import SingleThreadedExecutor
+    from rclpy.task import Future
+
+    executor = SingleThreadedExecutor(context=node.context)
+    executor.add_node(node)
+    executor.spin_until_future_complete(done or Future(), timeout_s)
