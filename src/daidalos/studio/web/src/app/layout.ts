@@ -58,11 +58,6 @@ export class Layout {
     this.arrange();
   }
 
-  /** The ids of the panels that are open. */
-  openPanels(): string[] {
-    return this.dock.panels.map((panel) => panel.view.contentComponent);
-  }
-
   private restore(): void {
     const saved = read<SerializedDockview | undefined>(KEY, undefined, (value): value is SerializedDockview =>
       isRecord(value),

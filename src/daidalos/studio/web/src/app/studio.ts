@@ -13,7 +13,7 @@ const TF_KEEP = 2048;
 const SLOW_FRAME_S = 0.15;
 const READ_OUT_S = 0.1;
 
-export interface ClockReading {
+export interface TimeReading {
   time: number | undefined;
   /** Simulated seconds per second; undefined where the time is not simulated. */
   factor: number | undefined;
@@ -26,7 +26,7 @@ export class Studio {
   readonly fixedFrame = new FixedFrame(this.tf);
   readonly displays = new DisplayList();
   readonly assets: Assets;
-  readonly reading = signal<ClockReading>({ time: undefined, factor: undefined });
+  readonly reading = signal<TimeReading>({ time: undefined, factor: undefined });
   /** The topic that the message panel shows. */
   readonly selectedTopic = signal("");
   /** Shows a panel; set by the layout. */
@@ -40,7 +40,8 @@ export class Studio {
   constructor(worker: Worker) {
     this.session = new Session(worker);
     this.assets = new Assets(this.session);
-    this.session.onTime = (time, announced) => this.clock.hear(time, performance.now() / 1000, announced);
+    this.session.onClock = ({ robot, at, announced }) =>
+      this.clock.hear(robot, (at - performance.timeOrigin) / 1000, announced);
     this.session.onNewServer = () => {
       this.tf.clear();
       this.assets.clear();
@@ -77,7 +78,6 @@ export class Studio {
   }
 
   private frame(page: number): void {
-    this.session.dispatch();
     this.clock.tick(performance.now() / 1000);
     this.fixedFrame.refresh();
     if (page - this.readAt > READ_OUT_S) {

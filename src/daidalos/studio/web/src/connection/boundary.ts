@@ -25,6 +25,14 @@ export interface Received {
   message: unknown;
 }
 
+/** What robot time was at a moment, told by the server's clock or else by the newest message. */
+export interface ClockReading {
+  robot: number;
+  /** Milliseconds since the epoch, by this machine's steady clock: worker and page count from different zeros. */
+  at: number;
+  announced: boolean;
+}
+
 export interface Traffic {
   /** Messages and bytes per second. */
   rate: number;
@@ -57,7 +65,7 @@ export type FromWorker =
   | { kind: "server"; name: string; session: string; hasTime: boolean }
   | { kind: "topics"; topics: TopicInfo[] }
   | { kind: "services"; services: ServiceInfo[] }
-  | { kind: "batch"; messages: Received[]; time?: number; hasClock: boolean }
+  | { kind: "batch"; messages: Received[]; clock?: ClockReading }
   | { kind: "traffic"; traffic: Record<string, Traffic> }
   | { kind: "status"; status: StatusInfo }
   | { kind: "removeStatus"; ids: string[] }

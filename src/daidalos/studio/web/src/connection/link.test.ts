@@ -76,7 +76,8 @@ describe("subscriptions", () => {
     advertise(4, "/a");
     link.receivePage({ kind: "subscribe", topic: "/a", keep: 0 });
     link.receiveBinary(message(subscription(), "x"));
-    expect(link.hasNews).toBe(false);
+    link.flush();
+    expect(heard("batch")[0]?.messages).toEqual([]);
     link.measure(performance.now() / 1000 + 1);
     expect(heard("traffic").at(-1)?.traffic["/a"]?.total).toBe(1);
   });
@@ -121,6 +122,36 @@ describe("subscriptions", () => {
     link.flush();
     expect(heard("status")[0]?.status.text).toContain("/a");
     expect(heard("batch")[0]?.messages).toHaveLength(1);
+  });
+});
+
+describe("robot time", () => {
+  const time = (seconds: number) => {
+    const frame = new DataView(new ArrayBuffer(9));
+    frame.setUint8(0, 2);
+    frame.setBigUint64(1, BigInt(seconds) * 1_000_000_000n, true);
+    return frame.buffer;
+  };
+
+  it("is what the server's clock says", () => {
+    link.receiveText(JSON.stringify({ op: "serverInfo", name: "s", capabilities: ["time"] }));
+    advertise(4, "/a");
+    link.receivePage({ kind: "subscribe", topic: "/a", keep: 1 });
+    link.receiveBinary(time(8));
+    link.receiveBinary(message(subscription(), "later"));
+    link.flush();
+    expect(heard("batch")[0]?.clock).toMatchObject({ robot: 8, announced: true });
+    expect(Math.abs((heard("batch")[0]?.clock?.at ?? 0) - Date.now())).toBeLessThan(5000);
+  });
+
+  it("is that of the newest message where the server has no clock", () => {
+    link.receiveText(JSON.stringify({ op: "serverInfo", name: "s", capabilities: [] }));
+    advertise(4, "/a");
+    link.receivePage({ kind: "subscribe", topic: "/a", keep: 0 });
+    link.receiveBinary(message(subscription(), "x"));
+    expect(link.hasNews).toBe(true);
+    link.flush();
+    expect(heard("batch")[0]?.clock).toMatchObject({ robot: 3, announced: false });
   });
 });
 

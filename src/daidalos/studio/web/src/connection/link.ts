@@ -1,5 +1,5 @@
 // The worker's conversation with the server: the protocol's state, independent of what carries it.
-import type { FromWorker, ParameterInfo, Received, ToWorker } from "./boundary";
+import type { ClockReading, FromWorker, ParameterInfo, Received, ToWorker } from "./boundary";
 import { Backlog } from "./backlog";
 import { Calls, type Service } from "./calls";
 import { attempt, makeReader, type Reader } from "./codecs";
@@ -50,7 +50,7 @@ export class Link {
   private readonly publishers: Publishers;
   private readonly backlog = new Backlog();
   private readonly meter = new TrafficMeter();
-  private time: number | undefined;
+  private clock: ClockReading | undefined;
   private hasClock = false;
   private numbers = 0;
 
@@ -64,7 +64,7 @@ export class Link {
 
   /** Whether the page has something to take. */
   get hasNews(): boolean {
-    return !this.backlog.empty || this.time !== undefined;
+    return !this.backlog.empty || this.clock !== undefined;
   }
 
   /** The connection is gone; what the page wants stays, to be asked for again. */
@@ -76,7 +76,7 @@ export class Link {
     this.readers.clear();
     this.backlog.clear();
     this.hasClock = false;
-    this.time = undefined;
+    this.clock = undefined;
     for (const subscription of this.subscriptions.values()) {
       delete subscription.number;
       delete subscription.channel;
@@ -141,13 +141,16 @@ export class Link {
       case "message": {
         const topic = this.topicOf.get(frame.subscription);
         if (topic !== undefined) {
+          if (!this.hasClock) {
+            this.readClock(frame.time, false);
+          }
           this.meter.add(topic, frame.payload.byteLength);
           this.backlog.add(topic, frame.time, frame.payload);
         }
         break;
       }
       case "time":
-        this.time = frame.time;
+        this.readClock(frame.time, true);
         break;
       case "serviceResponse":
         this.calls.answer(frame.call, frame.payload);
@@ -209,17 +212,18 @@ export class Link {
         }
       }
     }
-    const time = this.time;
-    this.time = undefined;
-    this.out.toPage(
-      { kind: "batch", messages, hasClock: this.hasClock, ...(time === undefined ? {} : { time }) },
-      transfer,
-    );
+    const clock = this.clock;
+    this.clock = undefined;
+    this.out.toPage({ kind: "batch", messages, ...(clock ? { clock } : {}) }, transfer);
   }
 
   /** Tell the page the rates of what it subscribed to. */
   measure(now: number): void {
     this.out.toPage({ kind: "traffic", traffic: this.meter.measure(now) });
+  }
+
+  private readClock(robot: number, announced: boolean): void {
+    this.clock = { robot, at: performance.timeOrigin + performance.now(), announced };
   }
 
   private subscribe(topic: string, keep: number): void {

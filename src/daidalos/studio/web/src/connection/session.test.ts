@@ -2,8 +2,6 @@ import { beforeEach, expect, it, vi } from "vitest";
 import type { FromWorker, ToWorker } from "./boundary";
 import { Session } from "./session";
 
-vi.stubGlobal("document", { hidden: false });
-
 class FakeWorker {
   onmessage: (event: { data: FromWorker }) => void = () => undefined;
   readonly sent: ToWorker[] = [];
@@ -24,7 +22,7 @@ beforeEach(() => {
 });
 
 function batch(topic: string, ...messages: unknown[]): FromWorker {
-  return { kind: "batch", hasClock: false, messages: messages.map((message, i) => ({ topic, time: i, message })) };
+  return { kind: "batch", messages: messages.map((message, i) => ({ topic, time: i, message })) };
 }
 
 it("asks for as many messages as the neediest listener wants", () => {
@@ -43,8 +41,6 @@ it("hands out batches and says when it is ready for more", () => {
   const got: unknown[] = [];
   session.subscribe("/a", 5, (message) => got.push(message));
   worker.say(batch("/a", 1, 2));
-  expect(got).toEqual([]);
-  session.dispatch();
   expect(got).toEqual([1, 2]);
   expect(worker.sent.at(-1)).toEqual({ kind: "ready" });
 });
@@ -52,7 +48,6 @@ it("hands out batches and says when it is ready for more", () => {
 it("gives late listeners the newest message", async () => {
   const stop = session.subscribe("/a", 1, () => undefined);
   worker.say(batch("/a", "old", "new"));
-  session.dispatch();
   const got: unknown[] = [];
   session.subscribe("/a", 1, (message) => got.push(message));
   await Promise.resolve();
@@ -64,24 +59,19 @@ it("unsubscribes with the last listener and forgets", async () => {
   session.subscribe("/a", 1, () => undefined)();
   expect(worker.sent.at(-1)).toEqual({ kind: "unsubscribe", topic: "/a" });
   worker.say(batch("/a", "late"));
-  session.dispatch();
   const got: unknown[] = [];
   session.subscribe("/a", 1, (message) => got.push(message));
   await Promise.resolve();
   expect(got).toEqual([]);
 });
 
-it("takes the time from the clock where there is one, else from what arrives", () => {
-  const times: [number, boolean][] = [];
-  session.onTime = (time, announced) => times.push([time, announced]);
-  worker.say(batch("/a", 1, 2, 3));
-  session.dispatch();
-  worker.say({ kind: "batch", hasClock: true, time: 7, messages: [{ topic: "/a", time: 99, message: 1 }] });
-  session.dispatch();
-  expect(times).toEqual([
-    [2, false],
-    [7, true],
-  ]);
+it("passes on what the clock says, after the messages", () => {
+  const order: unknown[] = [];
+  session.onClock = ({ robot }) => order.push(robot);
+  session.subscribe("/a", 1, (message) => order.push(message));
+  const clock = { robot: 7, at: 0, announced: true };
+  worker.say({ kind: "batch", clock, messages: [{ topic: "/a", time: 99, message: "first" }] });
+  expect(order).toEqual(["first", 7]);
 });
 
 it("answers requests with what came or with why not", async () => {

@@ -1,6 +1,7 @@
 // The page's view of the connection: what there is, and who in the page listens to what.
-import { signal, type ReadonlySignal } from "@preact/signals";
+import { signal } from "@preact/signals";
 import type {
+  ClockReading,
   FromWorker,
   LinkState,
   ParameterInfo,
@@ -24,9 +25,6 @@ interface Subscriber {
   received: Listener<never>;
 }
 
-/** Hidden pages get no animation frames; their histories go on at this rate. */
-const HIDDEN_MS = 250;
-
 export class Session {
   readonly link = signal<LinkState>("connecting");
   readonly serverName = signal("");
@@ -37,8 +35,8 @@ export class Session {
   readonly parameters = signal<ReadonlyMap<string, ParameterInfo>>(new Map());
   readonly lastPublished = signal<Publishing | undefined>(undefined);
 
-  /** Called when robot time moves: with its value, and whether a clock of the server's says so. */
-  onTime: (time: number, fromClock: boolean) => void = () => undefined;
+  /** Called when robot time moves. */
+  onClock: (reading: ClockReading) => void = () => undefined;
   /** Called when the server is another than before, so that nothing of the old one may stay. */
   onNewServer: () => void = () => undefined;
 
@@ -46,10 +44,8 @@ export class Session {
   /** The newest message of each topic, for who begins to listen: latched ones do not come a second time. */
   private readonly latest = new Map<string, Received>();
   private readonly requests = new Map<number, (message: FromWorker) => void>();
-  private batch: Extract<FromWorker, { kind: "batch" }> | undefined;
   private server = "";
   private numbers = 0;
-  private hiddenTimer = 0;
 
   constructor(private readonly worker: Worker) {
     worker.onmessage = (event: MessageEvent<FromWorker>) => this.receive(event.data);
@@ -120,27 +116,6 @@ export class Session {
     return this.topics.value.find((each) => each.name === topic)?.type;
   }
 
-  /** Hand out what has arrived; once per drawn frame. */
-  dispatch(): void {
-    const batch = this.batch;
-    if (!batch) {
-      return;
-    }
-    this.batch = undefined;
-    if (batch.time !== undefined) {
-      this.onTime(batch.time, true);
-    }
-    let newest = -Infinity;
-    for (const received of batch.messages) {
-      this.deliver(received);
-      newest = Math.max(newest, received.time);
-    }
-    if (!batch.hasClock && newest > -Infinity) {
-      this.onTime(newest, false);
-    }
-    this.send({ kind: "ready" });
-  }
-
   private deliver(newest: Received): void {
     const { topic, time, message } = newest;
     if (this.subscribers.has(topic)) {
@@ -167,13 +142,14 @@ export class Session {
   private receive(message: FromWorker): void {
     switch (message.kind) {
       case "batch":
-        this.batch = message;
-        if (document.hidden && !this.hiddenTimer) {
-          this.hiddenTimer = window.setTimeout(() => {
-            this.hiddenTimer = 0;
-            this.dispatch();
-          }, HIDDEN_MS);
+        // At once: listeners only take note, and what is drawn next shall know the newest.
+        for (const received of message.messages) {
+          this.deliver(received);
         }
+        if (message.clock) {
+          this.onClock(message.clock);
+        }
+        this.send({ kind: "ready" });
         break;
       case "link":
         this.link.value = message.state;
@@ -243,10 +219,4 @@ function mostOf(subscribers: Iterable<Subscriber>): number {
     most = Math.max(most, keep);
   }
   return most;
-}
-
-/** The rates of one topic, as a string for a table. */
-export function rateText(traffic: ReadonlySignal<Record<string, Traffic>>, topic: string): string {
-  const rate = traffic.value[topic]?.rate;
-  return rate === undefined ? "" : rate >= 99.5 ? rate.toFixed(0) : rate.toFixed(1);
 }

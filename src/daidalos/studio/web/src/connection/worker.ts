@@ -7,6 +7,7 @@ const SUBPROTOCOLS = ["foxglove.sdk.v1", "foxglove.websocket.v1"];
 const RETRY_FIRST_MS = 300;
 const RETRY_LAST_MS = 4000;
 const MEASURE_MS = 1000;
+const TOGETHER_MS = 8;
 
 declare const self: DedicatedWorkerGlobalScope;
 
@@ -14,6 +15,7 @@ let socket: WebSocket | undefined;
 let retryMs = RETRY_FIRST_MS;
 let pageIsReady = true;
 let flushIsDue = false;
+let flushedAt = 0;
 
 const link = new Link({
   toServer(frame) {
@@ -67,14 +69,17 @@ function open(url: string): void {
 function flushSoon(): void {
   if (pageIsReady && !flushIsDue && link.hasNews) {
     flushIsDue = true;
-    // After what has arrived together is read: one message to the page instead of many.
-    setTimeout(() => {
-      flushIsDue = false;
-      if (link.hasNews) {
-        pageIsReady = false;
-        link.flush();
-      }
-    });
+    // What arrives together goes together: many small messages to the page would cost more than they say.
+    setTimeout(flush, flushedAt + TOGETHER_MS - performance.now());
+  }
+}
+
+function flush(): void {
+  flushIsDue = false;
+  if (link.hasNews) {
+    flushedAt = performance.now();
+    pageIsReady = false;
+    link.flush();
   }
 }
 

@@ -46,20 +46,8 @@ export class DisplayList {
     this.edit(id, (config) => ({ ...config, enabled }));
   }
 
-  rename(id: string, name: string): void {
-    this.edit(id, (config) => ({ ...config, name }));
-  }
-
   set(id: string, key: string, value: Value): void {
     this.edit(id, (config) => ({ ...config, settings: { ...config.settings, [key]: value } }));
-  }
-
-  move(id: string, to: number): void {
-    const moved = this.configs.find((config) => config.id === id);
-    if (moved) {
-      const others = this.configs.filter((config) => config.id !== id);
-      this.change([...others.slice(0, to), moved, ...others.slice(to)]);
-    }
   }
 
   reset(): void {
