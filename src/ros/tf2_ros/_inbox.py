@@ -31,7 +31,7 @@ class Inbox(Subscription):
         handle.set_on_ready(self._receive)
 
     def _receive(self) -> None:
-        node = self._node() if self._node is not None else None
+        node = self._rcl_node() if self._rcl_node is not None else None
         executor = node.executor if node is not None else None
         counted = executor is None or not executor._spins
         taken = self._impl.take()
@@ -41,14 +41,20 @@ class Inbox(Subscription):
                 self._arrivals.append(None)
             taken = self._impl.take()
         if counted:
-            self._hook()
+            self._rcl_hook()
 
-    def _take(self) -> None:
-        if self._arrivals:
-            self._arrivals.popleft()
+    def _rcl_take(self) -> tuple[Callable[..., Any], tuple[Any, ...]] | None:
+        if not self._arrivals:
+            return None
+        self._arrivals.popleft()
+        return _do_nothing, ()
 
-    def _has_more(self) -> bool:
+    def _rcl_has_more(self) -> bool:
         return bool(self._arrivals)
+
+
+def _do_nothing() -> None:
+    """Stand for a callback that has already run."""
 
 
 def create_inbox(
@@ -67,5 +73,5 @@ def create_inbox(
     inbox = Inbox(subscription, message_type, topic, callback, group, profile, False, SubscriptionEventCallbacks())
     for handler in inbox.event_handlers:
         node.add_waitable(handler)
-    node._add("subscription", inbox, group)
+    node._rcl_add("subscription", inbox, group)
     return inbox
