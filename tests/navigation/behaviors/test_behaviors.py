@@ -1,0 +1,114 @@
+"""Behaviours in a loop with a perfect robot."""
+
+import math
+
+import numpy as np
+import pytest
+
+from daidalos.navigation.behaviors.back_up import BackUp, BackUpCommand
+from daidalos.navigation.behaviors.behavior import CollisionAhead, InvalidInput, TimedOut, contact_ahead
+from daidalos.navigation.behaviors.drive_on_heading import DriveOnHeading, DriveOnHeadingCommand
+from daidalos.navigation.behaviors.spin import Spin, SpinCommand
+from daidalos.navigation.behaviors.wait import Wait, WaitCommand
+from daidalos.navigation.costmap.footprint import Footprint
+
+from ..controllers.scenes import ground
+
+ROUND = Footprint.circle(0.2)
+LONG = Footprint.of_corners(np.array([[0.5, 0.1], [0.5, -0.1], [-0.5, -0.1], [-0.5, 0.1]]))
+PERIOD = 0.1
+
+
+def run(behavior, command, costmap, pose=(0.0, 0.0, 0.3), limit=30.0):
+    """Let a behaviour drive until it is done; returns the last pose, the time and the velocities."""
+    pose, velocity, now, velocities = np.array(pose, dtype=float), np.zeros(3), 0.0, []
+    behavior.start(command, pose, now)
+    while now < limit:
+        step = behavior.step(pose, velocity, costmap, now)
+        if step.done:
+            assert not step.velocity.any()
+            return pose, now, np.array(velocities).reshape(-1, 3)
+        velocity = step.velocity
+        velocities.append(velocity)
+        pose = pose + PERIOD * np.array([velocity[0] * math.cos(pose[2]), velocity[0] * math.sin(pose[2]), velocity[2]])
+        pose[2] = (pose[2] + math.pi) % (2.0 * math.pi) - math.pi
+        now += PERIOD
+    raise AssertionError("the behaviour goes on for ever")
+
+
+@pytest.mark.parametrize("angle", [1.57, -1.57, 6.28, -9.0, 0.1])
+def test_a_spin_turns_by_its_angle_however_large(angle):
+    _, now, velocities = run(Spin(ROUND), SpinCommand(angle, 20.0), ground())
+    assert PERIOD * velocities[:, 2].sum() == pytest.approx(angle, abs=0.025)
+    assert not velocities[:, :2].any()
+    assert np.abs(velocities[:, 2]).max() <= 1.0 + 1e-9
+    assert now < abs(angle) + 2.0
+
+
+def test_a_spin_that_takes_too_long_is_ended():
+    with pytest.raises(TimedOut, match=r"rad of 6\.28 in time"):
+        run(Spin(ROUND), SpinCommand(6.28, 2.0), ground())
+
+
+def test_a_long_robot_does_not_spin_into_a_wall():
+    wall = ground([(x, 0.4) for x in np.arange(-1.0, 1.0, 0.04)], radius=0.1)
+    with pytest.raises(CollisionAhead):
+        run(Spin(LONG), SpinCommand(1.57), wall, pose=(0.0, 0.0, 0.0))
+    run(Spin(ROUND), SpinCommand(1.57), wall, pose=(0.0, 0.0, 0.0))
+
+
+def test_backing_up_goes_straight_back():
+    pose, now, _ = run(BackUp(ROUND), BackUpCommand(0.3, 0.1), ground())
+    assert np.allclose(pose, [-0.3 * math.cos(0.3), -0.3 * math.sin(0.3), 0.3], atol=0.011)
+    assert now == pytest.approx(3.0, abs=0.3)
+
+
+def test_driving_on_heading_goes_straight_ahead():
+    pose, _, velocities = run(DriveOnHeading(ROUND), DriveOnHeadingCommand(0.4, 0.2), ground())
+    assert math.hypot(pose[0], pose[1]) == pytest.approx(0.4, abs=0.011)
+    assert velocities[:, 0].max() == pytest.approx(0.2)
+
+
+def test_an_obstacle_behind_is_seen_before_it_is_touched():
+    costmap = ground([(-0.5, 0.0)])
+    with pytest.raises(CollisionAhead):
+        run(BackUp(ROUND), BackUpCommand(0.5, 0.1), costmap, pose=(0.0, 0.0, 0.0))
+    run(BackUp(ROUND), BackUpCommand(0.2, 0.1), costmap, pose=(0.0, 0.0, 0.0))
+
+
+def test_a_robot_that_touches_an_obstacle_may_back_away():
+    run(BackUp(ROUND), BackUpCommand(0.2, 0.1), ground([(0.15, 0.0)]), pose=(0.0, 0.0, 0.0))
+
+
+def test_backing_up_too_slowly_is_ended():
+    with pytest.raises(TimedOut, match="in time"):
+        run(BackUp(ROUND), BackUpCommand(1.0, 0.01, 5.0), ground())
+
+
+@pytest.mark.parametrize(
+    ("behavior", "command"),
+    [
+        (BackUp(ROUND), BackUpCommand(-0.1, 0.1)),
+        (BackUp(ROUND), BackUpCommand(0.1, 0.0)),
+        (DriveOnHeading(ROUND), DriveOnHeadingCommand(0.1, -0.1)),
+        (Spin(ROUND), SpinCommand(math.nan)),
+        (Wait(ROUND), WaitCommand(-1.0)),
+        (Wait(ROUND), WaitCommand(math.nan)),
+    ],
+)
+def test_commands_that_make_no_sense_are_refused(behavior, command):
+    with pytest.raises(InvalidInput):
+        behavior.start(command, np.zeros(3), 0.0)
+
+
+def test_waiting_takes_its_time():
+    _, now, velocities = run(Wait(ROUND), WaitCommand(2.0), ground())
+    assert now == pytest.approx(2.0, abs=PERIOD)
+    assert not velocities.any()
+
+
+def test_contact_ahead_follows_arcs():
+    costmap = ground([(0.6, 0.6)])
+    assert contact_ahead(costmap, ROUND, np.zeros(3), 0.5, 0.8, 2.0)
+    assert not contact_ahead(costmap, ROUND, np.zeros(3), 0.5, -0.8, 2.0)
+    assert not contact_ahead(costmap, ROUND, np.zeros(3), 0.5, 0.8, 0.3)

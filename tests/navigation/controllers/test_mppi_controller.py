@@ -1,0 +1,91 @@
+"""The controller as a whole: it goes where it should, around what is in the way, or says that it cannot."""
+
+import numpy as np
+import pytest
+
+from daidalos.navigation.controllers.controller import NoValidControl
+from daidalos.navigation.controllers.mppi_controller import MppiController, MppiParameters
+from daidalos.navigation.costmap.footprint import Footprint
+
+from .scenes import control, ground, line
+
+ROBOT = Footprint.circle(0.2)
+
+
+def drive(path, costmap, cycles=120, **more):
+    """Let a perfect robot follow; returns its poses and velocities."""
+    controller = MppiController(ROBOT, MppiParameters(**more))
+    pose, velocity, poses, velocities = np.zeros(3), np.zeros(3), [], []
+    for _ in range(cycles):
+        passed = int(np.argmin(np.hypot(*(path[:, :2] - pose[:2]).T)))
+        velocity = controller.compute_velocity_commands(control(path[passed:], costmap, pose, velocity))
+        heading = pose[2] + 0.5 * velocity[2] * 0.05
+        pose = pose + 0.05 * np.array([velocity[0] * np.cos(heading), velocity[0] * np.sin(heading), velocity[2]])
+        poses.append(pose)
+        velocities.append(velocity)
+    return np.array(poses), np.array(velocities)
+
+
+def test_a_straight_path_is_followed_straight_and_fast():
+    poses, velocities = drive(line((2.5, 0.0)), ground(), 80)
+    assert np.abs(poses[:, 1]).max() < 0.03
+    assert velocities[20:60, 0].mean() > 0.4
+    assert np.abs(velocities[10:60, 2]).mean() < 0.15
+
+
+def test_it_stops_at_the_goal():
+    poses, velocities = drive(line((2.0, 0.0)), ground(), 140)
+    assert np.hypot(*(poses[-1, :2] - (2.0, 0.0))) < 0.1
+    assert np.abs(velocities[-10:, 0]).max() < 0.1
+
+
+def test_limits_of_velocity_and_acceleration_hold():
+    _, velocities = drive(line((1.0, 1.5)), ground(), 80, vx_max=0.26, wz_max=1.0)
+    assert velocities[:, 0].max() <= 0.26 + 1e-6
+    assert np.abs(velocities[:, 2]).max() <= 1.0 + 1e-6
+    steps = np.abs(np.diff(velocities, axis=0, prepend=np.zeros((1, 3))))
+    assert steps[:, 0].max() <= 2.5 * 0.05 + 1e-5
+    assert steps[:, 2].max() <= 3.2 * 0.05 + 1e-5
+
+
+def test_it_drives_around_what_the_planner_did_not_know():
+    costmap = ground([(1.2, 0.02), (1.25, 0.02)])
+    poses, _ = drive(line((2.5, 0.0)), costmap, 160)
+    assert np.hypot(*(poses[-1, :2] - (2.5, 0.0))) < 0.3
+    assert min(np.hypot(*(p[:2] - (1.22, 0.02))) for p in poses) > 0.2
+
+
+def test_contact_that_can_not_be_avoided_is_told():
+    wall = ground([(0.33, y) for y in np.arange(-2.0, 2.0, 0.04)])
+    fast = control(line((2.5, 0.0)), wall, velocity=(1.0, 0.0, 0.0))
+    with pytest.raises(NoValidControl, match="touch an obstacle"):
+        MppiController(ROBOT, MppiParameters(vx_max=1.0)).compute_velocity_commands(fast)
+
+
+def test_in_a_closet_it_stands():
+    around = np.arange(-0.24, 0.25, 0.03)
+    walls = [(x, y) for x in around for y in around if max(abs(x), abs(y)) > 0.2]
+    poses, _ = drive(line((2.5, 0.0)), ground(walls), 40)
+    assert np.hypot(*poses[-1, :2]) < 0.1
+
+
+def test_the_same_seed_drives_the_same_way():
+    once, again = (drive(line((1.5, 0.5)), ground(), 20)[1] for _ in range(2))
+    assert np.array_equal(once, again)
+
+
+def test_speed_limits_and_their_end():
+    controller = MppiController(ROBOT)
+    given = control(line((2.5, 0.0)), velocity=(0.1, 0.0, 0.0))
+    controller.set_speed_limit(0.1, percentage=False)
+    assert controller.compute_velocity_commands(given)[0] <= 0.1 + 1e-6
+    controller.set_speed_limit(0.0, percentage=False)
+    assert controller.compute_velocity_commands(given)[0] > 0.15
+
+
+def test_the_predicted_trajectory_begins_at_the_robot():
+    controller = MppiController(ROBOT)
+    controller.compute_velocity_commands(control(line((2.5, 0.0))))
+    assert controller.trajectory.shape == (56, 3)
+    assert np.hypot(*controller.trajectory[0, :2]) < 0.05
+    assert controller.trajectory[-1, 0] > 0.5
