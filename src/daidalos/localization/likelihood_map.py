@@ -42,9 +42,7 @@ class LikelihoodMap:
         from scipy.ndimage import distance_transform_edt
 
         if grid.origin[2] != 0.0:
-            raise LocalizationError(
-                f"the map is turned by {grid.origin[2]} rad; only maps along the axes are used"
-            )
+            raise LocalizationError(f"the map is turned by {grid.origin[2]} rad; only maps along the axes are used")
         occupied = grid.data >= OCCUPIED_FROM
         free = (grid.data >= 0) & (grid.data <= FREE_UP_TO)
         if not occupied.any() or not free.any():

@@ -6,9 +6,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 
-def with_headings(
-    points: Array, *, final_heading: float | None = None, initial_heading: float = 0.0
-) -> Array:
+def with_headings(points: Array, *, final_heading: float | None = None, initial_heading: float = 0.0) -> Array:
     """Make poses of points (n, 2), each looking at the next one.
 
     Parameters

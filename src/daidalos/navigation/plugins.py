@@ -27,9 +27,7 @@ _CLASSES = {
     ),
     "nav2_controller::SimpleGoalChecker": "controllers.plugins.simple_goal_checker:SimpleGoalChecker",
     "nav2_controller::StoppedGoalChecker": "controllers.plugins.stopped_goal_checker:StoppedGoalChecker",
-    "nav2_controller::SimpleProgressChecker": (
-        "controllers.plugins.simple_progress_checker:SimpleProgressChecker"
-    ),
+    "nav2_controller::SimpleProgressChecker": ("controllers.plugins.simple_progress_checker:SimpleProgressChecker"),
     "nav2_controller::PoseProgressChecker": "controllers.plugins.pose_progress_checker:PoseProgressChecker",
     "nav2_behaviors::Spin": "behaviors.spin:Spin",
     "nav2_behaviors::BackUp": "behaviors.back_up:BackUp",
@@ -41,9 +39,7 @@ _CLASSES = {
     "mppi::critics::PathAlignCritic": "controllers.mppi.critics.path_align_critic:PathAlignCritic",
     "mppi::critics::PathAngleCritic": "controllers.mppi.critics.path_angle_critic:PathAngleCritic",
     "mppi::critics::PathFollowCritic": "controllers.mppi.critics.path_follow_critic:PathFollowCritic",
-    "mppi::critics::PreferForwardCritic": (
-        "controllers.mppi.critics.prefer_forward_critic:PreferForwardCritic"
-    ),
+    "mppi::critics::PreferForwardCritic": ("controllers.mppi.critics.prefer_forward_critic:PreferForwardCritic"),
     "mppi::critics::TwirlingCritic": "controllers.mppi.critics.twirling_critic:TwirlingCritic",
 }
 

@@ -74,9 +74,7 @@ class Spin(Behavior[SpinCommand]):
         if abs(left) <= DONE_ANGLE:
             return BehaviorStep(np.zeros(3), True, abs(self._turned))
         if now > self._deadline:
-            raise TimedOut(
-                f"turned {abs(self._turned):.2f} rad of {abs(self._command.target_yaw):.2f} in time"
-            )
+            raise TimedOut(f"turned {abs(self._turned):.2f} rad of {abs(self._command.target_yaw):.2f} in time")
         turn = self._speed(left, float(velocity[2]))
         ahead = min(self.parameters.simulate_ahead_time, abs(left) / max(abs(turn), 1e-3))
         if contact_ahead(costmap, self.footprint, pose, 0.0, turn, ahead):

@@ -108,9 +108,7 @@ class MppiController(Controller):
         self._controls: Samples = np.zeros((p.time_steps, 2), dtype=np.float32)
         self._rollouts = Rollouts.empty(p.batch_size, p.time_steps)
         self._single = Rollouts.empty(1, p.time_steps)
-        correlation = (
-            math.exp(-p.model_dt / p.noise_correlation_time) if p.noise_correlation_time > 0.0 else 0.0
-        )
+        correlation = math.exp(-p.model_dt / p.noise_correlation_time) if p.noise_correlation_time > 0.0 else 0.0
         self._pool = correlated_noise(self._generator, NOISE_POOL * p.batch_size, p.time_steps, correlation)
         self._pool *= np.array([p.vx_std, p.wz_std], dtype=np.float32)
 
@@ -183,9 +181,7 @@ class MppiController(Controller):
         """Make a sequence the present one and see where it leads."""
         self._controls[:] = controls
         still = np.zeros((1, *controls.shape), dtype=np.float32)
-        self._single.drive(
-            control.pose, control.velocity, self._controls, still, limits, self.parameters.model_dt
-        )
+        self._single.drive(control.pose, control.velocity, self._controls, still, limits, self.parameters.model_dt)
         for critic in self.critics:
             if critic.judges_contact:
                 critic.score(self._single, scene)

@@ -42,9 +42,7 @@ class PathHandler:
             It has no poses, or one that is not finite.
         """
         if plan.ndim != 2 or plan.shape[0] == 0 or plan.shape[1] != 3:
-            raise InvalidPath(
-                f"a path must be at least one pose (x, y, yaw), not an array of shape {plan.shape}"
-            )
+            raise InvalidPath(f"a path must be at least one pose (x, y, yaw), not an array of shape {plan.shape}")
         if not np.isfinite(plan).all():
             raise InvalidPath("the path has a pose that is not finite")
         self._plan = plan.copy()

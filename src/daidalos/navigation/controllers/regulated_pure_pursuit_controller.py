@@ -197,8 +197,7 @@ class RegulatedPurePursuitController(Controller):
                 return
             if checker.in_collision(pose):
                 raise NoValidControl(
-                    f"an obstacle is in the way at ({float(pose[0]):.2f}, {float(pose[1]):.2f}), "
-                    f"{elapsed:.1f} s ahead"
+                    f"an obstacle is in the way at ({float(pose[0]):.2f}, {float(pose[1]):.2f}), {elapsed:.1f} s ahead"
                 )
 
 

@@ -73,9 +73,7 @@ class RotationShimController(Controller):
         """See `Controller.compute_velocity_commands`."""
         to_goal = between(control.pose, control.goal)
         away = math.hypot(float(to_goal[0]), float(to_goal[1]))
-        if self.parameters.rotate_to_goal_heading and (
-            self._at_goal or away <= 0.8 * control.xy_goal_tolerance
-        ):
+        if self.parameters.rotate_to_goal_heading and (self._at_goal or away <= 0.8 * control.xy_goal_tolerance):
             self._at_goal = True
             return self._turn(control, float(to_goal[2]))
         if self._starting or control.distance_to_goal < 0.3:

@@ -126,9 +126,7 @@ class Costmap:
         """Cells that a rectangle [m] touches."""
         if bounds.empty:
             return Window(0, 0, 0, 0)
-        left, bottom = self.world_to_map(
-            _finite(bounds.min_x, self.origin[0]), _finite(bounds.min_y, self.origin[1])
-        )
+        left, bottom = self.world_to_map(_finite(bounds.min_x, self.origin[0]), _finite(bounds.min_y, self.origin[1]))
         right, top = self.world_to_map(
             _finite(bounds.max_x, self.origin[0] + self.width * self.resolution),
             _finite(bounds.max_y, self.origin[1] + self.height * self.resolution),
@@ -166,9 +164,9 @@ class Costmap:
         rows = slice(max(up, 0), min(up + height, self.height))
         columns = slice(max(right, 0), min(right + width, self.width))
         if rows.start < rows.stop and columns.start < columns.stop:
-            moved[rows.start - up : rows.stop - up, columns.start - right : columns.stop - right] = (
-                self.costs[rows, columns]
-            )
+            moved[rows.start - up : rows.stop - up, columns.start - right : columns.stop - right] = self.costs[
+                rows, columns
+            ]
         self.costs = moved
 
 
@@ -206,9 +204,7 @@ class Bounds:
         """Rectangle that is larger by a distance on every side; an empty one stays empty."""
         if self.empty:
             return self
-        return Bounds(
-            self.min_x - distance, self.min_y - distance, self.max_x + distance, self.max_y + distance
-        )
+        return Bounds(self.min_x - distance, self.min_y - distance, self.max_x + distance, self.max_y + distance)
 
 
 EVERYWHERE = Bounds(-math.inf, -math.inf, math.inf, math.inf)

@@ -69,12 +69,7 @@ class Footprint:
             There are fewer than three corners, or one is not finite.
         """
         polygon = np.array(corners, dtype=np.float64)
-        if (
-            polygon.ndim != 2
-            or polygon.shape[1] != 2
-            or polygon.shape[0] < 3
-            or not np.isfinite(polygon).all()
-        ):
+        if polygon.ndim != 2 or polygon.shape[1] != 2 or polygon.shape[0] < 3 or not np.isfinite(polygon).all():
             raise CostmapError(f"footprint must be at least three corners [x, y] in metres, not {corners!r}")
         polygon = polygon + padding * np.sign(polygon)
         return cls(
@@ -100,8 +95,7 @@ class Footprint:
             points = np.array(corners, dtype=np.float64)
         except (ValueError, SyntaxError, TypeError):
             raise CostmapError(
-                "footprint must be corners such as [[0.2, 0.15], [0.2, -0.15], [-0.2, 0.0]], "
-                f"not {footprint!r}"
+                f"footprint must be corners such as [[0.2, 0.15], [0.2, -0.15], [-0.2, 0.0]], not {footprint!r}"
             ) from None
         if points.size == 0:
             return cls.circle(robot_radius)
@@ -152,9 +146,7 @@ class FootprintCollisionChecker:
 
 
 @compiled
-def outline_cost(
-    costs: Costs, resolution: float, origin: Array, polygon: Array, x: float, y: float, yaw: float
-) -> int:
+def outline_cost(costs: Costs, resolution: float, origin: Array, polygon: Array, x: float, y: float, yaw: float) -> int:
     """Highest cost along a polygon (n, 2) placed at a pose; unknown counts only where nothing is lethal."""
     cosine, sine = math.cos(yaw), math.sin(yaw)
     corners = polygon.shape[0]

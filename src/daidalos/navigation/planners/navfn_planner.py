@@ -80,16 +80,13 @@ class NavfnPlanner(GlobalPlanner):
         step = self._step_costs()
         entry = _way_out(costmap, first, step, start)
         potential = self._potential(costmap, step, entry, last)
-        reached = (
-            last if np.isfinite(potential[last[1], last[0]]) else self._near(costmap, potential, last, goal)
-        )
-        cells = descend(potential, reached[0], reached[1], entry[0], entry[1])
+        reached = last if np.isfinite(potential[last[1], last[0]]) else self._near(costmap, potential, last, goal)
+        end = goal[:2] if reached == last else np.array(costmap.map_to_world(*reached))
+        begin = start[:2] if entry == first else np.array(costmap.map_to_world(*entry))
+        from_cells, to_cells = ((p - costmap.origin) / costmap.resolution - 0.5 for p in (begin, end))
+        cells = descend(potential, to_cells[0], to_cells[1], from_cells[0], from_cells[1])
         points = costmap.origin + (cells + 0.5) * costmap.resolution
-        if reached == last:
-            points[-1] = goal[:2]
-        if entry == first:
-            points[0] = start[:2]
-        else:
+        if entry != first:
             points = np.concatenate([start[None, :2], points])
         final = None if self.parameters.use_final_approach_orientation else float(goal[2])
         return with_headings(points, final_heading=final, initial_heading=float(start[2]))
@@ -101,9 +98,7 @@ class NavfnPlanner(GlobalPlanner):
         if cost == NO_INFORMATION and not self.parameters.allow_unknown:
             raise GoalOccupied(f"the goal {_words(goal)} is in unknown space and allow_unknown is false")
 
-    def _potential(
-        self, costmap: Costmap, step: NDArray[np.float32], entry: Cell, last: Cell
-    ) -> NDArray[np.float32]:
+    def _potential(self, costmap: Costmap, step: NDArray[np.float32], entry: Cell, last: Cell) -> NDArray[np.float32]:
         """Navigation function from the entry, at least as far as the goal if it can be reached.
 
         With A* the wavefront is bounded by the cost that the straight distance promises, which is raised
@@ -135,9 +130,7 @@ class NavfnPlanner(GlobalPlanner):
             return column, row
         within = f" and nothing within {tolerance} m of it can be reached" if tolerance > 0.0 else ""
         if costmap.costs[last[1], last[0]] == INSCRIBED_INFLATED_OBSTACLE:
-            raise GoalOccupied(
-                f"the robot does not fit at the goal {_words(goal)}: an obstacle is too near{within}"
-            )
+            raise GoalOccupied(f"the robot does not fit at the goal {_words(goal)}: an obstacle is too near{within}")
         raise NoPath(f"no way leads to the goal {_words(goal)}: obstacles cut it off{within}")
 
 

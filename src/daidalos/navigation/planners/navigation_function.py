@@ -11,6 +11,9 @@ from daidalos.navigation.costmap.costmap import INSCRIBED_INFLATED_OBSTACLE, Cos
 Array = NDArray[np.float64]
 Field = NDArray[np.float32]
 
+DETOUR_SHARE = 0.1
+"""How much nearer to the goal, in cells, a cell must be for each step that the way to it is longer."""
+
 BUCKETS = 64
 BUCKET_WIDTH = 0.5
 """Width of a bucket in steps over free ground; a step costs at most 5.1 of them, so 64 buckets never wrap."""
@@ -115,9 +118,7 @@ def propagate(
 
 
 @compiled
-def _upwind(
-    value: Field, cell: int, column: int, row: int, width: int, height: int, cost: float
-) -> np.float32:
+def _upwind(value: Field, cell: int, column: int, row: int, width: int, height: int, cost: float) -> np.float32:
     """Value of a cell from its lowest neighbour on each axis (Godunov's scheme)."""
     infinity = np.float32(np.inf)
     west = value[cell - 1] if column > 0 else infinity
@@ -170,50 +171,53 @@ def _take(
 
 
 @compiled
-def descend(value: Field, goal_column: int, goal_row: int, start_column: int, start_row: int) -> Array:
+def descend(value: Field, goal_x: float, goal_y: float, start_x: float, start_y: float) -> Array:
     """Way from the start to the goal, found by going down the navigation function from the goal.
 
     Steps of half a cell follow the gradient between the centres of cells; where that does not lead down, at
-    edges of obstacles, the next point is the lowest neighbouring cell. Every other point is kept.
+    edges of obstacles, the way leads over the centre of the cell to that of its lowest neighbour.
+
+    Parameters
+    ----------
+    value : ndarray of float32, shape (height, width)
+        The navigation function from the start.
+    goal_x, goal_y, start_x, start_y : float
+        The two points in cells, whole numbers at the centres of cells.
 
     Returns
     -------
     ndarray, shape (n, 2)
-        Points (column, row) in cells, whole numbers at the centres of cells; the first is the start, the last
-        the goal.
+        Points (column, row), about a cell apart; the first is the start, the last the goal.
     """
-    height, width = value.shape
-    limit = 8 * height * width
     points = np.empty((1024, 2))
-    count = 0
-    x, y = float(goal_column), float(goal_row)
-    level = value[goal_row, goal_column]
-    for number in range(limit):
-        if number % 2 == 0:
-            if count + 1 >= points.shape[0]:
-                larger = np.empty((2 * points.shape[0], 2))
-                larger[:count] = points[:count]
-                points = larger
-            points[count, 0] = x
-            points[count, 1] = y
-            count += 1
-        if math.hypot(x - start_column, y - start_row) < 1.0:
+    points[0, 0], points[0, 1] = goal_x, goal_y
+    count = 1
+    x, y = goal_x, goal_y
+    level = _interpolated(value, x, y)
+    for number in range(8 * value.size):
+        if math.hypot(x - start_x, y - start_y) < 1.0:
             break
+        if count + 3 > points.shape[0]:
+            larger = np.empty((2 * points.shape[0], 2))
+            larger[:count] = points[:count]
+            points = larger
         dx, dy = _downhill(value, x, y)
         norm = math.hypot(dx, dy)
-        moved = False
         if norm > 1e-3:
             nx, ny = x + 0.5 * dx / norm, y + 0.5 * dy / norm
             there = _interpolated(value, nx, ny)
             if there < level:
                 x, y, level = nx, ny, there
-                moved = True
-        if not moved:
-            x, y, level = _lowest_neighbour(value, x, y)
-    points[count, 0] = float(start_column)
-    points[count, 1] = float(start_row)
-    count += 1
-    return points[:count][::-1].copy()
+                if number % 2 == 1:
+                    points[count, 0], points[count, 1] = x, y
+                    count += 1
+                continue
+        points[count, 0], points[count, 1] = float(round(x)), float(round(y))
+        x, y, level = _lowest_neighbour(value, round(x), round(y))
+        points[count + 1, 0], points[count + 1, 1] = x, y
+        count += 2
+    points[count, 0], points[count, 1] = start_x, start_y
+    return points[: count + 1][::-1].copy()
 
 
 @compiled
@@ -268,31 +272,36 @@ def _slope(before: np.float32, here: np.float32, after: np.float32) -> float:
 
 
 @compiled
-def _lowest_neighbour(value: Field, x: float, y: float) -> tuple[float, float, np.float32]:
-    """Centre and value of the lowest of the four cells around a point and their neighbours along the axes."""
+def _lowest_neighbour(value: Field, column: int, row: int) -> tuple[float, float, np.float32]:
+    """Centre and value of the lowest of the four cells beside a cell."""
     best = np.float32(np.inf)
-    at_x, at_y = x, y
-    column = round(x)
-    row = round(y)
+    x, y = column, row
     for dx, dy in ((-1, 0), (1, 0), (0, -1), (0, 1)):
-        cx, cy = column + dx, row + dy
-        if 0 <= cx < value.shape[1] and 0 <= cy < value.shape[0] and value[cy, cx] < best:
-            best = value[cy, cx]
-            at_x, at_y = float(cx), float(cy)
-    return at_x, at_y, best
+        beside = _value(value, column + dx, row + dy)
+        if beside < best:
+            best = beside
+            x, y = column + dx, row + dy
+    return float(x), float(y), best
 
 
 @compiled
 def nearest_reached(value: Field, column: int, row: int, reach: float) -> tuple[int, int]:
-    """Cell with a finite value nearest to a cell, within a distance in cells; (-1, -1) if there is none."""
+    """Cell with a finite value near to a cell, within a distance in cells; (-1, -1) if there is none.
+
+    The nearest, or one hardly farther off that costs less to get to: between two sides of an obstacle the
+    choice must not change with every scan.
+    """
     radius = math.floor(reach)
-    best = reach * reach + 1e-6
+    best = np.inf
     found_column = found_row = -1
     for y in range(max(row - radius, 0), min(row + radius + 1, value.shape[0])):
         for x in range(max(column - radius, 0), min(column + radius + 1, value.shape[1])):
-            d = float((x - column) ** 2 + (y - row) ** 2)
-            if value[y, x] < np.inf and d < best:
-                best = d
+            d = math.hypot(x - column, y - row)
+            if d > reach + 1e-6 or value[y, x] == np.inf:
+                continue
+            price = d + DETOUR_SHARE * value[y, x]
+            if price < best:
+                best = price
                 found_column, found_row = x, y
     return found_column, found_row
 
@@ -318,12 +327,11 @@ def nearest_way_out(costs: Costs, step: Field, column: int, row: int, reach: flo
         x, y = queue[taken, 0], queue[taken, 1]
         taken += 1
         d = math.hypot(x - column, y - row)
-        if step[costs[y, x]] < np.inf:
-            if d < best:
-                best = d
-                found_column, found_row = x, y
-            continue
         if d > best or (inside and d > reach):
+            continue
+        if step[costs[y, x]] < np.inf:
+            best = d
+            found_column, found_row = x, y
             continue
         if not inside and costs[y, x] != INSCRIBED_INFLATED_OBSTACLE:
             continue

@@ -18,8 +18,7 @@ from daidalos.navigation.trees.registry import known_nodes, node_class
 from daidalos.navigation.trees.services import Services
 
 DEFAULT_TREE = (
-    Path(__file__).parents[2]
-    / "share/nav2_bt_navigator/behavior_trees/navigate_to_pose_w_replanning_and_recovery.xml"
+    Path(__file__).parents[2] / "share/nav2_bt_navigator/behavior_trees/navigate_to_pose_w_replanning_and_recovery.xml"
 )
 """The tree of `navigate_to_pose` that is used where none is named."""
 
@@ -114,9 +113,7 @@ def _document(text: str, source: str) -> Element:
     return root
 
 
-def _trees(
-    root: Element, folder: Path, seen: frozenset[Path] = frozenset()
-) -> tuple[dict[str, Element], str]:
+def _trees(root: Element, folder: Path, seen: frozenset[Path] = frozenset()) -> tuple[dict[str, Element], str]:
     """Trees of a file and those it includes by their ID, and the ID of the one to run."""
     trees: dict[str, Element] = {}
     for include in root.all("include"):
@@ -146,16 +143,12 @@ class _Builder:
     def subtree(self, identifier: str, board: Blackboard, element: Element, path: tuple[str, ...]) -> Any:
         """Root node of one of the trees; `element` is where it is asked for."""
         if identifier not in self._trees:
-            raise TreeError(
-                f"{_place(element)}: there is no tree {identifier!r}{_near(identifier, self._trees)}"
-            )
+            raise TreeError(f"{_place(element)}: there is no tree {identifier!r}{_near(identifier, self._trees)}")
         if identifier in path:
             raise TreeError(f"{_place(element)}: the tree {identifier!r} contains itself")
         tree = self._trees[identifier]
         if len(tree.children) != 1:
-            raise TreeError(
-                f"{tree.where}: the tree {identifier!r} must have one root, not {len(tree.children)}"
-            )
+            raise TreeError(f"{tree.where}: the tree {identifier!r} must have one root, not {len(tree.children)}")
         return self._node(tree.children[0], board, (*path, identifier))
 
     def _node(self, element: Element, board: Blackboard, path: tuple[str, ...]) -> Any:
@@ -164,9 +157,7 @@ class _Builder:
             return self._inner_tree(element, board, path)
         made_by = node_class(identifier)
         if made_by is None:
-            raise TreeError(
-                f"{_place(element)}: there is no node {identifier!r}{_near(identifier, known_nodes())}"
-            )
+            raise TreeError(f"{_place(element)}: there is no node {identifier!r}{_near(identifier, known_nodes())}")
         children = [self._node(child, board, path) for child in element.children]
         _check_number(element, len(children), made_by.CHILDREN)
         attributes = {k: v for k, v in element.attributes.items() if k not in _COMMENTARY}
@@ -192,9 +183,7 @@ def _check_number(element: Element, number: int, allowed: tuple[int, int | None]
     fewest, most = allowed
     if number >= fewest and (most is None or number <= most):
         return
-    wanted = (
-        f"at least {fewest}" if most is None else f"{fewest}" if most == fewest else f"{fewest} to {most}"
-    )
+    wanted = f"at least {fewest}" if most is None else f"{fewest}" if most == fewest else f"{fewest} to {most}"
     raise TreeError(f"{_place(element)}: it must have {wanted} children, not {number}")
 
 

@@ -125,10 +125,9 @@ def drive_differential(
         cosine, sine = math.cos(yaw0), math.sin(yaw0)
         for t in range(x.shape[1]):
             wanted = min(max(controls[t, 0] + noise[b, t, 0], slowest), fastest)
-            if v >= 0:
-                v = min(max(wanted, v + braking), v + gaining)
-            else:
-                v = min(max(wanted, v - gaining), v - braking)
+            lower = braking if v >= 0.0 else -gaining
+            upper = gaining if v >= 0.0 else -braking
+            v = min(max(wanted, v + lower), v + upper)
             wanted = min(max(controls[t, 1] + noise[b, t, 1], -turn), turn)
             w = min(max(wanted, w - turning), w + turning)
             a = 0.5 * w * step

@@ -98,9 +98,7 @@ class InflationLayer(Layer):
         )
 
 
-def cost_of_squared_distance(
-    parameters: InflationLayerParameters, inscribed_radius: float, resolution: float
-) -> Costs:
+def cost_of_squared_distance(parameters: InflationLayerParameters, inscribed_radius: float, resolution: float) -> Costs:
     """Cost at every squared distance in cells, from 0 to the square of the inflation radius."""
     reach = math.floor(parameters.inflation_radius / resolution + 1e-9)
     distance = np.sqrt(np.arange(reach * reach + 1)) * resolution
@@ -192,9 +190,7 @@ def _vertical_distances(
 
 
 @compiled
-def _squared_distances(
-    line: NDArray[np.int32], start: int, reach: int, far: int, squared: NDArray[np.int32]
-) -> bool:
+def _squared_distances(line: NDArray[np.int32], start: int, reach: int, far: int, squared: NDArray[np.int32]) -> bool:
     """Squared distance to the nearest obstacle along one row; False where the row has none in reach."""
     squared[:] = far
     found = False

@@ -139,9 +139,7 @@ class ObstacleLayer(Layer):
     def match_size(self, costmap: Costmap) -> None:
         """Keep what was seen where the costmap still covers it."""
         if self._seen is None or self._seen.resolution != costmap.resolution:
-            self._seen = Costmap.filled(
-                costmap.width, costmap.height, costmap.resolution, costmap.origin, self.default
-            )
+            self._seen = Costmap.filled(costmap.width, costmap.height, costmap.resolution, costmap.origin, self.default)
         else:
             self._seen.cover(costmap.width, costmap.height, costmap.origin, self.default)
 
@@ -175,9 +173,7 @@ class ObstacleLayer(Layer):
             return
         if self.parameters.footprint_clearing_enabled and self._under_robot is not None:
             fill_polygon(costmap, self._under_robot, FREE_SPACE)
-        _combine(
-            costmap.costs[window.slices], self._seen.costs[window.slices], self.parameters.combination_method
-        )
+        _combine(costmap.costs[window.slices], self._seen.costs[window.slices], self.parameters.combination_method)
 
     def clear(self, keep: Window, *, inside: bool) -> None:
         """Forget what was seen inside of a window of cells, or outside of it."""

@@ -39,9 +39,7 @@ class RecoveryNode(Control):
                 self._retries += 1
                 self.current_child = main
             elif (
-                child is main
-                and child.status == Status.FAILURE
-                and self._retries < self.ports.get("number_of_retries")
+                child is main and child.status == Status.FAILURE and self._retries < self.ports.get("number_of_retries")
             ):
                 self.current_child = recovery
             else:

@@ -34,9 +34,7 @@ class GoalCritic(Critic):
 
 
 @compiled
-def mean_distance(
-    x: Samples, y: Samples, goal_x: float, goal_y: float, weight: float, total: Samples
-) -> None:
+def mean_distance(x: Samples, y: Samples, goal_x: float, goal_y: float, weight: float, total: Samples) -> None:
     """Add to `total` the weighted mean distance of each rollout to a point."""
     gx, gy = np.float32(goal_x), np.float32(goal_y)
     for b in range(x.shape[0]):

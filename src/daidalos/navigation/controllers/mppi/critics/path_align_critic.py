@@ -38,10 +38,7 @@ class PathAlignCritic(Critic):
     def score(self, rollouts: Rollouts, scene: Scene) -> None:
         """See `Critic.score`."""
         p = self.parameters
-        if (
-            scene.control.distance_to_goal < p.threshold_to_consider
-            or scene.furthest < p.offset_from_furthest
-        ):
+        if scene.control.distance_to_goal < p.threshold_to_consider or scene.furthest < p.offset_from_furthest:
             return
         blocked = 1.0 - float(scene.path_free[: scene.furthest + 1].mean())
         if blocked > p.max_path_occupancy_ratio:

@@ -37,8 +37,6 @@ class PathAngleCritic(Critic):
         ahead = between(scene.control.pose, target)
         if abs(math.atan2(float(ahead[1]), float(ahead[0]))) < p.max_angle_to_furthest:
             return
-        bearing = np.arctan2(
-            np.float32(target[1]) - rollouts.y[:, -1], np.float32(target[0]) - rollouts.x[:, -1]
-        )
+        bearing = np.arctan2(np.float32(target[1]) - rollouts.y[:, -1], np.float32(target[0]) - rollouts.x[:, -1])
         angle = np.abs(wrap(bearing - rollouts.yaw[:, -1]))
         rollouts.costs[:] += (p.cost_weight * angle).astype(np.float32)
