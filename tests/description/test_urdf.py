@@ -53,7 +53,6 @@ def test_everything_in_a_robot_is_read():
         ('<mass value="2"/>', '<mass value="two"/>', 7, "should be a number, got 'two'"),
         ('<mass value="2"/>', "", 7, "<mass> is missing"),
         ('<box size="1 2 3"/>', '<bax size="1 2 3"/>', 5, "expected one of box"),
-        ('<mimic joint="grip"', '<mimic joint="grap"', 27, "mimics joint 'grap'"),
         ('<child link="thumb"/>', '<child link="finger"/>', 27, "child of more than one joint"),
         ('<link name="thumb"/>', '<link name="thumb"/><link name="lost"/>', 2, "nobody's child: base, lost"),
     ],
@@ -70,6 +69,12 @@ def test_mistakes_are_named_with_their_place(old, new, line, words):
 def test_a_revolute_joint_needs_limits():
     with pytest.raises(DescriptionError, match="a revolute joint needs <limit>"):
         urdf.parse(ARM.replace('<limit lower="-1" upper="2" effort="10" velocity="3"/>', ""))
+
+
+def test_a_mimic_of_nothing_is_noted():
+    robot = urdf.parse(ARM.replace('<mimic joint="grip"', '<mimic joint="grap"'), "arm.urdf")
+    assert robot.warnings == ("arm.urdf:27: joint 'grip_mirror' mimics 'grap', which does not exist",)
+    assert robot.joints["grip_mirror"].mimic is None
 
 
 def test_a_loop_is_no_tree():

@@ -77,6 +77,9 @@ class Mesh:
         Take only this part of the file; empty for all of it.
     center : bool
         Move the part's centre to the frame's origin.
+    optimization : str
+        ``convex_hull`` or ``convex_decomposition`` for how it collides (SDF); empty leaves that to the
+        simulator.
     where : str
         The place in the description, for errors.
     """
@@ -86,6 +89,7 @@ class Mesh:
     scale: Vector = (1.0, 1.0, 1.0)
     submesh: str = ""
     center: bool = False
+    optimization: str = ""
     where: str = field(default="", compare=False)
 
 

@@ -104,31 +104,36 @@ def _read(path: Path, submesh: str, _modified: int, where: str) -> TriangleMesh:
     if kind not in _FORMATS:
         raise DescriptionError(f"mesh {path}: {kind or 'no'} format; known are {', '.join(_FORMATS)}", where)
     try:
-        scene = trimesh.load_scene(path, file_type=kind)
+        scene = trimesh.load_scene(path, file_type=kind, skip_materials=True)
     except Exception as problem:
         # The readers of the formats raise whatever their file's content leads them to.
         reason = " ".join(str(problem).split()) or type(problem).__name__
         raise DescriptionError(f"mesh {path} can not be read: {reason}", where) from None
-    parts = [part for name, part in _parts(scene) if not submesh or submesh in name]
+    parts = [part for names, *part in _parts(scene) if not submesh or submesh in names]
     if submesh and not parts:
         raise DescriptionError(f"mesh {path} has no part {submesh!r}", where)
     if not parts:
         raise DescriptionError(f"mesh {path} holds no triangles", where)
-    whole = trimesh.util.concatenate(parts)
-    whole.merge_vertices(merge_tex=True, merge_norm=True)
+    starts = np.cumsum([0, *(len(vertices) for vertices, _ in parts[:-1])])
+    whole = trimesh.Trimesh(
+        np.concatenate([vertices for vertices, _ in parts]),
+        np.concatenate([faces + start for (_, faces), start in zip(parts, starts, strict=True)]),
+        process=False,
+    )
+    whole.merge_vertices()
     return TriangleMesh(np.asarray(whole.vertices, dtype=np.float64), np.asarray(whole.faces, dtype=np.int32))
 
 
-def _parts(scene: Any) -> list[tuple[tuple[str, str], Any]]:
-    """Return every instance in a scene, by node and geometry name, placed in the scene's frame."""
+def _parts(scene: Any) -> list[tuple[tuple[str, str], NDArray[np.float64], NDArray[np.int64]]]:
+    """Return every instance in a scene: names of node and geometry, vertices in the scene, faces."""
     parts = []
     for node in scene.graph.nodes_geometry:
         transform, name = scene.graph[node]
         part = scene.geometry[name]
         if hasattr(part, "faces") and len(part.faces):
-            placed = part.copy()
-            placed.apply_transform(transform)
-            parts.append(((str(node), str(name)), placed))
+            vertices = part.vertices @ transform[:3, :3].T + transform[:3, 3]
+            faces = part.faces[:, ::-1] if np.linalg.det(transform[:3, :3]) < 0 else part.faces
+            parts.append(((str(node), str(name)), np.asarray(vertices), np.asarray(faces)))
     return parts
 
 

@@ -150,6 +150,8 @@ def _links(root: Element, materials: Mapping[str, Material], resolve: PackageRes
             where=element.where,
         )
     if not links:
+        if any(child.tag.startswith("xacro:") for child in root):
+            raise root.error("this is a xacro file; its name should end in .xacro")
         raise root.error("the robot has no link")
     return links
 
@@ -252,10 +254,10 @@ def _joints(root: Element, warnings: list[str]) -> dict[str, Joint]:
         if name in joints:
             raise element.error("a joint of this name was defined before")
         joints[name] = _joint(element, warnings)
-    for element in root.all("joint"):
-        mimic = joints[element.name()].mimic
-        if mimic is not None and mimic.joint not in joints:
-            raise element.error(f"mimics joint {mimic.joint!r}, which does not exist")
+    for name, joint in joints.items():
+        if joint.mimic is not None and joint.mimic.joint not in joints:
+            warnings.append(f"{joint.where}: joint {name!r} mimics {joint.mimic.joint!r}, which does not exist")
+            joints[name] = replace(joint, mimic=None)
     return joints
 
 

@@ -195,6 +195,11 @@ class Instance:
             return self.model.pose
         return LinkView(self.physics, self.physics.model.body(self.name).id).pose
 
+    def place_joints(self) -> None:
+        """Put joints whose zero is outside their limits to where they start."""
+        for name, position in self.build.start.items():
+            self.physics.data.qpos[int(self.physics.model.joint(name).qposadr[0])] = position
+
     def set_pose(self, pose: Pose) -> None:
         """Move the free links of the model as a whole; joints keep their positions."""
         change = pose @ self.pose.inverse

@@ -316,6 +316,7 @@ class Simulation:
         self._stale()
         self._schedule.restart(0)
         for instance in self._instances.values():
+            instance.place_joints()
             for component in instance.components:
                 component.random = component.setting.stream()
                 component.memory = component.start()
@@ -377,6 +378,8 @@ class Simulation:
             monitor.bind(self._physics)
 
     def _start(self, instance: Instance) -> None:
+        instance.place_joints()
+        self._stale()
         for component in instance.components:
             component.memory = component.start()
             self._schedule.add(component, self.time_ns)

@@ -86,6 +86,7 @@ def _mesh(element: Element, context: Context) -> Geometry:
         scale=(x, y, z),
         submesh=submesh.text_of("name"),
         center=submesh.flag_of("center", default=False),
+        optimization=element.attribute("optimization", ""),
         where=element.where,
     )
 

@@ -45,11 +45,19 @@ class Assets:
         self._users: Counter[str] = Counter()
         self._taken: list[str] = []
 
-    def solid(self, mesh: TriangleMesh) -> Solid:
-        """Return a mesh's convex parts and, where they differ from it, its true surface."""
+    def solid(self, mesh: TriangleMesh, decompose: bool) -> Solid:
+        """Return a mesh's convex parts and, where they differ from it, its true surface.
+
+        Parameters
+        ----------
+        mesh : TriangleMesh
+        decompose : bool
+            Split what is not convex; otherwise its hull stands for it.
+        """
         key = content_key(mesh)
-        parts, concave = convex_parts(mesh, key)
-        names = tuple(self._take(f"{key}:{i}", part) for i, part in enumerate(parts))
+        parts, concave = convex_parts(mesh, key, decompose)
+        kind = "part" if decompose else "hull"
+        names = tuple(self._take(f"{key}:{kind}{i}", part) for i, part in enumerate(parts))
         return Solid(names, self._take(key, mesh) if concave else "")
 
     def taken(self) -> tuple[str, ...]:

@@ -18,7 +18,7 @@ from daidalos.simulation.conversion.assets import Assets
 from daidalos.simulation.conversion.contact import set_surface
 from daidalos.simulation.conversion.geometry import add_geoms, add_wheel
 from daidalos.simulation.conversion.inertia import PrincipalInertia, principal_inertia, smallest_inertia
-from daidalos.simulation.conversion.joints import add_joints
+from daidalos.simulation.conversion.joints import add_joints, start_position
 from daidalos.simulation.conversion.wheels import is_caster, is_wheel
 from daidalos.simulation.errors import UnknownNameError
 
@@ -54,6 +54,8 @@ class ModelBuild:
         Bodies to delete when the model goes.
     joints : dict
         Joint to the names of MuJoCo's joints.
+    start : dict
+        MuJoCo's joints that can not start at zero, with where they do.
     free : dict
         Link to the name of its free joint.
     base : MjsBody or None
@@ -72,6 +74,7 @@ class ModelBuild:
     bodies: dict[str, Any] = field(default_factory=dict)
     roots: list[Any] = field(default_factory=list)
     joints: dict[str, list[str]] = field(default_factory=dict)
+    start: dict[str, float] = field(default_factory=dict)
     free: dict[str, str] = field(default_factory=dict)
     base: Any = None
     trees: list[Any] = field(default_factory=list)
@@ -230,6 +233,9 @@ class _Builder:
         body = self._add_link(parent, link, joint.origin @ joint.anchor.inverse)
         added = add_joints(body, joint, self._build.scoped(joint.name))
         self._build.joints[joint.name] = added
+        for name, axis in zip(added, joint.axes, strict=False):
+            if start_position(axis):
+                self._build.start[name] = start_position(axis)
         if added and not moves:
             self._build.trees.append(body)
         self._add_children(link, moves or bool(added))
@@ -310,7 +316,8 @@ class _Builder:
                 disc: Any = collision.geometry
                 geoms = add_wheel(body, disc.radius, disc.length, collision.pose)
             else:
-                geoms = add_geoms(body, collision.geometry, collision.pose, self._assets)
+                static = self._model.static
+                geoms = add_geoms(body, collision.geometry, collision.pose, self._assets, static)
         except DescriptionError as problem:
             self._warn(f"{problem}; the collision is left out")
             return

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import hashlib
+import itertools
+import logging
 import os
 import sys
 import tempfile
@@ -17,10 +19,13 @@ from daidalos.description.meshes import TriangleMesh
 CONVEX_ENOUGH = 0.95
 """A mesh that fills this share of its convex hull is taken as convex."""
 
-_FLAT = 1e-9
+MOST_HULLS = 24
+"""A mesh in more pieces than this gets one hull around all of them, unless it is to be decomposed."""
+
+_log = logging.getLogger(__name__)
 
 
-def convex_parts(mesh: TriangleMesh, key: str) -> tuple[list[TriangleMesh], bool]:
+def convex_parts(mesh: TriangleMesh, key: str, decompose: bool) -> tuple[list[TriangleMesh], bool]:
     """Split a mesh into convex parts.
 
     Parameters
@@ -28,26 +33,68 @@ def convex_parts(mesh: TriangleMesh, key: str) -> tuple[list[TriangleMesh], bool
     mesh : TriangleMesh
     key : str
         `content_key` of the mesh.
+    decompose : bool
+        Split pieces that are not convex by approximate decomposition (CoACD, Wei et al. 2022); otherwise
+        each piece gets its convex hull.
 
     Returns
     -------
     parts : list of TriangleMesh
-        By approximate convex decomposition (CoACD, Wei et al. 2022) where the mesh is not convex.
     concave : bool
         Whether they differ from the mesh.
     """
-    import trimesh
-
-    hull = _hull(mesh.vertices)
-    solid = trimesh.Trimesh(mesh.vertices, mesh.faces, process=True)
-    if solid.is_watertight and abs(solid.volume) >= CONVEX_ENOUGH * trimesh.Trimesh(hull.vertices, hull.faces).volume:
-        return [hull], False
+    pieces = connected_pieces(mesh)
+    if not decompose and len(pieces) > MOST_HULLS:
+        return [_hull(mesh.vertices)], True
+    hulls = [_hull(piece.vertices) for piece in pieces]
+    convex = [_is_convex(piece, hull) for piece, hull in zip(pieces, hulls, strict=True)]
+    if all(convex) or not decompose:
+        return hulls, not all(convex)
     file = cache_folder() / "convex" / f"{key}.npz"
     parts = _load(file)
     if parts is None:
-        parts = _decompose(solid) or [hull]
+        _log.info("splitting a mesh of %d triangles into convex parts; the result is kept", len(mesh.faces))
+        parts = []
+        for piece, hull, is_convex in zip(pieces, hulls, convex, strict=True):
+            parts += [hull] if is_convex else _decompose(piece) or [hull]
         _save(file, parts)
     return parts, True
+
+
+def connected_pieces(mesh: TriangleMesh) -> list[TriangleMesh]:
+    """Return the parts of a mesh that share no vertex with each other."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    edges = np.concatenate((mesh.faces[:, :2], mesh.faces[:, 1:]))
+    size = len(mesh.vertices)
+    graph = coo_array((np.ones(len(edges), dtype=bool), (edges[:, 0], edges[:, 1])), shape=(size, size))
+    count, label = connected_components(graph, directed=False)
+    if count == 1:
+        return [mesh]
+    order = np.argsort(label[mesh.faces[:, 0]], kind="stable")
+    faces = mesh.faces[order]
+    starts = np.searchsorted(label[faces[:, 0]], np.arange(count + 1))
+    pieces = []
+    for first, last in itertools.pairwise(starts):
+        used, index = np.unique(faces[first:last], return_inverse=True)
+        if len(used) >= 3:
+            pieces.append(TriangleMesh(mesh.vertices[used], index.reshape(-1, 3).astype(np.int32)))
+    return pieces
+
+
+def _is_convex(piece: TriangleMesh, hull: TriangleMesh) -> bool:
+    if len(hull.vertices) > len(piece.vertices):
+        return True  # a flat piece, whose hull was given a thickness
+    edges = np.sort(np.concatenate((piece.faces[:, :2], piece.faces[:, 1:], piece.faces[:, ::2])), axis=1)
+    _, shared = np.unique(edges, axis=0, return_counts=True)
+    return bool((shared == 2).all() and abs(_volume(piece)) >= CONVEX_ENOUGH * _volume(hull))
+
+
+def _volume(mesh: TriangleMesh) -> float:
+    """Return the volume inside a closed surface (divergence theorem)."""
+    a, b, c = mesh.vertices[mesh.faces].transpose(1, 0, 2)
+    return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6)
 
 
 def content_key(mesh: TriangleMesh) -> str:
@@ -70,24 +117,42 @@ def cache_folder() -> Path:
 
 
 def _hull(vertices: np.ndarray) -> TriangleMesh:
-    """Return the convex hull; a flat mesh is given the thickness that a hull needs."""
-    import trimesh
+    """Return the convex hull; what is flat is given the thickness that a solid needs."""
+    from scipy.spatial import ConvexHull
 
-    extent = vertices.max(axis=0) - vertices.min(axis=0)
-    thin = extent < max(1e-4 * float(extent.max()), 1e-6)
-    if thin.any():
-        thickness = np.where(thin, max(1e-3 * float(extent.max()), 1e-5), 0.0)
-        vertices = np.concatenate((vertices - thickness / 2, vertices + thickness / 2))
-    hull = trimesh.convex.convex_hull(vertices)
-    return TriangleMesh(np.asarray(hull.vertices, dtype=np.float64), np.asarray(hull.faces, dtype=np.int32))
+    center = vertices.mean(axis=0)
+    _, spread, axes = np.linalg.svd(vertices - center, full_matrices=True)
+    spread = np.concatenate((spread, np.zeros(3)))[:3]
+    size = float(np.ptp(vertices, axis=0).max())
+    for axis in axes[spread < max(1e-4 * float(spread[0]), 1e-9)]:
+        step = max(5e-4 * size, 1e-5) * axis
+        vertices = np.concatenate((vertices - step, vertices + step))
+    hull = ConvexHull(vertices, qhull_options="QJ")
+    used, index = np.unique(hull.simplices, return_inverse=True)
+    faces = index.reshape(-1, 3).astype(np.int32)
+    corners = vertices[used][faces]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    inwards = np.einsum("ij,ij->i", normals, hull.equations[:, :3]) < 0
+    faces[inwards] = faces[inwards][:, ::-1]
+    return TriangleMesh(vertices[used], faces)
 
 
-def _decompose(solid: Any) -> list[TriangleMesh]:
+def _decompose(piece: TriangleMesh) -> list[TriangleMesh]:
+    """Run CoACD with a search that is coarse enough for seconds instead of minutes."""
     import coacd
 
     coacd.set_log_level("error")
-    mesh = coacd.Mesh(solid.vertices, solid.faces)
-    found = coacd.run_coacd(mesh, threshold=0.05, seed=0, max_ch_vertex=64)
+    found = coacd.run_coacd(
+        coacd.Mesh(piece.vertices, piece.faces),
+        threshold=0.08,
+        preprocess_resolution=40,
+        resolution=1000,
+        mcts_iterations=60,
+        mcts_nodes=12,
+        mcts_max_depth=2,
+        max_ch_vertex=64,
+        seed=0,
+    )
     return [
         TriangleMesh(np.asarray(vertices, dtype=np.float64), np.asarray(faces, dtype=np.int32))
         for vertices, faces in found

@@ -27,7 +27,7 @@ from daidalos.description.geometry import (
 )
 from daidalos.description.meshes import triangles_of
 from daidalos.description.pose import Pose, quaternion_between
-from daidalos.simulation.conversion.assets import Assets
+from daidalos.simulation.conversion.assets import Assets, Solid
 
 SOLID, SEEN, TOUCHED = 0, 1, 3
 RAY_GROUPS = np.array([1, 1, 0, 0, 0, 0], dtype=np.uint8)
@@ -36,7 +36,7 @@ RAY_GROUPS = np.array([1, 1, 0, 0, 0, 0], dtype=np.uint8)
 _Type = mujoco.mjtGeom
 
 
-def add_geoms(body: Any, geometry: Geometry, pose: Pose, assets: Assets) -> list[Any]:
+def add_geoms(body: Any, geometry: Geometry, pose: Pose, assets: Assets, static: bool) -> list[Any]:
     """Add the geoms of a collision shape to a body.
 
     Parameters
@@ -47,6 +47,9 @@ def add_geoms(body: Any, geometry: Geometry, pose: Pose, assets: Assets) -> list
         In the body.
     assets : Assets
         Takes meshes and heightmaps.
+    static : bool
+        Whether the body stays where it is: a concave mesh that stays is split into convex parts, one that
+        moves collides as its hull, unless the description says otherwise.
 
     Returns
     -------
@@ -60,7 +63,11 @@ def add_geoms(body: Any, geometry: Geometry, pose: Pose, assets: Assets) -> list
     """
     if isinstance(geometry, Empty):
         return []
-    return _ADDERS[type(geometry)](body, geometry, pose, assets)
+    if isinstance(geometry, Mesh | Cone | Polyline):
+        optimization = getattr(geometry, "optimization", "")
+        decompose = optimization == "convex_decomposition" or (static and optimization != "convex_hull")
+        return _add_solid(body, assets.solid(triangles_of(geometry), decompose), pose)
+    return _ADDERS[type(geometry)](body, geometry, pose)
 
 
 def add_wheel(body: Any, radius: float, width: float, pose: Pose) -> list[Any]:
@@ -84,35 +91,34 @@ def _only_seen(geom: Any) -> None:
     geom.group, geom.contype, geom.conaffinity = SEEN, 0, 0
 
 
-def _box(body: Any, shape: Box, pose: Pose, _: Assets) -> list[Any]:
+def _box(body: Any, shape: Box, pose: Pose) -> list[Any]:
     x, y, z = shape.size
     return [_add(body, _Type.mjGEOM_BOX, (x / 2, y / 2, z / 2), pose)]
 
 
-def _sphere(body: Any, shape: Sphere, pose: Pose, _: Assets) -> list[Any]:
+def _sphere(body: Any, shape: Sphere, pose: Pose) -> list[Any]:
     return [_add(body, _Type.mjGEOM_SPHERE, (shape.radius, 0.0, 0.0), pose)]
 
 
-def _cylinder(body: Any, shape: Cylinder, pose: Pose, _: Assets) -> list[Any]:
+def _cylinder(body: Any, shape: Cylinder, pose: Pose) -> list[Any]:
     return [_add(body, _Type.mjGEOM_CYLINDER, (shape.radius, shape.length / 2, 0.0), pose)]
 
 
-def _capsule(body: Any, shape: Capsule, pose: Pose, _: Assets) -> list[Any]:
+def _capsule(body: Any, shape: Capsule, pose: Pose) -> list[Any]:
     return [_add(body, _Type.mjGEOM_CAPSULE, (shape.radius, shape.length / 2, 0.0), pose)]
 
 
-def _ellipsoid(body: Any, shape: Ellipsoid, pose: Pose, _: Assets) -> list[Any]:
+def _ellipsoid(body: Any, shape: Ellipsoid, pose: Pose) -> list[Any]:
     return [_add(body, _Type.mjGEOM_ELLIPSOID, shape.radii, pose)]
 
 
-def _plane(body: Any, shape: Plane, pose: Pose, _: Assets) -> list[Any]:
+def _plane(body: Any, shape: Plane, pose: Pose) -> list[Any]:
     turned = pose @ Pose(orientation=quaternion_between((0.0, 0.0, 1.0), shape.normal))
     return [_add(body, _Type.mjGEOM_PLANE, (0.0, 0.0, 1.0), turned)]
 
 
-def _mesh(body: Any, shape: Mesh | Cone | Polyline, pose: Pose, assets: Assets) -> list[Any]:
+def _add_solid(body: Any, solid: Solid, pose: Pose) -> list[Any]:
     """Add a mesh: convex parts that collide, and the true triangles that rays hit where they differ."""
-    solid = assets.solid(triangles_of(shape))
     geoms = []
     for name in solid.parts:
         geom = _add(body, _Type.mjGEOM_MESH, (0.0, 0.0, 0.0), pose)
@@ -128,14 +134,11 @@ def _mesh(body: Any, shape: Mesh | Cone | Polyline, pose: Pose, assets: Assets) 
     return geoms
 
 
-_ADDERS: dict[type, Callable[[Any, Any, Pose, Assets], list[Any]]] = {
+_ADDERS: dict[type, Callable[[Any, Any, Pose], list[Any]]] = {
     Box: _box,
     Sphere: _sphere,
     Cylinder: _cylinder,
     Capsule: _capsule,
     Ellipsoid: _ellipsoid,
-    Cone: _mesh,
-    Polyline: _mesh,
     Plane: _plane,
-    Mesh: _mesh,
 }

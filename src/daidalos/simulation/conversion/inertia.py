@@ -54,7 +54,7 @@ def principal_inertia(inertial: Inertial) -> PrincipalInertia:
         if moments[0] < -1e-12 or moments[2] < SMALLEST_INERTIA:
             changed = f"the inertia has moments {_words(moments)}, raised to at least {SMALLEST_INERTIA:g}"
         moments = np.maximum(moments, SMALLEST_INERTIA)
-    excess = moments[2] - moments[0] - moments[1]
+    excess = (1 + 1e-6) * moments[2] - moments[0] - moments[1]
     if excess > 0:
         if excess > 1e-3 * moments[2]:
             changed = f"no body has the moments of inertia {_words(moments)}; the smaller ones were raised"

@@ -18,6 +18,7 @@ _Type = mujoco.mjtJoint
 
 _LIMIT_SOLREF = (0.01, 1.0)
 _FAR = 1e6
+_LOCKED = 1e-5
 
 
 def add_joints(body: Any, joint: Joint, name: str) -> list[str]:
@@ -38,6 +39,18 @@ def add_joints(body: Any, joint: Joint, name: str) -> list[str]:
     return _ADDERS[joint.type](body, joint, name)
 
 
+def limits_of(axis: Axis) -> tuple[float, float]:
+    """Return the limits of a joint in order, with some room between them where there is none."""
+    lower, upper = sorted((axis.lower, axis.upper))
+    return (lower - _LOCKED, upper + _LOCKED) if upper - lower < _LOCKED else (lower, upper)
+
+
+def start_position(axis: Axis) -> float:
+    """Return the position nearest to zero that the limits allow."""
+    lower, upper = limits_of(axis)
+    return min(max(0.0, lower), upper)
+
+
 def _add(body: Any, kind: Any, axis: Axis, joint: Joint, name: str) -> str:
     added = body.add_joint(
         name=name,
@@ -50,7 +63,7 @@ def _add(body: Any, kind: Any, axis: Axis, joint: Joint, name: str) -> str:
     if axis.spring_stiffness:
         added.stiffness = [axis.spring_stiffness, 0.0, 0.0]
         added.springref = axis.spring_reference
-    lower, upper = sorted((axis.lower, axis.upper))
+    lower, upper = limits_of(axis)
     if math.isfinite(lower) or math.isfinite(upper):
         # MuJoCo limits both sides or none.
         added.limited = mujoco.mjtLimited.mjLIMITED_TRUE
