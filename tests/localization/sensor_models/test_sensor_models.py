@@ -1,0 +1,130 @@
+"""Sensor models against plain formulas, and rays against exact geometry."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from navigation.flat_world import arena
+
+from daidalos.localization.config import AmclConfig
+from daidalos.localization.errors import LocalizationError
+from daidalos.localization.likelihood_map import LikelihoodMap
+from daidalos.localization.sensor_models.beam import BeamModel, cast_ray
+from daidalos.localization.sensor_models.likelihood_field import LikelihoodFieldModel, LikelihoodFieldProbModel
+from daidalos.localization.sensor_models.sensor_model import Beams
+from daidalos.mapping.grid import OccupancyGrid
+from daidalos.mapping.scan import LaserScanData
+
+from ..wandering import map_of
+
+WORLD = arena()
+MAP = LikelihoodMap(map_of(WORLD, 8.0, 6.0), 2.0)
+CONFIG = AmclConfig()
+
+
+def beams_at(pose, count=40):
+    angles = np.linspace(-math.pi, math.pi, count, endpoint=False)
+    sensor = np.array([-0.064, 0.0, 0.1])
+    c, s = math.cos(pose[2]), math.sin(pose[2])
+    origin = (pose[0] + c * sensor[0], pose[1] + s * sensor[0])
+    ranges = np.minimum(WORLD.cast(origin, angles + pose[2] + sensor[2], 12.0), 12.0)
+    return Beams(ranges, angles, 12.0, sensor)
+
+
+def twin(pose, beams, product):
+    """The likelihood field, beam by beam."""
+    total = 0.0 if product else 1.0
+    for distance, angle in zip(beams.ranges, beams.angles, strict=True):
+        if distance >= beams.max_range:
+            continue
+        sx = pose[0] + math.cos(pose[2]) * beams.sensor_pose[0]
+        sy = pose[1] + math.sin(pose[2]) * beams.sensor_pose[0]
+        heading = pose[2] + beams.sensor_pose[2] + angle
+        column = math.floor((sx + distance * math.cos(heading) - MAP.origin[0]) / MAP.resolution)
+        row = math.floor((sy + distance * math.sin(heading) - MAP.origin[1]) / MAP.resolution)
+        inside = 0 <= column < MAP.distance.shape[1] and 0 <= row < MAP.distance.shape[0]
+        away = float(MAP.distance[row, column]) if inside else 2.0
+        p = 0.5 * math.exp(-0.5 * (away / 0.2) ** 2) + 0.5 / 12.0
+        total += math.log(p) if product else p**3
+    return math.exp(total) if product else total
+
+
+@settings(max_examples=30, deadline=None)
+@given(x=st.floats(0.3, 7.7), y=st.floats(0.3, 5.7), yaw=st.floats(-3.1, 3.1), product=st.booleans())
+def test_likelihood_fields_follow_their_formula(x, y, yaw, product):
+    beams = beams_at((1.5, 1.5, 0.4))
+    model = LikelihoodFieldProbModel(CONFIG) if product else LikelihoodFieldModel(CONFIG)
+    pose = np.array([x, y, yaw])
+    likelihood = model.likelihoods(pose[None], beams, MAP)[0]
+    assert likelihood == pytest.approx(twin(pose, beams, product), rel=1e-6)
+
+
+@pytest.mark.parametrize("model", [LikelihoodFieldModel, LikelihoodFieldProbModel, BeamModel])
+@pytest.mark.parametrize("truth", [(1.5, 1.5, 0.4), (6.5, 3.8, -2.0), (4.5, 5.4, 1.5)])
+def test_the_truth_is_more_likely_than_other_poses(model, truth):
+    generator = np.random.default_rng(0)
+    others = MAP.draw_poses(300, generator)
+    particles = np.concatenate([np.array([truth]), others])
+    likelihoods = model(CONFIG).likelihoods(particles, beams_at(truth), MAP)
+    near = np.hypot(*(others[:, :2] - truth[:2]).T) < 0.3
+    assert likelihoods[0] > likelihoods[1:][~near].max()
+
+
+@settings(max_examples=60, deadline=None)
+@given(x=st.floats(0.4, 2.7), y=st.floats(0.3, 2.3), angle=st.floats(-math.pi, math.pi))
+def test_rays_in_the_map_are_as_long_as_in_the_world(x, y, angle):
+    if WORLD.clearance((x, y)) < 0.1:
+        return
+    exact = float(WORLD.cast((x, y), np.array([angle]), 12.0)[0])
+    beside = [float(WORLD.cast((x, y), np.array([angle + d]), 12.0)[0]) for d in (-0.05, 0.05)]
+    length = cast_ray(MAP.distance, MAP.resolution, MAP.origin, x, y, angle, 12.0)
+    # A ray that grazes an edge may hit a cell that the world's thin wall only touches.
+    assert min(exact, *beside) - 0.12 <= length <= max(exact, *beside) + 0.12
+
+
+def test_a_ray_that_leaves_the_map_is_as_long_as_can_be():
+    assert cast_ray(MAP.distance, 0.05, MAP.origin, -0.19, -0.19, -2.0, 9.0) == 9.0
+
+
+def test_beams_are_spread_over_the_scan_and_useless_ones_left_out():
+    ranges = np.full(181, 3.0)
+    ranges[0], ranges[180], ranges[90], ranges[3] = math.nan, math.inf, 0.01, -1.0
+    scan = LaserScanData(ranges, -1.0, 0.01, 0.1, 20.0, 0.0, (0.1, 0.0, 0.0))
+    beams = Beams.of_scan(scan, AmclConfig(max_beams=3))
+    assert beams.ranges.tolist() == [20.0]
+    assert beams.angles.tolist() == pytest.approx([0.8])
+    everything = Beams.of_scan(scan, AmclConfig(max_beams=500))
+    assert everything.ranges.size == 178
+    assert Beams.of_scan(scan, AmclConfig(max_beams=500, laser_max_range=2.5)).ranges.max() == 2.5
+
+
+def test_a_scan_without_beams():
+    empty = Beams.of_scan(LaserScanData(np.zeros(0), 0.0, 0.1), CONFIG)
+    assert empty.ranges.size == 0
+
+
+def grid(value, yaw=0.0):
+    return OccupancyGrid(np.full((4, 4), value, dtype=np.int8), 0.1, (0.0, 0.0, yaw))
+
+
+@pytest.mark.parametrize(("bad", "words"), [(grid(0), "no obstacle"), (grid(100), "no free"), (grid(-1), "no free")])
+def test_maps_without_contrast_are_refused(bad, words):
+    with pytest.raises(LocalizationError, match=words):
+        LikelihoodMap(bad, 2.0)
+
+
+def test_turned_maps_are_refused():
+    with pytest.raises(LocalizationError, match="turned"):
+        LikelihoodMap(grid(0, 0.5), 2.0)
+
+
+def test_poses_are_drawn_in_free_cells():
+    data = np.full((4, 5), -1, dtype=np.int8)
+    data[1, 2], data[3, 4], data[0, 0] = 0, 0, 100
+    world = LikelihoodMap(OccupancyGrid(data, 0.5, (10.0, 20.0, 0.0)), 2.0)
+    drawn = world.draw_poses(500, np.random.default_rng(0))
+    cells = {(math.floor((x - 10.0) / 0.5), math.floor((y - 20.0) / 0.5)) for x, y, _ in drawn}
+    assert cells == {(2, 1), (4, 3)}
+    assert drawn[:, 2].std() == pytest.approx(2.0 * math.pi / math.sqrt(12.0), rel=0.1)
