@@ -238,7 +238,7 @@ def _ordered(robot: Robot | Model) -> list[Joint]:
     by_parent: dict[str, list[Joint]] = {}
     has_parent: set[str] = set()
     for joint in robot.joints.values():
-        if joint.child not in has_parent:
+        if joint.child not in has_parent and joint.type is not JointType.GEARBOX:
             has_parent.add(joint.child)
             by_parent.setdefault(joint.parent, []).append(joint)
     level = [name for name in robot.links if name not in has_parent]

@@ -16,6 +16,7 @@ from daidalos.description.pose import Pose
 from daidalos.description.world import Model
 from daidalos.simulation.conversion.assets import Assets
 from daidalos.simulation.conversion.contact import set_surface
+from daidalos.simulation.conversion.couplings import close_loop, couple
 from daidalos.simulation.conversion.geometry import add_geoms, add_wheel
 from daidalos.simulation.conversion.inertia import PrincipalInertia, principal_inertia, smallest_inertia
 from daidalos.simulation.conversion.joints import add_joints, start_position
@@ -24,9 +25,6 @@ from daidalos.simulation.errors import UnknownNameError
 
 ASSUMED_DENSITY = 200.0
 """Of links that should move but have no mass [kg/m^3]."""
-
-
-_COUPLING_SOLREF = (0.004, 1.0)
 
 
 @dataclass(frozen=True)
@@ -175,7 +173,8 @@ class _Builder:
         self._warn = warn
         self._above: dict[str, Joint] = {}
         for joint in self._model.joints.values():
-            self._above.setdefault(joint.child, joint)
+            if joint.type is not JointType.GEARBOX:
+                self._above.setdefault(joint.child, joint)
         self._below: dict[str, list[Joint]] = {}
         for joint in self._above.values():
             self._below.setdefault(joint.parent, []).append(joint)
@@ -189,7 +188,10 @@ class _Builder:
         else:
             self._add_moving()
             self._exclude_self_collisions()
-            self._couple_mimics()
+            self._couple_joints()
+            if any(self._build.joints.values()) or not self._build.geoms:
+                # MuJoCo judges rest by the speed of what is solid, which a joint need not move.
+                self._build.keep_awake()
 
     # Bodies
 
@@ -330,8 +332,8 @@ class _Builder:
         set_surface(geom, surface)
         if link.name in self._solid_without_mass:
             geom.mass, geom.density = float("nan"), ASSUMED_DENSITY
-        if not surface.collide:
-            geom.contype = geom.conaffinity = 0
+        if geom.contype:
+            geom.contype = geom.conaffinity = surface.bitmask if surface.collide else 0
         name = collision.name or f"collision_{number.partition('.')[0]}"
         self._build.geoms[geom.name] = GeomInfo(link.name, name, collision.laser_retro)
 
@@ -348,24 +350,36 @@ class _Builder:
 
     # Couplings
 
-    def _couple_mimics(self) -> None:
-        """Tie each mimic joint to the one it follows."""
+    def _couple_joints(self) -> None:
+        """Add what the tree of bodies does not hold."""
         for joint in self._model.joints.values():
-            if joint.mimic is None or not self._build.joints.get(joint.name):
+            if joint.type is JointType.GEARBOX:
+                self._mesh_gears(joint)
+            elif self._above[joint.child] is not joint:
+                self._close_loop(joint)
+        for joint in self._model.joints.values():
+            added = self._build.joints.get(joint.name)
+            if not added:
                 continue
-            leader = self._build.joints.get(joint.mimic.joint)
-            if leader:
-                follower = self._build.joints[joint.name][0]
-                self._couple(follower, leader[0], joint.mimic.offset, joint.mimic.multiplier)
+            if joint.type is JointType.SCREW:
+                couple(self._build.spec, added[1], added[0], 0.0, joint.thread_pitch)
+            leader = self._build.joints.get(joint.mimic.joint) if joint.mimic else None
+            if joint.mimic and leader:
+                couple(self._build.spec, added[0], leader[0], joint.mimic.offset, joint.mimic.multiplier)
 
-    def _couple(self, follower: str, leader: str, offset: float, multiplier: float) -> None:
-        """Hold follower = offset + multiplier * leader."""
-        coupling = self._build.spec.add_equality(
-            name=f"{follower}~{leader}",
-            type=mujoco.mjtEq.mjEQ_JOINT,
-            objtype=mujoco.mjtObj.mjOBJ_JOINT,
-            name1=follower,
-            name2=leader,
-        )
-        coupling.data[:5] = (offset, multiplier, 0.0, 0.0, 0.0)
-        coupling.solref[:2] = _COUPLING_SOLREF
+    def _mesh_gears(self, joint: Joint) -> None:
+        """Tie the joints of two gears to each other: theta_2 = -ratio * theta_1 (SDF)."""
+        wheels = [self._above.get(link) for link in (joint.parent, joint.child)]
+        first, second = ([] if wheel is None else self._build.joints.get(wheel.name, []) for wheel in wheels)
+        if first and second:
+            couple(self._build.spec, second[0], first[0], 0.0, -joint.gearbox_ratio)
+        else:
+            self._warn(f"{joint.where}: gearbox {joint.name!r} needs a joint on each of its gears, left out")
+
+    def _close_loop(self, joint: Joint) -> None:
+        parent = self._build.base if joint.parent == "world" else self._build.bodies[joint.parent]
+        if parent is None:
+            parent = self._base()
+        child = self._build.bodies[joint.child]
+        name = self._build.scoped(joint.name)
+        self._build.joints[joint.name] = close_loop(self._build.spec, parent, child, joint, name)

@@ -7,6 +7,7 @@ friction it has makes MuJoCo take the smaller one as well.
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 from daidalos.description.link import Surface
@@ -17,6 +18,12 @@ MAX_FRICTION = 2.0
 
 SOLREF = (0.004, 1.0)
 """Time constant [s] and damping ratio of contacts: stiff enough that wheels do not creep."""
+
+BOUNCING_FREQUENCY = 400.0
+"""Of contacts that bounce [rad/s]: they last a few steps, else the bounce is lost."""
+
+BOUNCING_WEIGHT = 1e3
+"""How much more the surface that bounces counts in a contact with one that does not."""
 
 _FRICTIONLESS = 1e-3
 
@@ -32,7 +39,8 @@ def set_surface(geom: Any, surface: Surface) -> None:
     """
     friction = friction_of(surface)
     geom.priority = round(1000 * (MAX_FRICTION - friction))
-    geom.solref[:2] = SOLREF
+    geom.solref[:2] = _bouncing(surface.restitution) if surface.restitution > 0 else SOLREF
+    geom.solmix = BOUNCING_WEIGHT if surface.restitution > 0 else 1.0
     geom.margin = 0.0
     if friction < _FRICTIONLESS:
         geom.condim = 1
@@ -40,6 +48,16 @@ def set_surface(geom: Any, surface: Surface) -> None:
     torsional = (surface.torsional or 0.0) * surface.patch_radius
     geom.condim = 4 if torsional > 0 else 3
     geom.friction[:] = (friction, min(torsional, 1.0), 0.0)
+
+
+def _bouncing(restitution: float) -> tuple[float, float]:
+    """Return time constant and damping ratio of a contact that gives back a share of the speed.
+
+    A spring and damper with damping ratio z let go with exp(-pi z / sqrt(1 - z^2)) of the speed.
+    """
+    share = math.log(min(restitution, 0.98))
+    ratio = -share / math.hypot(math.pi, share)
+    return 1 / (ratio * BOUNCING_FREQUENCY), ratio
 
 
 def friction_of(surface: Surface) -> float:

@@ -95,7 +95,7 @@ def _two_hinges(body: Any, joint: Joint, name: str) -> list[str]:
 
 
 def _screw(body: Any, joint: Joint, name: str) -> list[str]:
-    """Add a turning and a sliding degree of freedom; `couplings` ties the second to the first."""
+    """Add a turning and a sliding degree of freedom; a coupling ties the second to the first."""
     free = Axis(xyz=joint.axis.xyz)
     turn = _add(body, _Type.mjJNT_HINGE, joint.axis, joint, name)
     return [turn, _add(body, _Type.mjJNT_SLIDE, free, joint, f"{name}#2")]
@@ -125,7 +125,6 @@ _ADDERS: dict[JointType, Callable[[Any, Joint, str], list[str]]] = {
     JointType.BALL: _ball,
     JointType.UNIVERSAL: _two_hinges,
     JointType.REVOLUTE2: _two_hinges,
-    JointType.GEARBOX: _hinge,
     JointType.SCREW: _screw,
     JointType.PLANAR: _planar,
 }
