@@ -48,9 +48,7 @@ def get_resource(resource_type: str, resource_name: str) -> tuple[str, str]:
         with open(path, encoding="utf-8") as file:
             return file.read(), prefix
     except OSError as error:
-        raise OSError(
-            f"Could not open the resource '{resource_name}' of type '{resource_type}': {error}"
-        ) from error
+        raise OSError(f"Could not open the resource '{resource_name}' of type '{resource_type}': {error}") from error
 
 
 def get_resources(resource_type: str) -> dict[str, str]:

@@ -30,7 +30,7 @@ def attach_stub(package: str, init_file: str) -> tuple[Callable[[str], Any], Cal
     def __getattr__(name: str) -> Any:
         module = importlib.import_module(package)
         if name in names:
-            value = getattr(importlib.import_module(f"{package}.{names[name]}"), name)
+            value = getattr(importlib.import_module(f".{names[name]}", package), name)
         elif name in submodules:
             value = importlib.import_module(f"{package}.{name}")
         else:

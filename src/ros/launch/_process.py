@@ -22,6 +22,7 @@ _CHUNK = 1 << 16
 # A pipe holds at most 1 MiB, so this empties any.
 _CHUNKS_LEFT_AT_EXIT = 16
 _POLL_INTERVAL = 0.02
+_PATIENCE_WITH_ORPHANS = 0.5
 
 OnOutput = Callable[[int, bytes], None]
 
@@ -92,14 +93,16 @@ class ChildProcess(asyncio.SubprocessProtocol):
         Parameters
         ----------
         patience
-            Seconds to wait after SIGINT and after SIGTERM, before the next harder signal.
+            Seconds to wait at most after SIGINT and after SIGTERM, before the next harder signal.
         interrupted
             Whether the group got its SIGINT already.
         """
         if not _POSIX or not _group_exists(self.pid):
             return
+        # Nobody is there any more to stop it in some order of its own.
+        first = min(patience[0], _PATIENCE_WITH_ORPHANS)
         for signum, seconds in (
-            (signal.SIGINT, patience[0]),
+            (signal.SIGINT, first),
             (signal.SIGTERM, patience[1]),
             (signal.SIGKILL, 1.0),
         ):

@@ -45,7 +45,7 @@ class LaunchFileError(InvalidLaunchFileError):
         likely = getattr(error, "_likely_errors", [])
         if len(likely) == 1:
             return cls.from_exception(likely[0], file)
-        if isinstance(error, SyntaxError) and error.filename:
+        if isinstance(error, SyntaxError) and error.filename and not error.filename.startswith("<"):
             return cls(error.filename, error.lineno, f"{type(error).__name__}: {error.msg}")
         location = getattr(error, _LOCATION_ATTRIBUTE, None)
         frame = _innermost_launch_frame(error)

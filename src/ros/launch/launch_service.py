@@ -23,7 +23,8 @@ from .launch_file_error import LaunchFileError
 from .logging import get_logger, launch_config, log_launch_config
 from .utilities import AsyncSafeSignalManager, is_a_subclass, visit_all_entities_and_collect_futures
 
-_thread = threading.local()
+_PATIENCE_AFTER_KILL = 2.0
+_main_loop: asyncio.AbstractEventLoop | None = None
 
 
 class LaunchService:
@@ -101,8 +102,10 @@ class LaunchService:
         -------
             0, or 1 after an error.
         """
-        loop = _loop_of_this_thread()
-        asyncio.set_event_loop(loop)
+        with _event_loop() as loop:
+            return self.__run_in(loop, shutdown_when_idle)
+
+    def __run_in(self, loop: asyncio.AbstractEventLoop, shutdown_when_idle: bool) -> int:
         task = loop.create_task(self.run_async(shutdown_when_idle=shutdown_when_idle))
         while True:
             try:
@@ -123,10 +126,15 @@ class LaunchService:
                 self.__process(Shutdown(reason="run task was canceled"))
                 self.__process(SignalProcess(signal_number="SIGKILL", process_matcher=lambda _: True))
                 self.__return_code = 1
+                with contextlib.suppress(TimeoutError):
+                    async with asyncio.timeout(_PATIENCE_AFTER_KILL):
+                        await self.__process_until_done(shutdown_when_idle)
         return self.__return_code
 
     async def __process_until_done(self, shutdown_when_idle: bool) -> None:
         while True:
+            # What has just ended may have something to say about it.
+            await asyncio.sleep(0)
             if self.__is_idle():
                 if self.__shutting_down:
                     return
@@ -278,12 +286,22 @@ class LaunchService:
             self.__context.emit_event_sync(SignalProcess(signal_number=harder, process_matcher=lambda _: True))
 
 
-def _loop_of_this_thread() -> asyncio.AbstractEventLoop:
-    """Return an event loop that all services of a thread run in one after another."""
-    loop = getattr(_thread, "loop", None)
-    if loop is None or loop.is_closed():
-        loop = _thread.loop = asyncio.new_event_loop()
-    return loop
+@contextlib.contextmanager
+def _event_loop() -> Iterator[asyncio.AbstractEventLoop]:
+    """Give the event loop of the main thread, which all services run in one after another, or one for once."""
+    global _main_loop
+    if threading.current_thread() is not threading.main_thread():
+        loop = asyncio.new_event_loop()
+        try:
+            yield loop
+        finally:
+            loop.close()
+        return
+    if _main_loop is None or _main_loop.is_closed():
+        _main_loop = asyncio.new_event_loop()
+    # Entities of a launch may ask asyncio for the loop that they are in.
+    asyncio.set_event_loop(_main_loop)
+    yield _main_loop
 
 
 def _is_running_here(loop: asyncio.AbstractEventLoop) -> bool:

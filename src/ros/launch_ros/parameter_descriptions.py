@@ -36,8 +36,8 @@ class ParameterValue:
     value
         The value, or a text.
     value_type
-        What the text is made into: `int`, `float`, `bool`, `str`, a list of these, or None for whatever it looks
-        like by the rules of YAML.
+        What the text is made into: `int`, `float`, `bool`, `str`, a list of these, or None for whatever it
+        looks like by the rules of YAML.
     """
 
     def __init__(self, value: SomeValueType, *, value_type: AllowedTypesType | None = None) -> None:

@@ -79,9 +79,7 @@ class Entity(BaseEntity):
         """
         if isinstance(self.__element, list):
             if not self.__children_read:
-                raise ValueError(
-                    f"Unexpected nested entity(ies) found in `{self.type_name}`: {self.__element}"
-                )
+                raise ValueError(f"Unexpected nested entity(ies) found in `{self.type_name}`: {self.__element}")
             return
         if not isinstance(self.__element, dict):
             raise ValueError(f"Expected `{self.type_name}` to be a mapping or a list, got `{self.__element}`")
@@ -90,9 +88,7 @@ class Entity(BaseEntity):
             listed = ", ".join(sorted(str(key) for key in unread))
             raise ValueError(f"Unexpected key(s) found in `{self.type_name}`: {listed}")
 
-    def get_attr(
-        self, name: str, *, data_type: Any = str, optional: bool = False, can_be_str: bool = True
-    ) -> Any:
+    def get_attr(self, name: str, *, data_type: Any = str, optional: bool = False, can_be_str: bool = True) -> Any:
         """Return an attribute; see `launch.frontend.Entity.get_attr`."""
         if not isinstance(self.__element, dict) or name not in self.__element:
             if optional:
@@ -104,8 +100,7 @@ class Entity(BaseEntity):
             if isinstance(data, list) and all(isinstance(item, dict) for item in data):
                 return [Entity(item, name, parent=self) for item in data]
             raise TypeError(
-                f"The attribute `{name}` of `{self.type_name}` is expected to be a list of mappings, "
-                f"got `{data}`"
+                f"The attribute `{name}` of `{self.type_name}` is expected to be a list of mappings, got `{data}`"
             )
         if data_type is float and isinstance(data, int) and not isinstance(data, bool):
             return float(data)

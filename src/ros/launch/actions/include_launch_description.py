@@ -122,7 +122,7 @@ class IncludeLaunchDescription(Action):
                     f"Included launch description missing required argument '{argument.name}' "
                     f"(description: '{argument.description}'), given: [{', '.join(passed)}]"
                 )
-                add_location(error, *self.origin)
+                add_location(error, *(argument.origin if self.origin == (None, None) else self.origin))
                 raise error
 
     def _plain_argument_names(self) -> set[str]:

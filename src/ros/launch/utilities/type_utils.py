@@ -5,7 +5,8 @@ The types are `int`, `float`, `bool`, `str` and uniform lists of these.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+import contextlib
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, List, Union, get_args, get_origin  # noqa: UP035 - callers pass typing.List
 
@@ -155,14 +156,24 @@ def _coerce(value: str, data_type: AllowedTypesType | None) -> Any:
     if data_type is bool and value.strip() in ("0", "1"):
         return value.strip() == "1"
     output = _load_yaml(value, data_type)
-    if data_type is float and _is_scalar(output, int):
-        return float(output)
+    if data_type is float:
+        output = _as_float(output)
     if data_type is not None and extract_type(data_type) == (float, True) and isinstance(output, list):
-        output = [float(item) if _is_scalar(item, int) else item for item in output]
+        output = [_as_float(item) for item in output]
     if not is_instance_of(output, data_type):
         wanted = "one of the types of launch" if data_type is None else _name(data_type)
         raise ValueError(f"failed to convert '{value}' to {wanted} using YAML's rules")
     return output
+
+
+def _as_float(value: Any) -> Any:
+    """Return a float for what stands for one; YAML takes 1e-3 for a text, because it has no point."""
+    if _is_scalar(value, int):
+        return float(value)
+    if isinstance(value, str):
+        with contextlib.suppress(ValueError):
+            return float(value)
+    return value
 
 
 def _load_yaml(value: str, data_type: AllowedTypesType | None) -> Any:
@@ -261,6 +272,8 @@ def normalize_typed_substitution(value: SomeValueType, data_type: AllowedTypesTy
         If the value can not become that.
     """
     scalar, is_list = (None, False) if data_type is None else extract_type(data_type)
+    if isinstance(value, Mapping | bytes):
+        raise TypeError(f"a value with a type is a scalar, a text or a list, not {value!r}")
     if not is_list:
         if isinstance(value, str | Path) or is_substitution(value):
             return normalize_to_list_of_substitutions(value)

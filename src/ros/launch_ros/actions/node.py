@@ -94,8 +94,9 @@ class Node(ExecuteProcess):
     exec_name
         The process's name without its number; the executable's if not said.
     parameters
-        Files, dictionaries and descriptions of parameters; for each name the last counts. A text becomes what it
-        looks like by the rules of YAML, see `launch_ros.parameter_descriptions.ParameterValue` for other wishes.
+        Files, dictionaries and descriptions of parameters; for each name the last counts. A text becomes what
+        it looks like by the rules of YAML, see `launch_ros.parameter_descriptions.ParameterValue` for other
+        wishes.
     remappings
         Pairs of names.
     ros_arguments

@@ -49,7 +49,8 @@ def normalize_parameter_dict(
     """Return a dictionary of parameters, prepared.
 
     Dictionaries inside it become names with dots. A text becomes a tuple of substitutions, a list of texts a
-    tuple of such tuples. Numbers in a list become floats if one of them is, and any other mixture becomes texts.
+    tuple of such tuples. Numbers in a list become floats if one of them is, and any other mixture becomes
+    texts.
 
     Parameters
     ----------
