@@ -67,6 +67,8 @@ def _run(argv: list[str]) -> int:
     except CliError as error:
         return _fail(str(error), error.status)
     except (RuntimeError, ValueError) as error:
+        if isinstance(error, RecursionError | NotImplementedError):
+            raise
         return _fail(str(error), 1)
     return _fail(status, 1) if isinstance(status, str) else status or 0
 

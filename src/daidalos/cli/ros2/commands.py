@@ -9,9 +9,13 @@ from daidalos.cli.ros2.verbs import class_name
 
 BUILT_IN = {
     "daemon": "Various daemon related sub-commands",
+    "action": "Various action related sub-commands",
+    "interface": "Show information about ROS interfaces",
     "launch": "Run a launch file",
     "node": "Various node related sub-commands",
+    "param": "Various param related sub-commands",
     "run": "Run a package specific executable",
+    "service": "Various service related sub-commands",
     "topic": "Various topic related sub-commands",
 }
 """Descriptions by name; each is the class ``<Name>Command`` in the module of its name beside this one."""

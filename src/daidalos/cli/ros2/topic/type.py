@@ -9,7 +9,7 @@ from daidalos.cli.ros2.completion import complete_topics
 from daidalos.cli.ros2.direct import add_graph_arguments, graph_view
 from daidalos.cli.ros2.extension import Status, Verb
 from daidalos.cli.ros2.graph import absolute, topics, types_of
-from daidalos.cli.ros2.suggestions import did_you_mean
+from daidalos.cli.ros2.suggestions import hint_line
 
 
 class TypeVerb(Verb):
@@ -29,5 +29,5 @@ class TypeVerb(Verb):
         for one in types:
             print(one)
         if not types:
-            sys.stderr.write(did_you_mean(name, (other for other, _ in known)).lstrip("\n"))
+            sys.stderr.write(hint_line(name, (other for other, _ in known)))
         return 0 if types else 1

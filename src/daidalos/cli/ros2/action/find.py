@@ -1,0 +1,39 @@
+"""`ros2 action find`."""
+
+from __future__ import annotations
+
+from argparse import ArgumentParser, Namespace
+
+from daidalos.cli.ros2.completion import complete_types
+from daidalos.cli.ros2.direct import add_graph_arguments, graph_view
+from daidalos.cli.ros2.extension import Status, Verb
+from daidalos.cli.ros2.graph import all_actions
+
+
+class FindVerb(Verb):
+    """Find actions from type."""
+
+    def add_arguments(self, parser: ArgumentParser, cli_name: str) -> None:
+        """Declare the arguments."""
+        add_graph_arguments(parser)
+        complete_types(
+            parser.add_argument(
+                "action_type",
+                help="Name of the ROS action type to filter for (e.g. 'example_interfaces/action/Fibonacci')",
+            ),
+            "action",
+        )
+        parser.add_argument(
+            "-c", "--count-actions", action="store_true", help="Only display the number of actions discovered"
+        )
+
+    def main(self, *, args: Namespace) -> Status:
+        """Print the names of the actions of the type, or how many there are."""
+        with graph_view(args) as graph:
+            found = [name for name, types in all_actions(graph) if args.action_type in types]
+        if args.count_actions:
+            print(len(found))
+            return 0
+        for name in found:
+            print(name)
+        return 0

@@ -1,0 +1,35 @@
+"""`ros2 action type`."""
+
+from __future__ import annotations
+
+import sys
+from argparse import ArgumentParser, Namespace
+
+from daidalos.cli.ros2.completion import complete_actions
+from daidalos.cli.ros2.direct import add_graph_arguments, graph_view
+from daidalos.cli.ros2.extension import Status, Verb
+from daidalos.cli.ros2.graph import absolute, all_actions, types_of
+from daidalos.cli.ros2.suggestions import hint_line
+
+
+class TypeVerb(Verb):
+    """Print a action's type."""
+
+    def add_arguments(self, parser: ArgumentParser, cli_name: str) -> None:
+        """Declare the arguments."""
+        add_graph_arguments(parser)
+        complete_actions(
+            parser.add_argument("action_name", help="Name of the ROS action to get type (e.g. '/fibonacci')")
+        )
+
+    def main(self, *, args: Namespace) -> Status:
+        """Print the types; the status is 1 when the action is not there."""
+        name = absolute(args.action_name)
+        with graph_view(args) as graph:
+            known = all_actions(graph)
+        types = types_of(known, name)
+        for one in types:
+            print(one)
+        if not types:
+            sys.stderr.write(hint_line(name, (other for other, _ in known)))
+        return 0 if types else 1

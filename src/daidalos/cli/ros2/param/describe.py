@@ -1,0 +1,52 @@
+"""`ros2 param describe`."""
+
+from __future__ import annotations
+
+from argparse import ArgumentParser, Namespace
+from typing import Any
+
+from daidalos.cli.ros2.completion import complete_parameters
+from daidalos.cli.ros2.direct import add_graph_arguments, direct_node
+from daidalos.cli.ros2.extension import Status, Verb
+from daidalos.cli.ros2.parameters import (
+    TYPE_NAMES,
+    add_node_arguments,
+    add_timeout_argument,
+    describe_parameters,
+    find_node,
+)
+
+
+class DescribeVerb(Verb):
+    """Show descriptive information about declared parameters."""
+
+    def add_arguments(self, parser: ArgumentParser, cli_name: str) -> None:
+        """Declare the arguments."""
+        add_graph_arguments(parser)
+        add_node_arguments(parser)
+        complete_parameters(parser.add_argument("parameter_names", nargs="+", help="Names of the parameters"))
+        add_timeout_argument(parser)
+
+    def main(self, *, args: Namespace) -> Status:
+        """Print the descriptions."""
+        with direct_node(args) as node:
+            for descriptor in describe_parameters(node, find_node(node, args), args.parameter_names):
+                print(description(descriptor))
+        return 0
+
+
+def description(descriptor: Any) -> str:
+    """Return a `rcl_interfaces/msg/ParameterDescriptor` in words."""
+    lines = [f"Parameter name: {descriptor.name}", f"  Type: {TYPE_NAMES[descriptor.type]}"]
+    if descriptor.description:
+        lines.append(f"  Description: {descriptor.description}")
+    lines.append("  Constraints:")
+    if descriptor.read_only:
+        lines.append("    Read only: true")
+    for limits in (*descriptor.floating_point_range, *descriptor.integer_range):
+        lines += [f"    Min value: {limits.from_value}", f"    Max value: {limits.to_value}"]
+        if limits.step:
+            lines.append(f"    Step: {limits.step}")
+    if descriptor.additional_constraints:
+        lines.append(f"    Additional constraints: {descriptor.additional_constraints}")
+    return "\n".join(lines)

@@ -1,0 +1,39 @@
+"""`ros2 param load`."""
+
+from __future__ import annotations
+
+from argparse import ArgumentParser, Namespace
+
+from daidalos.cli.ros2.direct import add_graph_arguments, direct_node
+from daidalos.cli.ros2.extension import Status, Verb
+from daidalos.cli.ros2.parameters import add_node_arguments, add_timeout_argument, find_node, report, set_parameters
+
+
+class LoadVerb(Verb):
+    """Load parameter file for a node."""
+
+    def add_arguments(self, parser: ArgumentParser, cli_name: str) -> None:
+        """Declare the arguments."""
+        add_graph_arguments(parser)
+        add_node_arguments(parser)
+        parser.add_argument("parameter_file", help="Parameter file")
+        parser.add_argument(
+            "--no-use-wildcard",
+            action="store_true",
+            help="Do not load parameters in the '/**' namespace into the node",
+        )
+        add_timeout_argument(parser)
+
+    def main(self, *, args: Namespace) -> Status:
+        """Set what the file says, and say what became of each."""
+        from rclpy.parameter import parameter_dict_from_yaml_file
+
+        with direct_node(args) as node:
+            name = find_node(node, args)
+            parameters = parameter_dict_from_yaml_file(
+                args.parameter_file, use_wildcard=not args.no_use_wildcard, target_nodes=[name]
+            )
+            results = set_parameters(node, name, list(parameters.values()))
+        for parameter, result in zip(parameters, results, strict=True):
+            report(result, f"Set parameter {parameter} successful", f"Set parameter {parameter} failed")
+        return 0

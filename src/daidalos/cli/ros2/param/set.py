@@ -1,0 +1,42 @@
+"""`ros2 param set`."""
+
+from __future__ import annotations
+
+from argparse import ArgumentParser, Namespace
+
+from daidalos.cli.ros2.completion import complete_parameters
+from daidalos.cli.ros2.direct import add_graph_arguments, direct_node
+from daidalos.cli.ros2.extension import Status, Verb
+from daidalos.cli.ros2.parameters import (
+    add_node_arguments,
+    add_timeout_argument,
+    find_node,
+    report,
+    set_parameters,
+    suggest,
+)
+
+
+class SetVerb(Verb):
+    """Set parameter."""
+
+    def add_arguments(self, parser: ArgumentParser, cli_name: str) -> None:
+        """Declare the arguments."""
+        add_graph_arguments(parser)
+        add_node_arguments(parser)
+        complete_parameters(parser.add_argument("parameter_name", help="Name of the parameter"))
+        parser.add_argument("value", help="Value of the parameter")
+        add_timeout_argument(parser)
+
+    def main(self, *, args: Namespace) -> Status:
+        """Set it, and say what became of it."""
+        from rcl_interfaces.msg import Parameter
+        from rclpy.parameter import get_parameter_value
+
+        parameter = Parameter(name=args.parameter_name, value=get_parameter_value(args.value))
+        with direct_node(args) as node:
+            name = find_node(node, args)
+            result = set_parameters(node, name, [parameter])[0]
+            if not report(result, "Set parameter successful", "Setting parameter failed"):
+                suggest(node, name, args.parameter_name)
+        return 0

@@ -1,0 +1,98 @@
+"""Parameters of other nodes."""
+
+from __future__ import annotations
+
+import sys
+from argparse import ArgumentParser, Namespace
+from typing import TYPE_CHECKING, Any
+
+from daidalos.cli.ros2.completion import complete_nodes
+from daidalos.cli.ros2.errors import CliError
+from daidalos.cli.ros2.graph import absolute, nodes
+from daidalos.cli.ros2.services import call
+from daidalos.cli.ros2.suggestions import did_you_mean, hint_line
+
+if TYPE_CHECKING:
+    from rclpy.node import Node
+
+TYPE_NAMES = (
+    "not set", "boolean", "integer", "double", "string",
+    "byte array", "boolean array", "integer array", "double array", "string array",
+)  # fmt: skip
+"""Names of the types by their number in `rcl_interfaces/msg/ParameterType`."""
+
+
+def add_node_arguments(parser: ArgumentParser, **options: Any) -> None:
+    """Declare which node is meant."""
+    complete_nodes(parser.add_argument("node_name", help="Name of the ROS node", **options))
+    parser.add_argument("--include-hidden-nodes", action="store_true", help="Consider hidden nodes as well")
+
+
+def add_timeout_argument(parser: ArgumentParser) -> None:
+    """Declare how long to wait for the node."""
+    parser.add_argument(
+        "--timeout", metavar="N", type=float, default=0.0, help="Wait for N seconds until node becomes available"
+    )
+
+
+def find_node(node: Node, args: Namespace) -> str:
+    """Return the full name of the node that is meant, once it is there; CliError when it is not."""
+    name = absolute(args.node_name)
+    graph = node.handle.graph
+
+    def known() -> list[str]:
+        return [other.full_name for other in nodes(graph, args.include_hidden_nodes)]
+
+    if not graph.wait_for(lambda: name in known(), getattr(args, "timeout", 0.0)):
+        raise CliError(f"Node not found{did_you_mean(name, known())}")
+    return name
+
+
+def list_parameters(node: Node, node_name: str, prefixes: list[str] | None = None) -> list[str]:
+    """Return the names of a node's parameters, sorted."""
+    from rcl_interfaces.srv import ListParameters
+
+    request = ListParameters.Request(prefixes=prefixes or [])
+    response = call(node, ListParameters, f"{node_name}/list_parameters", request)
+    return sorted(response.result.names)
+
+
+def get_parameters(node: Node, node_name: str, names: list[str]) -> list[Any]:
+    """Return the values of parameters: `rcl_interfaces/msg/ParameterValue`."""
+    from rcl_interfaces.srv import GetParameters
+
+    request = GetParameters.Request(names=names)
+    return list(call(node, GetParameters, f"{node_name}/get_parameters", request).values)
+
+
+def set_parameters(node: Node, node_name: str, parameters: list[Any]) -> list[Any]:
+    """Set parameters (`rcl_interfaces/msg/Parameter`); return what became of each (`SetParametersResult`)."""
+    from rcl_interfaces.srv import SetParameters
+
+    request = SetParameters.Request(parameters=parameters)
+    return list(call(node, SetParameters, f"{node_name}/set_parameters", request).results)
+
+
+def describe_parameters(node: Node, node_name: str, names: list[str]) -> list[Any]:
+    """Return the descriptions of parameters: `rcl_interfaces/msg/ParameterDescriptor`."""
+    from rcl_interfaces.srv import DescribeParameters
+
+    request = DescribeParameters.Request(names=names)
+    return list(call(node, DescribeParameters, f"{node_name}/describe_parameters", request).descriptors)
+
+
+def report(result: Any, good: str, bad: str) -> bool:
+    """Print what became of a change, with the node's reason; tell whether it was made."""
+    reason = f": {result.reason}" if result.reason else ""
+    if result.successful:
+        print(good + reason)
+    else:
+        print(bad + reason, file=sys.stderr)
+    return bool(result.successful)
+
+
+def suggest(node: Node, node_name: str, parameter: str) -> None:
+    """Say on standard error which parameters have names like an unknown one, if any."""
+    known = list_parameters(node, node_name)
+    if parameter not in known:
+        sys.stderr.write(hint_line(parameter, known))

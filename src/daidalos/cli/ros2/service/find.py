@@ -1,0 +1,43 @@
+"""`ros2 service find`."""
+
+from __future__ import annotations
+
+from argparse import SUPPRESS, ArgumentParser, Namespace
+
+from daidalos.cli.ros2.completion import complete_types
+from daidalos.cli.ros2.direct import graph_view
+from daidalos.cli.ros2.extension import Status, Verb
+from daidalos.cli.ros2.graph import services
+
+
+class FindVerb(Verb):
+    """Output a list of available services of a given type."""
+
+    def add_arguments(self, parser: ArgumentParser, cli_name: str) -> None:
+        """Declare the arguments."""
+        complete_types(
+            parser.add_argument(
+                "service_type",
+                help="Name of the ROS service type to filter for (e.g. 'rcl_interfaces/srv/ListParameters')",
+            ),
+            "srv",
+        )
+        parser.add_argument(
+            "-c", "--count-services", action="store_true", help="Only display the number of services discovered"
+        )
+        parser.add_argument(
+            "--include-hidden-services", action="store_true", default=SUPPRESS, help="Consider hidden services as well"
+        )
+
+    def main(self, *, args: Namespace) -> Status:
+        """Print the names of the services of the type, or how many there are."""
+        with graph_view(args) as graph:
+            found = [
+                name for name, types in services(graph, args.include_hidden_services) if args.service_type in types
+            ]
+        if args.count_services:
+            print(len(found))
+            return 0
+        for name in found:
+            print(name)
+        return 0

@@ -1,0 +1,35 @@
+"""`ros2 service list`."""
+
+from __future__ import annotations
+
+from argparse import SUPPRESS, ArgumentParser, Namespace
+
+from daidalos.cli.ros2.direct import add_graph_arguments, graph_view
+from daidalos.cli.ros2.extension import Status, Verb
+from daidalos.cli.ros2.graph import services
+
+
+class ListVerb(Verb):
+    """Output a list of available services."""
+
+    def add_arguments(self, parser: ArgumentParser, cli_name: str) -> None:
+        """Declare the arguments."""
+        add_graph_arguments(parser)
+        parser.add_argument("-t", "--show-types", action="store_true", help="Additionally show the service type")
+        parser.add_argument(
+            "-c", "--count-services", action="store_true", help="Only display the number of services discovered"
+        )
+        parser.add_argument(
+            "--include-hidden-services", action="store_true", default=SUPPRESS, help="Consider hidden services as well"
+        )
+
+    def main(self, *, args: Namespace) -> Status:
+        """Print the names as asked."""
+        with graph_view(args) as graph:
+            found = services(graph, args.include_hidden_services)
+        if args.count_services:
+            print(len(found))
+            return 0
+        for name, types in found:
+            print(f"{name} [{', '.join(types)}]" if args.show_types else name)
+        return 0
