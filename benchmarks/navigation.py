@@ -1,0 +1,202 @@
+"""How fast navigation and localization are, and how well a robot drives: the time of the parts, an arena, BARN."""
+
+from __future__ import annotations
+
+import math
+import os
+import statistics
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from daidalos import localization, navigation
+from daidalos.localization.amcl import Amcl
+from daidalos.localization.config import AmclConfig
+from daidalos.navigation.controllers.controller import ControlInput
+from daidalos.navigation.controllers.mppi_controller import MppiController
+from daidalos.navigation.controllers.regulated_pure_pursuit_controller import RegulatedPurePursuitController
+from daidalos.navigation.costmap.costmap import Costmap
+from daidalos.navigation.costmap.footprint import Footprint
+from daidalos.navigation.costmap.layered_costmap import LayeredCostmap
+from daidalos.navigation.costmap.layers.inflation_layer import InflationLayer, InflationLayerParameters
+from daidalos.navigation.costmap.layers.obstacle_layer import Observation, ObstacleLayer
+from daidalos.navigation.paths import path_length
+from daidalos.navigation.planners.navfn_planner import NavfnPlanner, NavfnPlannerParameters
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
+from localization.wandering import Wanderer, map_of
+from navigation.closed_loop import free_pose, jackal, turtlebot
+from navigation.flat_world import FlatWorld, arena, barn_world
+
+DATA = Path(os.environ.get("DAIDALOS_SHARED_DATA", Path(__file__).parents[2] / "shared" / "data")) / "barn"
+ROBOT = Footprint.circle(0.22)
+
+
+def run() -> dict[str, float | str]:
+    """Measure everything; times are medians."""
+    start = time.perf_counter()
+    navigation.warm_up()
+    localization.warm_up()
+    results: dict[str, float | str] = {"navigation.warm_up_s": time.perf_counter() - start}
+    results |= measure_planner() | measure_costmaps() | measure_controllers() | measure_amcl()
+    results |= measure_arena("mppi") | measure_arena("rpp")
+    return results | measure_barn(range(0, 100, 4))
+
+
+def measure_planner() -> dict[str, float | str]:
+    """From corner to corner of random rooms, so that nearly every cell is visited."""
+    results: dict[str, float | str] = {}
+    for name, height, width in (("32k", 160, 200), ("150k", 380, 395), ("250k", 500, 500), ("350k", 590, 593)):
+        costmap = rooms(height, width)
+        free = np.argwhere(costmap.costs == 0)
+        start, goal = (np.array([*costmap.map_to_world(*cell[::-1]), 0.0]) for cell in (free[0], free[-1]))
+        for kind, use_astar in (("", False), ("_astar", True)):
+            planner = NavfnPlanner(NavfnPlannerParameters(use_astar=use_astar))
+            milliseconds = median_ms(lambda _, p=planner, c=costmap, s=start, g=goal: p.create_plan(c, s, g))
+            results[f"navigation.navfn{kind}_{name}_ms"] = milliseconds
+        results[f"navigation.navfn_{name}_path_m"] = path_length(NavfnPlanner().create_plan(costmap, start, goal))
+    return results
+
+
+def measure_costmaps() -> dict[str, float | str]:
+    """Inflation of a whole map, and updates of a robot's costmaps with a new scan of 820 beams each time."""
+    bare = rooms(500, 500, inflated=False)
+    inflation = InflationLayer(0.22, InflationLayerParameters(0.55, 4.0))
+    world = arena()
+    stack = turtlebot(world, [1.5, 1.5, 0.0], world)
+
+    def update(costmap: LayeredCostmap, seen: Observation) -> None:
+        stack.time += 0.2
+        obstacles_of(costmap).add_observation(seen)
+        costmap.update(stack.robot.pose, stack.time)
+
+    def look() -> Observation:
+        return Observation.from_scan(stack.robot.scan(), stack.robot.pose, stack.time)
+
+    return {
+        "navigation.inflation_250k_ms": median_ms(lambda c: inflation.update_costs(c, c.window), bare.copy),
+        "navigation.local_costmap_update_ms": median_ms(lambda seen: update(stack.local_costmap, seen), look),
+        "navigation.global_costmap_update_ms": median_ms(lambda seen: update(stack.global_costmap, seen), look),
+        "navigation.rays_of_scan_ms": median_ms(lambda _: look()),
+    }
+
+
+def measure_controllers() -> dict[str, float | str]:
+    """One cycle of each controller on a path through an inflated room."""
+    costmap = rooms(60, 60, boxes=0)
+    pose = np.array([*costmap.map_to_world(30, 30), 0.0])
+    path = pose + np.stack([np.linspace(0.0, 1.2, 25), np.linspace(0.0, 0.3, 25), np.zeros(25)], axis=-1)
+    control = ControlInput(pose, np.array([0.3, 0.0, 0.1]), path, path[-1], 3.0, costmap)
+    mppi, pursuit = MppiController(ROBOT), RegulatedPurePursuitController(ROBOT)
+    return {
+        "navigation.mppi_cycle_1000x56_ms": median_ms(lambda _: mppi.compute_velocity_commands(control), count=100),
+        "navigation.pure_pursuit_cycle_ms": median_ms(lambda _: pursuit.compute_velocity_commands(control), count=100),
+    }
+
+
+def measure_amcl() -> dict[str, float | str]:
+    """An update with 2000 particles and 60 beams, and the error while a robot with drifting odometry wanders."""
+    world = arena()
+    known = map_of(world, 8.0, 6.0)
+    start = np.array([1.5, 1.5, 0.3])
+    results: dict[str, float | str] = {}
+    for model in ("likelihood_field", "likelihood_field_prob", "beam"):
+        filter_ = Amcl(AmclConfig(laser_model_type=model), known)
+        filter_.initialise(start, np.diag([0.1, 0.1, 0.05]))
+        wanderer = Wanderer(world, start, 1)
+        times, errors = [], []
+        for _ in range(400):
+            odometry, scan, truth = wanderer.step()
+            begun = time.perf_counter()
+            estimate = filter_.update(odometry, scan)
+            if estimate.updated:
+                times.append(time.perf_counter() - begun)
+            errors.append(math.hypot(*(estimate.pose - truth)[:2]))
+        results[f"localization.{model}_update_ms"] = 1e3 * statistics.median(times)
+        results[f"localization.{model}_rmse_m"] = math.sqrt(statistics.mean(e * e for e in errors[50:]))
+    return results
+
+
+def measure_arena(kind: str) -> dict[str, float | str]:
+    """Random goals in an arena whose map lacks the furniture, with the default behaviour tree."""
+    world = arena()
+    walls = FlatWorld(world.segments[:32], world.circles[:0])
+    generator = np.random.default_rng(11)
+    stack = turtlebot(world, free_pose(world, generator), walls, 11, kind)
+    begun = time.perf_counter()
+    arrivals = [stack.drive_to(free_pose(world, generator)) for _ in range(25)]
+    wall_time = time.perf_counter() - begun
+    return {
+        f"navigation.arena_{kind}_success": statistics.mean(a.reached for a in arrivals),
+        f"navigation.arena_{kind}_contacts": float(sum(a.contact for a in arrivals)),
+        f"navigation.arena_{kind}_mean_time_s": statistics.mean(a.time for a in arrivals),
+        f"navigation.arena_{kind}_mean_speed_mps": sum(a.length for a in arrivals) / sum(a.time for a in arrivals),
+        f"navigation.arena_{kind}_least_clearance_m": min(a.least_clearance for a in arrivals),
+        f"navigation.arena_{kind}_largest_error_m": max(a.position_error for a in arrivals),
+        f"navigation.arena_{kind}_largest_error_rad": max(a.yaw_error for a in arrivals),
+        f"navigation.arena_{kind}_real_time_factor": sum(a.time for a in arrivals) / wall_time,
+    }
+
+
+def measure_barn(worlds: range) -> dict[str, float | str]:
+    """Worlds of the BARN benchmark without a map; the best score there is 0.25."""
+    file = DATA / "barn_000_099.npz"
+    if not file.is_file():
+        return {"navigation.barn": f"no worlds at {file}"}
+    data = np.load(file)
+    goal = np.array([-2.0, 13.0, math.pi / 2])
+    scores, successes, times = [], [], []
+    for index in worlds:
+        stack = jackal(barn_world(data, index), [-2.0, 3.0, math.pi / 2], seed=index)
+        arrival = stack.drive_to(goal, limit=100.0, stop_within=1.0)
+        cells = data[f"path_{index:03d}"] * 0.15 + np.array([-4.575, 5.075])
+        best = path_length(np.concatenate([[[-2.0, 3.0]], cells, goal[None, :2]])) / 2.0
+        successes.append(arrival.reached)
+        times.append(arrival.time)
+        scores.append(arrival.reached * best / min(max(arrival.time, 4.0 * best), 8.0 * best))
+    return {
+        "navigation.barn_worlds": float(len(worlds)),
+        "navigation.barn_success": statistics.mean(successes),
+        "navigation.barn_score": statistics.mean(scores),
+        "navigation.barn_mean_time_s": statistics.mean(times),
+    }
+
+
+def rooms(height: int, width: int, boxes: int | None = None, *, inflated: bool = True) -> Costmap:
+    """A walled hall with random boxes at 5 cm."""
+    generator = np.random.default_rng(1)
+    costs = np.zeros((height, width), dtype=np.uint8)
+    costs[0] = costs[-1] = 254
+    costs[:, 0] = costs[:, -1] = 254
+    for _ in range(height * width // 3000 if boxes is None else boxes):
+        row, column = generator.integers(0, (height - 20, width - 20))
+        tall, wide = generator.integers(2, 18, 2)
+        costs[row : row + tall, column : column + wide] = 254
+    costmap = Costmap(costs, 0.05, (0.0, 0.0))
+    if inflated:
+        InflationLayer(0.22, InflationLayerParameters(0.55, 4.0)).update_costs(costmap, costmap.window)
+    return costmap
+
+
+def obstacles_of(costmap: LayeredCostmap) -> ObstacleLayer:
+    return next(layer for layer in costmap.layers if isinstance(layer, ObstacleLayer))
+
+
+def median_ms(work: Callable[[Any], object], prepare: Callable[[], Any] = lambda: None, count: int = 30) -> float:
+    """Median time of some work; what is prepared for it does not count."""
+    times = []
+    for _ in range(count + 2):
+        prepared = prepare()
+        begun = time.perf_counter()
+        work(prepared)
+        times.append(time.perf_counter() - begun)
+    return 1e3 * statistics.median(times[2:])
+
+
+if __name__ == "__main__":
+    for name, value in run().items():
+        print(f"{name:<50} {value if isinstance(value, str) else format(value, '.4g')}")
