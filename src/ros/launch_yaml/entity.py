@@ -67,7 +67,7 @@ class Entity(BaseEntity):
             )
         type_name, element = next(iter(item.items()))
         child = Entity(element, type_name, parent=self)
-        return child if child.location[0] is not None else _LocatedEntity(element, type_name, self, item)
+        return child if child.location != (None, None) else _LocatedEntity(element, type_name, self, item)
 
     def assert_entity_completely_parsed(self) -> None:
         """Check that every attribute and child was read.

@@ -28,7 +28,8 @@ def run(path):
         ("    import no_such_module", 5, "ModuleNotFoundError: No module named 'no_such_module'"),
         ("    pass", None, "returned nothing"),
         (
-            "    return LaunchDescription([\n        LogInfo(msg='x'),\n        LogInfo(msg=LaunchConfiguration('nope'))])",
+            "    return LaunchDescription([\n        LogInfo(msg='x'),\n"
+            "        LogInfo(msg=LaunchConfiguration('nope'))])",
             7,
             "launch configuration 'nope' does not exist",
         ),

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 
 # Launch configurations that are not arguments: namespaces, parameters and remappings.
 _CONDITIONS = ("if", "unless")
+_PARTS = ("param", "rosparam", "remap", "env")
 _INTERNAL = ("ros_namespace", "global_params", "ros_remaps")
 
 
@@ -35,7 +36,8 @@ def parse_node(entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, 
     """Read a node of ROS 1; it may have files of parameters in ROS 1's form, and parts with conditions."""
     from launch_ros.actions import Node
 
-    if any(_condition(child, parser) is not None for child in entity.children):
+    parts = [part for tag in _PARTS for part in entity.get_attr(tag, data_type=list[Entity], optional=True) or []]
+    if any(_condition(part, parser) is not None for part in parts):
         return _NodeWithConditions, {"entity": entity, "parser": parser}
     _, kwargs = Node.parse(entity, parser)
     files = entity.get_attr("rosparam", data_type=list[Entity], optional=True) or []

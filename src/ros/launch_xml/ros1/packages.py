@@ -71,12 +71,12 @@ def _spawn(arguments: str) -> tuple[str, dict[str, str]]:
     new: list[str] = []
     while words:
         word = words.pop(0)
-        if word in ("-urdf", "-sdf", "-gazebo", "-unpause"):
+        if word in ("-urdf", "-sdf", "-gazebo"):
             continue
         if word == "-param" and words:
             new += ["-topic", words.pop(0)]
         else:
-            new.append({"-model": "-name"}.get(word, word))
+            new.append({"-model": "-entity"}.get(word, word))
     return " ".join(new), {}
 
 
@@ -150,7 +150,7 @@ _GMAPPING = {
 #: Nodes by their package and type in ROS 1.
 NODES: dict[tuple[str, str], NodeMapping] = {
     ("amcl", "amcl"): NodeMapping("nav2_amcl", "amcl", _AMCL, _AMCL_VALUES),
-    ("gazebo_ros", "spawn_model"): NodeMapping("ros_gz_sim", "create", arguments=_spawn),
+    ("gazebo_ros", "spawn_model"): NodeMapping("gazebo_ros", "spawn_entity.py", arguments=_spawn),
     ("gmapping", "slam_gmapping"): NodeMapping("slam_toolbox", "async_slam_toolbox_node", _GMAPPING),
     ("hector_mapping", "hector_mapping"): NodeMapping("slam_toolbox", "async_slam_toolbox_node", _HECTOR_MAPPING),
     ("joint_state_publisher_gui", "joint_state_publisher_gui"): NodeMapping(

@@ -79,7 +79,9 @@ class Ros1Parameters(ParameterFile):
             except OSError as error:
                 raise SubstitutionFailure(f"the parameter file {source} can not be read: {error.strerror}") from error
             if self.__substitutes:
-                text = perform_substitutions(context, parse_substitution(text))
+                from .translation import translate_text
+
+                text = perform_substitutions(context, parse_substitution(translate_text(text)))
         try:
             content = yaml.safe_load(text)
         except yaml.YAMLError as error:

@@ -55,6 +55,11 @@ def translate(root: LocatedElement) -> LocatedElement:
     return translated
 
 
+def translate_text(text: str) -> str:
+    """Return a text of ROS 1 with the substitutions of ROS 2."""
+    return _Translator().text(text)
+
+
 class _Translator:
     """Translates elements, and remembers what there is to say."""
 
