@@ -27,10 +27,10 @@ def find_component(package: str, plugin: str) -> Any:
     """
     for point in entry_points(group=ENTRY_POINTS, name=plugin):
         return point.load()
-    short = plugin.replace("/", "::").rpartition("::")[2]
-    for module in _modules(package):
-        if module == _snake(short) or module.replace("_node", "") == _snake(short):
-            return getattr(import_module(f"daidalos.nodes.{package}.{module}"), short)
+    place = _built_in(package).get(plugin.replace("/", "::").rpartition("::")[2])
+    if place is not None:
+        module, name = place
+        return getattr(import_module(f"daidalos.nodes.{package}.{module}"), name)
     known = ", ".join(components(package)) or "none"
     raise ComponentNotFound(f"package '{package}' has no component '{plugin}'; there are: {known}")
 
@@ -38,31 +38,37 @@ def find_component(package: str, plugin: str) -> Any:
 def components(package: str) -> list[str]:
     """Return the plugin names of a package's components."""
     from_others = [point.name for point in entry_points(group=ENTRY_POINTS) if point.name.startswith(f"{package}::")]
-    return sorted({*from_others, *(f"{package}::{_camel(module)}" for module in _modules(package))})
+    return sorted({*from_others, *(f"{package}::{name}" for name in _built_in(package))})
 
 
 def packages() -> list[str]:
     """Return the packages that have components."""
     from_others = {point.name.partition("::")[0] for point in entry_points(group=ENTRY_POINTS)}
     built_in = {folder.name for folder in BUILT_IN.iterdir() if (folder / "__init__.py").is_file()}
-    return sorted(from_others | {package for package in built_in if _modules(package)})
+    return sorted(from_others | {package for package in built_in if _built_in(package)})
 
 
-def _modules(package: str) -> list[str]:
-    """Return the modules of a built-in package that hold a node class of their name."""
+def _built_in(package: str) -> dict[str, tuple[str, str]]:
+    """Return the components of a built-in package: name -> (module, class).
+
+    A module holds the component of its own name in camel case. Components that ROS 2 calls otherwise are named in
+    the package's ``__init__`` as ``COMPONENTS`` (name -> "module:Class").
+    """
     folder = BUILT_IN / package
     if not (folder / "__init__.py").is_file():
-        return []
-    return [
-        path.stem
+        return {}
+    found = {
+        _camel(path.stem): (path.stem, _camel(path.stem))
         for path in sorted(folder.glob("*.py"))
         if not path.stem.startswith("_") and re.search(rf"^class {_camel(path.stem)}\b", path.read_text("utf-8"), re.M)
-    ]
+    }
+    if "COMPONENTS" in (folder / "__init__.py").read_text("utf-8"):
+        named: dict[str, str] = import_module(f"daidalos.nodes.{package}").COMPONENTS
+        for name, place in named.items():
+            module, _, kind = place.partition(":")
+            found[name] = (module, kind)
+    return found
 
 
 def _camel(name: str) -> str:
     return "".join(word.capitalize() for word in name.split("_"))
-
-
-def _snake(name: str) -> str:
-    return re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", name).lower()

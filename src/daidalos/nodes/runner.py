@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 import sys
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
@@ -49,6 +50,8 @@ def run(make_node: Callable[[], Node], args: Sequence[str] | None = None, thread
         print(f"error: {error}", file=sys.stderr)
         return 2
     finally:
+        # Whoever asks twice must not interrupt the end.
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
         if node is not None:
             node.destroy_node()
         rclpy.try_shutdown()

@@ -30,8 +30,8 @@ class Client:
     ) -> None:
         self.context = context
         self.__client = client_impl
-        self._hook = ReadyHook(self)
-        self._node: Any = None
+        self._rcl_hook = ReadyHook(self)
+        self._rcl_node: Any = None
         self.srv_type = srv_type
         self.srv_name = srv_name
         self.qos_profile = qos_profile
@@ -147,14 +147,14 @@ class Client:
     def _on_ready(self) -> None:
         """Hand a response to who waits in `call`, which may be the executor itself, or make the client ready."""
         if self._has_own_waiter:
-            work = self._take()
+            work = self._rcl_take()
             while work is not None:
                 work[0](*work[1])
-                work = self._take()
+                work = self._rcl_take()
         else:
-            self._hook()
+            self._rcl_hook()
 
-    def _take(self) -> tuple[Callable[..., Any], tuple[Any, ...]] | None:
+    def _rcl_take(self) -> tuple[Callable[..., Any], tuple[Any, ...]] | None:
         taken = self.__client.take_response()
         return None if taken is None else (self._finish, taken)
 
@@ -163,11 +163,11 @@ class Client:
             future = self._pending_requests.pop(header.request_id.sequence_number, None)
         if future is None:
             return
-        node = self._node() if self._node else None
+        node = self._rcl_node() if self._rcl_node else None
         future._set_executor(node.executor if node is not None else None)
         future.set_result(response)
 
-    def _has_more(self) -> bool:
+    def _rcl_has_more(self) -> bool:
         return len(self.__client.impl) > 0
 
     def __enter__(self) -> Self:

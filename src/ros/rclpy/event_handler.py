@@ -44,14 +44,14 @@ class EventHandler(Waitable):
         super().__init__(callback_group)
         self.callback = callback
         self.event_type = event_type
-        self._hook = ReadyHook(self)
-        self._source = event_source(parent_impl, event_type, self._hook)
+        self._rcl_hook = ReadyHook(self)
+        self._source = event_source(parent_impl, event_type, self._rcl_hook)
 
-    def _take(self) -> tuple[Callable[..., Any], tuple[Any, ...]] | None:
+    def _rcl_take(self) -> tuple[Callable[..., Any], tuple[Any, ...]] | None:
         status = self._source.take()
         return None if status is None else (self.callback, (status,))
 
-    def _has_more(self) -> bool:
+    def _rcl_has_more(self) -> bool:
         return False
 
     def destroy(self) -> None:

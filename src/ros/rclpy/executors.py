@@ -133,7 +133,7 @@ class Executor(AbstractContextManager["Executor"]):
             if self._is_shutdown:
                 raise ShutdownException()
             self._nodes[node] = None
-        node._attach_executor(self)
+        node._rcl_attach_executor(self)
         return True
 
     def remove_node(self, node: Node) -> None:
@@ -142,7 +142,7 @@ class Executor(AbstractContextManager["Executor"]):
             if node not in self._nodes:
                 return
             del self._nodes[node]
-        node._detach_executor(self)
+        node._rcl_detach_executor(self)
 
     def get_nodes(self) -> list[Node]:
         """Return the nodes whose callbacks are run."""
@@ -253,7 +253,7 @@ class Executor(AbstractContextManager["Executor"]):
                 raise item.error
             if self._begin(item):
                 entity = item.entity
-                return Task(self._run_entity, (item, entity), executor=self), entity, entity._node
+                return Task(self._run_entity, (item, entity), executor=self), entity, entity._rcl_node
 
     def _wait(self, deadline_ns: int | None, condition: Callable[[], bool] | None = None) -> Any:
         """Return the next hook, task or failure of the queue."""
@@ -343,10 +343,10 @@ class Executor(AbstractContextManager["Executor"]):
         """Take what is ready and run the callback; its group has been reserved."""
         suspended = False
         try:
-            work = entity._take()
+            work = entity._rcl_take()
             if work is None:
                 return
-            if entity._has_more():
+            if entity._rcl_has_more():
                 hook()
             callback, arguments = work
             result = callback(*arguments)

@@ -25,9 +25,9 @@ class GuardCondition:
         context = context or get_default_context()
         if context.handle is None:
             raise NotInitializedException("the context must be initialised before it can have guard conditions")
-        self._hook = ReadyHook(self)
-        self._node: Any = None
-        self.__handle = GuardConditionHandle(context.handle, self._hook)
+        self._rcl_hook = ReadyHook(self)
+        self._rcl_node: Any = None
+        self.__handle = GuardConditionHandle(context.handle, self._rcl_hook)
         self.callback = callback
         self.callback_group = callback_group
         self._executor_event = False
@@ -52,8 +52,8 @@ class GuardCondition:
         """Let go; use `Node.destroy_guard_condition` instead."""
         self.__handle.destroy_when_not_in_use()
 
-    def _take(self) -> tuple[Callable[..., Any], tuple[Any, ...]] | None:
+    def _rcl_take(self) -> tuple[Callable[..., Any], tuple[Any, ...]] | None:
         return (self.callback, ()) if self.callback is not None else None
 
-    def _has_more(self) -> bool:
+    def _rcl_has_more(self) -> bool:
         return False

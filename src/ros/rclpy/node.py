@@ -110,15 +110,15 @@ class Node(NodeParameters, NodeGraph):
         absolute = namespace or ""
         validate_namespace(absolute if absolute.startswith("/") else f"/{absolute}")
         self.__executor_weakref: weakref.ref[Executor] | None = None
-        self._members: dict[str, list[Any]] = {kind: [] for kind in _KINDS}
+        self._rcl_members: dict[str, list[Any]] = {kind: [] for kind in _KINDS}
         self._default_callback_group = MutuallyExclusiveCallbackGroup()
         self.__handle = NodeHandle(self._context.handle, node_name, absolute, cli_args, use_global_arguments)
         self._logger = get_logger(self.__handle.logger_name())
         rosout_qos = _qos(rosout_qos_profile)
-        self._rosout = rosout(self.__handle, enable_rosout, rosout_qos)
-        self._init_parameters(self._overrides(parameter_overrides), allow_undeclared_parameters)
+        self._rcl_rosout = rosout(self.__handle, enable_rosout, rosout_qos)
+        self._rcl_init_parameters(self._rcl_overrides(parameter_overrides), allow_undeclared_parameters)
         self._parameter_event_publisher: Publisher | None = None
-        self._create_parameter_event_publisher()
+        self._rcl_create_parameter_event_publisher()
         self._clock = ROSClock()
         if automatically_declare_parameters_from_overrides:
             overrides = [(name, one.value) for name, one in self._parameter_overrides.items()]
@@ -133,7 +133,7 @@ class Node(NodeParameters, NodeGraph):
 
             self._logger_service = LoggingService(self)
 
-    def _overrides(self, given: list[Parameter[Any]] | None) -> dict[str, Parameter[Any]]:
+    def _rcl_overrides(self, given: list[Parameter[Any]] | None) -> dict[str, Parameter[Any]]:
         """Return initial values: from files and the command line, outweighed by those given in code."""
         found: dict[str, Parameter[Any]] = {}
         entries = self.handle.parameter_overrides
@@ -149,14 +149,14 @@ class Node(NodeParameters, NodeGraph):
         found.update({parameter.name: parameter for parameter in given or ()})
         return found
 
-    def _create_parameter_event_publisher(self) -> None:
+    def _rcl_create_parameter_event_publisher(self) -> None:
         from rcl_interfaces.msg import ParameterEvent
 
         self._parameter_event_publisher = self.create_publisher(
             ParameterEvent, "/parameter_events", qos_profile_parameter_events
         )
 
-    def _publish_parameter_event(
+    def _rcl_publish_parameter_event(
         self, new: list[Parameter[Any]], changed: list[Parameter[Any]], deleted: list[Parameter[Any]]
     ) -> None:
         publisher = self._parameter_event_publisher
@@ -223,37 +223,37 @@ class Node(NodeParameters, NodeGraph):
     @property
     def publishers(self) -> Iterator[Publisher]:
         """The node's publishers."""
-        yield from self._members["publisher"]
+        yield from self._rcl_members["publisher"]
 
     @property
     def subscriptions(self) -> Iterator[Subscription]:
         """The node's subscriptions."""
-        yield from self._members["subscription"]
+        yield from self._rcl_members["subscription"]
 
     @property
     def clients(self) -> Iterator[Client]:
         """The node's clients."""
-        yield from self._members["client"]
+        yield from self._rcl_members["client"]
 
     @property
     def services(self) -> Iterator[Service]:
         """The node's services."""
-        yield from self._members["service"]
+        yield from self._rcl_members["service"]
 
     @property
     def timers(self) -> Iterator[Timer]:
         """The node's timers."""
-        yield from self._members["timer"]
+        yield from self._rcl_members["timer"]
 
     @property
     def guards(self) -> Iterator[GuardCondition]:
         """The node's guard conditions."""
-        yield from self._members["guard"]
+        yield from self._rcl_members["guard"]
 
     @property
     def waitables(self) -> Iterator[Waitable]:
         """The node's waitables."""
-        yield from self._members["waitable"]
+        yield from self._rcl_members["waitable"]
 
     # The executor.
 
@@ -274,20 +274,20 @@ class Node(NodeParameters, NodeGraph):
         else:
             new_executor.add_node(self)
 
-    def _attach_executor(self, executor: Executor) -> None:
+    def _rcl_attach_executor(self, executor: Executor) -> None:
         """Direct everything that becomes ready to an executor."""
         current = self.executor
         if current is not None and current is not executor:
             current.remove_node(self)
         self.__executor_weakref = weakref.ref(executor)
-        for members in self._members.values():
+        for members in self._rcl_members.values():
             for entity in list(members):
                 _attach(entity, executor)
 
-    def _detach_executor(self, executor: Executor) -> None:
+    def _rcl_detach_executor(self, executor: Executor) -> None:
         if self.executor is executor:
             self.__executor_weakref = None
-        for members in self._members.values():
+        for members in self._rcl_members.values():
             for entity in list(members):
                 _detach(entity)
 
@@ -296,19 +296,19 @@ class Node(NodeParameters, NodeGraph):
         if executor is not None:
             executor.wake()
 
-    def _add(self, kind: str, entity: Any, group: CallbackGroup | None = None) -> Any:
+    def _rcl_add(self, kind: str, entity: Any, group: CallbackGroup | None = None) -> Any:
         """Take an entity in: it belongs to the node and is run by the node's executor."""
         if group is not None:
             group.add_entity(entity)
-        entity._node = weakref.ref(self)
-        self._members[kind].append(entity)
+        entity._rcl_node = weakref.ref(self)
+        self._rcl_members[kind].append(entity)
         executor = self.executor
         if executor is not None:
             _attach(entity, executor)
         return entity
 
-    def _remove(self, kind: str, entity: Any) -> bool:
-        members = self._members[kind]
+    def _rcl_remove(self, kind: str, entity: Any) -> bool:
+        members = self._rcl_members[kind]
         if entity not in members:
             return False
         members.remove(entity)
@@ -357,12 +357,12 @@ class Node(NodeParameters, NodeGraph):
         check_is_valid_msg_type(msg_type)
         with self.handle as handle:
             name = checked_name(handle, topic, is_service=False)
-            profile = self._overridden_qos(Publisher, name, profile, qos_overriding_options)
+            profile = self._rcl_overridden_qos(Publisher, name, profile, qos_overriding_options)
             publisher_handle = PublisherHandle(handle, msg_type, name, profile)
         publisher = publisher_class(
             publisher_handle, msg_type, topic, profile, event_callbacks or PublisherEventCallbacks(), group
         )
-        self._members["publisher"].append(publisher)
+        self._rcl_members["publisher"].append(publisher)
         for handler in publisher.event_handlers:
             self.add_waitable(handler)
         return publisher
@@ -410,7 +410,7 @@ class Node(NodeParameters, NodeGraph):
         check_is_valid_msg_type(msg_type)
         with self.handle as handle:
             name = checked_name(handle, topic, is_service=False)
-            profile = self._overridden_qos(Subscription, name, profile, qos_overriding_options)
+            profile = self._rcl_overridden_qos(Subscription, name, profile, qos_overriding_options)
             subscription_handle = SubscriptionHandle(handle, msg_type, name, profile)
         try:
             subscription = Subscription(
@@ -428,10 +428,10 @@ class Node(NodeParameters, NodeGraph):
             raise
         for handler in subscription.event_handlers:
             self.add_waitable(handler)
-        self._add("subscription", subscription, group)
+        self._rcl_add("subscription", subscription, group)
         return subscription
 
-    def _overridden_qos(
+    def _rcl_overridden_qos(
         self, kind: type[Any], name: str, profile: QoSProfile, options: QoSOverridingOptions | None
     ) -> QoSProfile:
         if options is None:
@@ -461,7 +461,7 @@ class Node(NodeParameters, NodeGraph):
             name = checked_name(handle, srv_name, is_service=True)
             client_handle = ClientHandle(handle, srv_type, name, qos_profile)
         client = Client(self.context, client_handle, srv_type, srv_name, qos_profile, group)
-        self._add("client", client, group)
+        self._rcl_add("client", client, group)
         return client
 
     def create_service(
@@ -486,7 +486,7 @@ class Node(NodeParameters, NodeGraph):
             name = checked_name(handle, srv_name, is_service=True)
             service_handle = ServiceHandle(handle, srv_type, name, qos_profile)
         service = Service(service_handle, srv_type, srv_name, callback, group, qos_profile)
-        self._add("service", service, group)
+        self._rcl_add("service", service, group)
         return service
 
     def create_timer(
@@ -509,7 +509,7 @@ class Node(NodeParameters, NodeGraph):
             context=self.context,
             autostart=autostart,
         )
-        self._add("timer", timer, group)
+        self._rcl_add("timer", timer, group)
         return timer
 
     def create_guard_condition(
@@ -518,7 +518,7 @@ class Node(NodeParameters, NodeGraph):
         """Call a function whenever the result is triggered."""
         group = callback_group or self.default_callback_group
         guard = GuardCondition(callback, group, context=self.context)
-        self._add("guard", guard, group)
+        self._rcl_add("guard", guard, group)
         return guard
 
     def create_rate(self, frequency: float, clock: Clock | None = None) -> Rate:
@@ -533,67 +533,67 @@ class Node(NodeParameters, NodeGraph):
             raise ValueError("frequency must be > 0")
         timer = Timer(None, None, int(S_TO_NS / frequency), clock or self._clock, context=self.context)
         rate = Rate(timer, context=self.context)
-        self._members["rate"].append(rate)
+        self._rcl_members["rate"].append(rate)
         return rate
 
     def add_waitable(self, waitable: Waitable) -> None:
         """Have the node's executor wait for a waitable."""
-        if not hasattr(waitable, "_hook"):
+        if not hasattr(waitable, "_rcl_hook"):
             from rclpy.impl.wait_set import adapt
 
             adapt(waitable)
-        self._add("waitable", waitable)
+        self._rcl_add("waitable", waitable)
 
     def remove_waitable(self, waitable: Waitable) -> None:
         """Undo `add_waitable`."""
-        self._remove("waitable", waitable)
+        self._rcl_remove("waitable", waitable)
         self._wake_executor()
 
     def destroy_publisher(self, publisher: Publisher) -> bool:
         """Destroy a publisher; False when it is none of the node's."""
-        if publisher not in self._members["publisher"]:
+        if publisher not in self._rcl_members["publisher"]:
             return False
-        self._members["publisher"].remove(publisher)
+        self._rcl_members["publisher"].remove(publisher)
         for handler in publisher.event_handlers:
-            self._remove("waitable", handler)
+            self._rcl_remove("waitable", handler)
         publisher.destroy()
         return True
 
     def destroy_subscription(self, subscription: Subscription) -> bool:
         """Destroy a subscription; False when it is none of the node's."""
-        if not self._remove("subscription", subscription):
+        if not self._rcl_remove("subscription", subscription):
             return False
         for handler in subscription.event_handlers:
-            self._remove("waitable", handler)
+            self._rcl_remove("waitable", handler)
         subscription.destroy()
         return True
 
     def destroy_client(self, client: Client) -> bool:
         """Destroy a client; False when it is none of the node's."""
-        return self._destroy_member("client", client)
+        return self._rcl_destroy_member("client", client)
 
     def destroy_service(self, service: Service) -> bool:
         """Destroy a service; False when it is none of the node's."""
-        return self._destroy_member("service", service)
+        return self._rcl_destroy_member("service", service)
 
     def destroy_timer(self, timer: Timer) -> bool:
         """Destroy a timer; False when it is none of the node's."""
-        return self._destroy_member("timer", timer)
+        return self._rcl_destroy_member("timer", timer)
 
     def destroy_guard_condition(self, guard: GuardCondition) -> bool:
         """Destroy a guard condition; False when it is none of the node's."""
-        return self._destroy_member("guard", guard)
+        return self._rcl_destroy_member("guard", guard)
 
     def destroy_rate(self, rate: Rate) -> bool:
         """Destroy a rate; False when it is none of the node's."""
-        if rate not in self._members["rate"]:
+        if rate not in self._rcl_members["rate"]:
             return False
-        self._members["rate"].remove(rate)
+        self._rcl_members["rate"].remove(rate)
         rate.destroy()
         return True
 
-    def _destroy_member(self, kind: str, entity: Any) -> bool:
-        if not self._remove(kind, entity):
+    def _rcl_destroy_member(self, kind: str, entity: Any) -> bool:
+        if not self._rcl_remove(kind, entity):
             return False
         entity.destroy()
         return True
@@ -605,15 +605,15 @@ class Node(NodeParameters, NodeGraph):
         if executor is not None:
             executor.remove_node(self)
         self._parameter_event_publisher = None
-        for rate in list(self._members["rate"]):
+        for rate in list(self._rcl_members["rate"]):
             self.destroy_rate(rate)
         for kind in _KINDS:
-            members, self._members[kind] = self._members[kind], []
+            members, self._rcl_members[kind] = self._rcl_members[kind], []
             for entity in members:
                 if hasattr(entity, "destroy"):
                     entity.destroy()
-        if self._rosout is not None:
-            self._rosout.destroy()
+        if self._rcl_rosout is not None:
+            self._rcl_rosout.destroy()
         self.handle.destroy_when_not_in_use()
         self._wake_executor()
 
@@ -647,7 +647,7 @@ def _qos(profile: QoSProfile | int) -> QoSProfile:
 
 
 def _attach(entity: Any, executor: Executor) -> None:
-    hook = getattr(entity, "_hook", None)
+    hook = getattr(entity, "_rcl_hook", None)
     if hook is None:
         return  # publishers and rates run nothing
     hook.attach(executor._put)
@@ -656,7 +656,7 @@ def _attach(entity: Any, executor: Executor) -> None:
 
 
 def _detach(entity: Any) -> None:
-    hook = getattr(entity, "_hook", None)
+    hook = getattr(entity, "_rcl_hook", None)
     if hook is None:
         return
     hook.detach()

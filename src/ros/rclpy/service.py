@@ -25,15 +25,15 @@ class Service:
         qos_profile: QoSProfile,
     ) -> None:
         self.__service = service_impl
-        self._hook = ReadyHook(self)
-        self._node: Any = None
+        self._rcl_hook = ReadyHook(self)
+        self._rcl_node: Any = None
         self.srv_type = srv_type
         self.srv_name = srv_name
         self.callback = callback
         self.callback_group = callback_group
         self._executor_event = False
         self.qos_profile = qos_profile
-        service_impl.set_on_ready(self._hook)
+        service_impl.set_on_ready(self._rcl_hook)
 
     def send_response(self, response: Any, header: Any) -> None:
         """Answer the request with that header.
@@ -71,7 +71,7 @@ class Service:
         """Let go; use `Node.destroy_service` instead."""
         self.__service.destroy_when_not_in_use()
 
-    def _take(self) -> tuple[Callable[..., Any], tuple[Any, ...]] | None:
+    def _rcl_take(self) -> tuple[Callable[..., Any], tuple[Any, ...]] | None:
         taken = self.__service.take_request()
         return None if taken is None else (self._answer, taken)
 
@@ -85,7 +85,7 @@ class Service:
     async def _answer_later(self, awaitable: Any, header: Any) -> None:
         self.send_response(await awaitable, header)
 
-    def _has_more(self) -> bool:
+    def _rcl_has_more(self) -> bool:
         return len(self.__service.impl) > 0
 
     def __enter__(self) -> Self:

@@ -47,8 +47,8 @@ class Subscription:
     ) -> None:
         self.__subscription = subscription_impl
         self._impl = subscription_impl.impl
-        self._hook = ReadyHook(self)
-        self._node: Any = None
+        self._rcl_hook = ReadyHook(self)
+        self._rcl_node: Any = None
         self.msg_type = msg_type
         self.topic = topic
         self.callback = callback
@@ -60,7 +60,7 @@ class Subscription:
         self.event_handlers: Sequence[EventHandler] = event_callbacks.create_event_handlers(
             callback_group, subscription_impl, topic
         )
-        subscription_impl.set_on_ready(self._hook)
+        subscription_impl.set_on_ready(self._rcl_hook)
 
     def get_publisher_count(self) -> int:
         """Return how many publishers send messages here."""
@@ -100,7 +100,7 @@ class Subscription:
         """The name that the subscription's node logs under."""
         return self.__subscription.node.logger_name()
 
-    def _take(self) -> tuple[Callable[..., Any], tuple[Any, ...]] | None:
+    def _rcl_take(self) -> tuple[Callable[..., Any], tuple[Any, ...]] | None:
         taken = self._take_one()
         if taken is None:
             return None
@@ -119,7 +119,7 @@ class Subscription:
             publisher_gid={"implementation_identifier": "", "data": info.gid},
         )
 
-    def _has_more(self) -> bool:
+    def _rcl_has_more(self) -> bool:
         return bool(self._impl._queue)
 
     def __enter__(self) -> Self:

@@ -50,9 +50,9 @@ class Timer:
     ) -> None:
         self._context = context or get_default_context()
         self._clock = clock
-        self._hook = ReadyHook(self)
-        self._node: Any = None
-        self.__timer = TimerHandle(clock.handle, int(timer_period_ns), self._hook, autostart)
+        self._rcl_hook = ReadyHook(self)
+        self._rcl_node: Any = None
+        self.__timer = TimerHandle(clock.handle, int(timer_period_ns), self._rcl_hook, autostart)
         self.timer_period_ns = timer_period_ns
         self.callback = callback
         self.callback_group = callback_group
@@ -123,7 +123,7 @@ class Timer:
         with self.__timer:
             return self.__timer.time_until_next_call()
 
-    def _take(self) -> tuple[Callable[..., Any], tuple[Any, ...]] | None:
+    def _rcl_take(self) -> tuple[Callable[..., Any], tuple[Any, ...]] | None:
         timer = self.__timer
         if timer.is_destroyed or not timer.is_timer_ready():
             return None
@@ -137,7 +137,7 @@ class Timer:
             return self._callback, (TimerInfo(expected, actual, self._clock.clock_type),)
         return self._callback, ()
 
-    def _has_more(self) -> bool:
+    def _rcl_has_more(self) -> bool:
         return False
 
     def __enter__(self) -> Self:

@@ -72,7 +72,7 @@ class Waitable:
         self.callback_group.add_entity(self)
         self._executor_event = False
         self._futures: list[Future] = []
-        self._node: Any = None
+        self._rcl_node: Any = None
 
     def __enter__(self) -> None:
         """Keep what is behind the waitable alive."""

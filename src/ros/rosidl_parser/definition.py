@@ -26,9 +26,7 @@ class AbstractType:
     __slots__ = ()
 
     def _key(self) -> tuple[Any, ...]:
-        return tuple(
-            getattr(self, name) for kind in type(self).__mro__ for name in getattr(kind, "__slots__", ())
-        )
+        return tuple(getattr(self, name) for kind in type(self).__mro__ for name in getattr(kind, "__slots__", ()))
 
     def __eq__(self, other: object) -> bool:
         return type(self) is type(other) and self._key() == other._key()  # type: ignore[attr-defined]

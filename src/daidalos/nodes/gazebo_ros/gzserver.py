@@ -52,7 +52,7 @@ class GzServer(Node):
 
         seed = self.declare_parameter("seed", 0).value
         factor = self.declare_parameter("real_time_factor", 1.0).value
-        self._watched: list[str] = list(self.declare_parameter("contact_monitors", [""]).value)
+        self._watched = self.declare_parameter("contact_monitor", "").value
         self._outgoing: dict[str, tuple[Any, Any]] = {}
         self._incoming: dict[str, Any] = {}
         self._contacts: dict[str, Any] = {}
@@ -201,7 +201,7 @@ class GzServer(Node):
         description = _parse_entity(request.xml)
         name = simulation.spawn(description, request.name or None, pose, request.robot_namespace)
         self._connect(simulation)
-        if name in self._watched:
+        if name == self._watched:
             self._contacts[name] = simulation.monitor_contacts(name, ["ground_plane"])
         return name
 

@@ -11,11 +11,12 @@ from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackRet
 from rclpy.time import Time
 from tf2_ros import TransformException
 
+from daidalos.mapping.pose2 import compose
 from daidalos.navigation.errors import NavigationError
 from daidalos.navigation.planners.planner import GlobalPlanner
 from daidalos.navigation.plugins import find_plugin
 from daidalos.nodes.action_results import TransformFailed, set_error
-from daidalos.nodes.conversions import path_message, pose2_of, time_message
+from daidalos.nodes.conversions import path_message, pose2_of, pose2_of_transform, time_message
 from daidalos.nodes.nav2_costmap_2d._costmap_node import CostmapNode
 from daidalos.nodes.node_thread import NodeThread
 from daidalos.nodes.parameters import declare_dataclass
@@ -103,8 +104,6 @@ class PlannerServer(LifecycleNode):
 
     def _in_global_frame(self, stamped: Any) -> Any:
         """Return a stamped pose as (x, y, yaw) in the costmap's frame."""
-        from tf2_geometry_msgs import do_transform_pose
-
         frame = stamped.header.frame_id or self._costmap.global_frame
         if frame == self._costmap.global_frame:
             return pose2_of(stamped.pose)
@@ -112,7 +111,7 @@ class PlannerServer(LifecycleNode):
             found = self._costmap.buffer.lookup_transform(self._costmap.global_frame, frame, Time())
         except TransformException as error:
             raise TransformFailed(f"the goal cannot be brought into {self._costmap.global_frame}: {error}") from None
-        return pose2_of(do_transform_pose(stamped.pose, found))
+        return compose(pose2_of_transform(found.transform), pose2_of(stamped.pose))
 
     def destroy_node(self) -> None:
         """Leave the graph with the costmap."""

@@ -1,1 +1,3 @@
 """SLAM."""
+
+COMPONENTS = {"AsynchronousSlamToolbox": "async_slam_toolbox_node:SlamToolbox"}

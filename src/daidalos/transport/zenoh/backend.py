@@ -69,6 +69,12 @@ class ZenohBackend(Backend):
             self._peers = {peer.session for peer in peers}
             self._registry.register(Peer(self._session_id, tuple(listen)))
         self._links = self._session.info.declare_transport_events_listener(Callback(self._on_transport, indirect=False))
+        # What is there already is reported on the declaring thread; in this one it cannot be interrupted by Ctrl-C.
+        subscribing = threading.Thread(target=self._subscribe_to_tokens, name="graph")
+        subscribing.start()
+        subscribing.join()
+
+    def _subscribe_to_tokens(self) -> None:
         self._tokens = self._session.liveliness().declare_subscriber(
             keys.tokens(self._domain), Callback(self._on_token, indirect=False), history=True
         )
@@ -81,9 +87,7 @@ class ZenohBackend(Backend):
                 return [f"tcp/127.0.0.1:{probe.getsockname()[1]}"]
         path = self._registry.folder / f"{self._session_id}.sock"
         if len(os.fsencode(path)) > _SOCKET_PATH_LIMIT:
-            raise OSError(
-                f"the path {path.parent} is too long for a socket; set XDG_RUNTIME_DIR to a shorter one"
-            )
+            raise OSError(f"the path {path.parent} is too long for a socket; set XDG_RUNTIME_DIR to a shorter one")
         return [f"unixsock-stream/{path}"]
 
     def close(self) -> None:

@@ -1,8 +1,8 @@
 """The sessions that are alive on this machine, as files in the user's runtime folder.
 
 A session holds a lock on its file for as long as its process lives, so the entries of processes that died, in
-whatever way, are known from those that live. A session opens under the registry's lock: of two that start at the
-same time, the later one finds the earlier one listening.
+whatever way, are known from those that live. A session opens under the registry's lock: of two that start at
+the same time, the later one finds the earlier one listening.
 """
 
 from __future__ import annotations

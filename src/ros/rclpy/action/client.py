@@ -123,7 +123,7 @@ status_sub_qos_profile
         self._action_type = action_type
         self._action_name = action_name
         self._lock = threading.RLock()
-        self._hook = ReadyHook(self)
+        self._rcl_hook = ReadyHook(self)
         self._own_waiters = 0
         self._destroyed = False
         self._goal_handles: dict[bytes, weakref.ref[ClientGoalHandle]] = {}
@@ -169,14 +169,14 @@ status_sub_qos_profile
     def _on_ready(self) -> None:
         """Do at once what a blocking call waits for, which may hold up the executor, or make the client ready."""
         if not self._own_waiters:
-            self._hook()
+            self._rcl_hook()
             return
-        work = self._take()
+        work = self._rcl_take()
         while work is not None:
             work[0](*work[1])
-            work = self._take()
+            work = self._rcl_take()
 
-    def _take(self) -> tuple[Callable[..., Any], tuple[Any, ...]] | None:
+    def _rcl_take(self) -> tuple[Callable[..., Any], tuple[Any, ...]] | None:
         for source, callback in self._sources:
             if not len(source.impl):
                 continue
@@ -189,7 +189,7 @@ status_sub_qos_profile
                 return callback, taken
         return None
 
-    def _has_more(self) -> bool:
+    def _rcl_has_more(self) -> bool:
         return any(len(source.impl) for source, _ in self._sources)
 
     def get_num_entities(self) -> NumberOfEntities:

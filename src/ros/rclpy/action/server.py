@@ -227,7 +227,7 @@ status_pub_qos_profile
         self._result_futures: dict[bytes, Future] = {}
         self._result_timeout = result_timeout
         self._logger = node.get_logger().get_child("action_server")
-        self._hook = ReadyHook(self)
+        self._rcl_hook = ReadyHook(self)
         self._destroyed = False
         impl = action_type.Impl
         with node.handle as handle:
@@ -255,7 +255,7 @@ status_pub_qos_profile
         )
         self._expiry = _Expiry(self, node)
         for service, _ in self._services:
-            service.set_on_ready(self._hook)
+            service.set_on_ready(self._rcl_hook)
         node.add_waitable(self)
 
     @property
@@ -265,14 +265,14 @@ status_pub_qos_profile
 
     # The executor's side.
 
-    def _take(self) -> tuple[Callable[..., Any], tuple[Any, ...]] | None:
+    def _rcl_take(self) -> tuple[Callable[..., Any], tuple[Any, ...]] | None:
         for service, callback in self._services:
             taken = service.take_request()
             if taken is not None:
                 return callback, taken
         return None
 
-    def _has_more(self) -> bool:
+    def _rcl_has_more(self) -> bool:
         return any(len(service.impl) for service, _ in self._services)
 
     def get_num_entities(self) -> NumberOfEntities:
@@ -531,7 +531,7 @@ class _Expiry:
 
     def __init__(self, server: ActionServer, node: Node) -> None:
         self._server = server
-        self._node = node
+        self._rcl_node = node
         self._timer: Any = None
 
     def plan(self) -> None:
@@ -545,7 +545,7 @@ class _Expiry:
                 return
             left = min(ended) + int(server._result_timeout * 1e9) - time.monotonic_ns()
         self.close()
-        self._timer = self._node.create_timer(max(left, 0) / 1e9, self._expire, server.callback_group, _steady())
+        self._timer = self._rcl_node.create_timer(max(left, 0) / 1e9, self._expire, server.callback_group, _steady())
 
     def _expire(self) -> None:
         self.close()
@@ -555,7 +555,7 @@ class _Expiry:
         """Wait no more."""
         timer, self._timer = self._timer, None
         if timer is not None:
-            self._node.destroy_timer(timer)
+            self._rcl_node.destroy_timer(timer)
 
 
 def _steady() -> Any:

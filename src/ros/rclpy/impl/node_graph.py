@@ -21,23 +21,23 @@ class NodeGraph:
         self, node_name: str, node_namespace: str, no_demangle: bool = False
     ) -> list[tuple[str, list[str]]]:
         """Return what a node publishes: [(topic, [types])]; NodeNameNonExistentError when it is not there."""
-        return self._by_node(node_name, node_namespace, EndpointKind.PUBLISHER)
+        return self._rcl_by_node(node_name, node_namespace, EndpointKind.PUBLISHER)
 
     def get_subscriber_names_and_types_by_node(
         self, node_name: str, node_namespace: str, no_demangle: bool = False
     ) -> list[tuple[str, list[str]]]:
         """Return what a node subscribes to: [(topic, [types])]; NodeNameNonExistentError when it is not there."""
-        return self._by_node(node_name, node_namespace, EndpointKind.SUBSCRIPTION)
+        return self._rcl_by_node(node_name, node_namespace, EndpointKind.SUBSCRIPTION)
 
     def get_service_names_and_types_by_node(self, node_name: str, node_namespace: str) -> list[tuple[str, list[str]]]:
         """Return what a node serves: [(service, [types])]; NodeNameNonExistentError when it is not there."""
-        return self._by_node(node_name, node_namespace, EndpointKind.SERVICE)
+        return self._rcl_by_node(node_name, node_namespace, EndpointKind.SERVICE)
 
     def get_client_names_and_types_by_node(self, node_name: str, node_namespace: str) -> list[tuple[str, list[str]]]:
         """Return what a node calls: [(service, [types])]; NodeNameNonExistentError when it is not there."""
-        return self._by_node(node_name, node_namespace, EndpointKind.CLIENT)
+        return self._rcl_by_node(node_name, node_namespace, EndpointKind.CLIENT)
 
-    def _by_node(self, name: str, namespace: str, kind: EndpointKind) -> list[tuple[str, list[str]]]:
+    def _rcl_by_node(self, name: str, namespace: str, kind: EndpointKind) -> list[tuple[str, list[str]]]:
         with self.handle as handle:
             return handle.names_and_types_of(name, namespace, kind)
 
@@ -72,21 +72,21 @@ class NodeGraph:
 
     def count_publishers(self, topic_name: str) -> int:
         """Return how many publishers a topic has."""
-        return self._count(topic_name, EndpointKind.PUBLISHER)
+        return self._rcl_count(topic_name, EndpointKind.PUBLISHER)
 
     def count_subscribers(self, topic_name: str) -> int:
         """Return how many subscriptions a topic has."""
-        return self._count(topic_name, EndpointKind.SUBSCRIPTION)
+        return self._rcl_count(topic_name, EndpointKind.SUBSCRIPTION)
 
     def count_clients(self, service_name: str) -> int:
         """Return how many clients a service has."""
-        return self._count(service_name, EndpointKind.CLIENT)
+        return self._rcl_count(service_name, EndpointKind.CLIENT)
 
     def count_services(self, service_name: str) -> int:
         """Return how many servers a service has."""
-        return self._count(service_name, EndpointKind.SERVICE)
+        return self._rcl_count(service_name, EndpointKind.SERVICE)
 
-    def _count(self, name: str, kind: EndpointKind) -> int:
+    def _rcl_count(self, name: str, kind: EndpointKind) -> int:
         is_service = kind in (EndpointKind.SERVICE, EndpointKind.CLIENT)
         with self.handle as handle:
             validate_topic_name(name, is_service=is_service)
@@ -96,13 +96,13 @@ class NodeGraph:
 
     def get_publishers_info_by_topic(self, topic_name: str, no_mangle: bool = False) -> list[TopicEndpointInfo]:
         """Return what is known of a topic's publishers."""
-        return self._infos(topic_name, EndpointKind.PUBLISHER, no_mangle)
+        return self._rcl_infos(topic_name, EndpointKind.PUBLISHER, no_mangle)
 
     def get_subscriptions_info_by_topic(self, topic_name: str, no_mangle: bool = False) -> list[TopicEndpointInfo]:
         """Return what is known of a topic's subscriptions."""
-        return self._infos(topic_name, EndpointKind.SUBSCRIPTION, no_mangle)
+        return self._rcl_infos(topic_name, EndpointKind.SUBSCRIPTION, no_mangle)
 
-    def _infos(self, topic_name: str, kind: EndpointKind, no_mangle: bool) -> list[TopicEndpointInfo]:
+    def _rcl_infos(self, topic_name: str, kind: EndpointKind, no_mangle: bool) -> list[TopicEndpointInfo]:
         with self.handle as handle:
             name = topic_name
             if not no_mangle:

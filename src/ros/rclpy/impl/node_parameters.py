@@ -39,7 +39,7 @@ class NodeParameters:
     _on_set_parameters_callbacks: list[OnSet]
     _post_set_parameters_callbacks: list[PostSet]
 
-    def _init_parameters(self, overrides: dict[str, Parameter[Any]], allow_undeclared: bool) -> None:
+    def _rcl_init_parameters(self, overrides: dict[str, Parameter[Any]], allow_undeclared: bool) -> None:
         self._parameters = {}
         self._descriptors = {}
         self._parameter_overrides = overrides
@@ -48,7 +48,7 @@ class NodeParameters:
         self._on_set_parameters_callbacks = []
         self._post_set_parameters_callbacks = []
 
-    def _publish_parameter_event(
+    def _rcl_publish_parameter_event(
         self, new: list[Parameter[Any]], changed: list[Parameter[Any]], deleted: list[Parameter[Any]]
     ) -> None:
         raise NotImplementedError
@@ -110,7 +110,7 @@ class NodeParameters:
                 name = f"{namespace}{PARAMETER_SEPARATOR_STRING}{name}"
             validate_parameter_name(name)
             if not ignore_override and name in self._parameter_overrides:
-                parameter = self._overridden(name, value, descriptor)
+                parameter = self._rcl_overridden(name, value, descriptor)
             else:
                 parameter = _initial(name, value, descriptor)
             declared.append(parameter)
@@ -118,10 +118,10 @@ class NodeParameters:
         taken = [parameter.name for parameter in declared if parameter.name in self._descriptors]
         if taken:
             raise ParameterAlreadyDeclaredException(taken)
-        self._set_declared(declared, descriptors)
+        self._rcl_set_declared(declared, descriptors)
         return [self._parameters[parameter.name] for parameter in declared]
 
-    def _overridden(self, name: str, value: Any, descriptor: ParameterDescriptor) -> Parameter[Any]:
+    def _rcl_overridden(self, name: str, value: Any, descriptor: ParameterDescriptor) -> Parameter[Any]:
         override = self._parameter_overrides[name]
         if descriptor.dynamic_typing:
             return override
@@ -132,22 +132,24 @@ class NodeParameters:
         descriptor.type = int(expected if expected != ParameterType.NOT_SET else override.type_)
         return override
 
-    def _set_declared(self, declared: list[Parameter[Any]], descriptors: dict[str, ParameterDescriptor]) -> None:
+    def _rcl_set_declared(self, declared: list[Parameter[Any]], descriptors: dict[str, ParameterDescriptor]) -> None:
         for parameter in declared:
             descriptor = descriptors[parameter.name]
             descriptor.name = parameter.name
             if parameter.type_ == ParameterType.NOT_SET:
-                self._store(parameter, descriptor)
+                self._rcl_store(parameter, descriptor)
                 continue
-            result = self._check_value(parameter, descriptor)
+            result = self._rcl_check_value(parameter, descriptor)
             if result.successful:
-                result = self._ask_callbacks([parameter])
+                result = self._rcl_ask_callbacks([parameter])
             if not result.successful:
                 raise InvalidParameterValueException(parameter.name, parameter.value, result.reason)
-            self._store(parameter, descriptor)
-        self._tell_set([parameter for parameter in declared if parameter.type_ != ParameterType.NOT_SET], new=declared)
+            self._rcl_store(parameter, descriptor)
+        self._rcl_tell_set(
+            [parameter for parameter in declared if parameter.type_ != ParameterType.NOT_SET], new=declared
+        )
 
-    def _store(self, parameter: Parameter[Any], descriptor: ParameterDescriptor) -> None:
+    def _rcl_store(self, parameter: Parameter[Any], descriptor: ParameterDescriptor) -> None:
         self._parameters[parameter.name] = parameter
         self._descriptors[parameter.name] = descriptor
 
@@ -288,16 +290,16 @@ class NodeParameters:
         """
         results = []
         for parameter in parameter_list:
-            self._check_declared([parameter])
-            results.append(self._set_checked([parameter]))
+            self._rcl_check_declared([parameter])
+            results.append(self._rcl_set_checked([parameter]))
         return results
 
     def set_parameters_atomically(self, parameter_list: list[Parameter[Any]]) -> SetParametersResult:
         """Set all of the parameters or none; see `set_parameters`."""
-        self._check_declared(parameter_list)
-        return self._set_checked(parameter_list)
+        self._rcl_check_declared(parameter_list)
+        return self._rcl_set_checked(parameter_list)
 
-    def _check_declared(self, parameters: Iterable[Parameter[Any]]) -> None:
+    def _rcl_check_declared(self, parameters: Iterable[Parameter[Any]]) -> None:
         for parameter in parameters:
             if not isinstance(parameter, Parameter):
                 raise TypeError("parameter must be instance of type 'rclpy.parameter.Parameter'")
@@ -305,7 +307,7 @@ class NodeParameters:
         if missing and not self._allow_undeclared_parameters:
             raise ParameterNotDeclaredException(missing)
 
-    def _set_checked(self, parameters: list[Parameter[Any]]) -> SetParametersResult:
+    def _rcl_set_checked(self, parameters: list[Parameter[Any]]) -> SetParametersResult:
         from rcl_interfaces.msg import ParameterDescriptor, SetParametersResult
 
         for callback in self._pre_set_parameters_callbacks:
@@ -319,24 +321,24 @@ class NodeParameters:
             parameters = modified
         for parameter in parameters:
             descriptor = self._descriptors.get(parameter.name) or ParameterDescriptor(dynamic_typing=True)
-            result = self._check_change(parameter, descriptor)
+            result = self._rcl_check_change(parameter, descriptor)
             if not result.successful:
                 return result
-        result = self._ask_callbacks(parameters)
+        result = self._rcl_ask_callbacks(parameters)
         if result.successful:
-            self._commit(parameters)
+            self._rcl_commit(parameters)
         return result
 
-    def _check_change(self, parameter: Parameter[Any], descriptor: ParameterDescriptor) -> SetParametersResult:
+    def _rcl_check_change(self, parameter: Parameter[Any], descriptor: ParameterDescriptor) -> SetParametersResult:
         from rcl_interfaces.msg import SetParametersResult
 
         if descriptor.read_only:
             return SetParametersResult(successful=False, reason=str(ParameterImmutableException(parameter.name)))
         if parameter.type_ == ParameterType.NOT_SET and not descriptor.dynamic_typing:
             return SetParametersResult(successful=False, reason="Static parameter cannot be undeclared")
-        return self._check_value(parameter, descriptor)
+        return self._rcl_check_value(parameter, descriptor)
 
-    def _check_value(self, parameter: Parameter[Any], descriptor: ParameterDescriptor) -> SetParametersResult:
+    def _rcl_check_value(self, parameter: Parameter[Any], descriptor: ParameterDescriptor) -> SetParametersResult:
         from rcl_interfaces.msg import SetParametersResult
 
         expected = ParameterType(descriptor.type)
@@ -351,7 +353,7 @@ class NodeParameters:
             reason = _float_fault(parameter, descriptor.floating_point_range[0])
         return SetParametersResult(successful=not reason, reason=reason)
 
-    def _ask_callbacks(self, parameters: list[Parameter[Any]]) -> SetParametersResult:
+    def _rcl_ask_callbacks(self, parameters: list[Parameter[Any]]) -> SetParametersResult:
         from rcl_interfaces.msg import SetParametersResult
 
         for callback in self._on_set_parameters_callbacks:
@@ -360,7 +362,7 @@ class NodeParameters:
                 return result
         return SetParametersResult(successful=True)
 
-    def _commit(self, parameters: list[Parameter[Any]]) -> None:
+    def _rcl_commit(self, parameters: list[Parameter[Any]]) -> None:
         from rcl_interfaces.msg import ParameterDescriptor
 
         new, changed, deleted = [], [], []
@@ -376,12 +378,12 @@ class NodeParameters:
             self._parameters[parameter.name] = parameter
             if not known:
                 self._descriptors[parameter.name] = ParameterDescriptor(name=parameter.name, dynamic_typing=True)
-        self._publish_parameter_event(new, changed, deleted)
+        self._rcl_publish_parameter_event(new, changed, deleted)
         for callback in self._post_set_parameters_callbacks:
             callback(parameters)
 
-    def _tell_set(self, parameters: list[Parameter[Any]], new: list[Parameter[Any]]) -> None:
-        self._publish_parameter_event([one for one in new if one.type_ != ParameterType.NOT_SET], [], [])
+    def _rcl_tell_set(self, parameters: list[Parameter[Any]], new: list[Parameter[Any]]) -> None:
+        self._rcl_publish_parameter_event([one for one in new if one.type_ != ParameterType.NOT_SET], [], [])
         if parameters:
             for callback in self._post_set_parameters_callbacks:
                 callback(parameters)
@@ -473,16 +475,16 @@ class NodeParameters:
         if alternative_value is not None:
             from rcl_interfaces.msg import Parameter as ParameterMsg
 
-            if not self._check_value(current, fresh).successful:
+            if not self._rcl_check_value(current, fresh).successful:
                 current = Parameter.from_parameter_msg(ParameterMsg(name=name, value=alternative_value))
-        result = self._check_value(current, fresh)
+        result = self._rcl_check_value(current, fresh)
         if result.successful and current is not self._parameters[name]:
-            result = self._ask_callbacks([current])
+            result = self._rcl_ask_callbacks([current])
         if not result.successful:
             raise InvalidParameterValueException(name, current.value, result.reason)
         self._descriptors[name] = fresh
         if current is not self._parameters[name]:
-            self._commit([current])
+            self._rcl_commit([current])
         return current.get_parameter_value()
 
 

@@ -43,90 +43,90 @@ class LifecycleNodeMixin(ManagedEntity):
     def __init__(
         self, *, enable_communication_interface: bool = True, callback_group: CallbackGroup | None = None
     ) -> None:
-        self._machine = StateMachine()
-        self._managed_entities: set[ManagedEntity] = set()
-        self._transition_event_publisher: Any = None
+        self._rcl_machine = StateMachine()
+        self._rcl_managed_entities: set[ManagedEntity] = set()
+        self._rcl_transition_event_publisher: Any = None
         self._callback_group = callback_group
         for transition_name, callback in _CALLBACKS.items():
             if not callable(getattr(self, callback)):
                 raise TypeError(f"{callback} must be callable to {transition_name}")
         if enable_communication_interface:
-            self._create_interface()
+            self._rcl_create_interface()
 
-    def _create_interface(self) -> None:
+    def _rcl_create_interface(self) -> None:
         from lifecycle_msgs.msg import TransitionEvent
         from lifecycle_msgs.srv import ChangeState, GetAvailableStates, GetAvailableTransitions, GetState
 
         node: Any = self
         for kind, name, callback in (
-            (ChangeState, "change_state", self._on_change_state),
-            (GetState, "get_state", self._on_get_state),
-            (GetAvailableStates, "get_available_states", self._on_get_available_states),
-            (GetAvailableTransitions, "get_available_transitions", self._on_get_available_transitions),
-            (GetAvailableTransitions, "get_transition_graph", self._on_get_transition_graph),
+            (ChangeState, "change_state", self._rcl_on_change_state),
+            (GetState, "get_state", self._rcl_on_get_state),
+            (GetAvailableStates, "get_available_states", self._rcl_on_get_available_states),
+            (GetAvailableTransitions, "get_available_transitions", self._rcl_on_get_available_transitions),
+            (GetAvailableTransitions, "get_transition_graph", self._rcl_on_get_transition_graph),
         ):
             node.create_service(kind, f"~/{name}", callback, callback_group=self._callback_group)
-        self._transition_event_publisher = node.create_publisher(
+        self._rcl_transition_event_publisher = node.create_publisher(
             TransitionEvent, "~/transition_event", QoSProfile(depth=10)
         )
 
     @property
     def current_state(self) -> LifecycleState:
         """The node's state."""
-        return LifecycleState(self._machine.state.label, self._machine.state.state_id)
+        return LifecycleState(self._rcl_machine.state.label, self._rcl_machine.state.state_id)
 
     def trigger_configure(self) -> TransitionCallbackReturn:
         """Go from unconfigured to inactive; RCLError when the state does not allow it."""
-        return self._change_state(self._machine.by_label("configure"))
+        return self._rcl_change_state(self._rcl_machine.by_label("configure"))
 
     def trigger_cleanup(self) -> TransitionCallbackReturn:
         """Go from inactive to unconfigured; RCLError when the state does not allow it."""
-        return self._change_state(self._machine.by_label("cleanup"))
+        return self._rcl_change_state(self._rcl_machine.by_label("cleanup"))
 
     def trigger_shutdown(self) -> TransitionCallbackReturn:
         """Go to finalized; RCLError when the state does not allow it."""
-        return self._change_state(self._machine.by_label("shutdown"))
+        return self._rcl_change_state(self._rcl_machine.by_label("shutdown"))
 
     def trigger_activate(self) -> TransitionCallbackReturn:
         """Go from inactive to active; RCLError when the state does not allow it."""
-        return self._change_state(self._machine.by_label("activate"))
+        return self._rcl_change_state(self._rcl_machine.by_label("activate"))
 
     def trigger_deactivate(self) -> TransitionCallbackReturn:
         """Go from active to inactive; RCLError when the state does not allow it."""
-        return self._change_state(self._machine.by_label("deactivate"))
+        return self._rcl_change_state(self._rcl_machine.by_label("deactivate"))
 
     def add_managed_entity(self, entity: ManagedEntity) -> None:
         """Take an entity through the node's transitions from now on."""
-        self._managed_entities.add(entity)
+        self._rcl_managed_entities.add(entity)
 
     # What a node does at transitions: by default, its managed entities do it.
 
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Get ready: declare, create, allocate."""
-        return self._all("on_configure", state)
+        return self._rcl_all("on_configure", state)
 
     def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Undo `on_configure`."""
-        return self._all("on_cleanup", state)
+        return self._rcl_all("on_cleanup", state)
 
     def on_shutdown(self, state: LifecycleState) -> TransitionCallbackReturn:
         """End for good."""
-        return self._all("on_shutdown", state)
+        return self._rcl_all("on_shutdown", state)
 
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Begin to work."""
-        return self._all("on_activate", state)
+        return self._rcl_all("on_activate", state)
 
     def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Cease to work."""
-        return self._all("on_deactivate", state)
+        return self._rcl_all("on_deactivate", state)
 
     def on_error(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Recover from a transition that went wrong; SUCCESS leads to unconfigured, anything else to finalized."""
-        return self._all("on_error", state)
+        return self._rcl_all("on_error", state)
 
-    def _all(self, callback: str, state: LifecycleState) -> TransitionCallbackReturn:
-        for entity in self._managed_entities:
+    def _rcl_all(self, callback: str, state: LifecycleState) -> TransitionCallbackReturn:
+        for entity in self._rcl_managed_entities:
             outcome = getattr(entity, callback)(state)
             if not isinstance(outcome, TransitionCallbackReturn):
                 raise TypeError(f"{callback}() of {type(entity).__name__} returned {outcome!r}")
@@ -140,32 +140,32 @@ class LifecycleNodeMixin(ManagedEntity):
             raise TypeError("create_publisher() got an unexpected keyword argument 'publisher_class'")
         node: Any = self
         publisher: LifecyclePublisher = node.create_publisher(*args, **kwargs, publisher_class=LifecyclePublisher)
-        self._managed_entities.add(publisher)
+        self._rcl_managed_entities.add(publisher)
         return publisher
 
     def destroy_lifecycle_publisher(self, publisher: LifecyclePublisher) -> bool:
         """Destroy such a publisher; False when it is none of the node's."""
-        self._managed_entities.discard(publisher)
+        self._rcl_managed_entities.discard(publisher)
         node: Any = self
         return bool(node.destroy_publisher(publisher))
 
     # Transitions.
 
-    def _change_state(self, transition: Transition) -> TransitionCallbackReturn:
+    def _rcl_change_state(self, transition: Transition) -> TransitionCallbackReturn:
         before = LifecycleState(transition.start.label, transition.start.state_id)
-        self._enter(transition)
-        outcome = self._run(_CALLBACKS[transition.label], before)
-        self._enter(self._machine.by_label(f"transition_{outcome.name.lower()}"))
+        self._rcl_enter(transition)
+        outcome = self._rcl_run(_CALLBACKS[transition.label], before)
+        self._rcl_enter(self._rcl_machine.by_label(f"transition_{outcome.name.lower()}"))
         if outcome == TransitionCallbackReturn.ERROR:
-            recovery = self._run("on_error", before)
-            self._enter(self._machine.by_label(f"transition_{recovery.name.lower()}"))
+            recovery = self._rcl_run("on_error", before)
+            self._rcl_enter(self._rcl_machine.by_label(f"transition_{recovery.name.lower()}"))
         return outcome
 
-    def _enter(self, transition: Transition) -> None:
-        self._machine.state = transition.goal
-        self._tell(transition)
+    def _rcl_enter(self, transition: Transition) -> None:
+        self._rcl_machine.state = transition.goal
+        self._rcl_tell(transition)
 
-    def _run(self, callback: str, state: LifecycleState) -> TransitionCallbackReturn:
+    def _rcl_run(self, callback: str, state: LifecycleState) -> TransitionCallbackReturn:
         node: Any = self
         try:
             outcome = getattr(self, callback)(state)
@@ -178,8 +178,8 @@ class LifecycleNodeMixin(ManagedEntity):
         node.get_logger().error(f"{callback}() returned {outcome!r}, expected a TransitionCallbackReturn")
         return TransitionCallbackReturn.ERROR
 
-    def _tell(self, transition: Transition) -> None:
-        publisher = self._transition_event_publisher
+    def _rcl_tell(self, transition: Transition) -> None:
+        publisher = self._rcl_transition_event_publisher
         if publisher is None or publisher.handle.is_destroyed:
             return
         from lifecycle_msgs.msg import TransitionEvent
@@ -197,32 +197,34 @@ class LifecycleNodeMixin(ManagedEntity):
 
     # Services.
 
-    def _on_change_state(self, request: Any, response: Any) -> Any:
+    def _rcl_on_change_state(self, request: Any, response: Any) -> Any:
         wanted = request.transition
         try:
-            transition = self._machine.by_label(wanted.label) if wanted.label else self._machine.by_id(wanted.id)
+            transition = (
+                self._rcl_machine.by_label(wanted.label) if wanted.label else self._rcl_machine.by_id(wanted.id)
+            )
         except RCLError as error:
             node: Any = self
             node.get_logger().warning(str(error))
             response.success = False
             return response
-        response.success = self._change_state(transition) == TransitionCallbackReturn.SUCCESS
+        response.success = self._rcl_change_state(transition) == TransitionCallbackReturn.SUCCESS
         return response
 
-    def _on_get_state(self, request: Any, response: Any) -> Any:
-        response.current_state.id = self._machine.state.state_id
-        response.current_state.label = self._machine.state.label
+    def _rcl_on_get_state(self, request: Any, response: Any) -> Any:
+        response.current_state.id = self._rcl_machine.state.state_id
+        response.current_state.label = self._rcl_machine.state.label
         return response
 
-    def _on_get_available_states(self, request: Any, response: Any) -> Any:
+    def _rcl_on_get_available_states(self, request: Any, response: Any) -> Any:
         response.available_states = [_state(state) for state in STATES]
         return response
 
-    def _on_get_available_transitions(self, request: Any, response: Any) -> Any:
-        response.available_transitions = [_description(transition) for transition in self._machine.available()]
+    def _rcl_on_get_available_transitions(self, request: Any, response: Any) -> Any:
+        response.available_transitions = [_description(transition) for transition in self._rcl_machine.available()]
         return response
 
-    def _on_get_transition_graph(self, request: Any, response: Any) -> Any:
+    def _rcl_on_get_transition_graph(self, request: Any, response: Any) -> Any:
         response.available_transitions = [_description(transition) for transition in TRANSITIONS]
         return response
 
@@ -253,5 +255,5 @@ class LifecycleNode(LifecycleNodeMixin, Node):
 
     def destroy_node(self) -> None:
         """Leave the graph."""
-        self._transition_event_publisher = None
+        self._rcl_transition_event_publisher = None
         Node.destroy_node(self)

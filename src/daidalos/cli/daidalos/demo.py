@@ -1,0 +1,202 @@
+"""`daidalos demo`: a robot that drives itself, in the browser or, headless, on trial."""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import json
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable, Iterator
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from daidalos.nodes.daidalos_demo._measuring import Load
+    from daidalos.nodes.daidalos_demo.trial import TrialReport
+
+HELP = "a robot that maps an arena and drives where it is sent"
+
+EPILOG = """It is nothing but `ros2 launch daidalos_demo demo.launch.py`; copy that file to begin a robot of
+your own. With --headless the robot gets three goals all over the arena and its driving is measured: the exit
+status is 0 only if it reached them all and touched nothing."""
+
+_LAUNCH = ("daidalos_demo", "demo.launch.py")
+_TRIAL_DOMAIN = 97
+_END_S = 5.0
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare what `daidalos demo` takes."""
+    parser.epilog = EPILOG
+    parser.add_argument("--headless", action="store_true", help="no browser: drive to goals and report")
+    parser.add_argument("--seed", type=int, default=0, metavar="N", help="of all random numbers (default: 0)")
+    parser.add_argument("--goals", type=int, default=3, metavar="N", help="how many, headless (default: 3)")
+    parser.add_argument("--json", action="store_true", help="print the report as JSON, headless")
+    parser.add_argument("--port", type=int, default=8765, metavar="N", help="of the studio (default: 8765)")
+    parser.add_argument("--no-browser", action="store_true", help="print the studio's address, open nothing")
+
+
+def main(arguments: argparse.Namespace) -> int:
+    """Run the demonstration."""
+    return _try_out(arguments) if arguments.headless else _show(arguments)
+
+
+def _show(arguments: argparse.Namespace) -> int:
+    """Launch everything in the foreground."""
+    from daidalos.cli.ros2 import main as ros2
+
+    return int(
+        ros2(
+            [
+                "launch",
+                *_LAUNCH,
+                f"seed:={arguments.seed}",
+                f"port:={arguments.port}",
+                f"open_browser:={str(not arguments.no_browser).lower()}",
+            ]
+        )
+    )
+
+
+def _try_out(arguments: argparse.Namespace) -> int:
+    """Launch without a studio, drive, report."""
+    from daidalos.nodes.daidalos_demo._measuring import LoadRecorder
+
+    # A domain of its own: the trial neither disturbs nor is disturbed by what runs beside it.
+    os.environ.setdefault("ROS_DOMAIN_ID", str(_TRIAL_DOMAIN))
+    with _launched(arguments.seed) as (process, log):
+        load = LoadRecorder(process.pid)
+        load.start()
+        with _progress(arguments.json) as say:
+            report = _run_trial(arguments, say, process)
+        used = load.stop()
+    if report is None:
+        print(f"daidalos demo: the robot did not start; see {log}", file=sys.stderr)
+        print(_last_lines(log), file=sys.stderr)
+        return 2
+    log.unlink(missing_ok=True)
+    _print_json(report, used) if arguments.json else _print_table(report, used)
+    return 0 if report.passed else 1
+
+
+@contextlib.contextmanager
+def _launched(seed: int) -> Iterator[tuple[subprocess.Popen[bytes], Path]]:
+    """Run the launch file beside us; its output goes to a file."""
+    handle, name = tempfile.mkstemp(prefix="daidalos-demo-", suffix=".log")
+    command = [sys.executable, "-m", "daidalos.cli.ros2", "launch", *_LAUNCH, "studio:=false", f"seed:={seed}"]
+    with os.fdopen(handle, "wb") as output:
+        process = subprocess.Popen(command, stdout=output, stderr=subprocess.STDOUT, start_new_session=True)
+    try:
+        yield process, Path(name)
+    finally:
+        _end(process)
+
+
+def _end(process: subprocess.Popen[bytes]) -> None:
+    """End the launch with all that it started, as Ctrl-C does."""
+    previous = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        if process.poll() is None:
+            process.send_signal(signal.SIGINT)
+            try:
+                process.wait(timeout=_END_S)
+            except subprocess.TimeoutExpired:
+                _kill(process)
+    finally:
+        signal.signal(signal.SIGINT, previous)
+
+
+def _kill(process: subprocess.Popen[bytes]) -> None:
+    import psutil
+
+    for member in [*psutil.Process(process.pid).children(recursive=True), process]:
+        with contextlib.suppress(psutil.Error):
+            member.kill()
+    process.wait()
+
+
+def _run_trial(
+    arguments: argparse.Namespace, say: Callable[[str], None], launch: subprocess.Popen[bytes]
+) -> TrialReport | None:
+    """Return the report, None when the launch ended before there was one."""
+    import rclpy
+    from rclpy.executors import SingleThreadedExecutor
+    from rclpy.parameter import Parameter
+
+    from daidalos.nodes.daidalos_demo.trial import Trial
+
+    rclpy.init(args=[])
+    overrides = [Parameter("seed", value=arguments.seed), Parameter("goals", value=arguments.goals)]
+    node = Trial(say, parameter_overrides=overrides)
+    executor = SingleThreadedExecutor()
+    executor.add_node(node)
+    task = executor.create_task(node.run)
+    try:
+        while not task.done() and launch.poll() is None:
+            executor.spin_until_future_complete(task, timeout_sec=0.5)
+        return task.result() if task.done() else None
+    finally:
+        node.destroy_node()
+        rclpy.try_shutdown()
+
+
+@contextlib.contextmanager
+def _progress(quiet: bool) -> Iterator[Callable[[str], None]]:
+    """Show what is being done: on a terminal in one moving line, else line by line on standard error."""
+    if quiet or not sys.stderr.isatty():
+        yield lambda line: print(line, file=sys.stderr, flush=True)
+        return
+    from rich.console import Console
+
+    console = Console(stderr=True)
+    with console.status("starting") as status:
+
+        def say(line: str) -> None:
+            if line.startswith(" "):
+                console.print(line)
+            else:
+                status.update(line)
+
+        yield say
+
+
+def _print_json(report: TrialReport, used: Load) -> None:
+    summary: dict[str, Any] = asdict(report) | asdict(used) | {"passed": report.passed}
+    print(json.dumps(summary))
+
+
+def _print_table(report: TrialReport, used: Load) -> None:
+    from rich.console import Console
+    from rich.table import Table
+
+    table = Table("goal", "reached", "off [cm]", "off [deg]", "time [s]", "path [m]")
+    for goal in report.goals:
+        x, y, yaw = goal.goal
+        table.add_row(
+            f"{x:.2f} {y:.2f} {yaw:.2f}",
+            "[green]yes" if goal.reached else f"[red]{goal.reason}",
+            f"{100 * goal.position_error_m:.1f}",
+            f"{57.2958 * goal.yaw_error_rad:.1f}",
+            f"{goal.time_s:.1f}",
+            f"{goal.path_length_m:.2f}",
+        )
+    console = Console()
+    console.print(table)
+    console.print(f"contacts: {report.contacts}" + "".join(f"\n  {name}" for name in report.contact_names))
+    if report.map is not None:
+        shares = f"{report.map.walls_found:.1%} of the walls found, {report.map.walls_true:.1%} of the found are walls"
+        console.print(f"map: {report.map.width} x {report.map.height} cells of {report.map.resolution_m} m, {shares}")
+    console.print(
+        f"localization: {1000 * report.localization_rmse_m:.0f} mm rms, "
+        f"real-time factor {report.real_time_factor:.2f}, {used.cpu_percent:.0f} % of a core, "
+        f"{used.peak_rss_mb:.0f} MB in {used.processes} processes"
+    )
+
+
+def _last_lines(log: Path, count: int = 15) -> str:
+    return "\n".join(log.read_text(encoding="utf-8", errors="replace").splitlines()[-count:])

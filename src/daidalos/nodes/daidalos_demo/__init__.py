@@ -1,0 +1,1 @@
+"""Trying out the demonstration: goals for its robot, and how well it did."""

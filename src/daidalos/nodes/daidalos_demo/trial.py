@@ -1,0 +1,284 @@
+"""`trial`: sends the demonstration's robot to goals all over the arena and reports how it did."""
+
+from __future__ import annotations
+
+import json
+import math
+import sys
+from collections.abc import Callable
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+from rclpy.task import Future
+from tf2_ros import Buffer, TransformListener
+
+from daidalos.description.footprint import Footprint, footprint
+from daidalos.mapping.grid import OccupancyGrid
+from daidalos.mapping.pose2 import wrap
+from daidalos.nodes.conversions import grid_array, pose2_of, pose_stamped
+from daidalos.nodes.daidalos_demo._measuring import LATCHED, TruthRecorder
+from daidalos.nodes.packages import package_share
+
+_CLEARANCE_M = 0.45
+_LIDAR_HEIGHT_M = 0.18
+_RASTER_M = 0.05
+_SETTLE_S = 1.0
+_GOAL_LIMIT_S = 180.0
+_SUCCEEDED = 4
+
+Say = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class GoalReport:
+    """How one goal went: errors against the simulator's truth in metres and radians, times in simulated seconds."""
+
+    goal: tuple[float, float, float]
+    reached: bool
+    position_error_m: float
+    yaw_error_rad: float
+    time_s: float
+    path_length_m: float
+    reason: str = ""
+
+
+@dataclass(frozen=True)
+class MapReport:
+    """The map: cell size, size in cells, and how it agrees with the true walls (shares from 0 to 1)."""
+
+    resolution_m: float
+    width: int
+    height: int
+    walls_found: float
+    walls_true: float
+
+
+@dataclass(frozen=True)
+class TrialReport:
+    """How the whole trial went."""
+
+    goals: list[GoalReport]
+    contacts: int
+    contact_names: list[str]
+    map: MapReport | None
+    localization_rmse_m: float
+    real_time_factor: float
+
+    @property
+    def passed(self) -> bool:
+        """Whether every goal was reached and nothing was touched."""
+        return bool(self.goals) and all(goal.reached for goal in self.goals) and not self.contacts
+
+
+class Trial(Node):
+    """Drives the robot to goals, one after the other.
+
+    Parameters of the node: ``seed`` chooses the goals, ``goals`` is how many, ``world`` the SDF file that is
+    simulated, ``robot`` the robot's name in it.
+
+    Parameters
+    ----------
+    say : callable
+        Takes a line for each step.
+    **kwargs
+        Of `Node`.
+    """
+
+    def __init__(self, say: Say = lambda line: None, **kwargs: Any) -> None:
+        overrides = [*kwargs.pop("parameter_overrides", []), Parameter("use_sim_time", value=True)]
+        super().__init__("trial", parameter_overrides=overrides, **kwargs)
+        from gazebo_msgs.msg import PerformanceMetrics
+        from nav2_msgs.action import NavigateToPose
+        from nav_msgs.msg import OccupancyGrid as GridMessage
+        from rclpy.action import ActionClient
+        from std_srvs.srv import Trigger
+
+        self._say = say
+        self._seed = self.declare_parameter("seed", 0).value
+        self._count = self.declare_parameter("goals", 3).value
+        default = f"{package_share('turtlebot3_gazebo')}/worlds/arena.world"
+        self._world = self.declare_parameter("world", default).value
+        robot = self.declare_parameter("robot", "waffle").value
+        self._buffer = Buffer()
+        self._listener = TransformListener(self._buffer, self)
+        self._truth = TruthRecorder(self, self._buffer, robot, "map", "base_footprint")
+        self._map: Any = None
+        self._factors: list[float] = []
+        self.create_subscription(GridMessage, "/map", self._on_map, LATCHED)
+        self.create_subscription(PerformanceMetrics, "/performance_metrics", self._on_metrics, 10)
+        self._navigator = ActionClient(self, NavigateToPose, "navigate_to_pose")
+        self._is_active = self.create_client(Trigger, "/lifecycle_manager_navigation/is_active")
+
+    def _on_map(self, message: Any) -> None:
+        self._map = message
+
+    def _on_metrics(self, message: Any) -> None:
+        if message.real_time_factor > 0.0:
+            self._factors.append(message.real_time_factor)
+
+    async def run(self) -> TrialReport:
+        """Carry the trial out; to be run as a task of the node's executor."""
+        plan = _plan_of(self._world)
+        await self._until(self._is_ready, "waiting for the robot, its map and the navigator")
+        self._factors.clear()
+        reports = []
+        for number, goal in enumerate(choose_goals(plan, self._count, self._seed), 1):
+            self._say(f"goal {number} of {self._count}: ({goal[0]:.2f}, {goal[1]:.2f}, {goal[2]:.2f} rad)")
+            reports.append(await self._drive(goal))
+        contacts = self._truth.contacts
+        return TrialReport(
+            reports,
+            len(contacts),
+            contacts,
+            self._map_report(plan),
+            self._truth.localization_rmse,
+            float(np.mean(self._factors)) if self._factors else math.nan,
+        )
+
+    async def _is_ready(self) -> bool:
+        from std_srvs.srv import Trigger
+
+        if self._map is None or self._truth.pose is None or not self._is_active.service_is_ready():
+            return False
+        answer = await self._is_active.call_async(Trigger.Request())
+        return bool(answer.success) and self._navigator.server_is_ready()
+
+    async def _until(self, condition: Callable[[], Any], what: str) -> None:
+        """Wait until a coroutine says yes; it is asked twice a second."""
+        self._say(what)
+        while not await condition():
+            await self._pause(0.5)
+
+    async def _pause(self, seconds: float) -> None:
+        """Wait for some seconds of a steady clock."""
+        from rclpy.clock import Clock
+        from rclpy.clock_type import ClockType
+
+        over = Future()
+        timer = self.create_timer(seconds, lambda: over.set_result(None), clock=Clock(clock_type=ClockType.STEADY_TIME))
+        await over
+        self.destroy_timer(timer)
+
+    async def _drive(self, goal: Any) -> GoalReport:
+        from nav2_msgs.action import NavigateToPose
+
+        stamp = self.get_clock().now().to_msg()
+        begun, travelled = self._truth.now_s, self._truth.travelled
+        request = NavigateToPose.Goal(pose=pose_stamped(goal, "map", stamp))
+        handle = await self._navigator.send_goal_async(request)
+        if not handle.accepted:
+            return self._report(goal, False, begun, travelled, "the goal was rejected")
+        limit = self.create_timer(_GOAL_LIMIT_S, lambda: handle.cancel_goal_async())
+        answer = await handle.get_result_async()
+        self.destroy_timer(limit)
+        ended = self._truth.now_s
+        await self._pause(_SETTLE_S)
+        succeeded = answer.status == _SUCCEEDED
+        reason = "" if succeeded else answer.result.error_msg or f"ended with status {answer.status}"
+        report = self._report(goal, succeeded, begun, travelled, reason, ended)
+        self._say(
+            f"  {'reached' if succeeded else 'not reached: ' + reason} after {report.time_s:.1f} s and "
+            f"{report.path_length_m:.2f} m, {100 * report.position_error_m:.1f} cm and "
+            f"{report.yaw_error_rad:.3f} rad off"
+        )
+        return report
+
+    def _report(
+        self, goal: Any, reached: bool, begun: float, travelled: float, reason: str = "", ended: float | None = None
+    ) -> GoalReport:
+        pose = self._truth.pose
+        x, y, yaw = (float(value) for value in goal)
+        return GoalReport(
+            (x, y, yaw),
+            reached,
+            float(np.hypot(pose[0] - x, pose[1] - y)),
+            abs(float(wrap(pose[2] - yaw))),
+            (self._truth.now_s if ended is None else ended) - begun,
+            self._truth.travelled - travelled,
+            reason,
+        )
+
+    def _map_report(self, plan: Footprint) -> MapReport | None:
+        from daidalos.mapping.evaluation import compare_with_truth
+
+        if self._map is None:
+            return None
+        info = self._map.info
+        x, y, yaw = (float(value) for value in pose2_of(info.origin))
+        grid = OccupancyGrid(grid_array(self._map), info.resolution, (x, y, yaw))
+        walls = plan.visible_walls(0.0, 0.0)
+        truth = OccupancyGrid(np.where(walls, 100, 0).astype(np.int8), plan.resolution, (*plan.origin, 0.0))
+        agreement = compare_with_truth(grid, truth, within=2)
+        return MapReport(float(info.resolution), info.width, info.height, agreement.walls_found, agreement.walls_true)
+
+
+def _plan_of(world: str) -> Footprint:
+    from daidalos.description.sdf import load
+
+    return footprint(load(Path(world), package_share), _LIDAR_HEIGHT_M, _RASTER_M)
+
+
+def choose_goals(plan: Footprint, count: int, seed: int) -> list[Any]:
+    """Choose poses that are spread over the free space around the origin.
+
+    Parameters
+    ----------
+    plan : Footprint
+        The world.
+    count : int
+        How many.
+    seed : int
+        Chooses the first one and the headings; each further one is about as far as possible from the others.
+
+    Returns
+    -------
+    list of arrays (3,)
+        (x, y, yaw) with a clearance for the robot.
+    """
+    from scipy import ndimage
+
+    distance = ndimage.distance_transform_edt(~plan.occupied) * plan.resolution
+    rows, columns = np.nonzero(plan.reachable(0.0, 0.0) & (distance >= _CLEARANCE_M))
+    places = np.stack([columns, rows], axis=-1) * plan.resolution + plan.origin + 0.5 * plan.resolution
+    random = np.random.default_rng(seed)
+    taken = [np.zeros(2)]
+    goals = []
+    for _ in range(count):
+        nearest = np.min([np.hypot(*(places - other).T) for other in taken], axis=0)
+        far = np.flatnonzero(nearest >= 0.7 * nearest.max())
+        place = places[random.choice(far)]
+        taken.append(place)
+        goals.append(np.array([*place, random.uniform(-math.pi, math.pi)]))
+    return goals
+
+
+def main() -> int:
+    """Run a trial against a demonstration that is already up, and print its report as JSON."""
+    import rclpy
+    from rclpy.executors import SingleThreadedExecutor
+
+    rclpy.init()
+    node = Trial(say=lambda line: print(line, file=sys.stderr))
+    executor = SingleThreadedExecutor()
+    executor.add_node(node)
+    task = executor.create_task(node.run)
+    try:
+        executor.spin_until_future_complete(task)
+        report = task.result()
+    except KeyboardInterrupt:
+        return 130
+    finally:
+        node.destroy_node()
+        rclpy.try_shutdown()
+    if report is None:
+        return 130
+    print(json.dumps(asdict(report)))
+    return 0 if report.passed else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,66 @@
+"""A TurtleBot3 maps the arena and drives where it is sent; the studio shows it in the browser.
+
+Copy this file to begin a robot of your own: it includes nothing but packages' public launch files and nodes.
+"""
+
+from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument, IncludeLaunchDescription
+from launch.conditions import IfCondition
+from launch.substitutions import LaunchConfiguration, PathJoinSubstitution
+from launch_ros.actions import ComposableNodeContainer, Node
+from launch_ros.descriptions import ComposableNode
+from launch_ros.parameter_descriptions import ParameterValue
+from launch_ros.substitutions import FindPackageShare
+
+
+def share(package, *parts):
+    return PathJoinSubstitution([FindPackageShare(package), *parts])
+
+
+def generate_launch_description():
+    navigation_parameters = share("nav2_bringup", "params", "nav2_params.yaml")
+    return LaunchDescription(
+        [
+            DeclareLaunchArgument("seed", default_value="0", description="of all random numbers"),
+            DeclareLaunchArgument("studio", default_value="true", description="whether to serve the studio"),
+            DeclareLaunchArgument("open_browser", default_value="true", description="whether to open it"),
+            DeclareLaunchArgument("port", default_value="8765", description="of the studio"),
+            Node(
+                package="foxglove_bridge",
+                executable="foxglove_bridge",
+                parameters=[
+                    {
+                        "port": ParameterValue(LaunchConfiguration("port"), value_type=int),
+                        "open_browser": ParameterValue(LaunchConfiguration("open_browser"), value_type=bool),
+                    }
+                ],
+                condition=IfCondition(LaunchConfiguration("studio")),
+                output="screen",
+            ),
+            IncludeLaunchDescription(
+                share("turtlebot3_gazebo", "launch", "turtlebot3_arena.launch.py"),
+                launch_arguments={"seed": LaunchConfiguration("seed")}.items(),
+            ),
+            # Mapping and navigation share one process: it saves memory, and scans need not be copied.
+            ComposableNodeContainer(
+                name="nav2_container",
+                namespace="",
+                package="rclcpp_components",
+                executable="component_container_isolated",
+                parameters=[navigation_parameters],
+                composable_node_descriptions=[
+                    ComposableNode(
+                        package="slam_toolbox",
+                        plugin="slam_toolbox::AsynchronousSlamToolbox",
+                        name="slam_toolbox",
+                        parameters=[share("slam_toolbox", "config", "mapper_params_online_async.yaml")],
+                    )
+                ],
+                output="screen",
+            ),
+            IncludeLaunchDescription(
+                share("nav2_bringup", "launch", "navigation_launch.py"),
+                launch_arguments={"params_file": navigation_parameters, "use_composition": "True"}.items(),
+            ),
+        ]
+    )
