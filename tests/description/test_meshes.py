@@ -78,6 +78,18 @@ def test_mirrored_meshes_still_look_outwards(wedge):
     assert mesh.vertices[:, 1].min() == pytest.approx(-2 * solid.vertices[:, 1].max())
 
 
+@pytest.mark.parametrize("up", ["X_UP", "Y_UP", "Z_UP"])
+def test_a_collada_files_unit_counts_and_its_up_axis_does_not(wedge, up):
+    folder, solid = wedge
+    text = solid.export(file_type="dae").decode()
+    head, tail = text.split("</modified>")[0], text.split("</asset>")[1]
+    unit = f'<unit name="millimeter" meter="0.001"/><up_axis>{up}</up_axis>'
+    (folder / "w.dae").write_text(f"{head}</modified>{unit}</asset>{tail}")
+    mesh = load_mesh(Mesh("w.dae", folder / "w.dae"))
+    np.testing.assert_allclose(mesh.vertices.max(axis=0), 0.001 * solid.vertices.max(axis=0), rtol=1e-5)
+    np.testing.assert_allclose(mesh.vertices.min(axis=0), 0.001 * solid.vertices.min(axis=0), rtol=1e-5)
+
+
 def test_parts_and_centring(tmp_path):
     scene = trimesh.Scene()
     scene.add_geometry(trimesh.creation.box((1, 1, 1)), node_name="near", geom_name="near")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from pathlib import Path
 
 from daidalos.description.geometry import Geometry
 from daidalos.description.markup import Element
@@ -25,6 +26,8 @@ class Material:
         As SDF gives them.
     texture : str
         The image's uri as written, empty when none.
+    texture_path : Path or None
+        The file that it means here.
     """
 
     name: str = ""
@@ -33,6 +36,7 @@ class Material:
     specular: Rgba | None = None
     emissive: Rgba | None = None
     texture: str = ""
+    texture_path: Path | None = None
 
 
 @dataclass(frozen=True)

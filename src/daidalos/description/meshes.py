@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
@@ -100,15 +101,7 @@ def _read(path: Path, submesh: str, _modified: int, where: str) -> TriangleMesh:
     """Read all triangles of a file in its own units, or those of one part."""
     import trimesh
 
-    kind = path.suffix.lower().lstrip(".")
-    if kind not in _FORMATS:
-        raise DescriptionError(f"mesh {path}: {kind or 'no'} format; known are {', '.join(_FORMATS)}", where)
-    try:
-        scene = trimesh.load_scene(path, file_type=kind, skip_materials=True)
-    except Exception as problem:
-        # The readers of the formats raise whatever their file's content leads them to.
-        reason = " ".join(str(problem).split()) or type(problem).__name__
-        raise DescriptionError(f"mesh {path} can not be read: {reason}", where) from None
+    scene = read_scene(path, where)
     parts = [part for names, *part in _parts(scene) if not submesh or submesh in names]
     if submesh and not parts:
         raise DescriptionError(f"mesh {path} has no part {submesh!r}", where)
@@ -122,6 +115,37 @@ def _read(path: Path, submesh: str, _modified: int, where: str) -> TriangleMesh:
     )
     whole.merge_vertices()
     return TriangleMesh(np.asarray(whole.vertices, dtype=np.float64), np.asarray(whole.faces, dtype=np.int32))
+
+
+def read_scene(path: Path, where: str, with_materials: bool = False) -> Any:
+    """Open a mesh file as a trimesh scene, in metres.
+
+    As in RViz, a COLLADA file's unit counts and its up axis does not.
+
+    Raises
+    ------
+    DescriptionError
+        When the file is no mesh; `where` is the place in the description.
+    """
+    import trimesh
+
+    kind = path.suffix.lower().lstrip(".")
+    if kind not in _FORMATS:
+        raise DescriptionError(f"mesh {path}: {kind or 'no'} format; known are {', '.join(_FORMATS)}", where)
+    try:
+        scene = trimesh.load_scene(path, file_type=kind, skip_materials=not with_materials)
+        unit = _collada_unit(path) if kind == "dae" else 1.0
+        return scene if unit == 1.0 else scene.scaled(unit)
+    except Exception as problem:
+        # The readers of the formats raise whatever their file's content leads them to.
+        reason = " ".join(str(problem).split()) or type(problem).__name__
+        raise DescriptionError(f"mesh {path} can not be read: {reason}", where) from None
+
+
+def _collada_unit(path: Path) -> float:
+    with path.open("rb") as file:
+        found = re.search(rb"<unit\b[^>]*\bmeter\s*=\s*[\"']([^\"']+)", file.read(1 << 16))
+    return float(found[1]) if found else 1.0
 
 
 def _parts(scene: Any) -> list[tuple[tuple[str, str], NDArray[np.float64], NDArray[np.int64]]]:

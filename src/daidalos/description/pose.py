@@ -154,5 +154,21 @@ def rotation_matrix(quaternion: Quaternion) -> NDArray[np.float64]:
     return np.array(columns, dtype=np.float64).T
 
 
+def interpolate(start: Pose, end: Pose, share: float) -> Pose:
+    """Return the pose a share of the way from one to another: straight, and turning evenly (slerp)."""
+    x, y, z = (s + share * (e - s) for s, e in zip(start.position, end.position, strict=True))
+    a, b = start.orientation, end.orientation
+    dot = sum(p * q for p, q in zip(a, b, strict=True))
+    sign = -1.0 if dot < 0 else 1.0  # the shorter of the two ways round
+    angle = math.acos(min(1.0, abs(dot)))
+    if angle < 1e-6:
+        first, second = 1 - share, sign * share
+    else:
+        first = math.sin((1 - share) * angle) / math.sin(angle)
+        second = sign * math.sin(share * angle) / math.sin(angle)
+    qx, qy, qz, qw = (first * p + second * q for p, q in zip(a, b, strict=True))
+    return Pose((x, y, z), normalize((qx, qy, qz, qw)))
+
+
 def _cross(a: tuple[float, ...], b: tuple[float, ...]) -> Vector:
     return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]

@@ -96,7 +96,7 @@ def read_robot(root: Element, resolve: PackageResolver | None = None) -> Robot:
     if root.tag != "robot":
         raise root.error("expected <robot> as the root element of a URDF")
     warnings: list[str] = []
-    materials = _materials(root)
+    materials = _materials(root, resolve)
     links = _links(root, materials, resolve)
     joints = _joints(root, warnings)
     return Robot(
@@ -113,25 +113,27 @@ def read_robot(root: Element, resolve: PackageResolver | None = None) -> Robot:
     )
 
 
-def _materials(root: Element) -> dict[str, Material]:
+def _materials(root: Element, resolve: PackageResolver | None) -> dict[str, Material]:
     """Return named materials: the robot's own first, then those that a visual defines on the spot."""
     visuals = [visual for link in root.all("link") for visual in link.all("visual")]
     elements = root.all("material") + [m for visual in visuals for m in visual.all("material")]
     materials: dict[str, Material] = {}
     for element in elements:
-        material = _material(element)
+        material = _material(element, resolve)
         if material.name and (material.color is not None or material.texture):
             materials.setdefault(material.name, material)
     return materials
 
 
-def _material(element: Element) -> Material:
+def _material(element: Element, resolve: PackageResolver | None) -> Material:
     color, texture = element.first("color"), element.first("texture")
+    uri = "" if texture is None else texture.attribute("filename", "")
     rgba = None if color is None else color.vector_attribute("rgba", 4)
     return Material(
         name=element.attribute("name", ""),
         color=None if rgba is None else (rgba[0], rgba[1], rgba[2], rgba[3]),
-        texture="" if texture is None else texture.attribute("filename", ""),
+        texture=uri,
+        texture_path=_find(element, uri, resolve) if uri else None,
     )
 
 
@@ -170,7 +172,7 @@ def _inertial(element: Element) -> Inertial:
 
 def _visual(element: Element, materials: Mapping[str, Material], resolve: PackageResolver | None) -> Visual:
     child = element.first("material")
-    material = None if child is None else _material(child)
+    material = None if child is None else _material(child, resolve)
     if material is not None and material.color is None and not material.texture:
         material = materials.get(material.name, material)
     return Visual(
@@ -225,8 +227,11 @@ def _mesh(element: Element, resolve: PackageResolver | None) -> Mesh:
         if len(words) != 1
         else (element.number_attribute("scale"),) * 3
     )
-    folder = Path(element.source).parent
-    return Mesh(uri, resolve_uri(uri, folder, resolve, default_model_path()), (x, y, z), where=element.where)
+    return Mesh(uri, _find(element, uri, resolve), (x, y, z), where=element.where)
+
+
+def _find(element: Element, uri: str, resolve: PackageResolver | None) -> Path | None:
+    return resolve_uri(uri, Path(element.source).parent, resolve, default_model_path())
 
 
 _SHAPES: dict[str, Callable[[Element, PackageResolver | None], Geometry]] = {

@@ -28,6 +28,8 @@ class Model:
         Poses in the model's frame of everything that has a name: links, joints, frames, nested models.
     static : bool
         Does not move, whatever pushes.
+    scripted : bool
+        Moves by a script alone (the figure of an actor).
     self_collide : bool
         Its links touch each other.
     plugins : tuple of Plugin
@@ -47,6 +49,7 @@ class Model:
     joints: Mapping[str, Joint] = field(default_factory=dict)
     frames: Mapping[str, Pose] = field(default_factory=dict)
     static: bool = False
+    scripted: bool = False
     self_collide: bool = False
     wind: bool = False
     plugins: tuple[Plugin, ...] = ()

@@ -14,15 +14,19 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.description.actors import actor_pose
 from daidalos.description.gazebo import model_from_robot
+from daidalos.description.joint import Joint
 from daidalos.description.pose import Pose
 from daidalos.description.robot import Robot
-from daidalos.description.world import Model, World
+from daidalos.description.world import Actor, Model, World
+from daidalos.simulation.actors import ActorMotion
 from daidalos.simulation.assembly import make_components
 from daidalos.simulation.component import Component, Setting
 from daidalos.simulation.contacts import Contact, ContactMonitor, read_contacts
 from daidalos.simulation.conversion.assets import Assets
 from daidalos.simulation.conversion.build import add_model
+from daidalos.simulation.conversion.couplings import close_loop
 from daidalos.simulation.conversion.options import physics_step, set_options
 from daidalos.simulation.errors import NameTakenError, SimulationError, UnknownNameError
 from daidalos.simulation.instance import Instance, JointView, Physics
@@ -323,7 +327,7 @@ class Simulation:
 
     # Inside
 
-    def _add(self, model: Model, pose: Pose, namespace: str) -> Instance:
+    def _add(self, model: Model, pose: Pose, namespace: str, actor: Actor | None = None) -> Instance:
         if model.name in self._instances:
             raise NameTakenError(model.name)
         for line in model.warnings:
@@ -334,6 +338,8 @@ class Simulation:
             return Setting(model, model.name, namespace, self.world, stream, self._warn)
 
         components = make_components(model, setting)
+        if actor is not None:
+            components.append(ActorMotion(actor, setting("script")))
         build = add_model(self._spec, self._assets, model, model.name, pose, self._warn)
         instance = Instance(build, namespace, components)
         self._instances[model.name] = instance
@@ -350,6 +356,10 @@ class Simulation:
     def _compile_first(self) -> None:
         for model in self.world.models:
             self._add(model, model.pose, "")
+        for actor in self.world.actors:
+            self._add(actor.model, actor_pose(actor, 0.0), "", actor)
+        for joint in self.world.joints.values():
+            self._add_joint_between_models(joint)
         try:
             self._model = self._spec.compile()
         except ValueError as problem:
@@ -358,6 +368,10 @@ class Simulation:
         self._bind()
         for instance in self._instances.values():
             self._start(instance)
+
+    def _add_joint_between_models(self, joint: Joint) -> None:
+        parent = self._spec.worldbody if joint.parent == "world" else self._spec.body(joint.parent)
+        close_loop(self._spec, parent, self._spec.body(joint.child), joint, joint.name)
 
     def _recompile(self) -> None:
         """Compile after models came or went; everything that stays keeps its state."""

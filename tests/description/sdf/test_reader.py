@@ -142,6 +142,25 @@ def test_shapes(text, shape):
     assert len(model.warnings) == (1 if "blob" in text else 0)
 
 
+def test_inertia_can_be_computed_from_the_collisions():
+    """SDF 1.11: a cube of 1 m and 500 kg/m^3 beside one of the default density, and a mass that wins."""
+    box = (
+        "<collision name='{}'><pose>{} 0 0 0 0 0</pose><geometry><box><size>1 1 1</size></box></geometry>{}</collision>"
+    )
+    shapes = box.format("a", 0, "<density>500</density>") + box.format("b", 3, "")
+    text = (
+        "<sdf version='1.11'><model name='m'><link name='l'><inertial auto='true'>{}</inertial>{}</link></model></sdf>"
+    )
+    inertial = sdf.parse_model(text.format("", shapes)).links["l"].inertial
+    assert inertial.mass == pytest.approx(1500)
+    assert inertial.pose.position == pytest.approx((2, 0, 0))
+    assert inertial.inertia[0] == pytest.approx(1500 / 6)
+    light = sdf.parse_model(text.format("<mass>3</mass>", shapes)).links["l"].inertial
+    assert (light.mass, light.inertia[0]) == (pytest.approx(3), pytest.approx(0.5))
+    with pytest.raises(DescriptionError, match="auto needs collisions"):
+        sdf.parse_model(text.format("", ""))
+
+
 def folder_of_models(tmp_path):
     arm = "<link name='base'/><link name='tip'><pose>0 0 1 0 0 0</pose></link>"
     joint = "<joint name='j' type='revolute'><parent>base</parent><child>tip</child></joint>"

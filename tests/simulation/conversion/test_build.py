@@ -7,7 +7,7 @@ from description.robots import ARM
 from daidalos.description import sdf, urdf
 from daidalos.description.pose import Pose
 from daidalos.simulation import Simulation
-from simulation.models import world
+from simulation.models import box, world
 
 SECOND = 1_000_000_000
 
@@ -143,6 +143,42 @@ def test_missing_collision_meshes_are_left_out_with_a_line():
     )
     Simulation(world(), warn=lines.append).spawn(robot)
     assert lines[-1] == "r.urdf:1: mesh package://x/a.stl not found; the collision is left out"
+
+
+def test_terrain_carries_at_its_height(tmp_path):
+    """Dark in the south, bright in the north: the image's top row is the largest y."""
+    image = pytest.importorskip("PIL.Image")
+    heights = np.zeros((33, 33), dtype=np.uint8)
+    heights[:16] = 255
+    image.fromarray(heights).save(tmp_path / "h.png")
+    terrain = (
+        "<model name='t'><static>1</static><link name='l'><collision name='c'><geometry><heightmap><uri>h.png</uri>"
+        "<size>20 20 2</size><pos>0 0 1</pos></heightmap></geometry></collision></link></model>"
+    )
+    boxes = box("north", "0 5 4 0 0 0") + box("south", "0 -5 4 0 0 0")
+    text = f"<sdf version='1.9'><world name='w'>{terrain}{boxes}</world></sdf>"
+    simulation = Simulation(sdf.parse(text, str(tmp_path / "w.sdf")))
+    simulation.advance(2 * SECOND)
+    assert simulation.pose("north").position == pytest.approx((0, 5, 3.5), abs=2e-2)
+    assert simulation.pose("south").position == pytest.approx((0, -5, 1.5), abs=2e-2)
+    simulation.delete("t")
+    assert not simulation._spec.hfields
+
+
+def test_zero_outside_the_limits_starts_at_the_nearest():
+    limits = "<axis><xyz>0 0 1</xyz><limit><lower>0.5</lower><upper>1</upper></limit></axis>"
+    simulation = weightless(two_links("revolute", limits))
+    assert simulation.joint("m", "j").position == 0.5
+    simulation.advance(SECOND // 10)
+    simulation.reset()
+    assert simulation.joint("m", "j").position == 0.5
+
+
+def test_equal_limits_lock():
+    limits = "<axis><xyz>0 0 1</xyz><limit><lower>0.3</lower><upper>0.3</upper></limit></axis>"
+    simulation = weightless(two_links("revolute", limits))
+    simulation.advance(SECOND)
+    assert simulation.joint("m", "j").position == pytest.approx(0.3, abs=1e-3)
 
 
 def test_floating_joints_bind_nothing():

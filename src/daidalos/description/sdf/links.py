@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
+from daidalos.description.inertia import WATER, link_properties
 from daidalos.description.link import (
     Collision,
     Inertial,
@@ -40,10 +42,11 @@ def read_link(element: Element, context: Context, pose: Pose, place: Placer) -> 
     inertial = element.first("inertial")
     decay = element.first("velocity_decay") or Element("velocity_decay")
     self_collide = element.first("self_collide")
-    return Link(
+    automatic = inertial is not None and inertial.attribute("auto", "false") in ("true", "1")
+    link = Link(
         name=element.name(),
         pose=pose,
-        inertial=_inertial(inertial or Element("inertial"), place),
+        inertial=None if automatic else _inertial(inertial or Element("inertial"), place),
         visuals=tuple(_visual(child, context, place) for child in element.all("visual")),
         collisions=tuple(_collision(child, context, place) for child in element.all("collision")),
         sensors=tuple(read_sensor(child, place) for child in element.all("sensor")),
@@ -56,6 +59,7 @@ def read_link(element: Element, context: Context, pose: Pose, place: Placer) -> 
         angular_damping=decay.number_of("angular", default=0.0),
         where=element.where,
     )
+    return _with_automatic_inertia(link, element) if automatic else link
 
 
 def read_sensor(element: Element, place: Placer) -> Sensor:
@@ -119,12 +123,25 @@ def _inertial(element: Element, place: Placer) -> Inertial:
     return Inertial(mass, place(element), (xx, xy, xz, yy, yz, zz))
 
 
+def _with_automatic_inertia(link: Link, element: Element) -> Link:
+    """Compute the inertial from the collisions (SDF 1.11); a given mass scales it."""
+    inertial = element.require("inertial")
+    default = inertial.number_of("density", default=WATER)
+    densities = [child.number_of("density", default=default) for child in element.all("collision")]
+    computed = link_properties(link, densities=densities)
+    mass = inertial.number_of("mass", default=computed.mass)
+    if computed.mass <= 0:
+        raise inertial.error("auto needs collisions with a volume")
+    xx, xy, xz, yy, yz, zz = (moment * mass / computed.mass for moment in computed.inertia)
+    return replace(link, inertial=Inertial(mass, computed.pose, (xx, xy, xz, yy, yz, zz)))
+
+
 def _visual(element: Element, context: Context, place: Placer) -> Visual:
     flags = element.number_of("visibility_flags", default=float(0xFFFFFFFF))
     return Visual(
         geometry=read_geometry(element, context),
         pose=place(element),
-        material=read_material(element.first("material")),
+        material=read_material(element.first("material"), context),
         name=element.attribute("name", ""),
         transparency=element.number_of("transparency", default=0.0),
         cast_shadows=element.flag_of("cast_shadows", default=True),

@@ -5,22 +5,24 @@ from __future__ import annotations
 from daidalos.description.link import Material, Rgba
 from daidalos.description.markup import Element
 from daidalos.description.named_colors import named_color
+from daidalos.description.sdf.context import Context
 
 
-def read_material(element: Element | None) -> Material | None:
+def read_material(element: Element | None, context: Context) -> Material | None:
     """Read a material; None when there is none."""
     if element is None:
         return None
     script = element.first("script") or Element("script")
     name = script.text_of("name", default=element.text.strip())
-    named = named_color(name)
+    named, texture = named_color(name), _texture(element)
     return Material(
         name=name,
         color=read_color(element, "diffuse") or named,
         ambient=read_color(element, "ambient") or named,
         specular=read_color(element, "specular"),
         emissive=read_color(element, "emissive"),
-        texture=_texture(element),
+        texture=texture,
+        texture_path=context.find(texture) if texture else None,
     )
 
 

@@ -8,6 +8,7 @@ from daidalos.description.joint import Joint
 from daidalos.description.link import Light
 from daidalos.description.markup import Element
 from daidalos.description.pose import Pose
+from daidalos.description.sdf.actors import read_actor
 from daidalos.description.sdf.context import Context
 from daidalos.description.sdf.frames import FrameGraph, RelativePose, read_pose
 from daidalos.description.sdf.includes import read_include
@@ -15,7 +16,9 @@ from daidalos.description.sdf.joints import read_joint
 from daidalos.description.sdf.links import read_light, read_plugin
 from daidalos.description.sdf.materials import read_color
 from daidalos.description.sdf.models import place_nested, read_model
+from daidalos.description.sdf.population import population_poses
 from daidalos.description.world import (
+    Actor,
     Atmosphere,
     Model,
     Physics,
@@ -45,6 +48,7 @@ class _WorldReader:
         self._graph = FrameGraph(ROOT)
         self._models: list[tuple[Model, Element]] = []
         self._lights: list[tuple[Light, RelativePose, Element]] = []
+        self._actors: list[tuple[Actor, RelativePose, Element]] = []
 
     def world(self) -> World:
         element, base = self._element, World()
@@ -55,6 +59,9 @@ class _WorldReader:
             models=tuple(self._placed(model, child) for model, child in self._models),
             lights=tuple(
                 replace(light, pose=self._graph.place(pose, ROOT, child)) for light, pose, child in self._lights
+            ),
+            actors=tuple(
+                replace(actor, pose=self._graph.place(pose, ROOT, child)) for actor, pose, child in self._actors
             ),
             joints={joint.name: joint for joint in map(self._joint, element.all("joint"))},
             frames={name: self._graph.pose(name, element) for name in self._graph.names()},
@@ -81,6 +88,10 @@ class _WorldReader:
                 self._lights.append((read_light(child, Pose()), read_pose(child), child))
             elif child.tag == "include":
                 self._add_included(child)
+            elif child.tag == "actor":
+                self._actors.append((read_actor(child, self._context), read_pose(child), child))
+            elif child.tag == "population":
+                self._add_population(child)
             elif child.tag == "frame":
                 default = child.attribute("attached_to", "") or ROOT
                 self._graph.add(child.name(), read_pose(child), default, child)
@@ -93,6 +104,21 @@ class _WorldReader:
             self._lights.append((included.content, included.pose, element))
         elif included.content is not None:
             self._add_model(included.content, included.pose, element)
+
+    def _add_population(self, element: Element) -> None:
+        """Add the models of a population, numbered as Gazebo numbers them."""
+        child = element.first("model", "include")
+        if child is None:
+            raise element.error("<model> is missing")
+        if child.tag == "include":
+            included = read_include(child, self._context, read_model).content
+        else:
+            included = read_model(child, self._context)
+        if not isinstance(included, Model):
+            return
+        for number, pose in enumerate(population_poses(element, read_pose(element).pose)):
+            name = f"{included.name}_clone_{number}"
+            self._add_model(replace(included, name=name), RelativePose(pose @ included.pose), element)
 
     def _add_model(self, model: Model, pose: RelativePose, element: Element) -> None:
         """Add a model; as in Gazebo, a second one of the same name gets a number."""

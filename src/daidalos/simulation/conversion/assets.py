@@ -1,7 +1,8 @@
-"""Meshes inside MuJoCo's specification: shared between models, removed when nobody uses them."""
+"""Meshes and terrains inside MuJoCo's specification: shared between models, removed when nobody uses them."""
 
 from __future__ import annotations
 
+import hashlib
 from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -9,11 +10,14 @@ from typing import Any
 
 import mujoco
 import numpy as np
+from numpy.typing import NDArray
 
 from daidalos.description.meshes import TriangleMesh
+from daidalos.description.pose import Vector
 from daidalos.simulation.conversion.convex import content_key, convex_parts
 
 MAX_HULL_VERTICES = 64
+_TERRAIN_THICKNESS = 1.0
 
 
 @dataclass(frozen=True)
@@ -60,6 +64,37 @@ class Assets:
         names = tuple(self._take(f"{key}:{kind}{i}", part) for i, part in enumerate(parts))
         return Solid(names, self._take(key, mesh) if concave else "")
 
+    def terrain(self, heights: NDArray[np.float64], size: Vector) -> tuple[str, float]:
+        """Take a heightmap.
+
+        Parameters
+        ----------
+        heights : array (rows, columns)
+            0 to 1, the row with the least y first.
+        size : tuple of 3 floats
+            Extent in x and y, and height of 1 over 0 [m].
+
+        Returns
+        -------
+        name : str
+        bottom : float
+            Height of its lowest point [m].
+        """
+        lowest, span = float(heights.min()), float(np.ptp(heights))
+        digest = hashlib.sha256(heights.tobytes() + np.array(size).tobytes()).hexdigest()[:24]
+        name = f"{digest}:terrain"
+        if not self._users[name]:
+            self._spec.add_hfield(
+                name=name,
+                size=[size[0] / 2, size[1] / 2, max(span * size[2], 1e-6), _TERRAIN_THICKNESS],
+                nrow=heights.shape[0],
+                ncol=heights.shape[1],
+                userdata=((heights - lowest) / (span or 1.0)).astype(np.float32).ravel(),
+            )
+        self._users[name] += 1
+        self._taken.append(name)
+        return name, lowest * size[2]
+
     def taken(self) -> tuple[str, ...]:
         """Return what was taken since the last call; to be released together."""
         taken, self._taken = tuple(self._taken), []
@@ -70,7 +105,8 @@ class Assets:
         self._users.subtract(names)
         for name in [name for name, users in self._users.items() if users <= 0]:
             del self._users[name]
-            self._spec.delete(self._spec.mesh(name))
+            find = self._spec.hfield if name.endswith(":terrain") else self._spec.mesh
+            self._spec.delete(find(name))
 
     def _take(self, name: str, mesh: TriangleMesh) -> str:
         if not self._users[name]:

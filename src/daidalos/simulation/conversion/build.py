@@ -214,6 +214,7 @@ class _Builder:
     def _base(self) -> Any:
         """Add the body that a static model, or one that is fixed to the world, stands on."""
         self._build.base = self._body(self._build.spec.worldbody, self._build.name, self._pose)
+        self._build.base.mocap = self._model.scripted
         self._build.roots.append(self._build.base)
         return self._build.base
 

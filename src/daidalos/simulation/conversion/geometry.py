@@ -12,6 +12,7 @@ from typing import Any
 import mujoco
 import numpy as np
 
+from daidalos.description.errors import DescriptionError
 from daidalos.description.geometry import (
     Box,
     Capsule,
@@ -20,11 +21,13 @@ from daidalos.description.geometry import (
     Ellipsoid,
     Empty,
     Geometry,
+    Heightmap,
     Mesh,
     Plane,
     Polyline,
     Sphere,
 )
+from daidalos.description.images import read_grey
 from daidalos.description.meshes import triangles_of
 from daidalos.description.pose import Pose, quaternion_between
 from daidalos.simulation.conversion.assets import Assets, Solid
@@ -67,6 +70,10 @@ def add_geoms(body: Any, geometry: Geometry, pose: Pose, assets: Assets, static:
         optimization = getattr(geometry, "optimization", "")
         decompose = optimization == "convex_decomposition" or (static and optimization != "convex_hull")
         return _add_solid(body, assets.solid(triangles_of(geometry), decompose), pose)
+    if isinstance(geometry, Heightmap):
+        if not static:
+            raise DescriptionError("a heightmap can not move", geometry.where)
+        return _add_terrain(body, geometry, pose, assets)
     return _ADDERS[type(geometry)](body, geometry, pose)
 
 
@@ -132,6 +139,17 @@ def _add_solid(body: Any, solid: Solid, pose: Pose) -> list[Any]:
         _only_seen(seen)
         geoms.append(seen)
     return geoms
+
+
+def _add_terrain(body: Any, shape: Heightmap, pose: Pose, assets: Assets) -> list[Any]:
+    """Add a heightmap; images have their top row first, which is the one with the largest y."""
+    if shape.path is None:
+        raise DescriptionError(f"heightmap {shape.uri} not found", shape.where)
+    name, bottom = assets.terrain(read_grey(shape.path, shape.where)[::-1], shape.size)
+    x, y, z = shape.position
+    geom = _add(body, _Type.mjGEOM_HFIELD, (0.0, 0.0, 0.0), pose @ Pose((x, y, z + bottom)))
+    geom.hfieldname = name
+    return [geom]
 
 
 _ADDERS: dict[type, Callable[[Any, Any, Pose], list[Any]]] = {

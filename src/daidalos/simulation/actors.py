@@ -1,0 +1,40 @@
+"""Actors: figures that follow a script and push what stands in their way."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from daidalos.description.actors import actor_pose
+from daidalos.description.world import Actor
+from daidalos.simulation.component import Component, Setting
+from daidalos.simulation.instance import Instance
+from daidalos.simulation.samples import Sample
+
+
+class ActorMotion(Component):
+    """Moves an actor along its script.
+
+    Parameters
+    ----------
+    actor : Actor
+    setting : Setting
+    """
+
+    period = 0.02
+
+    def __init__(self, actor: Actor, setting: Setting) -> None:
+        super().__init__(setting)
+        self._actor = actor
+
+    def bind(self, instance: Instance) -> None:
+        """Find the body that the script moves."""
+        self._data = instance.physics.data
+        self._mocap = int(instance.physics.model.body(instance.name).mocapid[0])
+
+    def update(self, now_ns: int) -> Iterable[Sample]:
+        """Go to where the script is now."""
+        pose = actor_pose(self._actor, now_ns * 1e-9)
+        x, y, z, w = pose.orientation
+        self._data.mocap_pos[self._mocap] = pose.position
+        self._data.mocap_quat[self._mocap] = (w, x, y, z)
+        return ()
