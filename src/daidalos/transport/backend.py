@@ -132,8 +132,8 @@ class Backend(ABC):
         """Tell others of a node of ours; the result undoes it."""
 
     @abstractmethod
-    def declare_publisher(self, key: str, endpoint: EndpointInfo, on_matched: Callable[[bool], None]) -> WirePublisher:
-        """Declare a publisher; `on_matched` is told when listeners elsewhere come (True) and are gone."""
+    def declare_publisher(self, key: str, endpoint: EndpointInfo) -> WirePublisher:
+        """Declare a publisher."""
 
     @abstractmethod
     def declare_subscription(

@@ -87,7 +87,7 @@ class InProcessBackend(Backend):
         """Tell nobody."""
         return lambda: None
 
-    def declare_publisher(self, key: str, endpoint: EndpointInfo, on_matched: Callable[[bool], None]) -> WirePublisher:
+    def declare_publisher(self, key: str, endpoint: EndpointInfo) -> WirePublisher:
         """Return a wire to nowhere."""
         return _Nowhere()
 

@@ -45,6 +45,7 @@ class Session:
         self._services: dict[str, list[Service]] = {}
         self._clients: dict[str, set[Client]] = {}
         self._watchers: dict[str, list[Watcher]] = {}
+        self._own: set[bytes] = set()
         self._stop_listening = self.graph.listen(self._on_graph_change)
         backend.start(self.graph)
 
@@ -74,7 +75,7 @@ class Session:
         """Publish messages of a class on a topic."""
         key, endpoint = self._endpoint(EndpointKind.PUBLISHER, node, topic, message_type, qos)
         publisher = Publisher(endpoint, codec_of(message_type, self.backend.wide))
-        wire = self.backend.declare_publisher(key, endpoint, publisher.set_heard)
+        wire = self.backend.declare_publisher(key, endpoint)
         publisher.attach(wire, lambda: self._remove(key, self._publishers, publisher))
         with self._lock:
             self._publishers.setdefault(topic, set()).add(publisher)
@@ -174,6 +175,7 @@ class Session:
     ) -> tuple[str, EndpointInfo]:
         type_name, type_hash = interface._TYPE_NAME, interface._TYPE_HASH
         key, gid = self.backend.identify(kind, node, name, type_name, type_hash, qos)
+        self._own.add(gid)
         return key, EndpointInfo(kind, node, name, type_name, type_hash, qos, gid)
 
     def _remove(self, key: str, group: dict[str, Any], member: Any) -> None:
@@ -190,11 +192,13 @@ class Session:
                 self._match_service(name)
         member.detach()
         self.graph.remove_endpoint(key)
+        self._own.discard(member.endpoint.gid)
 
     def _match_topic(self, topic: str) -> None:
-        """Tell every publisher of ours which subscriptions of ours it serves."""
+        """Tell every publisher of ours which subscriptions of ours it serves, and whether others listen."""
         subscriptions = self._subscriptions.get(topic, ())
         for publisher in self._publishers.get(topic, ()):
+            self._note_listeners(publisher)
             publisher.set_targets(
                 tuple(other for other in subscriptions if _compatible(publisher.endpoint, other.endpoint))
             )
@@ -213,9 +217,18 @@ class Session:
             if what.kind is EndpointKind.PUBLISHER:
                 for subscription in self._subscriptions.get(what.name, ()):
                     self._refuse_incompatible(subscription)
+            elif what.kind is EndpointKind.SUBSCRIPTION and what.gid not in self._own:
+                for publisher in self._publishers.get(what.name, ()):
+                    self._note_listeners(publisher)
             watchers = tuple(self._watchers.get(what.name, ()))
         for watcher in watchers:
             watcher(added, what)
+
+    def _note_listeners(self, publisher: Publisher) -> None:
+        """Tell a publisher whether anyone listens in another process; who listens may be laxer about QoS than we."""
+        mine = publisher.endpoint
+        subscriptions = self.graph.endpoints(EndpointKind.SUBSCRIPTION, name=mine.name)
+        publisher.set_heard(any(other.gid not in self._own and _same_type(mine, other) for other in subscriptions))
 
     def _refuse_incompatible(self, subscription: Subscription) -> None:
         """Keep out what publishers of other processes send against our QoS; the wire may not check it."""

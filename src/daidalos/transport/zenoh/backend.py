@@ -14,7 +14,7 @@ from collections.abc import Callable
 from typing import Any
 
 import zenoh
-from zenoh.handlers import Callback
+from zenoh.handlers import Callback, FifoChannel
 
 from daidalos.transport.backend import (
     Backend,
@@ -39,6 +39,12 @@ from daidalos.transport.zenoh.wires import (
 _SOCKET_PATH_LIMIT = 100
 """Longest path of a Unix socket that every system takes."""
 
+_MANY_TOKENS = 1_000_000
+"""More tokens than ever wait to be read; a full channel would hold zenoh up."""
+
+_CLOSING_S = 1.0
+"""How long the thread that reads tokens may take to end; it may be in a listener's hands."""
+
 
 class ZenohBackend(Backend):
     """Membership in a domain through a zenoh peer session."""
@@ -52,7 +58,6 @@ class ZenohBackend(Backend):
         self._number = itertools.count().__next__
         self._registry = Registry(self._domain)
         self._peers: set[str] = set()
-        self._linked = threading.Condition()
         self._own: set[bytes] = set()
 
     def start(self, graph: Graph) -> None:
@@ -68,16 +73,19 @@ class ZenohBackend(Backend):
             self._session_id = str(self._session.zid())
             self._peers = {peer.session for peer in peers}
             self._registry.register(Peer(self._session_id, tuple(listen)))
-        self._links = self._session.info.declare_transport_events_listener(Callback(self._on_transport, indirect=False))
-        # What is there already is reported on the declaring thread; in this one it cannot be interrupted by Ctrl-C.
-        subscribing = threading.Thread(target=self._subscribe_to_tokens, name="graph")
-        subscribing.start()
-        subscribing.join()
-
-    def _subscribe_to_tokens(self) -> None:
+        # Tokens arrive on a thread of their own: zenoh's must never wait for Python's lock while a peer goes away,
+        # because undeclaring an advanced publisher waits for them while it holds that lock.
         self._tokens = self._session.liveliness().declare_subscriber(
-            keys.tokens(self._domain), Callback(self._on_token, indirect=False), history=True
+            keys.tokens(self._domain), FifoChannel(_MANY_TOKENS), history=True
         )
+        self._reader = threading.Thread(
+            target=self._read_tokens, args=(self._tokens.handler,), name="graph", daemon=True
+        )
+        self._reader.start()
+
+    def _read_tokens(self, channel: Any) -> None:
+        for sample in channel:
+            self._on_token(sample)
 
     def _listen_endpoints(self) -> list[str]:
         """Return where peers of this machine find us: a socket file that no other process will ever have."""
@@ -94,6 +102,7 @@ class ZenohBackend(Backend):
         """Close the session; its tokens go with it."""
         self._registry.unregister()
         self._session.close()
+        self._reader.join(_CLOSING_S)
         socket_file = self._registry.folder / f"{self._session_id}.sock"
         for leftover in (socket_file, socket_file.with_suffix(".sock.lock")):
             leftover.unlink(missing_ok=True)
@@ -108,8 +117,16 @@ class ZenohBackend(Backend):
             routers = list(self._session.info.routers_zid())
             return (not router or bool(routers)) and self._alive() <= there
 
-        with self._linked:
-            complete = self._linked.wait_for(connected, timeout_s)
+        linked = threading.Condition()
+
+        def on_transport(event: Any) -> None:
+            with linked:
+                linked.notify_all()
+
+        links = self._session.info.declare_transport_events_listener(Callback(on_transport, indirect=False))
+        with linked:
+            complete = linked.wait_for(connected, timeout_s)
+        links.undeclare()
         left = max(deadline - time.monotonic(), 0.05)
         for reply in self._session.liveliness().get(keys.tokens(self._domain), timeout=left):
             if reply.ok is not None:
@@ -120,10 +137,6 @@ class ZenohBackend(Backend):
         """Return which of the peers known at our start still live."""
         with self._registry.locked():
             return self._peers & {peer.session for peer in self._registry.peers()}
-
-    def _on_transport(self, event: Any) -> None:
-        with self._linked:
-            self._linked.notify_all()
 
     def _on_token(self, sample: zenoh.Sample) -> None:
         token = str(sample.key_expr)
@@ -166,10 +179,10 @@ class ZenohBackend(Backend):
     def _data_key(self, endpoint: EndpointInfo) -> str:
         return keys.data_key(self._domain, endpoint.name, endpoint.type_name, endpoint.type_hash)
 
-    def declare_publisher(self, key: str, endpoint: EndpointInfo, on_matched: Callable[[bool], None]) -> WirePublisher:
+    def declare_publisher(self, key: str, endpoint: EndpointInfo) -> WirePublisher:
         """Declare a publisher and its token."""
         self._own.add(endpoint.gid)
-        wire = ZenohPublisher(self._session, self._data_key(endpoint), endpoint, on_matched)
+        wire = ZenohPublisher(self._session, self._data_key(endpoint), endpoint)
         wire.on_close = self._closer(key, endpoint)
         return wire
 

@@ -44,15 +44,14 @@ def _read_attachment(attachment: Any) -> tuple[int, int, bytes]:
 
 
 class _Wire:
-    """What all wires share: entities to undeclare, in order, and the token to take back."""
+    """What all wires share: the token to take back and the entity to undeclare."""
 
     on_close: Callable[[], None]
 
-    def _close(self, *entities: Any) -> None:
+    def _close(self, entity: Any) -> None:
         self.on_close()
-        for entity in entities:
-            with contextlib.suppress(zenoh.ZError):  # the session may have been closed before
-                entity.undeclare()
+        with contextlib.suppress(zenoh.ZError):  # the session may have been closed before
+            entity.undeclare()
 
 
 class ZenohPublisher(_Wire, WirePublisher):
@@ -63,14 +62,12 @@ class ZenohPublisher(_Wire, WirePublisher):
         session: zenoh.Session,
         key: str,
         endpoint: EndpointInfo,
-        on_matched: Callable[[bool], None],
     ) -> None:
         self._gid = endpoint.gid
         qos = endpoint.qos
         # Reliable means that nothing is lost on the way; best effort never waits.
         congestion = zenoh.CongestionControl.BLOCK if qos.reliable else zenoh.CongestionControl.DROP
         reliability = zenoh.Reliability.RELIABLE if qos.reliable else zenoh.Reliability.BEST_EFFORT
-        self._matching: Any = None
         if qos.transient_local:
             heartbeat = ext.MissDetectionConfig(heartbeat=None, sporadic_heartbeat=_HEARTBEAT_S)
             self._publisher: Any = ext.declare_advanced_publisher(
@@ -89,10 +86,6 @@ class ZenohPublisher(_Wire, WirePublisher):
                 reliability=reliability,
                 allowed_destination=zenoh.Locality.REMOTE,
             )
-            self._matching = self._publisher.declare_matching_listener(
-                Callback(lambda status: on_matched(status.matching), indirect=False)
-            )
-            on_matched(self._publisher.matching_status.matching)
 
     def put(self, parts: list[Any], sequence: int, stamp_ns: int) -> None:
         """Send one sample."""
@@ -101,7 +94,7 @@ class ZenohPublisher(_Wire, WirePublisher):
 
     def close(self) -> None:
         """Undeclare."""
-        self._close(*([self._matching] if self._matching is not None else []), self._publisher)
+        self._close(self._publisher)
 
 
 class ZenohSubscription(_Wire, WireSubscription):
