@@ -236,10 +236,12 @@ def turtlebot(world, pose, known, seed=0, kind="mppi"):
         CostmapParameters(3.0, 3.0, 0.05, rolling_window=True),
         [ObstacleLayer(footprint, sources, track_unknown_space=False), InflationLayer(0.22, inflation)],
     )
-    if kind == "mppi":
-        controller = RotationShimController(MppiController(footprint, seed=seed), footprint)
-    else:
-        controller = RegulatedPurePursuitController(footprint)
+    mppi = MppiController(footprint, seed=seed)
+    controller = {
+        "mppi": mppi,
+        "shim": RotationShimController(mppi, footprint),
+        "rpp": RegulatedPurePursuitController(footprint),
+    }[kind]
     return Stack(robot, footprint, controller, everywhere, around)
 
 

@@ -112,6 +112,13 @@ def test_a_new_path_to_the_same_goal_does_not_reset_the_controller(follow):
     assert follow.controller.resets == 2
 
 
+def test_a_new_goal_makes_the_robot_forget_that_it_was_at_the_last(follow):
+    assert follow.step(at(2.8), REST, GROUND, 0.0).done
+    follow.replan(line((3.0, 2.0), (3.0, 0.0)), new_goal=True)
+    assert follow.controller.resets == 2
+    assert not follow.step(at(2.8), REST, GROUND, 0.1).done
+
+
 def test_a_bad_path_leaves_the_old_one(follow):
     with pytest.raises(InvalidPath):
         follow.replan(np.zeros((0, 3)))

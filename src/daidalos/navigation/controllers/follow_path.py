@@ -95,6 +95,13 @@ class FollowPath:
     def replan(self, path: Array, *, new_goal: bool = False) -> None:
         """Go on along another path.
 
+        Parameters
+        ----------
+        path : ndarray, shape (n, 3)
+            Poses (x, y, yaw).
+        new_goal : bool
+            Whether it leads elsewhere, so that being at the last goal counts no more.
+
         Raises
         ------
         InvalidPath
@@ -103,6 +110,8 @@ class FollowPath:
         self._handler.set_plan(path)
         if new_goal:
             self.goal_checker.reset()
+            self.progress_checker.reset()
+            self.controller.reset()
 
     def step(
         self,

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,12 +17,16 @@ from daidalos.navigation.controllers.mppi.critics.path_align_critic import PathA
 from daidalos.navigation.controllers.mppi.critics.path_angle_critic import PathAngleCritic
 from daidalos.navigation.controllers.mppi.critics.path_follow_critic import PathFollowCritic
 from daidalos.navigation.controllers.mppi.critics.prefer_forward_critic import PreferForwardCritic
+from daidalos.navigation.controllers.mppi.proposals import turn_then_drive
 from daidalos.navigation.controllers.mppi.rollouts import Limits, Rollouts, Samples, correlated_noise
 from daidalos.navigation.costmap.costmap import INSCRIBED_INFLATED_OBSTACLE, NO_INFORMATION
 from daidalos.navigation.costmap.footprint import Footprint
 from daidalos.navigation.paths import distances_along
 
 Array = NDArray[np.float64]
+
+TURN_TO = 0.5
+"""Distance along the path [m] of the point that one sample turns to."""
 
 NOISE_POOL = 8
 """Batches of noise that are drawn once; each cycle takes a random part of them."""
@@ -32,7 +36,9 @@ NOISE_POOL = 8
 class MppiParameters:
     """Parameters of the controller, by their Nav2 names; SI units.
 
-    `noise_correlation_time` [s] is ours: how long a deviation lasts.
+    `open_loop` is on by default, other than in Nav2: rollouts begin with the last command rather than with odometry's
+    velocity, whose delay makes a robot with limited acceleration crawl and sway. `noise_correlation_time` [s] is ours:
+    how long a deviation lasts.
     """
 
     time_steps: int = 56
@@ -51,6 +57,7 @@ class MppiParameters:
     gamma: float = 0.015
     prune_distance: float = 1.7
     retry_attempt_limit: int = 1
+    open_loop: bool = True
     noise_correlation_time: float = 0.5
 
 
@@ -73,7 +80,8 @@ class MppiController(Controller):
     Each cycle disturbs the last control sequence with noise, drives every disturbed sequence through the
     robot's motion model, lets the critics judge the trajectories and takes the mean of the sequences,
     weighted by `exp(-cost / temperature)`. Where the mean would touch an obstacle, which can happen between
-    two ways around it, the best sample is taken instead.
+    two ways around it, the best sample is taken instead. Two of the samples are not left to chance: to stop,
+    and to turn to the path before driving.
 
     Parameters
     ----------
@@ -106,6 +114,8 @@ class MppiController(Controller):
         self._generator = np.random.default_rng(seed)
         self._speed_limit = p.vx_max
         self._controls: Samples = np.zeros((p.time_steps, 2), dtype=np.float32)
+        self._last_command: Array | None = None
+        self._noise: Samples = np.zeros((p.batch_size, p.time_steps, 2), dtype=np.float32)
         self._rollouts = Rollouts.empty(p.batch_size, p.time_steps)
         self._single = Rollouts.empty(1, p.time_steps)
         correlation = math.exp(-p.model_dt / p.noise_correlation_time) if p.noise_correlation_time > 0.0 else 0.0
@@ -127,14 +137,18 @@ class MppiController(Controller):
     def compute_velocity_commands(self, control: ControlInput) -> Array:
         """See `Controller.compute_velocity_commands`."""
         self._shift()
+        if self.parameters.open_loop and self._last_command is not None:
+            control = replace(control, velocity=self._last_command)
         for attempt in range(self.parameters.retry_attempt_limit + 1):
             if attempt > 0:
                 self._controls[:] = 0.0
             for _ in range(self.parameters.iteration_count):
                 self._optimise(control)
             if not self._single.collides[0]:
-                return np.array([float(self._single.vx[0, 0]), 0.0, float(self._single.wz[0, 0])])
-        self._controls[:] = 0.0
+                command = np.array([float(self._single.vx[0, 0]), 0.0, float(self._single.wz[0, 0])])
+                self._last_command = command
+                return command.copy()
+        self.reset()
         raise NoValidControl(
             f"all of {self.parameters.batch_size} motions from ({float(control.pose[0]):.2f}, "
             f"{float(control.pose[1]):.2f}) touch an obstacle"
@@ -149,6 +163,7 @@ class MppiController(Controller):
     def reset(self) -> None:
         """See `Controller.reset`."""
         self._controls[:] = 0.0
+        self._last_command = None
 
     def _shift(self) -> None:
         """Begin where the last sequence is now."""
@@ -163,7 +178,10 @@ class MppiController(Controller):
         rollouts = self._rollouts
         limits = Limits(p.vx_min, self._speed_limit, p.wz_max, p.ax_min, p.ax_max, p.az_max)
         first = int(self._generator.integers((NOISE_POOL - 1) * p.batch_size))
-        noise = self._pool[first : first + p.batch_size]
+        self._noise[:] = self._pool[first : first + p.batch_size]
+        self._noise[0] = -self._controls
+        self._noise[1] = self._turn_then_drive(control, limits) - self._controls
+        noise = self._noise
         rollouts.drive(control.pose, control.velocity, self._controls, noise, limits, p.model_dt)
         scene = self._scene(control)
         for critic in self.critics:
@@ -176,6 +194,13 @@ class MppiController(Controller):
         if self._single.collides[0]:
             best = int(np.argmin(rollouts.costs))
             self._take(np.stack([rollouts.vx[best], rollouts.wz[best]], axis=-1), control, limits, scene)
+
+    def _turn_then_drive(self, control: ControlInput, limits: Limits) -> Samples:
+        """Sequence that turns to the path a little ahead, or to its end, and drives there."""
+        index = int(np.searchsorted(distances_along(control.path), TURN_TO))
+        x, y = (float(value) for value in control.path[min(index, control.path.shape[0] - 1), :2])
+        p = self.parameters
+        return turn_then_drive(control.pose, control.velocity, (x, y), limits, p.time_steps, p.model_dt)
 
     def _take(self, controls: Samples, control: ControlInput, limits: Limits, scene: Scene) -> None:
         """Make a sequence the present one and see where it leads."""

@@ -29,6 +29,7 @@ class CostCriticParameters:
 
     cost_weight: float = 10.0
     cost_power: int = 3
+    critical_cost: float = 300.0
     collision_cost: float = 1_000_000.0
     near_goal_distance: float = 0.5
     consider_footprint: bool = False
@@ -60,9 +61,10 @@ class CostCritic(Critic):
         if scene.control.distance_to_goal < p.near_goal_distance:
             tolerated = costmap.cost_at(float(scene.control.goal[0]), float(scene.control.goal[1]))
         outline = scene.footprint.polygon if p.consider_footprint and not scene.footprint.circular else NO_OUTLINE
-        contact = INSCRIBED_INFLATED_OBSTACLE
+        price, contact = self._price - self._price[tolerated], INSCRIBED_INFLATED_OBSTACLE
         if FootprintCollisionChecker(costmap, scene.footprint).in_collision(scene.control.pose):
             outline, contact = NO_OUTLINE, LETHAL_OBSTACLE
+            price[INSCRIBED_INFLATED_OBSTACLE] = p.critical_cost
         cost_of_cells(
             rollouts.x,
             rollouts.y,
@@ -74,7 +76,7 @@ class CostCritic(Critic):
             max(scene.control.circumscribed_cost, 1),
             contact,
             p.trajectory_point_step,
-            self._price - self._price[tolerated],
+            price,
             p.collision_cost,
             rollouts.costs,
             rollouts.collides,

@@ -1,5 +1,6 @@
 """Look as the goal does, once it is very near."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -31,8 +32,9 @@ class GoalAngleCritic(Critic):
 
     def score(self, rollouts: Rollouts, scene: Scene) -> None:
         """See `Critic.score`."""
-        near = min(self.parameters.threshold_to_consider, scene.control.xy_goal_tolerance)
-        if scene.control.distance_to_goal > near:
+        goal, pose = scene.control.goal, scene.control.pose
+        away = math.hypot(float(goal[0] - pose[0]), float(goal[1] - pose[1]))
+        if away > min(self.parameters.threshold_to_consider, scene.control.xy_goal_tolerance):
             return
         angle = np.abs(wrap(rollouts.yaw - float(scene.control.goal[2])))
         rollouts.costs[:] += (self.parameters.cost_weight * angle.mean(axis=1)).astype(np.float32)
