@@ -134,7 +134,10 @@ class ParameterFile:
         return self.__allow_substs if self.__evaluated_allow_substs is None else self.__evaluated_allow_substs
 
     def __str__(self) -> str:
-        return f"launch_ros.description.ParameterFile(param_file={self.param_file}, allow_substs={self.allow_substs})"
+        file = self.param_file
+        if isinstance(file, list):
+            file = " + ".join(substitution.describe() for substitution in file)
+        return f"launch_ros.description.ParameterFile(param_file={file}, allow_substs={self.allow_substs})"
 
     def evaluate(self, context: LaunchContext) -> pathlib.Path:
         """Return the file, or a temporary one in which `$(...)` has been replaced."""

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import asyncio
 import os
 import threading
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from launch.event_handlers import OnShutdown
@@ -29,6 +31,7 @@ class ROSAdapter:
         self.__ros_node: Any = None
         self.__ros_executor: Any = None
         self.__thread: threading.Thread | None = None
+        self._users: list[asyncio.Future[None]] = []
         if autostart:
             self.start()
 
@@ -123,6 +126,27 @@ def get_ros_node(context: LaunchContext) -> Any:
     return get_ros_adapter(context).ros_node
 
 
+def run_beside(context: LaunchContext, function: Callable[..., None], *args: Any) -> asyncio.Future[None]:
+    """Run a function that uses the launch's own node in a thread; the node is there until it has returned.
+
+    Parameters
+    ----------
+    context
+        The launch context.
+    function, args
+        What to call. It must return soon after the context says that the launch is being stopped.
+    """
+    future = context.asyncio_loop.run_in_executor(None, function, *args)
+    get_ros_adapter(context)._users.append(future)
+    return future
+
+
 def _stop(adapter: ROSAdapter, context: LaunchContext) -> None:
+    context.add_completion_future(context.asyncio_loop.create_task(_stop_when_unused(adapter)))
+
+
+async def _stop_when_unused(adapter: ROSAdapter) -> None:
+    if adapter._users:
+        await asyncio.wait(adapter._users)
     # Stopping waits for the node's thread, which may just be calling into the launch.
-    context.add_completion_future(context.asyncio_loop.run_in_executor(None, adapter.shutdown))
+    await asyncio.get_running_loop().run_in_executor(None, adapter.shutdown)

@@ -1,6 +1,8 @@
 """The lazy packages: what they list is there, and importing them costs little."""
 
 import importlib
+import inspect
+import pkgutil
 import subprocess
 import sys
 from pathlib import Path
@@ -18,8 +20,13 @@ STUBS = sorted(
 @pytest.mark.parametrize("package", STUBS)
 def test_every_listed_name_is_there(package):
     module = importlib.import_module(package)
+    for found in pkgutil.iter_modules(module.__path__):
+        importlib.import_module(f"{package}.{found.name}")
+    stub = Path(module.__file__).with_suffix(".pyi").read_text()
     for name in module.__all__:
-        assert getattr(module, name) is not None
+        value = getattr(module, name)
+        # A module that has been imported must not hide a function of the same name.
+        assert inspect.ismodule(value) == (f"from . import {name} as" in stub), name
     assert set(module.__all__) <= set(dir(module))
 
 

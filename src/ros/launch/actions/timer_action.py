@@ -137,10 +137,12 @@ class TimerAction(Action):
 
     async def _wait_to_fire_event(self, context: LaunchContext, period: float) -> None:
         """Wait for the period or for being cancelled, and emit the timer's event after the period."""
-        await asyncio.wait([self._canceled_future], timeout=period)
-        if not self._canceled_future.done():
-            await context.emit_event(TimerEvent(timer_action=self))
-        self._completed_future.set_result(None)
+        try:
+            await asyncio.wait([self._canceled_future], timeout=period)
+            if not self._canceled_future.done():
+                await context.emit_event(TimerEvent(timer_action=self))
+        finally:
+            self._completed_future.set_result(None)
 
     def get_asyncio_future(self) -> asyncio.Future[None] | None:
         """Return a future that is done when the wait is over."""

@@ -51,13 +51,16 @@ class ROSTimer(TimerAction):
             timer.cancel()
             loop.call_soon_threadsafe(lambda: elapsed.done() or elapsed.set_result(None))
 
-        node = get_ros_node(context)
-        timer = node.create_timer(period, on_timer)
-        await asyncio.wait([self._canceled_future, elapsed], return_when=asyncio.FIRST_COMPLETED)
-        if not self._canceled_future.done():
-            await context.emit_event(TimerEvent(timer_action=self))
-        timer.cancel()
-        self._completed_future.set_result(None)
+        timer = get_ros_node(context).create_timer(period, on_timer)
+        try:
+            await asyncio.wait([self._canceled_future, elapsed], return_when=asyncio.FIRST_COMPLETED)
+            if not self._canceled_future.done():
+                await context.emit_event(TimerEvent(timer_action=self))
+            # With the launch the node ends, and the timer with it.
+            if not context.is_shutdown:
+                timer.cancel()
+        finally:
+            self._completed_future.set_result(None)
 
 
 RosTimer = ROSTimer

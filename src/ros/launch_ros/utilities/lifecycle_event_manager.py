@@ -11,7 +11,7 @@ from launch import EventHandler
 from launch.event import Event
 
 from ..events.lifecycle import ChangeState, StateTransition
-from ..ros_adapters import get_ros_node
+from ..ros_adapters import get_ros_node, run_beside
 
 if TYPE_CHECKING:
     from launch import Action, LaunchContext
@@ -66,11 +66,9 @@ class LifecycleEventManager:
             return
         import lifecycle_msgs.srv
 
-        loop = context.asyncio_loop
         request = lifecycle_msgs.srv.ChangeState.Request()
         request.transition.id = event.transition_id
-        future = loop.run_in_executor(None, self.__call, context, request, event)
-        context.add_completion_future(future)
+        context.add_completion_future(run_beside(context, self.__call, context, request, event))
 
     def __call(self, context: LaunchContext, request: Any, event: ChangeState) -> None:
         service = f"{self.node_name}/change_state"
@@ -83,7 +81,7 @@ class LifecycleEventManager:
         response.add_done_callback(lambda _: done.set())
         while not done.wait(1.0):
             if context.is_shutdown:
-                self.__logger.warning(f"Abandoning wait for the '{service}' response, due to shutdown.")
+                self.__logger.debug(f"Abandoning wait for the '{service}' response, due to shutdown.")
                 response.cancel()
                 return
         if response.exception() is not None:
