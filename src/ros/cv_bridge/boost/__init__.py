@@ -1,0 +1,1 @@
+"""Where ROS 2's own package keeps its compiled part."""
