@@ -27,10 +27,10 @@ from daidalos.navigation.costmap.layers.obstacle_layer import Observation, Obsta
 from daidalos.navigation.paths import path_length
 from daidalos.navigation.planners.navfn_planner import NavfnPlanner, NavfnPlannerParameters
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
-from localization.wandering import Wanderer, map_of
-from navigation.closed_loop import free_pose, jackal, turtlebot
-from navigation.flat_world import FlatWorld, arena, barn_world
+sys.path.insert(0, str(Path(__file__).parents[1]))
+from tests.localization.wandering import Wanderer, map_of
+from tests.navigation.closed_loop import free_pose, jackal, turtlebot
+from tests.navigation.flat_world import FlatRobot, FlatWorld, arena, barn_world
 
 DATA = Path(os.environ.get("DAIDALOS_SHARED_DATA", Path(__file__).parents[2] / "shared" / "data")) / "barn"
 ROBOT = Footprint.circle(0.22)
@@ -107,7 +107,7 @@ def measure_amcl() -> dict[str, float | str]:
     for model in ("likelihood_field", "likelihood_field_prob", "beam"):
         filter_ = Amcl(AmclConfig(laser_model_type=model), known)
         filter_.initialise(start, np.diag([0.1, 0.1, 0.05]))
-        wanderer = Wanderer(world, start, 1)
+        wanderer = Wanderer(FlatRobot(world, start.copy(), beams=180, max_range=12.0, seed=1), 1)
         times, errors = [], []
         for _ in range(400):
             odometry, scan, truth = wanderer.step()

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from navigation.flat_world import arena
+from navigation.flat_world import FlatRobot, arena
 
 from daidalos.localization.amcl import Amcl
 from daidalos.localization.config import AmclConfig
@@ -21,6 +21,10 @@ NEAR = np.diag([0.1, 0.1, 0.05])
 GOOD_ODOMETRY = {f"alpha{k}": 0.02 for k in range(1, 6)}
 
 
+def wandering_from_start(seed=0):
+    return Wanderer(FlatRobot(WORLD, START.copy(), beams=180, max_range=12.0, seed=seed), seed)
+
+
 def errors(filter_, wanderer, steps):
     """Position and yaw errors of the estimates while the robot wanders; shape (steps, 2)."""
     result = np.empty((steps, 2))
@@ -35,7 +39,7 @@ def errors(filter_, wanderer, steps):
 def test_a_robot_is_tracked(model):
     filter_ = Amcl(AmclConfig(laser_model_type=model), MAP, seed=1)
     filter_.initialise(START, NEAR)
-    tracked = errors(filter_, Wanderer(WORLD, START, 1), 300)
+    tracked = errors(filter_, wandering_from_start(1), 300)
     rms = np.sqrt((tracked[50:] ** 2).mean(axis=0))
     assert rms[0] < 0.1
     assert rms[1] < 0.08
@@ -43,7 +47,7 @@ def test_a_robot_is_tracked(model):
 
 
 def test_odometry_alone_would_be_lost():
-    wanderer = Wanderer(WORLD, START, 1)
+    wanderer = wandering_from_start(1)
     for _ in range(600):
         odometry, _, truth = wanderer.step()
     assert math.hypot(*(compose(START, odometry) - truth)[:2]) > 0.3
@@ -54,7 +58,7 @@ def test_odometry_alone_would_be_lost():
 def test_a_robot_is_found_anywhere(seed):
     filter_ = Amcl(AmclConfig(), MAP, seed)
     filter_.global_localization()
-    found = errors(filter_, Wanderer(WORLD, START, seed), 400)
+    found = errors(filter_, wandering_from_start(seed), 400)
     assert found[0, 0] > 0.3
     assert found[-100:, 0].max() < 0.3
     assert found[-100:, 1].max() < 0.3
@@ -66,7 +70,7 @@ def test_a_robot_that_was_carried_away_finds_itself_with_recovery(alphas, finds_
     config = AmclConfig(recovery_alpha_slow=alphas[0], recovery_alpha_fast=alphas[1], **GOOD_ODOMETRY)
     filter_ = Amcl(config, MAP, seed=1)
     filter_.initialise(START, NEAR)
-    wanderer = Wanderer(WORLD, START, 1)
+    wanderer = wandering_from_start(1)
     errors(filter_, wanderer, 300)
     wanderer.carry((6.5, 3.8, 2.0))
     carried = errors(filter_, wanderer, 900)
@@ -78,7 +82,7 @@ def test_particles_are_fewer_when_the_robot_is_sure():
     config = AmclConfig(recovery_alpha_slow=0.0, recovery_alpha_fast=0.0, **GOOD_ODOMETRY)
     filter_ = Amcl(config, MAP, seed=2)
     filter_.global_localization()
-    wanderer = Wanderer(WORLD, START, 2)
+    wanderer = wandering_from_start(2)
     counts = []
     for _ in range(400):
         odometry, scan, _ = wanderer.step()
@@ -90,7 +94,7 @@ def test_particles_are_fewer_when_the_robot_is_sure():
 def test_while_the_robot_stands_scans_are_not_used_unless_asked_for():
     filter_ = Amcl(AmclConfig(), MAP)
     filter_.initialise(START, NEAR)
-    scan = Wanderer(WORLD, START).robot.scan()
+    scan = wandering_from_start().robot.scan()
     assert filter_.update(np.zeros(3), scan).updated
     assert not filter_.update(np.array([0.1, 0.0, 0.1]), scan).updated
     filter_.request_nomotion_update()
@@ -102,7 +106,7 @@ def test_while_the_robot_stands_scans_are_not_used_unless_asked_for():
 def test_between_scans_the_pose_follows_odometry():
     filter_ = Amcl(AmclConfig(), MAP)
     filter_.initialise(START, NEAR)
-    scan = Wanderer(WORLD, START).robot.scan()
+    scan = wandering_from_start().robot.scan()
     at_rest = filter_.update(np.zeros(3), scan)
     ahead = filter_.update(np.array([0.2, 0.0, 0.0]), scan)
     assert np.allclose(ahead.pose, compose(at_rest.pose, np.array([0.2, 0.0, 0.0])))
@@ -112,7 +116,7 @@ def test_between_scans_the_pose_follows_odometry():
 def test_an_estimate_is_consistent():
     filter_ = Amcl(AmclConfig(), MAP)
     filter_.initialise(START, NEAR)
-    estimate = filter_.update(np.zeros(3), Wanderer(WORLD, START).robot.scan())
+    estimate = filter_.update(np.zeros(3), wandering_from_start().robot.scan())
     assert estimate.weights.sum() == pytest.approx(1.0)
     assert estimate.particles.shape == (estimate.weights.size, 3)
     assert np.allclose(estimate.covariance, estimate.covariance.T)
@@ -124,7 +128,7 @@ def test_the_same_seed_gives_the_same_run():
     for _ in range(2):
         filter_ = Amcl(AmclConfig(), MAP, seed=5)
         filter_.initialise(START, NEAR)
-        runs.append(errors(filter_, Wanderer(WORLD, START, 5), 40))
+        runs.append(errors(filter_, wandering_from_start(5), 40))
     assert np.array_equal(*runs)
 
 
@@ -143,7 +147,7 @@ def test_another_map_is_taken_over_and_a_bad_one_is_not():
     with pytest.raises(LocalizationError):
         filter_.set_map(type(MAP)(np.zeros((3, 3), dtype=np.int8), 0.1, (0.0, 0.0, 0.0)))
     filter_.initialise(START, NEAR)
-    assert filter_.update(np.zeros(3), Wanderer(WORLD, START).robot.scan()).updated
+    assert filter_.update(np.zeros(3), wandering_from_start().robot.scan()).updated
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,6 @@
 import math
 
 import numpy as np
-from navigation.flat_world import FlatRobot
 
 from daidalos.mapping.grid import OccupancyGrid
 from daidalos.mapping.pose2 import compose
@@ -19,10 +18,10 @@ def map_of(world, width, height, margin=0.2):
 
 
 class Wanderer:
-    """Drives ahead and turns away from what is near; odometry has errors of scale and noise."""
+    """Drives a flat robot ahead and away from what is near; odometry has errors of scale and noise."""
 
-    def __init__(self, world, pose, seed=0, drift=0.03):
-        self.robot = FlatRobot(world, np.array(pose, dtype=float), beams=180, max_range=12.0, seed=seed)
+    def __init__(self, robot, seed=0, drift=0.03):
+        self.robot = robot
         self.random = np.random.default_rng(seed)
         self.odom = np.zeros(3)
         self.drift = drift

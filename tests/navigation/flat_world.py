@@ -7,7 +7,7 @@ import math
 from dataclasses import dataclass, field
 
 import numpy as np
-from numba import njit
+from numba import njit  # without its cache, which would bind the kernels to one module name
 
 from daidalos.mapping.scan import LaserScanData
 
@@ -151,7 +151,7 @@ class FlatRobot:
         return LaserScanData(ranges, self.angle_min, self.increment, 0.05, self.max_range, 0.0, self.sensor_pose)
 
 
-@njit(cache=True)
+@njit
 def _cast(segments, circles, ox, oy, angles, max_range):
     ranges = np.full(angles.shape[0], np.inf)
     for k in range(angles.shape[0]):
@@ -183,7 +183,7 @@ def _cast(segments, circles, ox, oy, angles, max_range):
     return ranges
 
 
-@njit(cache=True)
+@njit
 def _segment_distance(x, y, ax, ay, bx, by):
     ex, ey = bx - ax, by - ay
     length = ex * ex + ey * ey
@@ -193,7 +193,7 @@ def _segment_distance(x, y, ax, ay, bx, by):
     return math.hypot(x - ax - share * ex, y - ay - share * ey)
 
 
-@njit(cache=True)
+@njit
 def _clearance(segments, circles, x, y):
     best = np.inf
     for i in range(segments.shape[0]):
@@ -204,7 +204,7 @@ def _clearance(segments, circles, x, y):
     return best
 
 
-@njit(cache=True)
+@njit
 def _polygon_clear(segments, circles, corners):
     n = corners.shape[0]
     for j in range(n):
