@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import threading
+import traceback
 
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.node import Node
 
+from daidalos.nodes.runner import fail
+
 
 class NodeThread:
-    """Spins a node until `stop`."""
+    """Spins a node until `stop`; an error in one of its callbacks ends the process."""
 
     def __init__(self, node: Node) -> None:
         self._executor = SingleThreadedExecutor(context=node.context)
@@ -22,6 +25,9 @@ class NodeThread:
             self._executor.spin()
         except ExternalShutdownException:
             return
+        except Exception:
+            traceback.print_exc()
+            fail()
 
     def stop(self) -> None:
         """End; the node's callbacks have returned afterwards."""

@@ -4,15 +4,61 @@ from __future__ import annotations
 
 import signal
 import sys
+import threading
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from rclpy.node import Node
 
 
+_failed = threading.Event()
+
+
 class UserError(Exception):
     """A mistake of the user's: shown as one line, without a traceback, with exit status 2."""
+
+
+def run_program(body: Callable[[], None], interrupted: int = 0) -> int:
+    """Carry out a program that uses rclpy, and end it cleanly however it ends.
+
+    Parameters
+    ----------
+    body
+        Does the work; it may raise `UserError`, and be interrupted.
+    interrupted
+        The exit status after Ctrl-C.
+
+    Returns
+    -------
+    int
+        The exit status.
+    """
+    import rclpy
+    from rclpy.executors import ExternalShutdownException
+
+    try:
+        body()
+    except (KeyboardInterrupt, ExternalShutdownException):
+        return 1 if _failed.is_set() else interrupted
+    except UserError as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 2
+    finally:
+        ignore_interrupts()
+        rclpy.try_shutdown()
+    return 0
+
+
+def fail() -> None:
+    """End this process as an error in the main thread would."""
+    _failed.set()
+    signal.raise_signal(signal.SIGTERM)
+
+
+def ignore_interrupts() -> None:
+    """Let nobody who presses Ctrl-C twice interrupt the end."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
 def run(make_node: Callable[[], Node], args: Sequence[str] | None = None, threads: int = 1) -> int:
@@ -33,26 +79,20 @@ def run(make_node: Callable[[], Node], args: Sequence[str] | None = None, thread
         The exit status.
     """
     import rclpy
-    from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor, SingleThreadedExecutor
+    from rclpy.executors import MultiThreadedExecutor, SingleThreadedExecutor
 
-    node: Any = None
-    try:
+    def body() -> None:
         rclpy.init(args=list(args) if args is not None else None)
-        node = make_node()
-        executor = SingleThreadedExecutor() if threads == 1 else MultiThreadedExecutor(threads)
-        executor.add_node(node)
-        executor.spin()
-    except (KeyboardInterrupt, ExternalShutdownException):
-        return 0
-    except (UserError, RuntimeError) as error:
-        if isinstance(error, RuntimeError) and node is not None:
-            raise
-        print(f"error: {error}", file=sys.stderr)
-        return 2
-    finally:
-        # Whoever asks twice must not interrupt the end.
-        signal.signal(signal.SIGINT, signal.SIG_IGN)
-        if node is not None:
+        try:
+            node = make_node()
+        except RuntimeError as error:  # such as a parameter that is not valid
+            raise UserError(str(error)) from error
+        try:
+            executor = SingleThreadedExecutor() if threads == 1 else MultiThreadedExecutor(threads)
+            executor.add_node(node)
+            executor.spin()
+        finally:
+            ignore_interrupts()
             node.destroy_node()
-        rclpy.try_shutdown()
-    return 0
+
+    return run_program(body)

@@ -7,15 +7,19 @@ import time
 from collections.abc import Callable
 
 from rclpy.impl.rcutils_logger import RcutilsLogger
+from rclpy.task import Future
 
 _SILENT_S = 1.0
 """Time after which the user is told; what was compiled before is ready sooner."""
 
 WarmUp = Callable[[Callable[[float, str], None]], None]
 
+_lock = threading.Lock()
+_compiled: dict[WarmUp, Future] = {}
 
-def warm_up_in_background(warm_up: WarmUp, logger: RcutilsLogger, then: Callable[[], None]) -> threading.Thread:
-    """Compile in a thread, then call `then` there.
+
+def warm_up_in_background(warm_up: WarmUp, logger: RcutilsLogger) -> Future:
+    """Compile in a thread, once in a process; the result is done when that is.
 
     Parameters
     ----------
@@ -23,28 +27,32 @@ def warm_up_in_background(warm_up: WarmUp, logger: RcutilsLogger, then: Callable
         Takes what to call with the share done, from 0 to 1, and the next step.
     logger
         Told of the progress when it takes longer than a moment.
-    then : callable
-        What becomes possible.
     """
+    with _lock:
+        if warm_up not in _compiled:
+            compiled = _compiled[warm_up] = Future()
+            threading.Thread(target=_compile, args=(warm_up, logger, compiled), name="compiler", daemon=True).start()
+        return _compiled[warm_up]
 
-    def work() -> None:
-        begun = time.monotonic()
-        said = -1
 
-        def progress(share: float, step: str) -> None:
-            nonlocal said
-            if time.monotonic() - begun < _SILENT_S or int(10 * share) == said:
-                return
-            if said < 0:
-                logger.info("the first start on this machine compiles the algorithms; the next ones will not")
-            said = int(10 * share)
-            logger.info(f"compiling: {100 * share:.0f} % ({step})")
+def _compile(warm_up: WarmUp, logger: RcutilsLogger, compiled: Future) -> None:
+    begun = time.monotonic()
+    said = -1
 
+    def progress(share: float, step: str) -> None:
+        nonlocal said
+        if time.monotonic() - begun < _SILENT_S or int(10 * share) == said:
+            return
+        if said < 0:
+            logger.info("the first start on this machine compiles the algorithms; the next ones will not")
+        said = int(10 * share)
+        logger.info(f"compiling: {100 * share:.0f} % ({step})")
+
+    try:
         warm_up(progress)
-        if said >= 0:
-            logger.info(f"compiled in {time.monotonic() - begun:.0f} s")
-        then()
-
-    thread = threading.Thread(target=work, name="compiler", daemon=True)
-    thread.start()
-    return thread
+    except Exception as error:
+        compiled.set_exception(error)
+        return
+    if said >= 0:
+        logger.info(f"compiled in {time.monotonic() - begun:.0f} s")
+    compiled.set_result(None)

@@ -88,7 +88,8 @@ def _try_out(arguments: argparse.Namespace) -> int:
 def _launched(seed: int) -> Iterator[tuple[subprocess.Popen[bytes], Path]]:
     """Run the launch file beside us; its output goes to a file."""
     handle, name = tempfile.mkstemp(prefix="daidalos-demo-", suffix=".log")
-    command = [sys.executable, "-m", "daidalos.cli.ros2", "launch", *_LAUNCH, "studio:=false", f"seed:={seed}"]
+    chosen = ["studio:=false", "look_around:=false", f"seed:={seed}"]
+    command = [sys.executable, "-m", "daidalos.cli.ros2", "launch", *_LAUNCH, *chosen]
     with os.fdopen(handle, "wb") as output:
         process = subprocess.Popen(command, stdout=output, stderr=subprocess.STDOUT, start_new_session=True)
     try:

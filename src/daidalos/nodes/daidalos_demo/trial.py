@@ -13,22 +13,22 @@ from typing import Any
 import numpy as np
 from rclpy.node import Node
 from rclpy.parameter import Parameter
-from rclpy.task import Future
 from tf2_ros import Buffer, TransformListener
 
 from daidalos.description.footprint import Footprint, footprint
 from daidalos.mapping.grid import OccupancyGrid
 from daidalos.mapping.pose2 import wrap
-from daidalos.nodes.conversions import grid_array, pose2_of, pose_stamped
-from daidalos.nodes.daidalos_demo._measuring import LATCHED, TruthRecorder
+from daidalos.nodes.conversions import grid_array, pose2_of
+from daidalos.nodes.daidalos_demo._measuring import TruthRecorder
+from daidalos.nodes.daidalos_demo._robot import Robot
 from daidalos.nodes.packages import package_share
+from daidalos.nodes.runner import run_program
 
 _CLEARANCE_M = 0.45
 _LIDAR_HEIGHT_M = 0.18
 _RASTER_M = 0.05
 _SETTLE_S = 1.0
 _GOAL_LIMIT_S = 180.0
-_SUCCEEDED = 4
 
 Say = Callable[[str], None]
 
@@ -92,10 +92,6 @@ class Trial(Node):
         overrides = [*kwargs.pop("parameter_overrides", []), Parameter("use_sim_time", value=True)]
         super().__init__("trial", parameter_overrides=overrides, **kwargs)
         from gazebo_msgs.msg import PerformanceMetrics
-        from nav2_msgs.action import NavigateToPose
-        from nav_msgs.msg import OccupancyGrid as GridMessage
-        from rclpy.action import ActionClient
-        from std_srvs.srv import Trigger
 
         self._say = say
         self._seed = self.declare_parameter("seed", 0).value
@@ -106,15 +102,9 @@ class Trial(Node):
         self._buffer = Buffer()
         self._listener = TransformListener(self._buffer, self)
         self._truth = TruthRecorder(self, self._buffer, robot, "map", "base_footprint")
-        self._map: Any = None
+        self._robot = Robot(self)
         self._factors: list[float] = []
-        self.create_subscription(GridMessage, "/map", self._on_map, LATCHED)
         self.create_subscription(PerformanceMetrics, "/performance_metrics", self._on_metrics, 10)
-        self._navigator = ActionClient(self, NavigateToPose, "navigate_to_pose")
-        self._is_active = self.create_client(Trigger, "/lifecycle_manager_navigation/is_active")
-
-    def _on_map(self, message: Any) -> None:
-        self._map = message
 
     def _on_metrics(self, message: Any) -> None:
         if message.real_time_factor > 0.0:
@@ -123,7 +113,10 @@ class Trial(Node):
     async def run(self) -> TrialReport:
         """Carry the trial out; to be run as a task of the node's executor."""
         plan = _plan_of(self._world)
-        await self._until(self._is_ready, "waiting for the robot, its map and the navigator")
+        self._say("waiting for the robot, its map and the navigator")
+        await self._robot.until_ready(lambda: self._truth.pose is not None)
+        self._say("looking around")
+        await self._robot.look_around()
         self._factors.clear()
         reports = []
         for number, goal in enumerate(choose_goals(plan, self._count, self._seed), 1):
@@ -139,77 +132,37 @@ class Trial(Node):
             float(np.mean(self._factors)) if self._factors else math.nan,
         )
 
-    async def _is_ready(self) -> bool:
-        from std_srvs.srv import Trigger
-
-        if self._map is None or self._truth.pose is None or not self._is_active.service_is_ready():
-            return False
-        answer = await self._is_active.call_async(Trigger.Request())
-        return bool(answer.success) and self._navigator.server_is_ready()
-
-    async def _until(self, condition: Callable[[], Any], what: str) -> None:
-        """Wait until a coroutine says yes; it is asked twice a second."""
-        self._say(what)
-        while not await condition():
-            await self._pause(0.5)
-
-    async def _pause(self, seconds: float) -> None:
-        """Wait for some seconds of a steady clock."""
-        from rclpy.clock import Clock
-        from rclpy.clock_type import ClockType
-
-        over = Future()
-        timer = self.create_timer(seconds, lambda: over.set_result(None), clock=Clock(clock_type=ClockType.STEADY_TIME))
-        await over
-        self.destroy_timer(timer)
-
     async def _drive(self, goal: Any) -> GoalReport:
-        from nav2_msgs.action import NavigateToPose
-
-        stamp = self.get_clock().now().to_msg()
         begun, travelled = self._truth.now_s, self._truth.travelled
-        request = NavigateToPose.Goal(pose=pose_stamped(goal, "map", stamp))
-        handle = await self._navigator.send_goal_async(request)
-        if not handle.accepted:
-            return self._report(goal, False, begun, travelled, "the goal was rejected")
-        limit = self.create_timer(_GOAL_LIMIT_S, lambda: handle.cancel_goal_async())
-        answer = await handle.get_result_async()
-        self.destroy_timer(limit)
-        ended = self._truth.now_s
-        await self._pause(_SETTLE_S)
-        succeeded = answer.status == _SUCCEEDED
-        reason = "" if succeeded else answer.result.error_msg or f"ended with status {answer.status}"
-        report = self._report(goal, succeeded, begun, travelled, reason, ended)
+        reached, reason = await self._robot.drive(goal, _GOAL_LIMIT_S)
+        ended, path_length = self._truth.now_s, self._truth.travelled - travelled
+        await self._robot.pause(_SETTLE_S)
+        x, y, yaw = (float(value) for value in goal)
+        pose = self._truth.pose
+        report = GoalReport(
+            (x, y, yaw),
+            reached,
+            float(np.hypot(pose[0] - x, pose[1] - y)),
+            abs(float(wrap(pose[2] - yaw))),
+            ended - begun,
+            path_length,
+            reason,
+        )
         self._say(
-            f"  {'reached' if succeeded else 'not reached: ' + reason} after {report.time_s:.1f} s and "
+            f"  {'reached' if reached else 'not reached: ' + reason} after {report.time_s:.1f} s and "
             f"{report.path_length_m:.2f} m, {100 * report.position_error_m:.1f} cm and "
             f"{report.yaw_error_rad:.3f} rad off"
         )
         return report
 
-    def _report(
-        self, goal: Any, reached: bool, begun: float, travelled: float, reason: str = "", ended: float | None = None
-    ) -> GoalReport:
-        pose = self._truth.pose
-        x, y, yaw = (float(value) for value in goal)
-        return GoalReport(
-            (x, y, yaw),
-            reached,
-            float(np.hypot(pose[0] - x, pose[1] - y)),
-            abs(float(wrap(pose[2] - yaw))),
-            (self._truth.now_s if ended is None else ended) - begun,
-            self._truth.travelled - travelled,
-            reason,
-        )
-
     def _map_report(self, plan: Footprint) -> MapReport | None:
         from daidalos.mapping.evaluation import compare_with_truth
 
-        if self._map is None:
+        if self._robot.map is None:
             return None
-        info = self._map.info
+        info = self._robot.map.info
         x, y, yaw = (float(value) for value in pose2_of(info.origin))
-        grid = OccupancyGrid(grid_array(self._map), info.resolution, (x, y, yaw))
+        grid = OccupancyGrid(grid_array(self._robot.map), info.resolution, (x, y, yaw))
         walls = plan.visible_walls(0.0, 0.0)
         truth = OccupancyGrid(np.where(walls, 100, 0).astype(np.int8), plan.resolution, (*plan.origin, 0.0))
         agreement = compare_with_truth(grid, truth, within=2)
@@ -258,26 +211,25 @@ def choose_goals(plan: Footprint, count: int, seed: int) -> list[Any]:
 
 def main() -> int:
     """Run a trial against a demonstration that is already up, and print its report as JSON."""
-    import rclpy
-    from rclpy.executors import SingleThreadedExecutor
+    passed = False
 
-    rclpy.init()
-    node = Trial(say=lambda line: print(line, file=sys.stderr))
-    executor = SingleThreadedExecutor()
-    executor.add_node(node)
-    task = executor.create_task(node.run)
-    try:
+    def body() -> None:
+        nonlocal passed
+        import rclpy
+        from rclpy.executors import SingleThreadedExecutor
+
+        rclpy.init()
+        node = Trial(say=lambda line: print(line, file=sys.stderr))
+        executor = SingleThreadedExecutor()
+        executor.add_node(node)
+        task = executor.create_task(node.run)
         executor.spin_until_future_complete(task)
         report = task.result()
-    except KeyboardInterrupt:
-        return 130
-    finally:
+        passed = report.passed
+        print(json.dumps(asdict(report)))
         node.destroy_node()
-        rclpy.try_shutdown()
-    if report is None:
-        return 130
-    print(json.dumps(asdict(report)))
-    return 0 if report.passed else 1
+
+    return run_program(body, interrupted=130) or int(not passed)
 
 
 if __name__ == "__main__":

@@ -9,7 +9,7 @@ from typing import Any
 
 from rclpy.utilities import remove_ros_args
 
-from daidalos.nodes.runner import UserError
+from daidalos.nodes.runner import UserError, run_program
 
 
 def _arguments() -> argparse.Namespace:
@@ -142,24 +142,19 @@ def _delete_at_end(arguments: argparse.Namespace, node: Any) -> None:
 
 def main() -> int:
     """Run the program."""
-    import rclpy
-
     arguments = _arguments()
-    rclpy.init()
-    node = rclpy.create_node("spawn_entity")
-    try:
+
+    def body() -> None:
+        import rclpy
+
+        rclpy.init()
+        node = rclpy.create_node("spawn_entity")
         _spawn(arguments, node)
         if arguments.bond:
             _delete_at_end(arguments, node)
-    except UserError as error:
-        print(f"error: {error}", file=sys.stderr)
-        return 2
-    except KeyboardInterrupt:
-        return 130
-    finally:
         node.destroy_node()
-        rclpy.try_shutdown()
-    return 0
+
+    return run_program(body, interrupted=130)
 
 
 if __name__ == "__main__":

@@ -37,6 +37,7 @@ class ControllerServer(LifecycleNode):
         self._frequency = self.declare_parameter("controller_frequency", 20.0).value
         self._tolerance = self.declare_parameter("failure_tolerance", 0.3).value
         self._stamped = self.declare_parameter("enable_stamped_cmd_vel", False).value
+        self.declare_parameter("costmap_update_timeout", 0.3)
         self.declare_parameter("controller_plugins", ["FollowPath"])
         self.declare_parameter("goal_checker_plugins", ["goal_checker"])
         self.declare_parameter("progress_checker_plugins", ["progress_checker"])
@@ -106,6 +107,7 @@ class ControllerServer(LifecycleNode):
         result = FollowPathAction.Result()
         previous, self._current = self._current, goal_handle
         try:
+            await self._costmap.until_current(self, self.get_parameter("costmap_update_timeout").value)
             task = self._task(goal_handle.request, previous)
             with Cycle(self, self._frequency) as cycle:
                 while await self._drive(task, goal_handle):
@@ -160,7 +162,7 @@ class ControllerServer(LifecycleNode):
         if goal_handle.is_cancel_requested or self._current is not goal_handle:
             return False
         pose = self._costmap.robot_pose()
-        if pose is None or not self._costmap.is_current:
+        if pose is None:
             raise TransformFailed("the robot's pose in the local costmap is not known")
         with self._costmap.lock:
             layered = self._costmap.layered

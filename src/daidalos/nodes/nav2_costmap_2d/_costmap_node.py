@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+import time
 from dataclasses import fields
 from typing import Any
 
@@ -29,6 +30,7 @@ from daidalos.navigation.costmap.layers.obstacle_layer import (
 from daidalos.navigation.costmap.layers.static_layer import StaticLayer
 from daidalos.navigation.costmap.occupancy import to_occupancy
 from daidalos.navigation.plugins import find_plugin
+from daidalos.nodes.action_results import TransformFailed
 from daidalos.nodes.conversions import (
     grid_array,
     grid_message,
@@ -38,14 +40,21 @@ from daidalos.nodes.conversions import (
     scan_data,
     seconds,
 )
+from daidalos.nodes.cycles import Cycle
 from daidalos.nodes.parameters import declare_dataclass
+from daidalos.nodes.warming import warm_up_in_background
 
 _LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+_ASKING_HZ = 20.0
 _DEFAULT_PLUGINS = {
     "static_layer": "nav2_costmap_2d::StaticLayer",
     "obstacle_layer": "nav2_costmap_2d::ObstacleLayer",
     "inflation_layer": "nav2_costmap_2d::InflationLayer",
 }
+
+
+class CostmapTimedOut(TransformFailed):
+    """Sensors, maps and transforms were waited for in vain."""
 
 
 class CostmapNode(LifecycleNode):
@@ -96,6 +105,7 @@ class CostmapNode(LifecycleNode):
         self.buffer = Buffer(node=self)
         self._listener = TransformListener(self.buffer, self)
         self._sensor_poses: dict[str, Any] = {}
+        self._compiled = warm_up_in_background(_warm_up, self.get_logger())
         self._timers: list[Any] = []
         self._entities: list[Any] = []
 
@@ -242,14 +252,46 @@ class CostmapNode(LifecycleNode):
             return None
         return pose2_of_transform(found.transform)
 
-    @property
-    def is_current(self) -> bool:
-        """Whether there is a map or a pose to speak of: the first update was made."""
-        return self._updates > 0
+    async def until_current(self, node: Node, limit_s: float) -> None:
+        """Wait until the map and the robot's place on it are known.
+
+        Parameters
+        ----------
+        node : Node
+            The node whose executor waits.
+        limit_s : float
+            How long [s] it may take once the algorithms are compiled.
+
+        Raises
+        ------
+        CostmapTimedOut
+            It took longer.
+        """
+        await self._compiled
+        begun = time.monotonic()
+        with Cycle(node, _ASKING_HZ) as cycle:
+            while not self._is_current():
+                if time.monotonic() - begun > limit_s:
+                    raise CostmapTimedOut(f"the {self.get_name()} is not known yet: {self._what_is_missing()}")
+                await cycle.next()
+
+    def _is_current(self) -> bool:
+        return self._updates > 0 and self._has_maps()
+
+    def _has_maps(self) -> bool:
+        layers = self.layered.layers if self.layered is not None else []
+        return all(layer.extent is not None for layer in layers if isinstance(layer, StaticLayer))
+
+    def _what_is_missing(self) -> str:
+        if self.robot_pose() is None:
+            return f"there is no transform from {self.base_frame} to {self.global_frame}"
+        return "there is no map" if not self._has_maps() else "it was not yet updated"
 
     _updates = 0
 
     def _update(self) -> None:
+        if not self._compiled.done():
+            return
         pose = self.robot_pose()
         if pose is None or self.layered is None:
             self.get_logger().info(
@@ -341,6 +383,12 @@ class CostmapNode(LifecycleNode):
     def _on_get_costmap(self, request: Any, response: Any) -> Any:
         response.map = self._raw_message(self.get_clock().now().to_msg())
         return response
+
+
+def _warm_up(progress: Any) -> None:
+    from daidalos import navigation
+
+    navigation.warm_up(progress)
 
 
 def costmap_of(message: Any) -> Costmap:

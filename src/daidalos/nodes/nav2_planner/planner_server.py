@@ -36,6 +36,7 @@ class PlannerServer(LifecycleNode):
         super().__init__(node_name, **kwargs)
         self.declare_parameter("planner_plugins", ["GridBased"])
         self.declare_parameter("expected_planner_frequency", 1.0)
+        self.declare_parameter("costmap_update_timeout", 1.0)
         self._costmap = CostmapNode("global_costmap", self)
         self._costmap_thread = NodeThread(self._costmap)
         self._planners: dict[str, GlobalPlanner] = {}
@@ -70,14 +71,14 @@ class PlannerServer(LifecycleNode):
         self._costmap.trigger_deactivate()
         return super().on_deactivate(state)
 
-    def _compute_path(self, goal_handle: Any) -> Any:
+    async def _compute_path(self, goal_handle: Any) -> Any:
         from nav2_msgs.action import ComputePathToPose
 
         result = ComputePathToPose.Result()
         begun = time.monotonic_ns()
         request = goal_handle.request
         try:
-            path = self._plan(request)
+            path = await self._plan(request)
         except NavigationError as error:
             self.get_logger().warning(f"no path: {error}")
             goal_handle.abort()
@@ -89,16 +90,15 @@ class PlannerServer(LifecycleNode):
         goal_handle.succeed()
         return result
 
-    def _plan(self, request: Any) -> Any:
+    async def _plan(self, request: Any) -> Any:
         name = request.planner_id or next(iter(self._planners))
         planner = self._planners.get(name)
         if planner is None:
             raise UnknownPlanner(f"there is no planner '{name}'; there are: {', '.join(self._planners)}")
-        start = self._costmap.robot_pose()
-        if request.use_start:
-            start = self._in_global_frame(request.start)
-        if start is None or not self._costmap.is_current:
-            raise TransformFailed("the robot's place on the map is not known yet")
+        await self._costmap.until_current(self, self.get_parameter("costmap_update_timeout").value)
+        start = self._in_global_frame(request.start) if request.use_start else self._costmap.robot_pose()
+        if start is None:
+            raise TransformFailed("the robot's place on the map is not known")
         goal = self._in_global_frame(request.goal)
         return planner.create_plan(self._costmap.snapshot(), start, goal)
 

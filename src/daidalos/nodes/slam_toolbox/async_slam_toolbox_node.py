@@ -10,6 +10,7 @@ from typing import Any
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
+from rclpy.task import Future
 
 from daidalos.mapping.config import SlamConfig
 from daidalos.nodes.conversions import (
@@ -39,6 +40,10 @@ class SlamToolbox(Node):
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__("slam_toolbox", **kwargs)
+        from nav_msgs.msg import MapMetaData, OccupancyGrid
+        from nav_msgs.srv import GetMap
+        from sensor_msgs.msg import LaserScan
+        from slam_toolbox.srv import Reset, SaveMap
         from tf2_ros import Buffer, TransformBroadcaster, TransformListener
 
         self._config = declare_dataclass(self, SlamConfig, match_every_scan=True)
@@ -60,16 +65,6 @@ class SlamToolbox(Node):
         self._buffer = Buffer()
         self._listener = TransformListener(self._buffer, self)
         self._broadcaster = TransformBroadcaster(self)
-        self._compiler = warm_up_in_background(_warm_up, self.get_logger(), self._begin)
-
-    def _begin(self) -> None:
-        """Make what needs compiled kernels; called once they are there."""
-        from nav_msgs.msg import MapMetaData, OccupancyGrid
-        from nav_msgs.srv import GetMap
-        from sensor_msgs.msg import LaserScan
-        from slam_toolbox.srv import Reset, SaveMap
-
-        self._slam = self._new_slam()
         self._map_publisher = self.create_publisher(OccupancyGrid, "map", _LATCHED)
         self._metadata_publisher = self.create_publisher(MapMetaData, "map_metadata", _LATCHED)
         depth = self.get_parameter("scan_queue_size").value
@@ -85,6 +80,12 @@ class SlamToolbox(Node):
         self.create_service(SaveMap, "~/save_map", self._on_save)
         self.create_service(GetMap, "~/dynamic_map", self._on_get_map)
         self.create_service(Reset, "~/reset", self._on_reset)
+        warm_up_in_background(_warm_up, self.get_logger()).add_done_callback(self._begin)
+
+    def _begin(self, compiled: Future) -> None:
+        """Take scans from now on."""
+        compiled.result()
+        self._slam = self._new_slam()
         self.get_logger().info("ready for scans")
 
     def _new_slam(self) -> Any:
@@ -94,7 +95,7 @@ class SlamToolbox(Node):
 
     async def _on_scan(self, scan: Any) -> None:
         self._scans += 1
-        if self._scans % self._throttle:
+        if self._scans % self._throttle or self._slam is None:
             return
         sensor_pose = await self._sensor_pose(scan.header.frame_id)
         # Odometry comes a little later than the scan that it belongs to.
@@ -128,8 +129,9 @@ class SlamToolbox(Node):
         return grid_message(grid.data, grid.resolution, grid.origin, self._map_frame, stamp)
 
     def _publish_map(self) -> None:
-        # After a loop closure the grid goes on changing although no scan is added.
-        with self._lock:
+        if self._slam is None:
+            return
+        with self._lock:  # after a loop closure the grid goes on changing although no scan is added
             if self._slam.key_count == self._drawn_keys and not self._slam.render(0):
                 return
         self._drawn_keys = self._slam.key_count
@@ -139,7 +141,8 @@ class SlamToolbox(Node):
             self._metadata_publisher.publish(message.info)
 
     def _on_get_map(self, request: Any, response: Any) -> Any:
-        response.map = self._map_message()
+        if self._slam is not None:
+            response.map = self._map_message()
         return response
 
     def _on_save(self, request: Any, response: Any) -> Any:
@@ -147,7 +150,7 @@ class SlamToolbox(Node):
         from daidalos.mapping.map_file import save_map
 
         name = request.name.data or "map"
-        if not self._slam.key_count:
+        if self._slam is None or not self._slam.key_count:
             response.result = response.RESULT_NO_MAP_RECEIEVD
             return response
         try:
@@ -161,7 +164,8 @@ class SlamToolbox(Node):
         return response
 
     def _on_reset(self, request: Any, response: Any) -> Any:
-        self._slam = self._new_slam()
+        if self._slam is not None:
+            self._slam = self._new_slam()
         self._map_to_odom = None
         self._drawn_keys = -1
         response.result = response.RESULT_SUCCESS

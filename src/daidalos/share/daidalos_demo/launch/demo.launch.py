@@ -24,6 +24,7 @@ def generate_launch_description():
             DeclareLaunchArgument("seed", default_value="0", description="of all random numbers"),
             DeclareLaunchArgument("studio", default_value="true", description="whether to serve the studio"),
             DeclareLaunchArgument("open_browser", default_value="true", description="whether to open it"),
+            DeclareLaunchArgument("look_around", default_value="true", description="whether to turn once at first"),
             DeclareLaunchArgument("port", default_value="8765", description="of the studio"),
             Node(
                 package="foxglove_bridge",
@@ -61,6 +62,12 @@ def generate_launch_description():
             IncludeLaunchDescription(
                 share("nav2_bringup", "launch", "navigation_launch.py"),
                 launch_arguments={"params_file": navigation_parameters, "use_composition": "True"}.items(),
+            ),
+            Node(
+                package="daidalos_demo",
+                executable="look_around",
+                condition=IfCondition(LaunchConfiguration("look_around")),
+                output="screen",
             ),
         ]
     )
