@@ -328,7 +328,7 @@ def test_processes_in_the_hands_of_a_test():
             assert sleeper.running
             with launch_process(service, action, info, output, output_filter=str.upper) as process:
                 assert process.target_process_action is action
-                assert process.wait_for_output(lambda text: "HELLO" in text and "COMPLAINT" in text, timeout=10)
+                assert process.wait_for_output(lambda text: "HELLO\n" in text and "COMPLAINT\n" in text, timeout=10)
                 assert process.stdout == "HELLO\n"
                 assert process.stderr == "COMPLAINT\n"
                 assert process.exit_code is None
