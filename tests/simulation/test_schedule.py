@@ -40,6 +40,12 @@ def test_who_starts_late_is_due_after_its_own_period():
     assert schedule.next_due() is None
 
 
+def test_what_is_faster_than_the_steps_is_due_once_a_step():
+    schedule, fast = Schedule(), Fake(1e-7)
+    schedule.add(fast, 0)
+    assert [now for now, _ in run(schedule, 5_000_000)] == [1_000_000 * i for i in range(1, 6)]
+
+
 def test_clocks_can_be_saved_and_set_back():
     schedule, component = Schedule(), Fake(0.01)
     schedule.add(component, 0)

@@ -23,7 +23,7 @@ class Schedule:
     """Keeps components in the order in which they are due; ties go by the order of adding.
 
     A component with a period is due at its start plus 1, 2, 3 ... periods, each rounded by itself, so
-    that 15 Hz stays 15 Hz. Without a period it is due after every step.
+    that 15 Hz stays 15 Hz. Without a period, or with one shorter than a step, it is due after every step.
     """
 
     def __init__(self) -> None:
@@ -75,8 +75,13 @@ class Schedule:
 
 
 def _advance(entry: _Entry, now_ns: int) -> None:
-    if entry.period <= 0:
+    """Set the next time after `now_ns`; times that fall between two steps are one."""
+    period_ns = entry.period * 1e9
+    if period_ns <= 1:
         entry.due_ns = now_ns + 1
         return
-    entry.count += 1
-    entry.due_ns = entry.start_ns + round(entry.count * entry.period * 1e9)
+    entry.count = max(entry.count, int((now_ns - entry.start_ns) / period_ns)) + 1
+    entry.due_ns = entry.start_ns + round(entry.count * period_ns)
+    if entry.due_ns <= now_ns:
+        entry.count += 1
+        entry.due_ns = entry.start_ns + round(entry.count * period_ns)

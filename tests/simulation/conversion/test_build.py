@@ -181,6 +181,14 @@ def test_equal_limits_lock():
     assert simulation.joint("m", "j").position == pytest.approx(0.3, abs=1e-3)
 
 
+def test_shapes_without_size_are_left_out_with_a_line():
+    lines = []
+    shape = "<collision><geometry><sphere radius='0'/></geometry></collision>"
+    robot = urdf.parse(f"<robot name='r'><link name='a'>{shape}</link></robot>", "r.urdf")
+    Simulation(world(), warn=lines.append).spawn(robot)
+    assert lines[-1] == "r.urdf:1: a sphere needs positive sizes, got 0; the collision is left out"
+
+
 def test_floating_joints_bind_nothing():
     simulation = Simulation(world())
     robot = urdf.parse(

@@ -125,7 +125,7 @@ def test_rings_become_points():
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        (("<samples>5", "<samples>0"), "at least one ray"),
+        (("<samples>5", "<samples>0"), "expected 1 to 1000000 rays, got 0"),
         (("<samples>5", "<samples>2.5"), "expected an integer"),
         (("<min>0.1", "<min>9"), "expected 0 <= min < max"),
         (("<max_angle>1.57", "<max_angle>-2.57"), "is below min_angle"),

@@ -316,13 +316,13 @@ class _Builder:
         joint = self._above.get(link.name)
         try:
             if is_wheel(joint, collision):
-                disc: Any = collision.geometry
-                geoms = add_wheel(body, disc.radius, disc.length, collision.pose)
+                geoms = add_wheel(body, collision.geometry, collision.pose)
             else:
                 static = self._model.static
                 geoms = add_geoms(body, collision.geometry, collision.pose, self._assets, static)
         except DescriptionError as problem:
-            self._warn(f"{problem}; the collision is left out")
+            place = "" if problem.source else f"{collision.where}: "
+            self._warn(f"{place}{problem}; the collision is left out")
             return
         surface = replace(collision.surface, mu=0.0, mu2=0.0) if is_caster(joint, link) else collision.surface
         for number, geom in enumerate(geoms):
@@ -334,7 +334,7 @@ class _Builder:
         if link.name in self._solid_without_mass:
             geom.mass, geom.density = float("nan"), ASSUMED_DENSITY
         if geom.contype:
-            geom.contype = geom.conaffinity = surface.bitmask if surface.collide else 0
+            geom.contype = geom.conaffinity = surface.bitmask & 0x7FFFFFFF if surface.collide else 0
         name = collision.name or f"collision_{number.partition('.')[0]}"
         self._build.geoms[geom.name] = GeomInfo(link.name, name, collision.laser_retro)
 

@@ -66,6 +66,9 @@ def add_geoms(body: Any, geometry: Geometry, pose: Pose, assets: Assets, static:
     """
     if isinstance(geometry, Empty):
         return []
+    if min(_sizes(geometry), default=1.0) <= 0:
+        words = ", ".join(f"{size:g}" for size in _sizes(geometry))
+        raise DescriptionError(f"a {type(geometry).__name__.lower()} needs positive sizes, got {words}")
     if isinstance(geometry, Mesh | Cone | Polyline):
         optimization = getattr(geometry, "optimization", "")
         decompose = optimization == "convex_decomposition" or (static and optimization != "convex_hull")
@@ -77,16 +80,38 @@ def add_geoms(body: Any, geometry: Geometry, pose: Pose, assets: Assets, static:
     return _ADDERS[type(geometry)](body, geometry, pose)
 
 
-def add_wheel(body: Any, radius: float, width: float, pose: Pose) -> list[Any]:
+def add_wheel(body: Any, disc: Geometry, pose: Pose) -> list[Any]:
     """Add a wheel along z: an ellipsoid touches the ground in one point, a cylinder is what one sees.
 
     A cylinder touches with a line of points that rub against each other in a turn.
     """
-    rolling = _add(body, _Type.mjGEOM_ELLIPSOID, (radius, radius, width / 2), pose)
+    if not isinstance(disc, Cylinder):
+        raise TypeError(f"a wheel is a cylinder, not a {type(disc).__name__}")
+    rolling = _add(body, _Type.mjGEOM_ELLIPSOID, (disc.radius, disc.radius, disc.length / 2), pose)
     rolling.group = TOUCHED
-    seen = _add(body, _Type.mjGEOM_CYLINDER, (radius, width / 2, 0.0), pose)
+    seen = _add(body, _Type.mjGEOM_CYLINDER, (disc.radius, disc.length / 2, 0.0), pose)
     _only_seen(seen)
     return [rolling, seen]
+
+
+def _sizes(geometry: Geometry) -> tuple[float, ...]:
+    """Return the lengths of a shape that must be positive."""
+    match geometry:
+        case Box(size):
+            return size
+        case Sphere(radius):
+            return (radius,)
+        case Cylinder(radius, length) | Capsule(radius, length) | Cone(radius, length):
+            return (radius, length)
+        case Ellipsoid(radii):
+            return radii
+        case Mesh(scale=scale):
+            return tuple(abs(factor) for factor in scale)
+        case Polyline(height=height):
+            return (height,)
+        case Heightmap(size=(width, depth, _)):
+            return (width, depth)
+    return ()
 
 
 def _add(body: Any, kind: Any, size: tuple[float, float, float], pose: Pose) -> Any:

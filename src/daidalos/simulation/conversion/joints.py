@@ -67,7 +67,7 @@ def _add(body: Any, kind: Any, axis: Axis, joint: Joint, name: str) -> str:
     if math.isfinite(lower) or math.isfinite(upper):
         # MuJoCo limits both sides or none.
         added.limited = mujoco.mjtLimited.mjLIMITED_TRUE
-        added.range = [max(lower, -_FAR), min(upper, _FAR)]
+        added.range = [max(min(lower, _FAR - 1), -_FAR), min(max(upper, 1 - _FAR), _FAR)]
         added.solref_limit[:2] = _LIMIT_SOLREF
     return name
 

@@ -22,7 +22,7 @@ def is_wheel(joint: Joint | None, collision: Collision) -> bool:
     collision : Collision
     """
     disc = collision.geometry
-    if joint is None or not isinstance(disc, Cylinder) or disc.length > 2 * disc.radius:
+    if joint is None or not isinstance(disc, Cylinder) or not 0 < disc.length <= 2 * disc.radius:
         return False
     if joint.type not in (JointType.CONTINUOUS, JointType.REVOLUTE) or math.isfinite(joint.axis.upper):
         return False

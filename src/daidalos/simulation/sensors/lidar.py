@@ -20,6 +20,9 @@ from daidalos.simulation.sensors.base import Sensor
 
 Array = NDArray[np.float64]
 
+MOST_RAYS = 1_000_000
+_TURN = 4 * math.pi
+
 
 @dataclass(frozen=True)
 class Fan:
@@ -173,10 +176,12 @@ def _fan(element: Element | None, samples: int, scan: Element) -> Fan:
         return Fan(0.0, 0.0, 1)
     asked = element.integer_of("samples", default=samples)
     count = round(asked * element.number_of("resolution", default=1.0))
-    if count < 1:
-        raise element.error(f"expected at least one ray, got {asked} samples")
+    if not 1 <= count <= MOST_RAYS:
+        raise element.error(f"expected 1 to {MOST_RAYS} rays, got {count}")
     first = element.number_of("min_angle", default=0.0)
     last = element.number_of("max_angle", default=0.0)
+    if not -_TURN <= first <= _TURN or not -_TURN <= last <= _TURN:
+        raise element.error(f"expected angles within two turns, got {first:g} and {last:g}")
     if last < first:
         raise element.error(f"max_angle {last:g} is below min_angle {first:g}")
     return Fan(first, last, count)
