@@ -167,6 +167,7 @@ def scan_data(scan: Any, sensor_pose: Array) -> LaserScanData:
     """
     from daidalos.mapping.scan import LaserScanData
 
+    x, y, yaw = (float(value) for value in sensor_pose)
     return LaserScanData(
         ranges=np.frombuffer(scan.ranges, dtype=np.float32),
         angle_min=scan.angle_min,
@@ -174,5 +175,5 @@ def scan_data(scan: Any, sensor_pose: Array) -> LaserScanData:
         range_min=scan.range_min,
         range_max=scan.range_max,
         time_increment=scan.time_increment,
-        sensor_pose=tuple(float(value) for value in sensor_pose),
+        sensor_pose=(x, y, yaw),
     )

@@ -7,6 +7,8 @@ from typing import Any, TypeVar
 
 from rclpy.node import Node
 
+from daidalos.navigation.plugins import Plugin
+
 T = TypeVar("T")
 _PLAIN = (bool, int, float, str, list, tuple)
 
@@ -40,3 +42,8 @@ def declare_dataclass(node: Node, kind: type[T], prefix: str = "", **defaults: A
         value = node.declare_parameter(name, declared).value
         values[field.name] = tuple(value) if isinstance(default, tuple) else value
     return kind(**values)
+
+
+def declare_plugin(node: Node, plugin: Plugin, name: str) -> Any:
+    """Declare the parameters of a plugin below its name; None where it has none."""
+    return None if plugin.parameters is None else declare_dataclass(node, plugin.parameters, name)

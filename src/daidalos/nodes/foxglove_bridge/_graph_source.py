@@ -175,7 +175,7 @@ class RosGraphSource:
         values = {parameter.name: parameter.value for parameter in parameters}
 
         async def write(client: AsyncParameterClient, node: str, names: list[str]) -> list[Parameter]:
-            wanted = [RclpyParameter(name, value=values[f"{node}.{name}"]) for name in names]
+            wanted: list[Any] = [RclpyParameter(name, value=values[f"{node}.{name}"]) for name in names]
             await client.set_parameters(wanted)
             return await self._read(client, node, names)
 

@@ -57,7 +57,7 @@ class GzServer(Node):
         self._incoming: dict[str, Any] = {}
         self._contacts: dict[str, Any] = {}
         description = _load_world(world)
-        simulation = Simulation(description, seed=seed, heard=self._is_heard, warn=self.get_logger().warning)
+        simulation = Simulation(description, seed=seed, heard=self._is_heard, warn=self._warn)
         self._paced = PacedSimulation(simulation, self._publish, _CLOCK_PERIOD_NS, factor, self._on_failure)
         self._create_topics()
         self._connect(simulation)
@@ -66,6 +66,9 @@ class GzServer(Node):
         self._paced.start(paused=paused)
         name = world.name if world else "an empty world"
         self.get_logger().info(f"simulating {name}, {len(simulation.models)} models")
+
+    def _warn(self, text: str) -> None:
+        self.get_logger().warning(text)
 
     def _create_topics(self) -> None:
         from gazebo_msgs.msg import ContactsState, ModelStates, PerformanceMetrics

@@ -27,7 +27,7 @@ from daidalos.nodes.action_results import TransformFailed, set_error
 from daidalos.nodes.conversions import duration_message, pose2_of_transform, seconds, twist_message
 from daidalos.nodes.cycles import Cycle
 from daidalos.nodes.nav2_costmap_2d._costmap_node import costmap_of
-from daidalos.nodes.parameters import declare_dataclass
+from daidalos.nodes.parameters import declare_plugin
 from daidalos.nodes.runner import run
 
 _LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
@@ -116,10 +116,10 @@ class BehaviorServer(LifecycleNode):
 
     def _make(self, kind: str, name: str) -> Behavior[Any]:
         plugin = find_plugin(kind)
-        parameters = declare_dataclass(self, plugin.parameters, name) if plugin.parameters else None
-        if parameters is None:
-            return plugin.made_by(self._footprint, cycle_frequency=self._frequency)
-        return plugin.made_by(self._footprint, parameters, cycle_frequency=self._frequency)
+        parameters = declare_plugin(self, plugin, name)
+        further = () if parameters is None else (parameters,)
+        behavior: Behavior[Any] = plugin.made_by(self._footprint, *further, cycle_frequency=self._frequency)
+        return behavior
 
     def _on_costmap(self, message: Any) -> None:
         self._costmap = costmap_of(message)

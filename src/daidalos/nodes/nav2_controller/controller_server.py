@@ -13,13 +13,12 @@ from tf2_ros import TransformException
 
 from daidalos.navigation.controllers.follow_path import FollowPath
 from daidalos.navigation.errors import NavigationError
-from daidalos.navigation.plugins import find_plugin
 from daidalos.nodes.action_results import TransformFailed, set_error
 from daidalos.nodes.conversions import path_array, path_message, pose2_of_transform, twist_message
 from daidalos.nodes.cycles import Cycle
+from daidalos.nodes.nav2_controller._plugins import PluginMaker
 from daidalos.nodes.nav2_costmap_2d._costmap_node import CostmapNode
 from daidalos.nodes.node_thread import NodeThread
-from daidalos.nodes.parameters import declare_dataclass
 from daidalos.nodes.runner import run
 
 
@@ -55,13 +54,14 @@ class ControllerServer(LifecycleNode):
         from nav_msgs.msg import Odometry, Path
 
         self._costmap.trigger_configure()
+        maker = PluginMaker(self, self._costmap.footprint, self._frequency)
         for group, default in (
             ("controller_plugins", "nav2_mppi_controller::MPPIController"),
             ("goal_checker_plugins", "nav2_controller::SimpleGoalChecker"),
             ("progress_checker_plugins", "nav2_controller::SimpleProgressChecker"),
         ):
             names = self.get_parameter(group).value
-            self._plugins[group] = {name: self._make(name, default) for name in names}
+            self._plugins[group] = {name: maker.make(name, default) for name in names}
         self._command = self.create_publisher(TwistStamped if self._stamped else Twist, "cmd_vel", 1)
         self._local_plan = self.create_publisher(Path, "local_plan", 1)
         self.create_subscription(Odometry, self.get_parameter("odom_topic").value, self._on_odometry, 10)
@@ -74,14 +74,6 @@ class ControllerServer(LifecycleNode):
             cancel_callback=lambda goal: CancelResponse.ACCEPT,
         )
         return super().on_configure(state)
-
-    def _make(self, name: str, default: str) -> Any:
-        """Make a plugin; a controller is told of the robot's outline and the rate."""
-        plugin = find_plugin(self.declare_parameter(f"{name}.plugin", default).value)
-        parameters = declare_dataclass(self, plugin.parameters, name) if plugin.parameters else None
-        if not hasattr(plugin.made_by, "compute_velocity_commands"):
-            return plugin.made_by(parameters)
-        return plugin.made_by(self._costmap.footprint, parameters, control_frequency=self._frequency)
 
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Let the costmap be updated."""

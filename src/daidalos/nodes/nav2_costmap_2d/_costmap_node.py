@@ -41,7 +41,7 @@ from daidalos.nodes.conversions import (
     seconds,
 )
 from daidalos.nodes.cycles import Cycle
-from daidalos.nodes.parameters import declare_dataclass
+from daidalos.nodes.parameters import declare_dataclass, declare_plugin
 from daidalos.nodes.warming import warm_up_in_background
 
 _LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
@@ -172,12 +172,15 @@ class CostmapNode(LifecycleNode):
         plugin = find_plugin(kind)
         if issubclass(plugin.made_by, ObstacleLayer):
             return self._make_obstacle_layer(name, plugin.made_by)
-        parameters = declare_dataclass(self, plugin.parameters, name) if plugin.parameters else None
+        parameters = declare_plugin(self, plugin, name)
         if issubclass(plugin.made_by, StaticLayer):
             return self._make_static_layer(name, plugin.made_by(parameters))
+        layer: Layer
         if issubclass(plugin.made_by, InflationLayer):
-            return plugin.made_by(self.footprint.inscribed_radius, parameters)
-        return plugin.made_by(parameters)
+            layer = plugin.made_by(self.footprint.inscribed_radius, parameters)
+        else:
+            layer = plugin.made_by(parameters)
+        return layer
 
     def _make_static_layer(self, name: str, layer: StaticLayer) -> StaticLayer:
         from nav_msgs.msg import OccupancyGrid as GridMessage
@@ -186,8 +189,8 @@ class CostmapNode(LifecycleNode):
 
         def take(message: Any) -> None:
             info = message.info
-            origin = pose2_of(info.origin)
-            grid = OccupancyGrid(grid_array(message), info.resolution, tuple(float(value) for value in origin))
+            x, y, yaw = (float(value) for value in pose2_of(info.origin))
+            grid = OccupancyGrid(grid_array(message), info.resolution, (x, y, yaw))
             with self.lock:
                 layer.set_map(grid)
 

@@ -19,7 +19,7 @@ from daidalos.nodes.action_results import TransformFailed, set_error
 from daidalos.nodes.conversions import path_message, pose2_of, pose2_of_transform, time_message
 from daidalos.nodes.nav2_costmap_2d._costmap_node import CostmapNode
 from daidalos.nodes.node_thread import NodeThread
-from daidalos.nodes.parameters import declare_dataclass
+from daidalos.nodes.parameters import declare_plugin
 from daidalos.nodes.runner import run
 
 
@@ -50,7 +50,7 @@ class PlannerServer(LifecycleNode):
         for name in self.get_parameter("planner_plugins").value:
             kind = self.declare_parameter(f"{name}.plugin", "nav2_navfn_planner::NavfnPlanner").value
             plugin = find_plugin(kind)
-            self._planners[name] = plugin.made_by(declare_dataclass(self, plugin.parameters, name))
+            self._planners[name] = plugin.made_by(declare_plugin(self, plugin, name))
         self._plan_publisher = self.create_publisher(Path, "plan", 1)
         self._server = ActionServer(
             self,
