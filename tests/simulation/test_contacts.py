@@ -12,7 +12,7 @@ SECOND = 1_000_000_000
 def test_a_resting_box_is_carried_by_the_ground():
     simulation = Simulation(world(box("b", mass=2.0)))
     simulation.advance(3 * SECOND)
-    assert simulation._data.ntree_awake == 0
+    assert simulation.physics.data.ntree_awake == 0
     (contact,) = simulation.contacts()
     assert (contact.model1, contact.link1, contact.collision1) == ("ground_plane", "link", "collision")
     assert (contact.model2, contact.link2, contact.collision2) == ("b", "link", "shape")

@@ -78,7 +78,7 @@ def test_what_sleeps_wakes_when_its_table_goes():
     for change in (lambda s: s.set_pose("table", Pose((5, 0, 0.5))), lambda s: s.delete("table")):
         simulation = Simulation(world(table, cup))
         simulation.advance(3 * SECOND)
-        assert simulation._data.ntree_awake == 0
+        assert simulation.physics.data.ntree_awake == 0
         assert simulation.pose("cup").position[2] == pytest.approx(1.1, abs=1e-3)
         change(simulation)
         simulation.advance(SECOND)
@@ -88,7 +88,7 @@ def test_what_sleeps_wakes_when_its_table_goes():
 def test_what_sleeps_wakes_when_it_is_pushed():
     simulation = Simulation(world(box("a"), box("b", "3 0 0.5 0 0 0")))
     simulation.advance(3 * SECOND)
-    assert simulation._data.ntree_awake == 0
+    assert simulation.physics.data.ntree_awake == 0
     simulation.set_velocity("a", (8, 0, 0), (0, 0, 0))
     simulation.advance(SECOND)
     assert simulation.pose("b").position[0] > 3.1
@@ -141,12 +141,12 @@ def test_spawn_takes_name_and_pose():
 
 def test_many_models_come_and_go_without_a_trace():
     simulation = Simulation(world())
-    before = (simulation._model.nbody, len(simulation._spec.bodies), len(simulation._spec.frames))
+    before = (simulation.physics.model.nbody, len(simulation._spec.bodies), len(simulation._spec.frames))
     for number in range(30):
         simulation.spawn(turtlebot(), f"r{number}", Pose((number, 0, 0)), namespace=f"r{number}")
         simulation.step()
         simulation.delete(f"r{number}")
-    after = (simulation._model.nbody, len(simulation._spec.bodies), len(simulation._spec.frames))
+    after = (simulation.physics.model.nbody, len(simulation._spec.bodies), len(simulation._spec.frames))
     assert after == before
     assert not simulation._spec.actuators
     assert not simulation._spec.excludes
@@ -295,7 +295,7 @@ def test_what_the_simulator_does_by_itself_is_no_unknown_plugin():
 
 def test_physics_that_diverge_say_so():
     simulation = Simulation(world(box("b", "0 0 3 0 0 0")))
-    simulation._data.qvel[0] = np.nan
+    simulation.physics.data.qvel[0] = np.nan
     with pytest.raises(SimulationError, match=r"diverged at 0.001 s, first in b::link"):
         simulation.step()
 

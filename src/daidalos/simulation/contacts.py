@@ -10,7 +10,8 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from daidalos.simulation.instance import Instance, Physics
+from daidalos.simulation.instance import Instance
+from daidalos.simulation.physics import Physics
 
 Array = NDArray[np.float64]
 

@@ -2,47 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
 from daidalos.description.pose import Pose
-from daidalos.simulation.conversion.build import GeomInfo, ModelBuild
+from daidalos.simulation.conversion.build import ModelBuild
 from daidalos.simulation.errors import SimulationError, UnknownNameError
+from daidalos.simulation.physics import Physics
 
 if TYPE_CHECKING:
     from daidalos.simulation.component import Component
 
 Array = NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class Physics:
-    """MuJoCo's model and data, and what brings derived quantities up to date with the state.
-
-    Parameters
-    ----------
-    model, data : MjModel, MjData
-    refresh_positions : callable
-        Poses of bodies and geoms.
-    refresh : callable
-        Everything: velocities, accelerations, contacts and their forces.
-    heard : callable
-        Tells whether anyone listens to a topic.
-    geoms : mapping
-        Place of each geom to the name of its model and what it stands for.
-    """
-
-    model: Any
-    data: Any
-    refresh_positions: Callable[[], None]
-    refresh: Callable[[], None]
-    heard: Callable[[str], bool]
-    geoms: Mapping[int, tuple[str, GeomInfo]]
 
 
 @dataclass(frozen=True)

@@ -29,7 +29,8 @@ from daidalos.simulation.conversion.build import add_model
 from daidalos.simulation.conversion.couplings import close_loop
 from daidalos.simulation.conversion.options import physics_step, set_options
 from daidalos.simulation.errors import NameTakenError, SimulationError, UnknownNameError
-from daidalos.simulation.instance import Instance, JointView, Physics
+from daidalos.simulation.instance import Instance, JointView
+from daidalos.simulation.physics import Physics
 from daidalos.simulation.samples import Sample
 from daidalos.simulation.schedule import Schedule
 
@@ -37,11 +38,6 @@ Array = NDArray[np.float64]
 
 _log = logging.getLogger(__name__)
 _MONITOR_PERIOD_NS = 10_000_000
-_DIVERGED = (
-    mujoco.mjtWarning.mjWARN_BADQPOS,
-    mujoco.mjtWarning.mjWARN_BADQVEL,
-    mujoco.mjtWarning.mjWARN_BADQACC,
-)
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,7 +46,7 @@ class State:
 
     time_ns: int
     physics: Any
-    models: tuple[str, ...]
+    compilation: int
     clocks: Mapping[int, tuple[int, int, int]]
     memories: tuple[tuple[Any, Any], ...]
 
@@ -95,6 +91,7 @@ class Simulation:
         self._instances: dict[str, Instance] = {}
         self._schedule = Schedule()
         self._monitors: list[ContactMonitor] = []
+        self._compilations = 0
         self._goal_ns = 0
         self._spec: Any = mujoco.MjSpec()
         self._assets = Assets(self._spec)
@@ -104,6 +101,11 @@ class Simulation:
         for line in self.world.warnings:
             self._warn(line)
         self._compile_first()
+
+    @property
+    def physics(self) -> Physics:
+        """MuJoCo's model and data; replaced whenever models come or go."""
+        return self._physics
 
     # Models
 
@@ -204,7 +206,7 @@ class Simulation:
         """Move a model, static or not; its velocity stays."""
         instance = self.instance(model)
         instance.set_pose(pose)
-        self._stale()
+        self._physics.changed()
         if instance.build.base is not None:
             # What stands in the world is built into the compiled model.
             instance.build.place_base(pose)
@@ -214,7 +216,7 @@ class Simulation:
         """Set a model's velocity in world axes [m/s, rad/s]."""
         linear, angular = np.array(list(linear), dtype=float), np.array(list(angular), dtype=float)
         self.instance(model).set_velocity(linear, angular)
-        self._stale()
+        self._physics.changed()
 
     def joint(self, model: str, joint: str) -> JointView:
         """Return a view on a joint: its position, velocity and effort."""
@@ -293,7 +295,8 @@ class Simulation:
             (copy.deepcopy(c.memory), copy.deepcopy(c.random.bit_generator.state)) for c in self._components()
         )
         # All of MuJoCo's data, since sleeping models are no part of its smaller states.
-        return State(self.time_ns, copy.copy(self._data), self.models, self._schedule.save(), memories)
+        physics = copy.copy(self._physics.data)
+        return State(self.time_ns, physics, self._compilations, self._schedule.save(), memories)
 
     def restore(self, state: State) -> None:
         """Go back to a saved state, bit for bit.
@@ -303,21 +306,21 @@ class Simulation:
         SimulationError
             When models came or went since.
         """
-        if state.models != self.models:
+        if state.compilation != self._compilations:
             raise SimulationError("models came or went since the state was saved")
-        mujoco.mj_copyData(self._data, self._model, state.physics)
+        mujoco.mj_copyData(self._physics.data, self._physics.model, state.physics)
         for component, (memory, random) in zip(self._components(), state.memories, strict=True):
             component.memory = copy.deepcopy(memory)
             component.random.bit_generator.state = copy.deepcopy(random)
         self._schedule.restore(dict(state.clocks))
         self.time_ns = self._goal_ns = state.time_ns
-        self._stale()
+        self._physics.changed()
 
     def reset(self) -> None:
         """Put every model back to where it came in, at time zero, with fresh sensors and plugins."""
-        mujoco.mj_resetData(self._model, self._data)
+        mujoco.mj_resetData(self._physics.model, self._physics.data)
         self.time_ns = self._goal_ns = 0
-        self._stale()
+        self._physics.changed()
         self._schedule.restart(0)
         for instance in self._instances.values():
             instance.place_joints()
@@ -361,11 +364,10 @@ class Simulation:
         for joint in self.world.joints.values():
             self._add_joint_between_models(joint)
         try:
-            self._model = self._spec.compile()
+            model = self._spec.compile()
         except ValueError as problem:
             raise SimulationError(f"the world can not be simulated: {_one_line(problem)}") from None
-        self._data = mujoco.MjData(self._model)
-        self._bind()
+        self._bind(model, mujoco.MjData(model))
         for instance in self._instances.values():
             self._start(instance)
 
@@ -375,17 +377,16 @@ class Simulation:
 
     def _recompile(self) -> None:
         """Compile after models came or went; everything that stays keeps its state."""
-        self._model, self._data = self._spec.recompile(self._model, self._data)
-        self._bind()
+        self._bind(*self._spec.recompile(self._physics.model, self._physics.data))
 
-    def _bind(self) -> None:
-        self._stale()
+    def _bind(self, model: Any, data: Any) -> None:
+        self._compilations += 1
         geoms = {
-            self._model.geom(geom).id: (instance.name, info)
+            model.geom(geom).id: (instance.name, info)
             for instance in self._instances.values()
             for geom, info in instance.build.geoms.items()
         }
-        self._physics = Physics(self._model, self._data, self._refresh_positions, self._refresh, self._is_heard, geoms)
+        self._physics = Physics(model, data, geoms, self._is_heard)
         for instance in self._instances.values():
             instance.bind(self._physics)
         for monitor in self._monitors:
@@ -393,7 +394,7 @@ class Simulation:
 
     def _start(self, instance: Instance) -> None:
         instance.place_joints()
-        self._stale()
+        self._physics.changed()
         for component in instance.components:
             component.memory = component.start()
             self._schedule.add(component, self.time_ns)
@@ -417,42 +418,14 @@ class Simulation:
             count = max(1, min(-(-(until_ns - self.time_ns) // substep_ns), (goal_ns - self.time_ns) // substep_ns))
             if self._monitors:
                 count = min(count, max(1, _MONITOR_PERIOD_NS // substep_ns))
-            mujoco.mj_step(self._model, self._data, count)
+            self._physics.step(count)
             self.time_ns += count * substep_ns
-            self._stale()
-            self._check_sanity()
             for monitor in self._monitors:
-                monitor.look(self._data, self.time_ns)
+                monitor.look(self._physics.data, self.time_ns)
             for component in self._schedule.due(self.time_ns):
                 samples.extend(component.update(self.time_ns))
         self._goal_ns = max(goal_ns, self._goal_ns)
         return samples
-
-    def _check_sanity(self) -> None:
-        """Raise when the last steps gave numbers that are none."""
-        for kind in _DIVERGED:
-            warning = self._data.warning[kind]
-            if warning.number:
-                dof = min(max(int(warning.lastinfo), 0), self._model.nv - 1)
-                body = self._model.body(self._model.dof_bodyid[dof]).name
-                raise SimulationError(
-                    f"the physics diverged at {self.time_ns * 1e-9:.3f} s, first in {body}; "
-                    "look at its inertia, limits and gains"
-                )
-
-    def _stale(self) -> None:
-        self._positions_fresh = self._all_fresh = False
-
-    def _refresh_positions(self) -> None:
-        if not self._positions_fresh:
-            mujoco.mj_kinematics(self._model, self._data)
-            mujoco.mj_comPos(self._model, self._data)
-            self._positions_fresh = True
-
-    def _refresh(self) -> None:
-        if not self._all_fresh:
-            mujoco.mj_forward(self._model, self._data)
-            self._positions_fresh = self._all_fresh = True
 
     def _is_heard(self, topic: str) -> bool:
         return self.heard is None or self.heard(topic)

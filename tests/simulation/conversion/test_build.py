@@ -5,11 +5,18 @@ import pytest
 from description.robots import ARM
 
 from daidalos.description import sdf, urdf
+from daidalos.description.kinematics import KinematicTree
 from daidalos.description.pose import Pose
 from daidalos.simulation import Simulation
 from simulation.models import box, world
 
 SECOND = 1_000_000_000
+
+
+ANCHORED = ARM.replace('<link name="base">', '<link name="world"/><link name="base">', 1).replace(
+    "</robot>",
+    '<joint name="w" type="fixed"><parent link="world"/><child link="base"/></joint></robot>',
+)
 
 
 def weightless(body, **options):
@@ -28,7 +35,7 @@ def two_links(kind, axis="<axis><xyz>0 0 1</xyz></axis>", extra=""):
 
 def push(simulation, dof, speed=1.0):
     """Give one degree of freedom a speed and return where b is after a tenth of a second."""
-    simulation._data.qvel[dof] = speed
+    simulation.physics.data.qvel[dof] = speed
     simulation.advance(SECOND // 10)
     return simulation.pose("m", "b")
 
@@ -56,13 +63,13 @@ def test_joints_move_about_their_anchor(kind, axis, dof, expected):
 
 def test_fixed_joints_hold():
     simulation = weightless(two_links("fixed", ""))
-    assert simulation._model.nv == 0
+    assert simulation.physics.model.nv == 0
 
 
 def test_limits_hold():
     limits = "<axis><xyz>0 0 1</xyz><limit><lower>-0.2</lower><upper>0.3</upper></limit></axis>"
     simulation = weightless(two_links("revolute", limits))
-    simulation._data.qvel[0] = 3.0
+    simulation.physics.data.qvel[0] = 3.0
     positions = []
     for _ in range(50):
         simulation.advance(SECOND // 100)
@@ -82,13 +89,30 @@ def test_springs_and_damping():
     assert simulation.joint("m", "j").position == pytest.approx(0.4, abs=1e-3)
 
 
+def test_links_are_where_forward_kinematics_says():
+    """The same robot in MuJoCo and in `KinematicTree`, at random joint positions."""
+    robot = urdf.parse(ANCHORED)
+    tree, random = KinematicTree(robot), np.random.default_rng(0)
+    simulation = Simulation(sdf.parse("<sdf version='1.9'><world name='w'/></sdf>"))
+    place = Pose.from_xyz_rpy((1, 2, 3), (0.1, 0.2, 0.3))
+    simulation.spawn(robot, "arm", place)
+    for _ in range(5):
+        positions = random.uniform(-1, 1, len(tree.joint_names))
+        for name, value in zip(tree.joint_names, positions, strict=True):
+            simulation.physics.data.qpos[simulation.joint("arm", name).qpos] = value
+        mirrored = 2 * positions[tree.index("grip")] + 0.01
+        simulation.physics.data.qpos[simulation.joint("arm", "grip_mirror").qpos] = mirrored
+        simulation.physics.changed()
+        matrices = dict(zip(tree.link_names, tree.link_matrices(positions), strict=True))
+        for link in ("base", "upper", "fore", "finger", "thumb"):
+            np.testing.assert_allclose(simulation.pose("arm", link).matrix, place.matrix @ matrices[link], atol=1e-9)
+
+
 def test_mimics_follow():
-    robot = urdf.parse(ARM.replace('<link name="base">', '<link name="world"/><link name="base">', 1).replace(
-        "</robot>",
-        '<joint name="w" type="fixed"><parent link="world"/><child link="base"/></joint></robot>'))  # fmt: skip
+    robot = urdf.parse(ANCHORED)
     simulation = Simulation(sdf.parse("<sdf version='1.9'><world name='w'><gravity>0 0 0</gravity></world></sdf>"))
     simulation.spawn(robot, "arm")
-    simulation._data.qvel[simulation.joint("arm", "grip").dof] = 0.05
+    simulation.physics.data.qvel[simulation.joint("arm", "grip").dof] = 0.05
     simulation.advance(SECOND)
     grip, mirror = simulation.joint("arm", "grip").position, simulation.joint("arm", "grip_mirror").position
     assert mirror == pytest.approx(2 * grip + 0.01, abs=2e-3)
@@ -101,7 +125,7 @@ def test_links_without_mass_that_move_get_some():
     simulation = Simulation(world(), warn=lines.append)
     simulation.spawn(robot, pose=Pose((0, 0, 0.5)))
     assert lines == ["r.urdf:1: link 'a' moves but has no mass; assumed 200 kg/m^3 for its collisions"]
-    assert simulation._model.body("r::a").mass[0] == pytest.approx(200)
+    assert simulation.physics.model.body("r::a").mass[0] == pytest.approx(200)
     simulation.advance(SECOND)
     assert simulation.pose("r").position[2] == pytest.approx(0.5, abs=1e-2)
 
@@ -198,4 +222,4 @@ def test_floating_joints_bind_nothing():
     simulation.spawn(robot, pose=Pose((0, 0, 5)))
     assert simulation.pose("r", "b") == Pose((2, 0, 5))
     simulation.advance(SECOND // 10)
-    assert simulation._model.nv == 12
+    assert simulation.physics.model.nv == 12

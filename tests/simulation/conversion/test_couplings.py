@@ -29,7 +29,7 @@ def joint(name, kind, parent, child, axis="0 0 1", pose="0 0 0 0 0 0", extra="")
 def test_a_screw_advances_with_each_turn():
     pitch = "<screw_thread_pitch>0.5</screw_thread_pitch>"
     simulation = weightless(link("a", 0) + link("b", 1) + FIXED + joint("j", "screw", "a", "b", extra=pitch))
-    simulation._data.qvel[0] = 2 * math.pi
+    simulation.physics.data.qvel[0] = 2 * math.pi
     simulation.advance(SECOND)
     turned = simulation.joint("m", "j").position
     assert turned > 3
@@ -45,7 +45,7 @@ def test_gears_turn_against_each_other():
         "<axis2><xyz>0 0 1</xyz></axis2></joint>"
     )
     simulation = weightless(gears)
-    simulation._data.qvel[simulation.joint("m", "jb").dof] = 1.0
+    simulation.physics.data.qvel[simulation.joint("m", "jb").dof] = 1.0
     simulation.advance(SECOND)
     first, second = simulation.joint("m", "jb").position, simulation.joint("m", "jc").position
     assert first == pytest.approx(0.2, abs=0.03)
@@ -58,7 +58,7 @@ def test_a_four_bar_linkage_closes():
     bars += joint("jl", "revolute", "a", "left") + joint("jr", "revolute", "a", "right")
     bars += joint("lt", "revolute", "left", "top") + joint("rt", "revolute", "right", "top", pose="1 0 0 0 0 0")
     simulation = weightless(bars)
-    simulation._data.qvel[simulation.joint("m", "jl").dof] = 0.5
+    simulation.physics.data.qvel[simulation.joint("m", "jl").dof] = 0.5
     simulation.advance(SECOND)
     angle = simulation.joint("m", "jl").position
     assert angle > 0.1
@@ -73,7 +73,7 @@ def test_a_second_joint_to_the_world_holds():
     loop = link("a", 0) + link("b", 1) + FIXED + joint("j", "revolute", "a", "b", pose="-1 0 0 0 0 0")
     loop += "<joint name='w2' type='fixed'><parent>world</parent><child>b</child></joint>"
     simulation = weightless(loop)
-    simulation._data.qvel[0] = 1.0
+    simulation.physics.data.qvel[0] = 1.0
     simulation.advance(SECOND)
     assert simulation.pose("m", "b").position == pytest.approx((1, 0, 0), abs=5e-3)
 
@@ -84,7 +84,7 @@ def test_what_loops_goes_with_its_model():
     simulation = weightless(loop)
     simulation.delete("m")
     assert not simulation._spec.equalities
-    assert simulation._model.nbody == 1
+    assert simulation.physics.model.nbody == 1
 
 
 BALL = (

@@ -84,7 +84,7 @@ def test_a_robot_pushed_by_its_wheels_slips_only_as_friction_says():
     """On ice it stays where it is, and its odometry does not know."""
     simulation = Simulation(world())
     simulation.spawn(turtlebot(), "robot")
-    simulation._model.geom_friction[:, 0] = 1e-4
+    simulation.physics.model.geom_friction[:, 0] = 1e-4
     simulation.command("/cmd_vel", twist(0.2))
     odometry = last(simulation.advance(3 * SECOND), OdometrySample)
     assert odometry.position[0] > 0.5

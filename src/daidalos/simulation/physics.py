@@ -1,0 +1,76 @@
+"""MuJoCo's model and data, stepped, and brought up to date with the state when somebody asks."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import mujoco
+
+from daidalos.simulation.conversion.build import GeomInfo
+from daidalos.simulation.errors import SimulationError
+
+_DIVERGED = (
+    mujoco.mjtWarning.mjWARN_BADQPOS,
+    mujoco.mjtWarning.mjWARN_BADQVEL,
+    mujoco.mjtWarning.mjWARN_BADQACC,
+)
+
+
+class Physics:
+    """One compiled world.
+
+    Parameters
+    ----------
+    model, data : MjModel, MjData
+    geoms : mapping
+        Place of each geom to the name of its model and what it stands for.
+    heard : callable
+        Tells whether anyone listens to a topic.
+    """
+
+    def __init__(
+        self, model: Any, data: Any, geoms: Mapping[int, tuple[str, GeomInfo]], heard: Callable[[str], bool]
+    ) -> None:
+        self.model = model
+        self.data = data
+        self.geoms = geoms
+        self.heard = heard
+        self.changed()
+
+    def step(self, count: int) -> None:
+        """Make steps, all in one call.
+
+        Raises
+        ------
+        SimulationError
+            When they gave numbers that are none; names the body that was first.
+        """
+        mujoco.mj_step(self.model, self.data, count)
+        self.changed()
+        for kind in _DIVERGED:
+            warning = self.data.warning[kind]
+            if warning.number:
+                dof = min(max(int(warning.lastinfo), 0), self.model.nv - 1)
+                body = self.model.body(self.model.dof_bodyid[dof]).name
+                raise SimulationError(
+                    f"the physics diverged at {self.data.time:.3f} s, first in {body}; "
+                    "look at its inertia, limits and gains"
+                )
+
+    def changed(self) -> None:
+        """Note that the state changed: what derives from it is out of date."""
+        self._positions_fresh = self._all_fresh = False
+
+    def refresh_positions(self) -> None:
+        """Bring the poses of bodies and geoms up to date."""
+        if not self._positions_fresh:
+            mujoco.mj_kinematics(self.model, self.data)
+            mujoco.mj_comPos(self.model, self.data)
+            self._positions_fresh = True
+
+    def refresh(self) -> None:
+        """Bring everything up to date: velocities, accelerations, contacts and their forces."""
+        if not self._all_fresh:
+            mujoco.mj_forward(self.model, self.data)
+            self._positions_fresh = self._all_fresh = True
