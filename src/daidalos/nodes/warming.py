@@ -9,7 +9,7 @@ from collections.abc import Callable
 from rclpy.impl.rcutils_logger import RcutilsLogger
 from rclpy.task import Future
 
-_SILENT_S = 1.0
+_SILENT_S = 3.0
 """Time after which the user is told; what was compiled before is ready sooner."""
 
 WarmUp = Callable[[Callable[[float, str], None]], None]
@@ -44,7 +44,7 @@ def _compile(warm_up: WarmUp, logger: RcutilsLogger, compiled: Future) -> None:
         if time.monotonic() - begun < _SILENT_S or int(10 * share) == said:
             return
         if said < 0:
-            logger.info("the first start on this machine compiles the algorithms; the next ones will not")
+            logger.info("preparing the algorithms; the first start on a machine compiles them")
         said = int(10 * share)
         logger.info(f"compiling: {100 * share:.0f} % ({step})")
 

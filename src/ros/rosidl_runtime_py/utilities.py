@@ -51,9 +51,12 @@ def _of_kind(identifier: str, kind: str, what: str) -> Any:
     parts = identifier.split("/")
     if len(parts) == 2:
         parts.insert(1, kind)
-    if len(parts) != 3 or not all(parts) or parts[1] != kind:
-        raise ValueError(f"Expected the full name of a {what}, got '{identifier}'")
-    return _class("/".join(parts))
+    if len(parts) == 3 and all(parts) and parts[1] in _KINDS:
+        found = _class("/".join(parts))
+        # Services and actions are made of messages, such as ``package/action/Name_FeedbackMessage``.
+        if issubclass(found, _KINDS[kind]):
+            return found
+    raise ValueError(f"Expected the full name of a {what}, got '{identifier}'")
 
 
 def get_message(identifier: str) -> Any:

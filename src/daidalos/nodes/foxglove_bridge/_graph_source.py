@@ -127,7 +127,9 @@ class RosGraphSource:
         def hand_on() -> None:
             taken = impl.take_raw()
             while taken is not None and not closed.is_set():
-                received(impl.info(taken[1]).received_ns, taken[0])
+                # Where time is simulated, that is when a message came.
+                stamp = impl.info(taken[1]).received_ns if self._time is None else self._time
+                received(stamp, taken[0])
                 taken = impl.take_raw()
 
         handle.set_on_ready(hand_on)

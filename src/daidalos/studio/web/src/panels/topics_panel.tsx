@@ -22,7 +22,9 @@ function TopicsPanel({ studio, visible }: PanelProps) {
   const { session } = studio;
   const wanted = filter.value.toLowerCase();
   const topics = session.topics.value.filter(
-    ({ name, type }) => name.toLowerCase().includes(wanted) || type.toLowerCase().includes(wanted),
+    ({ name, type }) =>
+      (name.toLowerCase().includes(wanted) || type.toLowerCase().includes(wanted)) &&
+      (wanted.includes("_") || !isHidden(name)),
   );
   const measured = visible.value ? topics.filter(({ type }) => !HEAVY.has(type)).map(({ name }) => name) : [];
   useEffect(() => {
@@ -95,6 +97,11 @@ function TopicRow({ studio, topic }: { studio: Studio; topic: TopicInfo }) {
       )}
     </div>
   );
+}
+
+/** As for `ros2 topic list`: an underscore begins the names that are nobody's business. */
+function isHidden(topic: string): boolean {
+  return topic.includes("/_");
 }
 
 function shortType(type: string): string {
