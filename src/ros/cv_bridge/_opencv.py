@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 from functools import lru_cache
 from typing import Any
 
@@ -12,7 +13,6 @@ COMMAND = "pip install 'daidalos[vision]'"
 def opencv() -> Any:
     """Return OpenCV, imported when first asked for; None when it is not installed."""
     try:
-        import cv2
+        return importlib.import_module("cv2")
     except ImportError:
         return None
-    return cv2

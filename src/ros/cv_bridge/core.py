@@ -175,7 +175,7 @@ class CvBridge:
             message.header = header
         return message
 
-    def _type_of(self, image: Any) -> str:
+    def _type_of(self, image: NDArray[Any]) -> str:
         if not isinstance(image, (np.ndarray, np.generic)):
             raise TypeError("Your input type is not a numpy array")
         if image.ndim not in (2, 3):

@@ -10,7 +10,7 @@ import numpy as np
 
 from ._opencv import opencv
 
-DEPTHS = {
+DEPTHS: dict[str, np.dtype[Any]] = {
     "8U": np.dtype(np.uint8),
     "8S": np.dtype(np.int8),
     "16U": np.dtype(np.uint16),

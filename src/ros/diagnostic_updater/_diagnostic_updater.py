@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
@@ -209,7 +209,7 @@ class Updater(DiagnosticTaskVector):
         """Set what identifies the hardware in every status; 'none' where there is none."""
         self.hwid = hwid
 
-    def publish(self, msg: DiagnosticStatus | list[DiagnosticStatus]) -> None:
+    def publish(self, msg: DiagnosticStatus | Sequence[DiagnosticStatus]) -> None:
         """Publish a status, or several in one message, their names led by the node's."""
         array = DiagnosticArray(
             status=[
@@ -220,7 +220,7 @@ class Updater(DiagnosticTaskVector):
                     hardware_id=status.hardware_id,
                     values=status.values,
                 )
-                for status in (msg if isinstance(msg, list) else [msg])
+                for status in ([msg] if isinstance(msg, DiagnosticStatus) else msg)
             ]
         )
         array.header.stamp = self.node.get_clock().now().to_msg()

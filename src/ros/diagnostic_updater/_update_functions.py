@@ -191,7 +191,7 @@ def _seconds(stamp: Any) -> float:
     if isinstance(stamp, (int, float)):
         return float(stamp)
     nanoseconds = getattr(stamp, "nanoseconds", None)
-    return stamp.sec + stamp.nanosec * 1e-9 if nanoseconds is None else nanoseconds * 1e-9
+    return float(stamp.sec + stamp.nanosec * 1e-9 if nanoseconds is None else nanoseconds * 1e-9)
 
 
 class Heartbeat(DiagnosticTask):

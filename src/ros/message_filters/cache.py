@@ -50,10 +50,11 @@ class Cache(SimpleFilter):
             time = ROSClock().now()
         with self._lock:
             place = bisect_right(self._stamps, time.nanoseconds)
-            for values, value in ((self._stamps, time.nanoseconds), (self.cache_times, time), (self.cache_msgs, msg)):
-                values.insert(place, value)
-                if len(values) > self.cache_size:
-                    del values[0]
+            self._stamps.insert(place, time.nanoseconds)
+            self.cache_times.insert(place, time)
+            self.cache_msgs.insert(place, msg)
+            if len(self._stamps) > self.cache_size:
+                del self._stamps[0], self.cache_times[0], self.cache_msgs[0]
         self.signalMessage(msg)
 
     def getInterval(self, from_stamp: Time, to_stamp: Time) -> list[Any]:

@@ -20,7 +20,7 @@ from std_msgs.msg import Header
 
 DUMMY_FIELD_PREFIX = "unnamed_field"
 _BIG_ENDIAN = sys.byteorder == "big"
-_DATATYPES = {
+_DATATYPES: dict[int, np.dtype[Any]] = {
     PointField.INT8: np.dtype(np.int8),
     PointField.UINT8: np.dtype(np.uint8),
     PointField.INT16: np.dtype(np.int16),
@@ -62,7 +62,7 @@ def read_points(
         When it holds less data than it says.
     """
     assert isinstance(cloud, PointCloud2), "Cloud is not a sensor_msgs.msg.PointCloud2"
-    points = view_points(cloud).reshape(-1)
+    points: NDArray[Any] = view_points(cloud).reshape(-1)
     if field_names is not None:
         assert set(field_names) <= set(points.dtype.names or ()), (
             "Requests field is not in the fields of the PointCloud!"
@@ -95,8 +95,7 @@ def view_points(cloud: PointCloud2) -> NDArray[Any]:
     ValueError
         When the cloud holds less data than it says.
     """
-    order = ">" if cloud.is_bigendian else "<"
-    dtype = dtype_from_fields(cloud.fields, cloud.point_step).newbyteorder(order)
+    dtype = dtype_from_fields(cloud.fields, cloud.point_step).newbyteorder(">" if cloud.is_bigendian else "<")
     packed_row = cloud.width * cloud.point_step
     row = cloud.row_step if cloud.height > 1 and cloud.row_step > packed_row else packed_row
     needed = row * (cloud.height - 1) + packed_row if cloud.height else 0
@@ -154,7 +153,8 @@ def read_points_list(
     """
     assert isinstance(cloud, PointCloud2), "cloud is not a sensor_msgs.msg.PointCloud2"
     points = read_points(cloud, field_names, skip_nans, uvs)
-    point = namedtuple("Point", points.dtype.names or (), rename=True)
+    names = list(points.dtype.names or ())
+    point: Any = namedtuple("Point", names, rename=True)  # type: ignore[misc]
     return [point._make(values) for values in points.tolist()]
 
 
@@ -187,10 +187,11 @@ def dtype_from_fields(fields: Iterable[PointField], point_step: int | None = Non
             names.append(part)
             offsets.append(field.offset + number * datatype.itemsize)
             formats.append(datatype.str)
-    description = {"names": names, "formats": formats, "offsets": offsets}
+    description: dict[str, Any] = {"names": names, "formats": formats, "offsets": offsets}
     if point_step is not None:
-        description["itemsize"] = point_step  # type: ignore[assignment]
-    return np.dtype(description)  # type: ignore[call-overload]
+        description["itemsize"] = point_step
+    dtype: np.dtype[Any] = np.dtype(description)  # type: ignore[call-overload]
+    return dtype
 
 
 def create_cloud(

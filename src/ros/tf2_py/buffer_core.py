@@ -89,7 +89,7 @@ class BufferCore:
                 history = self._frames[child] = History(self._age_ns) if kind is History else Fixed()
             if parent not in self._frames:
                 self._frames[parent] = None
-            accepted = history.insert(stamp, (parent, motion))  # type: ignore[union-attr]
+            accepted = history.insert(stamp, (parent, motion))
             if accepted:
                 self._authorities[child] = authority
         if not accepted:
@@ -261,7 +261,7 @@ class BufferCore:
             if history is None:
                 break
             found = history.at(stamp)
-            if found.__class__ is str:
+            if isinstance(found, str):
                 failure = found  # the way down from here may still lead to the target
                 break
             if frame in places:
@@ -282,7 +282,7 @@ class BufferCore:
                     raise ExtrapolationException(_between(failure, source, target))
                 raise _unconnected(target, source)
             found = history.at(stamp)
-            if found.__class__ is str:
+            if isinstance(found, str):
                 raise ExtrapolationException(_between(found, source, target))
             downward.append(found)
             frame = _parent(found)

@@ -33,7 +33,7 @@ class Inbox(Subscription):
     def _receive(self) -> None:
         node = self._rcl_node() if self._rcl_node is not None else None
         executor = node.executor if node is not None else None
-        counted = executor is None or not executor._spins
+        counted = not getattr(executor, "_spins", False)
         taken = self._impl.take()
         while taken is not None:
             self._callback(taken[0])

@@ -5,10 +5,11 @@ from __future__ import annotations
 import threading
 import time as system_time
 import weakref
+from collections import deque
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from rclpy.clock import Clock, JumpThreshold, TimeJump
+from rclpy.clock import Clock, JumpHandle, JumpThreshold, TimeJump
 from rclpy.duration import Duration
 from rclpy.impl.timer import TimerHandle
 from rclpy.task import Future
@@ -22,6 +23,10 @@ if TYPE_CHECKING:
     from geometry_msgs.msg import TransformStamped
     from rclpy.node import Node
     from rclpy.time import Time
+
+
+_ORPHANS: deque[JumpHandle] = deque()
+"""What buffers that are no more had registered with a clock."""
 
 
 class Buffer(BufferCore, BufferInterface):
@@ -68,13 +73,14 @@ class Buffer(BufferCore, BufferInterface):
 
         def on_jump(jump: TimeJump) -> None:
             buffer = weak_self()
-            if buffer is None:
-                handle.unregister()  # a buffer must not live as long as the node's clock
-            elif buffer.clock is clock:
+            if buffer is not None and buffer.clock is clock:
                 buffer.time_jump_callback(jump)
 
-        handle = clock.create_jump_callback(threshold, post_callback=on_jump)
-        self.jump_handle = handle
+        while _ORPHANS:
+            _ORPHANS.popleft().unregister()
+        # A buffer must not live as long as the node's clock, nor take the clock's lock when it is collected.
+        self.jump_handle = clock.create_jump_callback(threshold, post_callback=on_jump)
+        weakref.finalize(self, _ORPHANS.append, self.jump_handle).atexit = False
 
     def _tell_frames(self, request: Any, response: Any) -> Any:
         response.frame_yaml = self.all_frames_as_yaml()
@@ -136,7 +142,7 @@ class Buffer(BufferCore, BufferInterface):
         self._wait(lambda: self.can_transform_full_core(*asked), timeout)
         return self.lookup_transform_full_core(*asked)
 
-    def can_transform(
+    def can_transform(  # type: ignore[override]
         self,
         target_frame: str,
         source_frame: str,
@@ -154,7 +160,7 @@ class Buffer(BufferCore, BufferInterface):
         result = self._wait(lambda: self.can_transform_core(target_frame, source_frame, time), timeout)
         return result if return_debug_tuple else result[0]
 
-    def can_transform_full(
+    def can_transform_full(  # type: ignore[override]
         self,
         target_frame: str,
         target_time: Time,
@@ -235,7 +241,11 @@ class Buffer(BufferCore, BufferInterface):
         except Exception:
             self._unwatch(attempt)
             raise
-        future.on_wake(lambda: self._unwatch(attempt))
+
+        def forget() -> None:
+            self._unwatch(attempt)
+
+        future.on_wake(forget)
         return future
 
 

@@ -146,7 +146,8 @@ class BufferClient(BufferInterface):
         error = response.result.error
         if error.error != TF2Error.NO_ERROR:
             raise _EXCEPTIONS.get(error.error, tf2.TransformException)(error.error_string)
-        return response.result.transform
+        transform: TransformStamped = response.result.transform
+        return transform
 
 
 def _late() -> tf2.TimeoutException:
@@ -158,7 +159,8 @@ def _late() -> tf2.TimeoutException:
 
 def _time_message(time: Any) -> TimeMessage:
     if isinstance(time, Time):
-        return time.to_msg()
+        message: TimeMessage = time.to_msg()
+        return message
     if not isinstance(time, TimeMessage):
         raise TypeError("Must pass a rclpy.time.Time object.")
     warnings.warn(

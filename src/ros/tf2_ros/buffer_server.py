@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import tf2_py as tf2
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
     from geometry_msgs.msg import TransformStamped
     from rclpy.action.server import ServerGoalHandle
     from rclpy.node import Node
+    from rclpy.task import Future
 
     from .buffer import Buffer
 
@@ -70,12 +72,16 @@ class BufferServer:
 
     async def _look_up(self, goal: Any) -> TransformStamped:
         buffer = self.buffer
+        asked: tuple[Any, ...]
+        wait: Callable[..., Future]
+        look_up: Callable[..., TransformStamped]
         if goal.advanced:
             asked = (goal.target_frame, goal.target_time, goal.source_frame, goal.source_time, goal.fixed_frame)
-            future, look_up = buffer.wait_for_transform_full_async(*asked), buffer.lookup_transform_full_core
+            wait, look_up = buffer.wait_for_transform_full_async, buffer.lookup_transform_full_core
         else:
             asked = (goal.target_frame, goal.source_frame, goal.source_time)
-            future, look_up = buffer.wait_for_transform_async(*asked), buffer.lookup_transform_core
+            wait, look_up = buffer.wait_for_transform_async, buffer.lookup_transform_core
+        future = wait(*asked)
         seconds = Duration.from_msg(goal.timeout).nanoseconds / 1e9
         if seconds > 0.0 and not future.done():
             timer = self.node.create_timer(seconds, future.cancel, callback_group=self._group)

@@ -42,7 +42,8 @@ def transform_points(point_cloud: ArrayLike, transform: Transform | TransformSta
         transform = transform.transform
     motion = _motion(transform)
     columns = [rotate(motion[3:], *axis) for axis in np.eye(3).tolist()]
-    return np.asarray(point_cloud) @ np.array(columns) + np.array(motion[:3])
+    moved: NDArray[Any] = np.asarray(point_cloud) @ np.array(columns) + np.array(motion[:3])
+    return moved
 
 
 def do_transform_cloud(cloud: PointCloud2, transform: Transform | TransformStamped) -> PointCloud2:

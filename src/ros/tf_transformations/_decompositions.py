@@ -176,12 +176,16 @@ def compose_matrix(
         upper[0, 1], upper[0, 2], upper[1, 2] = np.asarray(shear)
     if scale is not None:
         upper[:, :3] *= np.asarray(scale, dtype=np.float64)
-    result = (euler_matrix(*np.asarray(angles), axes="sxyz") if angles is not None else np.identity(4)) @ upper
+    result = upper
+    if angles is not None:
+        ai, aj, ak = (float(angle) for angle in np.asarray(angles))
+        result = euler_matrix(ai, aj, ak) @ upper
     if translate is not None:
         result[:3, 3] = np.asarray(translate, dtype=np.float64)[:3]
     if perspective is not None:
         result[3] = np.asarray(perspective, dtype=np.float64)[:4] @ result
-    return result / result[3, 3]
+    result /= result[3, 3]
+    return result
 
 
 def superimposition_matrix(v0: ArrayLike, v1: ArrayLike, scaling: bool = False, usesvd: bool = True) -> Array:
@@ -213,7 +217,8 @@ def superimposition_matrix(v0: ArrayLike, v1: ArrayLike, scaling: bool = False, 
 def _kabsch(correlation: Array) -> Array:
     left, _, right = np.linalg.svd(correlation)
     handedness = np.sign(np.linalg.det(left @ right))
-    return left @ np.diag([1.0, 1.0, handedness]) @ right
+    rotation: Array = left @ np.diag([1.0, 1.0, handedness]) @ right
+    return rotation
 
 
 def _horn(correlation: Array) -> Array:
@@ -244,7 +249,7 @@ def _leading(symmetric: Array) -> Array:
 def _fixed_point(linear: Array, shift: Array) -> Array:
     """Return the point nearest to the origin that stays where it is."""
     moved = np.identity(3) - linear
-    point: Array = np.linalg.lstsq(moved, shift, rcond=1e-9)[0]
+    point = np.asarray(np.linalg.lstsq(moved, shift, rcond=1e-9)[0], dtype=np.float64)
     tolerance = 1e-6 * max(1.0, float(np.abs(shift).max()))
     _require(np.allclose(moved @ point, shift, atol=tolerance), "the matrix leaves no point where it is")
     return point
