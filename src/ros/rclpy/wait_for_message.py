@@ -45,22 +45,11 @@ def wait_for_message(
     arrived = threading.Event()
     with node.handle as handle:
         subscription = SubscriptionHandle(handle, msg_type, checked_name(handle, topic, is_service=False), profile)
-    wake = arrived.set
-    subscription.set_on_ready(wake)
-    node.context.on_shutdown(_Waker(arrived).wake)
+    subscription.set_on_ready(arrived.set)
+    node.context.on_shutdown(arrived.set)
     try:
         arrived.wait(None if time_to_wait < 0 else time_to_wait)
         taken = subscription.impl.take()
         return (False, None) if taken is None else (True, taken[0])
     finally:
         subscription.destroy_when_not_in_use()
-
-
-class _Waker:
-    """Wakes the waiter at a shutdown; kept alive by nobody but the waiter."""
-
-    def __init__(self, event: threading.Event) -> None:
-        self._event = event
-
-    def wake(self) -> None:
-        self._event.set()
