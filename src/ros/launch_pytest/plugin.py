@@ -225,7 +225,7 @@ def generate_test_items(
     marked = pytest.mark.usefixtures(fixturename, "event_loop", "launch_service")
     items: list[Any] = []
     for function in _functions(collector, name, obj, marked):
-        item = _renamed(function, f"{function.name}{_SHUTDOWN_SUFFIX}") if needs_renaming else function
+        item = _renamed(function) if needs_renaming else function
         item._launch_pytest_is_shutdown = is_shutdown
         items.append(item)
         if is_shutdown and need_shutdown_test_item(obj) and not needs_renaming:
@@ -254,14 +254,19 @@ def _functions(collector: Any, name: str, obj: Any, *marks: Any) -> list[Any]:
         function.pytestmark = before
 
 
-def _renamed(item: Any, name: str) -> Any:
-    return pytest.Function.from_parent(
+def _renamed(item: Any) -> Any:
+    function = item.originalname
+    renamed = pytest.Function.from_parent(
         item.parent,
-        name=name,
+        name=f"{function}{_SHUTDOWN_SUFFIX}{item.name.removeprefix(function)}",
         callspec=getattr(item, "callspec", None),
+        callobj=item.obj,
         fixtureinfo=item._fixtureinfo,
-        originalname=item.originalname,
+        originalname=f"{function}{_SHUTDOWN_SUFFIX}",
     )
+    # The item's id is made of this name; the function is looked up by it, too.
+    renamed.originalname = function
+    return renamed
 
 
 def _invalid_items(collector: Any, name: str, obj: Any) -> list[Any]:
