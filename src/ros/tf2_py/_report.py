@@ -82,6 +82,15 @@ def _rows(frames: Mapping[str, Any], authorities: Mapping[str, str]) -> Iterator
         yield _Row(frame, parent, authorities.get(frame, "no recorded authority"), rate, oldest, latest)
 
 
+def as_sentences(frames: Mapping[str, Any]) -> str:
+    """Return one sentence for every frame that has a parent."""
+    return "".join(
+        f"Frame {frame} exists with parent {history.latest()[1] or 'NO_PARENT'}.\n"
+        for frame, history in frames.items()
+        if history is not None
+    )
+
+
 def as_yaml(frames: Mapping[str, Any], authorities: Mapping[str, str]) -> str:
     """Return the tree as YAML."""
     if not frames:

@@ -7,12 +7,12 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from . import _report
-from ._history import Fixed, History, Item, motion_of
+from ._history import Fixed, History, motion_of
+from ._messages import check_name, message, read
+from ._paths import latest_common, parent_of, path
 from ._rigid import IDENTITY, Rigid, canonical, chain, compose, inverse
 from ._times import duration_ns, time_ns
 from .exceptions import (
-    ConnectivityException,
-    ExtrapolationException,
     InvalidArgumentException,
     LookupException,
     TransformException,
@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     from rclpy.time import Time
 
 _CACHE_TIME_NS = 10_000_000_000
-_MAX_DEPTH = 1000
 _ROUNDING = 1e-12
 _TOLERANCE = 1e-2
 
@@ -67,7 +66,7 @@ class BufferCore:
         self._set(transform, authority, Fixed)
 
     def _set(self, transform: Any, authority: str, kind: type[History] | type[Fixed]) -> None:
-        stamp, parent, child, motion = _read(transform)
+        stamp, parent, child, motion = read(transform)
         x, y, z, a, b, c, d = motion
         squared = a * a + b * b + c * c + d * d
         if not -_TOLERANCE < squared - 1.0 < _TOLERANCE or x + y + z != x + y + z or not parent or not child:
@@ -139,7 +138,7 @@ class BufferCore:
             When it is not known.
         """
         stamp, motion = self._lookup(target_frame, source_frame, time_ns(time))
-        return _message(stamp, target_frame, source_frame, motion)
+        return message(stamp, target_frame, source_frame, motion)
 
     def lookup_transform_full_core(
         self, target_frame: str, target_time: Time, source_frame: str, source_time: Time, fixed_frame: str
@@ -164,7 +163,7 @@ class BufferCore:
                 self._require(f"lookupTransform argument {argument}_frame", frame)
             _, to_fixed = self._lookup(fixed_frame, source_frame, source_ns)
             stamp, from_fixed = self._lookup(target_frame, fixed_frame, target_ns)
-        return _message(stamp, target_frame, source_frame, canonical(compose(from_fixed, to_fixed)))
+        return message(stamp, target_frame, source_frame, canonical(compose(from_fixed, to_fixed)))
 
     def can_transform_core(self, target_frame: str, source_frame: str, time: Time) -> tuple[bool, str]:
         """Tell whether `lookup_transform_core` would find the transform, and if not, why."""
@@ -209,7 +208,7 @@ class BufferCore:
             if target_frame == source_frame:
                 return Time(nanoseconds=self._latest(target_frame))
             try:
-                return Time(nanoseconds=self._latest_common(target_frame, source_frame))
+                return Time(nanoseconds=latest_common(self._frames, target_frame, source_frame))
             except TransformException as error:
                 raise TransformException(str(error)) from None
 
@@ -227,8 +226,8 @@ class BufferCore:
             if target not in self._frames or source not in self._frames:
                 self._require("lookupTransform argument target_frame", target)
                 self._require("lookupTransform argument source_frame", source)
-            stamp = stamp or self._latest_common(target, source)
-            upward, downward = self._path(target, source, stamp)
+            stamp = stamp or latest_common(self._frames, target, source)
+            upward, downward = path(self._frames, target, source, stamp)
         motion = chain(map(motion_of, upward))
         if downward:
             back = inverse(chain(map(motion_of, downward)))
@@ -244,89 +243,10 @@ class BufferCore:
             if problem:
                 return problem
             try:
-                self._path(target, source, stamp or self._latest_common(target, source))
+                path(self._frames, target, source, stamp or latest_common(self._frames, target, source))
             except TransformException as error:
                 return str(error)
             return ""
-
-    def _path(self, target: str, source: str, stamp: int) -> tuple[list[Any], list[Any]]:
-        """Return what `History.at` gives for the frames from the source, and from the target, to where they meet."""
-        frames = self._frames
-        upward: list[Any] = []
-        places: dict[str, int] = {}
-        failure: str | None = None
-        frame = source
-        while frame != target:
-            history = frames[frame]
-            if history is None:
-                break
-            found = history.at(stamp)
-            if isinstance(found, str):
-                failure = found  # the way down from here may still lead to the target
-                break
-            if frame in places:
-                raise self._loop()
-            places[frame] = len(upward)
-            upward.append(found)
-            frame = _parent(found)
-        top = frame
-        downward: list[Any] = []
-        frame = target
-        while frame != top:
-            if frame in places:
-                del upward[places[frame] :]
-                break
-            history = frames[frame]
-            if history is None:
-                if failure is not None:
-                    raise ExtrapolationException(_between(failure, source, target))
-                raise _unconnected(target, source)
-            found = history.at(stamp)
-            if isinstance(found, str):
-                raise ExtrapolationException(_between(found, source, target))
-            downward.append(found)
-            frame = _parent(found)
-            if len(downward) > _MAX_DEPTH:
-                raise self._loop()
-        return upward, downward
-
-    def _latest_common(self, target: str, source: str) -> int:
-        """Return the newest time at which all transforms between two frames are known, zero for any time."""
-        frames = self._frames
-        newest: dict[str, int] = {}  # parent: the oldest of the newest stamps on the way to it
-        common = 0
-        frame = source
-        while frame != target:
-            history = frames[frame]
-            stamp, parent = (0, "") if history is None else history.latest()
-            if not parent:
-                break
-            if stamp and (stamp < common or not common):
-                common = stamp
-            if parent in newest:
-                raise self._loop()
-            newest[parent] = common
-            frame = parent
-        else:
-            return common
-        common = 0
-        frame = target
-        depth = 0
-        while frame != source:
-            history = frames[frame]
-            stamp, parent = (0, "") if history is None else history.latest()
-            if not parent:
-                raise _unconnected(target, source)
-            if stamp and (stamp < common or not common):
-                common = stamp
-            if parent in newest:
-                other = newest[parent]
-                return min(common, other) if common and other else common or other
-            frame = parent
-            depth += 1
-            if depth > _MAX_DEPTH:
-                raise self._loop()
-        return common
 
     def _latest(self, frame: str) -> int:
         history = self._frames.get(frame)
@@ -334,7 +254,7 @@ class BufferCore:
 
     def _require(self, argument: str, frame: str) -> None:
         """Raise unless the frame is known."""
-        _check_name(frame)
+        check_name(frame)
         if frame in self._frames:
             return
         if not frame:
@@ -351,7 +271,7 @@ class BufferCore:
         """Return why a frame cannot be looked up, "" when it can."""
         if frame in self._frames:
             return ""
-        _check_name(frame)
+        check_name(frame)
         if not frame:
             reason = "in tf2 frame_ids cannot be empty"
         elif frame[0] == "/":
@@ -360,20 +280,12 @@ class BufferCore:
             reason = "frame does not exist"
         return f'Invalid frame ID "{frame}" passed to canTransform argument {argument} - {reason}'
 
-    def _loop(self) -> LookupException:
-        frames = self.all_frames_as_string()
-        return LookupException(f"The tf tree is invalid because it contains a loop.\n{frames}\n")
-
     # Showing the tree.
 
     def all_frames_as_string(self) -> str:
         """Return one sentence for every frame that has a parent."""
         with self._lock:
-            return "".join(
-                f"Frame {frame} exists with parent {history.latest()[1] or 'NO_PARENT'}.\n"
-                for frame, history in self._frames.items()
-                if history is not None
-            )
+            return _report.as_sentences(self._frames)
 
     def all_frames_as_yaml(self) -> str:
         """Return the tree, with rates and times, as YAML."""
@@ -405,9 +317,9 @@ class BufferCore:
         self._require("lookupTransform argument source_frame", source)
         if target == source:
             return []
-        upward, downward = self._path(target, source, stamp or self._latest_common(target, source))
-        up = [source, *map(_parent, upward)]
-        down = [target, *map(_parent, downward)]
+        upward, downward = path(self._frames, target, source, stamp or latest_common(self._frames, target, source))
+        up = [source, *map(parent_of, upward)]
+        down = [target, *map(parent_of, downward)]
         return up + down[-2::-1]
 
     # Velocities.
@@ -471,85 +383,3 @@ class BufferCore:
             time_ns(time),
             duration_ns(averaging_interval),
         )
-
-
-def _parent(found: tuple[Item, Item, float] | Item) -> str:
-    parent = found[0]
-    return parent if parent.__class__ is str else parent[0]
-
-
-def _between(problem: str, source: str, target: str) -> str:
-    return f"{problem}, when looking up transform from frame [{source}] to frame [{target}]"
-
-
-def _unconnected(target: str, source: str) -> ConnectivityException:
-    return ConnectivityException(
-        f"Could not find a connection between '{target}' and '{source}' because they are not part of the same tree."
-        "Tf has two or more unconnected trees."
-    )
-
-
-def _check_name(frame: object) -> None:
-    if not isinstance(frame, str):
-        raise TypeError(f"a frame's name must be a str, not {type(frame).__name__}")
-
-
-def _read(transform: Any) -> tuple[int, str, str, Rigid]:
-    """Return the stamp in nanoseconds, the parent, the child and the motion of a message."""
-    try:
-        # A message's slots are a third faster to read than its properties, and /tf is the busiest of topics.
-        header = transform._header
-        stamp = header._stamp
-        translation, rotation = transform._transform._translation, transform._transform._rotation
-        return (
-            stamp._sec * 1_000_000_000 + stamp._nanosec,
-            header._frame_id,
-            transform._child_frame_id,
-            (
-                translation._x,
-                translation._y,
-                translation._z,
-                rotation._x,
-                rotation._y,
-                rotation._z,
-                rotation._w,
-            ),
-        )
-    except AttributeError:
-        return _read_any(transform)
-
-
-def _read_any(transform: Any) -> tuple[int, str, str, Rigid]:
-    """Do the same for anything that looks like the message."""
-    header, moved = transform.header, transform.transform
-    parent, child = header.frame_id, transform.child_frame_id
-    for frame in (parent, child):
-        _check_name(frame)
-    translation, rotation = moved.translation, moved.rotation
-    try:
-        motion = (
-            float(translation.x),
-            float(translation.y),
-            float(translation.z),
-            float(rotation.x),
-            float(rotation.y),
-            float(rotation.z),
-            float(rotation.w),
-        )
-    except AttributeError:
-        raise TypeError("transform.translation must have x, y, z, and transform.rotation x, y, z, w") from None
-    return time_ns(header.stamp), parent, child, motion
-
-
-def _message(stamp: int, target: str, source: str, motion: Rigid) -> TransformStamped:
-    from builtin_interfaces.msg import Time
-    from geometry_msgs.msg import Quaternion, Transform, TransformStamped, Vector3
-    from std_msgs.msg import Header
-
-    x, y, z, a, b, c, d = motion
-    seconds, nanoseconds = divmod(stamp, 1_000_000_000)
-    return TransformStamped(
-        header=Header(stamp=Time(sec=seconds, nanosec=nanoseconds), frame_id=target),
-        child_frame_id=source,
-        transform=Transform(translation=Vector3(x=x, y=y, z=z), rotation=Quaternion(x=a, y=b, z=c, w=d)),
-    )
