@@ -8,16 +8,25 @@ from daidalos.cli.ros2.extension import COMMAND_GROUP, Command, Extensions
 from daidalos.cli.ros2.verbs import class_name
 
 BUILT_IN = {
-    "daemon": "Various daemon related sub-commands",
     "action": "Various action related sub-commands",
+    "component": "Various component related sub-commands",
+    "control": "Various control related sub-commands",
+    "daemon": "Various daemon related sub-commands",
+    "doctor": "Check ROS setup and other potential issues",
+    "extension_points": "List extension points",
+    "extensions": "List extensions",
     "interface": "Show information about ROS interfaces",
     "launch": "Run a launch file",
+    "lifecycle": "Various lifecycle related sub-commands",
+    "multicast": "Various multicast related sub-commands",
     "node": "Various node related sub-commands",
     "param": "Various param related sub-commands",
     "pkg": "Various package related sub-commands",
     "run": "Run a package specific executable",
     "service": "Various service related sub-commands",
     "topic": "Various topic related sub-commands",
+    "trace": "Trace ROS nodes to get information on their execution",
+    "wtf": "Use `wtf` as alias to `doctor`",
 }
 """Descriptions by name; each is the class ``<Name>Command`` in the module of its name beside this one."""
 

@@ -18,6 +18,8 @@ class VerbCommand(Command):
     """The group of entry points by which other packages add verbs."""
     verbs: ClassVar[Mapping[str, str]]
     """Descriptions of the built-in verbs by name."""
+    module: ClassVar[str] = ""
+    """The package of the built-in verbs' modules; that of the class where empty."""
 
     def add_arguments(self, parser: ArgumentParser, cli_name: str) -> None:
         """Declare the command's options and its verbs."""
@@ -40,7 +42,7 @@ class VerbCommand(Command):
 
     @classmethod
     def _load(cls, name: str) -> Verb:
-        module = import_module(f"{cls.__module__}.{name}")
+        module = import_module(f"{cls.module or cls.__module__}.{name}")
         verb: Verb = getattr(module, class_name(name, "Verb"))()
         return verb
 

@@ -1,0 +1,63 @@
+"""The platform: the machine, Python and the middleware."""
+
+from __future__ import annotations
+
+import os
+import platform
+from collections.abc import Iterable
+from importlib.metadata import version
+
+from daidalos.cli.ros2.checkup import Findings, Report, Subject
+from daidalos.transport.environment import read_environment
+from daidalos.transport.graph import Graph
+from daidalos.transport.shared import MIDDLEWARES
+
+_DISTRIBUTION = "jazzy"
+"""The distribution of ROS 2 whose names and behaviour are ours."""
+
+
+class Platform(Subject):
+    """The machine, Python, and which ROS 2 this stands for."""
+
+    category = "platform"
+
+    def check(self, graph: Graph) -> Findings:
+        """Fail with a middleware that is not here; warn where the environment is that of another distribution."""
+        findings = Findings()
+        middleware = read_environment().middleware
+        if middleware not in MIDDLEWARES:
+            findings.errors.append(
+                f"RMW_IMPLEMENTATION is {middleware}, which is not available; use {' or '.join(MIDDLEWARES)}."
+            )
+        distribution = os.environ.get("ROS_DISTRO", _DISTRIBUTION)
+        if distribution != _DISTRIBUTION:
+            findings.warnings.append(
+                f"ROS_DISTRO is {distribution}: the environment of another ROS 2 is set up in this shell, and its "
+                "Python packages may come before ours."
+            )
+        return findings
+
+    def reports(self, graph: Graph) -> Iterable[Report]:
+        """Describe them."""
+        yield Report(
+            "PLATFORM INFORMATION",
+            (
+                ("system", platform.system()),
+                ("platform info", platform.platform()),
+                ("release", platform.release()),
+                ("processor", platform.processor() or platform.machine()),
+                ("python", platform.python_version()),
+            ),
+        )
+        yield Report("RMW MIDDLEWARE", (("middleware name", read_environment().middleware),))
+        yield Report(
+            "ROS 2 INFORMATION",
+            (
+                ("distribution name", _DISTRIBUTION),
+                ("distribution type", "ros2"),
+                ("distribution status", f"provided by daidalos {version('daidalos')}"),
+            ),
+        )
+
+
+SUBJECT = Platform

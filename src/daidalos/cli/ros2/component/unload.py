@@ -1,0 +1,36 @@
+"""`ros2 component unload`."""
+
+from __future__ import annotations
+
+import sys
+from argparse import ArgumentParser, Namespace
+
+from daidalos.cli.ros2.containers import add_container_argument, find_container, unload
+from daidalos.cli.ros2.direct import add_graph_arguments, direct_node
+from daidalos.cli.ros2.extension import Status, Verb
+
+
+class UnloadVerb(Verb):
+    """Unload a component from a container node."""
+
+    def add_arguments(self, parser: ArgumentParser, cli_name: str) -> None:
+        """Declare the arguments."""
+        add_graph_arguments(parser)
+        add_container_argument(parser)
+        parser.add_argument("component_uid", nargs="+", type=int, help="Unique ID of the component to be unloaded")
+        parser.add_argument("-q", "--quiet", action="store_true", help="Use quiet output")
+
+    def main(self, *, args: Namespace) -> Status:
+        """Unload them; the status is 1 when one could not be."""
+        failed = False
+        with direct_node(args) as node:
+            container = find_container(node.handle.graph, args.container_node_name)
+            for number in args.component_uid:
+                fault = unload(node, container, number)
+                failed = failed or bool(fault)
+                if fault:
+                    print(f"Failed to unload component {number} from '{container}' container node", file=sys.stderr)
+                    print(f"    {fault}", file=sys.stderr)
+                else:
+                    print(number if args.quiet else f"Unloaded component {number} from '{container}' container node")
+        return 1 if failed else 0

@@ -1,0 +1,33 @@
+"""`ros2 control list_hardware_interfaces`."""
+
+from __future__ import annotations
+
+from argparse import ArgumentParser, Namespace
+
+from daidalos.cli.ros2.controllers import add_manager_arguments, ask
+from daidalos.cli.ros2.direct import add_direct_arguments, direct_node
+from daidalos.cli.ros2.extension import Status, Verb
+
+
+class ListHardwareInterfacesVerb(Verb):
+    """Output the list of available command and state interfaces."""
+
+    def add_arguments(self, parser: ArgumentParser, cli_name: str) -> None:
+        """Declare the arguments."""
+        add_direct_arguments(parser)
+        add_manager_arguments(parser)
+
+    def main(self, *, args: Namespace) -> Status:
+        """Print them."""
+        from controller_manager_msgs.srv import ListHardwareInterfaces
+
+        with direct_node(args) as node:
+            response = ask(node, args, "list_hardware_interfaces", ListHardwareInterfaces)
+        print("command interfaces")
+        for one in sorted(response.command_interfaces, key=lambda one: one.name):
+            available = "available" if one.is_available else "unavailable"
+            print(f"\t{one.name} [{available}] [{'claimed' if one.is_claimed else 'unclaimed'}]")
+        print("state interfaces")
+        for one in sorted(response.state_interfaces, key=lambda one: one.name):
+            print(f"\t{one.name}")
+        return 0

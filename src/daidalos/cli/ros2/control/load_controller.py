@@ -1,0 +1,60 @@
+"""`ros2 control load_controller`."""
+
+from __future__ import annotations
+
+from argparse import ArgumentParser, Namespace
+from typing import TYPE_CHECKING
+
+from daidalos.cli.ros2.controllers import add_manager_arguments, configure, load, switch
+from daidalos.cli.ros2.direct import add_direct_arguments, direct_node
+from daidalos.cli.ros2.errors import CliError
+from daidalos.cli.ros2.extension import Status, Verb
+from daidalos.cli.ros2.graph import absolute
+from daidalos.cli.ros2.parameters import set_parameters
+
+if TYPE_CHECKING:
+    from rclpy.node import Node
+
+
+class LoadControllerVerb(Verb):
+    """Load a controller in a controller manager."""
+
+    def add_arguments(self, parser: ArgumentParser, cli_name: str) -> None:
+        """Declare the arguments."""
+        add_direct_arguments(parser)
+        parser.add_argument("controller_name", help="Name of the controller")
+        parser.add_argument("param_file", nargs="?", help="The YAML file with the controller parameters")
+        parser.add_argument(
+            "--set-state", choices=("inactive", "active"), help="Set the state of the loaded controller"
+        )
+        add_manager_arguments(parser)
+
+    def main(self, *, args: Namespace) -> Status:
+        """Load it, and bring it to the state that is asked for."""
+        name = args.controller_name
+        with direct_node(args) as node:
+            if args.param_file:
+                _set_parameters(node, args, name)
+            load(node, args, name)
+            if args.set_state is None:
+                print(f"Successfully loaded controller {name}")
+                return 0
+            configure(node, args, name)
+            if args.set_state == "active":
+                switch(node, args, "Error activating controller", activate=[name])
+        print(f"Successfully loaded controller {name} into state {args.set_state}")
+        return 0
+
+
+def _set_parameters(node: Node, args: Namespace, name: str) -> None:
+    """Tell the manager the controller's type and its parameter file."""
+    from rcl_interfaces.msg import Parameter
+    from rclpy.parameter import get_parameter_value, parameter_dict_from_yaml_file
+
+    wanted = parameter_dict_from_yaml_file(args.param_file, use_wildcard=True, target_nodes=[absolute(name)])
+    parameters = [Parameter(name=f"{name}.params_file", value=get_parameter_value(args.param_file))]
+    if "type" in wanted:
+        parameters.append(Parameter(name=f"{name}.type", value=wanted["type"].value))
+    for result in set_parameters(node, absolute(args.controller_manager), parameters):
+        if not result.successful:
+            raise CliError(f"Could not set the parameters of controller {name}: {result.reason}")

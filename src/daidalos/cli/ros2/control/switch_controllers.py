@@ -1,0 +1,45 @@
+"""`ros2 control switch_controllers`."""
+
+from __future__ import annotations
+
+from argparse import ArgumentParser, Namespace
+
+from daidalos.cli.ros2.controllers import add_controller_argument, add_manager_arguments, switch
+from daidalos.cli.ros2.direct import add_direct_arguments, direct_node
+from daidalos.cli.ros2.extension import Status, Verb
+from daidalos.cli.ros2.topic.echo import positive_float
+
+
+class SwitchControllersVerb(Verb):
+    """Switch controllers in a controller manager."""
+
+    def add_arguments(self, parser: ArgumentParser, cli_name: str) -> None:
+        """Declare the arguments."""
+        add_direct_arguments(parser)
+        for flag, done in (("--deactivate", "deactivated"), ("--activate", "activated")):
+            text = f"Name of the controllers to be {done}"
+            add_controller_argument(parser, text, flag, nargs="*", default=[])
+        strictness = parser.add_mutually_exclusive_group()
+        strictness.add_argument("--strict", action="store_true", help="Strict switch")
+        strictness.add_argument("--best-effort", action="store_true", help="Best effort switch")
+        parser.add_argument("--activate-asap", action="store_true", help="Start asap controllers")
+        parser.add_argument(
+            "--switch-timeout", type=positive_float, default=5.0, help="Timeout for switching controllers"
+        )
+        add_manager_arguments(parser)
+
+    def main(self, *, args: Namespace) -> Status:
+        """Do it."""
+        with direct_node(args) as node:
+            switch(
+                node,
+                args,
+                "Error switching controllers",
+                activate=args.activate,
+                deactivate=args.deactivate,
+                strict=args.strict,
+                asap=args.activate_asap,
+                timeout_s=args.switch_timeout,
+            )
+        print("Successfully switched controllers")
+        return 0

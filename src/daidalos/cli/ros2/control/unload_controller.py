@@ -1,0 +1,29 @@
+"""`ros2 control unload_controller`."""
+
+from __future__ import annotations
+
+from argparse import ArgumentParser, Namespace
+
+from daidalos.cli.ros2.controllers import add_controller_argument, add_manager_arguments, ask
+from daidalos.cli.ros2.direct import add_direct_arguments, direct_node
+from daidalos.cli.ros2.extension import Status, Verb
+
+
+class UnloadControllerVerb(Verb):
+    """Unload a controller in a controller manager."""
+
+    def add_arguments(self, parser: ArgumentParser, cli_name: str) -> None:
+        """Declare the arguments."""
+        add_direct_arguments(parser)
+        add_controller_argument(parser, "Name of the controller")
+        add_manager_arguments(parser)
+
+    def main(self, *, args: Namespace) -> Status:
+        """Do it."""
+        from controller_manager_msgs.srv import UnloadController
+
+        with direct_node(args) as node:
+            if not ask(node, args, "unload_controller", UnloadController, name=args.controller_name).ok:
+                return "Error unloading controllers, check controller_manager logs"
+        print(f"Successfully unloaded controller {args.controller_name}")
+        return 0

@@ -1,0 +1,76 @@
+"""`ros2 control view_controller_chains`."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+import tempfile
+from argparse import ArgumentParser, Namespace
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import Any
+
+from daidalos.cli.ros2.controllers import add_manager_arguments, ask, list_controllers
+from daidalos.cli.ros2.direct import add_direct_arguments, direct_node
+from daidalos.cli.ros2.errors import CliError
+from daidalos.cli.ros2.extension import Status, Verb
+
+
+class ViewControllerChainsVerb(Verb):
+    """Generates a diagram of the loaded chained controllers into /tmp/controller_diagram.gv.pdf."""
+
+    def add_arguments(self, parser: ArgumentParser, cli_name: str) -> None:
+        """Declare the arguments."""
+        add_direct_arguments(parser)
+        add_manager_arguments(parser)
+
+    def main(self, *, args: Namespace) -> Status:
+        """Write the diagram, as a PDF where Graphviz is installed, and print where it is."""
+        from controller_manager_msgs.srv import ListHardwareInterfaces
+
+        with direct_node(args) as node:
+            controllers = list_controllers(node, args)
+            hardware = ask(node, args, "list_hardware_interfaces", ListHardwareInterfaces)
+        path = Path(tempfile.gettempdir()) / "controller_diagram.gv"
+        path.write_text(diagram(controllers, hardware), encoding="utf-8")
+        program = shutil.which("dot")
+        if program is None:
+            print(f"{path} (install Graphviz to have it drawn as a PDF)")
+            return 0
+        pdf = path.with_suffix(".gv.pdf")
+        drawn = subprocess.run([program, "-Tpdf", path, "-o", pdf], capture_output=True, text=True, check=False)
+        if drawn.returncode:
+            raise CliError(f"Graphviz cannot draw {path}: {drawn.stderr.strip()}")
+        print(pdf)
+        return 0
+
+
+def diagram(controllers: Iterable[Any], hardware: Any) -> str:
+    """Return a graph in Graphviz's language: controllers and hardware, joined by the interfaces that they share."""
+    lines = ["digraph controllers {", "  rankdir=LR;", "  node [shape=box, style=rounded];"]
+    lines += [
+        '  "hardware: commands" [shape=cylinder, style=solid];',
+        '  "hardware: states" [shape=cylinder, style=solid];',
+    ]
+    commands = {one.name for one in hardware.command_interfaces}
+    states = {one.name for one in hardware.state_interfaces}
+    for controller in controllers:
+        label = rf"{controller.name}\n{controller.type}\n{controller.state}"
+        lines.append(f"  {_quoted(controller.name)} [label={_quoted(label)}];")
+        lines += (f"  {edge};" for edge in _edges(controller, commands, states))
+    return "\n".join([*lines, "}", ""])
+
+
+def _edges(controller: Any, commands: set[str], states: set[str]) -> Iterator[str]:
+    name = _quoted(controller.name)
+    for interface in controller.required_state_interfaces:
+        source = "hardware: states" if interface in states else interface.split("/")[0]
+        yield f"{_quoted(source)} -> {name} [label={_quoted(interface)}]"
+    for interface in controller.required_command_interfaces:
+        target = "hardware: commands" if interface in commands else interface.split("/")[0]
+        yield f"{name} -> {_quoted(target)} [label={_quoted(interface)}]"
+
+
+def _quoted(text: str) -> str:
+    escaped = text.replace('"', r"\"")
+    return f'"{escaped}"'

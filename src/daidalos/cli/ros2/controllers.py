@@ -1,0 +1,145 @@
+"""The controller manager: its services, and what it says of controllers and hardware."""
+
+from __future__ import annotations
+
+from argparse import ArgumentParser, Namespace
+from typing import TYPE_CHECKING, Any
+
+from daidalos.cli.ros2.completion import complete
+from daidalos.cli.ros2.direct import direct_node
+from daidalos.cli.ros2.errors import CliError
+from daidalos.cli.ros2.services import call
+from daidalos.cli.ros2.suggestions import did_you_mean
+from daidalos.transport.graph import EndpointKind
+
+if TYPE_CHECKING:
+    from rclpy.node import Node
+
+DEFAULT_MANAGER = "controller_manager"
+_LIST = "/list_controllers"
+_READY_S = 5.0
+_ANSWER_S = 30.0
+
+
+def add_manager_arguments(parser: ArgumentParser) -> None:
+    """Declare which controller manager is meant."""
+    parser.add_argument(
+        "-c",
+        "--controller-manager",
+        default=DEFAULT_MANAGER,
+        help=f"Name of the controller manager ROS node (default: {DEFAULT_MANAGER})",
+    )
+    parser.add_argument("--include-hidden-nodes", action="store_true", help="Consider hidden nodes as well")
+
+
+def ask(node: Node, args: Namespace, service: str, service_type: Any, **request: Any) -> Any:
+    """Return the answer of one of the manager's services, such as ``list_controllers``.
+
+    Raises
+    ------
+    CliError
+        When there is no such manager or it does not answer.
+    """
+    manager = args.controller_manager
+    name = node.resolve_service_name(f"{manager}/{service}")
+    graph = node.handle.graph
+    if not graph.wait_for(lambda: bool(graph.endpoints(EndpointKind.SERVICE, name=name)), _READY_S):
+        managers = [one.name.removesuffix(_LIST) for one in graph.endpoints() if one.name.endswith(_LIST)]
+        hint = did_you_mean(name.removesuffix(f"/{service}"), managers)
+        raise CliError(f"Could not contact service {name}{hint}")
+    return call(node, service_type, name, service_type.Request(**request), answer_s=_ANSWER_S)
+
+
+def list_controllers(node: Node, args: Namespace) -> list[Any]:
+    """Return the controllers: `controller_manager_msgs/msg/ControllerState`."""
+    from controller_manager_msgs.srv import ListControllers
+
+    return list(ask(node, args, "list_controllers", ListControllers).controller)
+
+
+def list_components(node: Node, args: Namespace) -> list[Any]:
+    """Return the hardware components: `controller_manager_msgs/msg/HardwareComponentState`."""
+    from controller_manager_msgs.srv import ListHardwareComponents
+
+    return list(ask(node, args, "list_hardware_components", ListHardwareComponents).component)
+
+
+def find_controller(node: Node, args: Namespace, name: str) -> Any:
+    """Return a loaded controller; CliError where there is none of that name."""
+    loaded = {one.name: one for one in list_controllers(node, args)}
+    if name not in loaded:
+        raise CliError(f"controller {name} does not seem to be loaded{did_you_mean(name, loaded)}")
+    return loaded[name]
+
+
+def configure(node: Node, args: Namespace, name: str) -> None:
+    """Configure a controller."""
+    from controller_manager_msgs.srv import ConfigureController
+
+    if not ask(node, args, "configure_controller", ConfigureController, name=name).ok:
+        raise CliError("Error configuring controller, check controller_manager logs")
+
+
+def load(node: Node, args: Namespace, name: str) -> None:
+    """Load a controller."""
+    from controller_manager_msgs.srv import LoadController
+
+    if not ask(node, args, "load_controller", LoadController, name=name).ok:
+        raise CliError(f"Error loading controller {name}, check controller_manager logs")
+
+
+def switch(
+    node: Node,
+    args: Namespace,
+    fault: str,
+    *,
+    activate: list[str] | None = None,
+    deactivate: list[str] | None = None,
+    strict: bool = True,
+    asap: bool = True,
+    timeout_s: float = 5.0,
+) -> None:
+    """Activate and deactivate controllers; CliError with `fault` and the manager's reason when it refuses."""
+    from builtin_interfaces.msg import Duration
+    from controller_manager_msgs.srv import SwitchController
+
+    request = SwitchController.Request
+    response = ask(
+        node,
+        args,
+        "switch_controller",
+        SwitchController,
+        activate_controllers=activate or [],
+        deactivate_controllers=deactivate or [],
+        strictness=request.STRICT if strict else request.BEST_EFFORT,
+        activate_asap=asap,
+        timeout=Duration(sec=int(timeout_s), nanosec=int(timeout_s % 1 * 1e9)),
+    )
+    if not response.ok:
+        raise CliError(f"{fault}, check controller_manager logs{f': {response.message}' if response.message else ''}")
+
+
+def add_controller_argument(parser: ArgumentParser, text: str, name: str = "controller_name", **options: Any) -> None:
+    """Declare an argument that names a loaded controller."""
+
+    def names(parsed_args: Namespace, **_: Any) -> list[str]:
+        with direct_node(parsed_args) as node:
+            return [one.name for one in list_controllers(node, parsed_args)]
+
+    complete(parser.add_argument(name, help=text, **options), names)
+
+
+def add_component_argument(parser: ArgumentParser, text: str) -> None:
+    """Declare an argument that names a hardware component."""
+
+    def names(parsed_args: Namespace, **_: Any) -> list[str]:
+        with direct_node(parsed_args) as node:
+            return [one.name for one in list_components(node, parsed_args)]
+
+    complete(parser.add_argument("hardware_component_name", help=text), names)
+
+
+def columns(rows: list[tuple[str, ...]]) -> list[str]:
+    """Return rows of texts with their columns aligned."""
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    return ["  ".join(f"{text:<{width}}" for text, width in zip(row, widths, strict=True)).rstrip() for row in rows]

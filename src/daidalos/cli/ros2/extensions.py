@@ -1,0 +1,42 @@
+"""`ros2 extensions`."""
+
+from __future__ import annotations
+
+from argparse import ArgumentParser, Namespace
+
+from daidalos.cli.ros2.extension import Command, Extensions, Status
+
+
+class ExtensionsCommand(Command):
+    """List extensions."""
+
+    def add_arguments(self, parser: ArgumentParser, cli_name: str) -> None:
+        """Declare the arguments."""
+        add_list_arguments(parser, "extensions")
+
+    def main(self, *, parser: ArgumentParser, args: Namespace) -> Status:
+        """Print the extensions of every group."""
+        from daidalos.cli.ros2.groups import groups
+
+        for group, extensions in groups().items():
+            if not extensions and not args.all:
+                continue
+            print(group)
+            for name in extensions:
+                print(f"  {name}: {extensions.describe(name)}")
+                if args.verbose:
+                    print(f"    from: {_origin(extensions, name)}")
+        return 0
+
+
+def _origin(extensions: Extensions, name: str) -> str:
+    if name in extensions.built_in:
+        return "daidalos"
+    point = extensions.added[name]
+    return f"{point.dist.name if point.dist else 'unknown'} ({point.value})"
+
+
+def add_list_arguments(parser: ArgumentParser, what: str) -> None:
+    """Declare the arguments that `ros2 extension_points` has as well."""
+    parser.add_argument("--all", "-a", action="store_true", help=f"Also show empty {what}")
+    parser.add_argument("--verbose", "-v", action="store_true", help=f"Show more information for each of the {what}")

@@ -1,0 +1,18 @@
+"""Every group of entry points by which something is added to the command `ros2`."""
+
+from __future__ import annotations
+
+from daidalos.cli.ros2.commands import commands
+from daidalos.cli.ros2.extension import Extensions
+from daidalos.cli.ros2.verbs import VerbCommand
+
+
+def groups() -> dict[str, Extensions]:
+    """Return the extensions of each group, the groups sorted by name."""
+    everything = commands()
+    found = {everything.group: everything}
+    for name in everything.built_in:
+        command = everything[name]
+        if isinstance(command, VerbCommand):
+            found[command.group] = command.extensions()
+    return dict(sorted(found.items()))

@@ -1,0 +1,31 @@
+"""`ros2 lifecycle get`."""
+
+from __future__ import annotations
+
+from argparse import ArgumentParser, Namespace
+
+from daidalos.cli.ros2.direct import add_graph_arguments, direct_node
+from daidalos.cli.ros2.extension import Status, Verb
+from daidalos.cli.ros2.lifecycles import add_node_arguments, find_managed, managed_nodes, state
+
+
+class GetVerb(Verb):
+    """Get lifecycle state for one or more nodes."""
+
+    def add_arguments(self, parser: ArgumentParser, cli_name: str) -> None:
+        """Declare the arguments."""
+        add_graph_arguments(parser)
+        add_node_arguments(parser, nargs="?")
+
+    def main(self, *, args: Namespace) -> Status:
+        """Print the state of one node, or of every node behind its name."""
+        with direct_node(args) as node:
+            graph = node.handle.graph
+            if args.node_name:
+                found = state(node, find_managed(graph, args))
+                print(f"{found.label} [{found.id}]")
+                return 0
+            for name in managed_nodes(graph, args.include_hidden_nodes):
+                found = state(node, name)
+                print(f"{name}: {found.label} [{found.id}]")
+        return 0

@@ -1,0 +1,32 @@
+"""`ros2 lifecycle nodes`."""
+
+from __future__ import annotations
+
+from argparse import ArgumentParser, Namespace
+
+from daidalos.cli.ros2.direct import add_graph_arguments, graph_view
+from daidalos.cli.ros2.extension import Status, Verb
+from daidalos.cli.ros2.lifecycles import managed_nodes
+
+
+class NodesVerb(Verb):
+    """Output a list of nodes with lifecycle."""
+
+    def add_arguments(self, parser: ArgumentParser, cli_name: str) -> None:
+        """Declare the arguments."""
+        add_graph_arguments(parser)
+        parser.add_argument("-a", "--all", action="store_true", help="Display all nodes even hidden ones")
+        parser.add_argument(
+            "-c", "--count-nodes", action="store_true", help="Only display the number of nodes discovered"
+        )
+
+    def main(self, *, args: Namespace) -> Status:
+        """Print the full names, or how many there are."""
+        with graph_view(args) as graph:
+            found = managed_nodes(graph, args.all)
+        if args.count_nodes:
+            print(len(found))
+            return 0
+        for name in found:
+            print(name)
+        return 0

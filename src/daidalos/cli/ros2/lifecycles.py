@@ -1,0 +1,76 @@
+"""Managed nodes: which there are, their states and their transitions."""
+
+from __future__ import annotations
+
+from argparse import ArgumentParser, Namespace
+from typing import TYPE_CHECKING, Any
+
+from daidalos.cli.ros2.completion import complete
+from daidalos.cli.ros2.errors import CliError
+from daidalos.cli.ros2.graph import absolute, nodes
+from daidalos.cli.ros2.services import call
+from daidalos.cli.ros2.suggestions import did_you_mean
+from daidalos.transport.graph import EndpointKind, Graph
+
+if TYPE_CHECKING:
+    from rclpy.node import Node
+
+_TRANSITION_S = 60.0
+"""How long a transition may take: nodes load maps and open devices in it."""
+
+
+def add_node_arguments(parser: ArgumentParser, **options: Any) -> None:
+    """Declare which managed node is meant."""
+
+    def names(parsed_args: Namespace, **_: Any) -> list[str]:
+        from daidalos.cli.ros2.direct import graph_view
+
+        with graph_view(parsed_args) as graph:
+            return managed_nodes(graph, getattr(parsed_args, "include_hidden_nodes", False))
+
+    complete(parser.add_argument("node_name", help="Name of the ROS node", **options), names)
+    parser.add_argument("--include-hidden-nodes", action="store_true", help="Consider hidden nodes as well")
+
+
+def managed_nodes(graph: Graph, include_hidden: bool = False) -> list[str]:
+    """Return the full names of the nodes that have a lifecycle, sorted."""
+    return [
+        node.full_name
+        for node in nodes(graph, include_hidden)
+        if any(
+            endpoint.name == f"{node.full_name}/get_state" and endpoint.type_name == "lifecycle_msgs/srv/GetState"
+            for endpoint in graph.endpoints_of(node, EndpointKind.SERVICE)
+        )
+    ]
+
+
+def find_managed(graph: Graph, args: Namespace) -> str:
+    """Return the full name of the managed node that is meant; CliError where there is none."""
+    name, known = absolute(args.node_name), managed_nodes(graph, args.include_hidden_nodes)
+    if name not in known:
+        raise CliError(f"Node not found{did_you_mean(name, known)}")
+    return name
+
+
+def state(node: Node, name: str) -> Any:
+    """Return a node's state: `lifecycle_msgs/msg/State`."""
+    from lifecycle_msgs.srv import GetState
+
+    return call(node, GetState, f"{name}/get_state", GetState.Request()).current_state
+
+
+def transitions(node: Node, name: str, every: bool = False) -> list[Any]:
+    """Return the transitions that a node can make now, or every one of its state machine (`TransitionDescription`)."""
+    from lifecycle_msgs.srv import GetAvailableTransitions
+
+    service = "get_transition_graph" if every else "get_available_transitions"
+    response = call(node, GetAvailableTransitions, f"{name}/{service}", GetAvailableTransitions.Request())
+    return list(response.available_transitions)
+
+
+def change_state(node: Node, name: str, transition: Any) -> bool:
+    """Have a node make a transition (`lifecycle_msgs/msg/Transition`); tell whether it did."""
+    from lifecycle_msgs.srv import ChangeState
+
+    request = ChangeState.Request(transition=transition)
+    return bool(call(node, ChangeState, f"{name}/change_state", request, answer_s=_TRANSITION_S).success)
