@@ -162,11 +162,21 @@ class BtNavigator(LifecycleNode):
             goal_handle.succeed()
             self.get_logger().info("the goal is reached")
         else:
-            names = ("compute_path_error_msg", "follow_path_error_msg")
-            reasons = [str(blackboard.get(name)) for name in names if blackboard.get(name)]
-            result.error_msg = reasons[0] if reasons else "no recovery helped"
+            result.error_code, result.error_msg = _reason(blackboard)
             goal_handle.abort()
             self.get_logger().error(f"the goal is given up: {result.error_msg}")
+
+
+def _reason(blackboard: Blackboard) -> tuple[int, str]:
+    """Return the error code of the action that failed, as Nav2's results number it, and why it failed."""
+    from nav2_msgs.action import ComputePathToPose, FollowPath
+
+    for action, kind in (("compute_path", ComputePathToPose.Result), ("follow_path", FollowPath.Result)):
+        text = blackboard.get(f"{action}_error_msg")
+        if text:
+            name = str(blackboard.get(f"{action}_error_code", "UNKNOWN"))
+            return int(getattr(kind, name, kind.UNKNOWN)), str(text)
+    return 0, "no recovery helped"
 
 
 def _remaining(path: Any, pose: Any) -> float:
