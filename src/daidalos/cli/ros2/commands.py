@@ -23,6 +23,7 @@ BUILT_IN = {
     "param": "Various param related sub-commands",
     "pkg": "Various package related sub-commands",
     "run": "Run a package specific executable",
+    "security": "Various security related sub-commands",
     "service": "Various service related sub-commands",
     "topic": "Various topic related sub-commands",
     "trace": "Trace ROS nodes to get information on their execution",
