@@ -1,1 +1,1 @@
-"""Hardware interfaces, controllers and the manager that runs them."""
+"""Hardware interfaces, controllers and their manager, as ros2_control has them; plain arrays, no middleware."""

@@ -1,0 +1,56 @@
+"""What can go wrong in control."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable
+
+
+class ControlError(Exception):
+    """Something about hardware or controllers is not as it must be; one line for the user."""
+
+
+class HardwareError(ControlError):
+    """Hardware refuses or fails; raise it from a hardware class of your own."""
+
+
+class ParameterError(ControlError):
+    """A parameter of a controller has a value that it cannot have.
+
+    Parameters
+    ----------
+    name : str
+        The parameter, with dots.
+    problem : str
+    """
+
+    def __init__(self, name: str, problem: str) -> None:
+        super().__init__(f"parameter '{name}' {problem}")
+        self.name = name
+
+
+class UnknownError(ControlError):
+    """A name that is not there; says which are.
+
+    Parameters
+    ----------
+    what : str
+        Such as ``controller``.
+    name : str
+    known : iterable of str
+    """
+
+    def __init__(self, what: str, name: str, known: Iterable[str]) -> None:
+        self.name = name
+        self.known = tuple(known)
+        near = difflib.get_close_matches(name, self.known, n=3)
+        hint = f"; did you mean {' or '.join(near)}?" if near else f"; there are: {', '.join(self.known) or 'none'}"
+        super().__init__(f"there is no {what} '{name}'{hint}")
+
+
+class StateError(ControlError):
+    """A transition that the state of a controller or component does not allow."""
+
+
+class SwitchError(ControlError):
+    """Controllers that cannot be switched as asked."""

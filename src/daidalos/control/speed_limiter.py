@@ -1,0 +1,126 @@
+"""Limits of speed, acceleration and jerk of a commanded velocity."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from daidalos.control.errors import ParameterError
+from daidalos.control.parameters import parameter
+
+NAN = math.nan
+
+
+@dataclass(frozen=True)
+class SpeedLimits:
+    """Limits of one direction of motion; NaN where there is none.
+
+    Parameters
+    ----------
+    has_velocity_limits, has_acceleration_limits, has_jerk_limits : bool
+        Old files switch limits on with these; limits that are given hold without as well.
+    max_velocity, min_velocity : float
+        Ahead and backwards [m/s, rad/s]; without the second the first holds both ways.
+    max_acceleration, min_acceleration : float
+        Old names: of speeding up; and, negative, of slowing down.
+    max_deceleration : float
+        Of slowing down ahead, negative [m/s^2, rad/s^2].
+    max_acceleration_reverse, max_deceleration_reverse : float
+        Of speeding up backwards (negative) and slowing down backwards (positive).
+    max_jerk, min_jerk : float
+        [m/s^3, rad/s^3].
+    """
+
+    has_velocity_limits: bool = parameter(default=False)
+    has_acceleration_limits: bool = parameter(default=False)
+    has_jerk_limits: bool = parameter(default=False)
+    max_velocity: float = parameter(NAN)
+    min_velocity: float = parameter(NAN)
+    max_acceleration: float = parameter(NAN)
+    min_acceleration: float = parameter(NAN)
+    max_deceleration: float = parameter(NAN)
+    max_acceleration_reverse: float = parameter(NAN)
+    max_deceleration_reverse: float = parameter(NAN)
+    max_jerk: float = parameter(NAN)
+    min_jerk: float = parameter(NAN)
+
+
+class SpeedLimiter:
+    """Keeps one direction's velocity within limits.
+
+    Parameters
+    ----------
+    limits : SpeedLimits
+    name : str
+        Of the direction, for errors, such as ``linear.x``.
+
+    Raises
+    ------
+    ParameterError
+        When limits are asked for and not given, or contradict each other.
+    """
+
+    def __init__(self, limits: SpeedLimits, name: str = "") -> None:
+        _require(limits, name)
+        self.upper = _given(limits.max_velocity, math.inf)
+        self.lower = _given(limits.min_velocity, -self.upper)
+        self.speed_up = _given(limits.max_acceleration, math.inf)
+        self.slow_down = abs(_given(limits.max_deceleration, _given(limits.min_acceleration, self.speed_up)))
+        self.speed_up_reverse = abs(_given(limits.max_acceleration_reverse, self.speed_up))
+        self.slow_down_reverse = abs(_given(limits.max_deceleration_reverse, self.slow_down))
+        self.jerk_up = _given(limits.max_jerk, math.inf)
+        self.jerk_down = _given(limits.min_jerk, -self.jerk_up)
+        for what, lower, upper in (("velocity", self.lower, self.upper), ("jerk", self.jerk_down, self.jerk_up)):
+            if lower > upper:
+                raise ParameterError(f"{name}.min_{what}", f"is above max_{what}: {lower:g} > {upper:g}")
+        if self.speed_up < 0.0:
+            raise ParameterError(f"{name}.max_acceleration", f"must not be negative, got {self.speed_up:g}")
+        self._jerk = math.isfinite(self.jerk_up) or math.isfinite(self.jerk_down)
+
+    def limit(self, wanted: float, last: float, before: float, period: float) -> float:
+        """Return the velocity that is allowed.
+
+        Parameters
+        ----------
+        wanted : float
+            [m/s, rad/s].
+        last, before : float
+            What was allowed in the last cycle and in the one before.
+        period : float
+            Between cycles [s].
+        """
+        if self._jerk:
+            change, change_before = wanted - last, last - before
+            squared = period * period
+            change = change_before + min(max(change - change_before, self.jerk_down * squared), self.jerk_up * squared)
+            wanted = last + change
+        lowest, highest = self._reachable(last, period)
+        wanted = min(max(wanted, lowest), highest)
+        return min(max(wanted, self.lower), self.upper)
+
+    def _reachable(self, last: float, period: float) -> tuple[float, float]:
+        """Return the velocities between which one cycle can lead."""
+        up, down, back, stop = (
+            rate * period if math.isfinite(rate) else math.inf
+            for rate in (self.speed_up, self.slow_down, self.speed_up_reverse, self.slow_down_reverse)
+        )
+        if last > 0.0:
+            # Slowing down ends at zero; what is left of the cycle speeds up backwards.
+            return (last - down if last >= down else -back * (1.0 - last / down)), last + up
+        if last < 0.0:
+            return last - back, (last + stop if -last >= stop else up * (1.0 + last / stop))
+        return -back, up
+
+
+def _require(limits: SpeedLimits, name: str) -> None:
+    for wanted, key, value in (
+        (limits.has_velocity_limits, "max_velocity", limits.max_velocity),
+        (limits.has_acceleration_limits, "max_acceleration", limits.max_acceleration),
+        (limits.has_jerk_limits, "max_jerk", limits.max_jerk),
+    ):
+        if wanted and math.isnan(value):
+            raise ParameterError(f"{name}.{key}", "is missing, although its limits are switched on")
+
+
+def _given(value: float, default: float) -> float:
+    return default if math.isnan(value) else value
