@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import contextlib
 import difflib
 import os
+import signal
 import sys
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 BUILT_IN = Path(__file__).resolve().parent
+_START = str(BUILT_IN / "start.py")
 
 
 class ExecutableNotFound(LookupError):
@@ -30,13 +34,29 @@ def find_executable(package: str, executable: str) -> list[str]:
             return [str(path)]
     module = _modules(package).get(executable)
     if module is not None:
-        return [sys.executable, "-m", f"daidalos.nodes.{package}.{module}"]
+        return [sys.executable, "-S", "-P", _START, package, module]
     known = executables(package)
     if not known and not is_known(package):
         raise ExecutableNotFound(f"Package '{package}' not found")
     near = difflib.get_close_matches(executable, known, n=3)
     hint = f"; did you mean {' or '.join(near)}?" if near else f"; there are: {', '.join(known)}" if known else ""
     raise ExecutableNotFound(f"No executable '{executable}' in package '{package}'{hint}")
+
+
+@contextlib.contextmanager
+def interrupts_blocked(command: Sequence[str]) -> Iterator[None]:
+    """Keep Ctrl-C from a built-in executable while it is being started; it lets the signal in when it is ready.
+
+    Any other command is left alone, as it would never unblock the signal.
+    """
+    if _START not in command[:4] or not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, [signal.SIGINT])
 
 
 def executables(package: str) -> list[str]:
@@ -48,7 +68,7 @@ def executables(package: str) -> list[str]:
 def executable_path(package: str, executable: str) -> Path:
     """Return the file behind an executable; see `find_executable` for what it raises."""
     command = find_executable(package, executable)
-    return Path(command[0]) if len(command) == 1 else BUILT_IN / package / f"{command[2].rpartition('.')[2]}.py"
+    return Path(command[0]) if len(command) == 1 else BUILT_IN / package / f"{command[-1]}.py"
 
 
 def is_known(package: str) -> bool:

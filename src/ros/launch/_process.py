@@ -15,6 +15,8 @@ import sys
 from collections.abc import Callable
 from typing import Any
 
+from daidalos.nodes.executables import interrupts_blocked
+
 from ._programs import search_path, which
 
 _POSIX = os.name == "posix"
@@ -222,7 +224,8 @@ async def _spawn(child: ChildProcess, cmd: list[str], shell: bool, options: dict
         if found is None:
             raise FileNotFoundError(f"executable '{program}' not found on the PATH")
         program = found
-    await loop.subprocess_exec(lambda: child, program, *cmd[1:], **options)
+    with interrupts_blocked(cmd):
+        await loop.subprocess_exec(lambda: child, program, *cmd[1:], **options)
 
 
 def _open_channel(emulate_tty: bool) -> tuple[int, int]:

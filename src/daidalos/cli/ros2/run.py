@@ -30,12 +30,15 @@ class RunCommand(Command):
 
     def main(self, *, parser: ArgumentParser, args: Namespace) -> Status:
         """Become the executable, so that its signals, its terminal and its exit status are its own."""
+        from daidalos.nodes.executables import interrupts_blocked
+
         command = [*shlex.split(args.prefix or ""), *_find(args.package_name, args.executable_name), *args.argv]
         sys.stdout.flush()
         if sys.platform == "win32":
             return subprocess.run(command, check=False).returncode
         try:
-            os.execvp(command[0], command)
+            with interrupts_blocked(command):
+                os.execvp(command[0], command)
         except OSError as error:
             raise CliError(f"{command[0]}: {error.strerror}") from None
 

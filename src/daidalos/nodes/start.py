@@ -1,0 +1,29 @@
+"""The program of every built-in executable: ``python -S -P start.py PACKAGE MODULE ARGUMENT...``.
+
+Ctrl-C reaches all processes of a terminal, also those that are still importing, where Python would answer with a
+traceback. So whoever starts us blocks the signal (see `executables.interrupts_blocked`), and here it gets its quiet
+default (through the built-in module, as ``signal`` itself takes a while to import) before it is let in, and before
+``site``, which ``-S`` keeps back. `rclpy.init` takes the signal over later.
+"""
+
+import _signal
+import sys
+
+_signal.signal(_signal.SIGINT, _signal.SIG_DFL)
+if hasattr(_signal, "pthread_sigmask"):
+    _signal.pthread_sigmask(_signal.SIG_UNBLOCK, [_signal.SIGINT])
+
+
+def main() -> None:
+    """Run a module of a package as the main program."""
+    import runpy
+    import site
+
+    site.main()
+    package, module, *arguments = sys.argv[1:]
+    sys.argv = [sys.argv[0], *arguments]
+    runpy.run_module(f"daidalos.nodes.{package}.{module}", run_name="__main__", alter_sys=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,103 @@
+"""`daidalos demo` as users run it: on trial, with other commands beside it, and ended at any moment."""
+
+import json
+import re
+import socket
+
+import pytest
+
+from end_to_end.processes import DAIDALOS, ROS2, Command, finished
+
+DEMO = [*DAIDALOS, "demo"]
+UP = "Managed nodes are active"
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(300)
+def test_headless_reaches_three_goals_and_touches_nothing(domain: int) -> None:
+    done = finished(*DEMO, "--headless", "--seed", "1", "--json", domain=domain)
+    assert done.returncode == 0, done.stderr
+    report = json.loads(done.stdout)
+    assert len(report["goals"]) == 3
+    for goal in report["goals"]:
+        assert goal["reached"]
+        assert goal["position_error_m"] < 0.15
+        assert goal["yaw_error_rad"] < 0.25
+        assert goal["path_length_m"] > 1.0
+        assert goal["time_s"] > 2.0
+    assert report["contacts"] == 0
+    assert report["localization_rmse_m"] < 0.05
+    assert report["map"]["resolution_m"] == pytest.approx(0.05)
+    assert report["map"]["walls_found"] > 0.8
+    assert report["map"]["walls_true"] > 0.98
+    assert report["real_time_factor"] > 0.9
+    assert report["processes"] >= 3
+    assert 0 < report["cpu_percent"] < 200
+    assert 100 < report["peak_rss_mb"] < 2000
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "moment",
+    ["process started", "Loaded slam_toolbox", "spawned 'waffle'", UP, "ready for scans", "process has finished"],
+)
+def test_ctrl_c_ends_everything_at_any_moment(domain: int, moment: str) -> None:
+    with Command(*DEMO, "--no-browser", domain=domain) as demo:
+        demo.wait_for_line(re.escape(moment))
+        demo.interrupt()
+        demo.assert_no_traceback()
+
+
+@pytest.mark.slow
+def test_a_used_port_gives_the_next_one(domain: int) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        port = taken.getsockname()[1]
+        with Command(*DEMO, "--no-browser", "--port", str(port), domain=domain) as demo:
+            line = demo.wait_for_line("studio: http://")
+            chosen = int(line.rsplit(":", 1)[1].strip("/"))
+            assert chosen != port
+            demo.interrupt()
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(240)
+def test_other_commands_see_the_running_demonstration(domain: int) -> None:
+    with Command(*DEMO, "--no-browser", domain=domain) as demo:
+        demo.wait_for_line("ready for scans")
+        topics = finished(*ROS2, "topic", "list", domain=domain).stdout.split()
+        assert {"/clock", "/scan", "/odom", "/tf", "/tf_static", "/map", "/cmd_vel", "/plan"} <= set(topics)
+        assert "/global_costmap/costmap" in topics
+        nodes = finished(*ROS2, "node", "list", domain=domain).stdout.split()
+        assert {"/gazebo", "/robot_state_publisher", "/slam_toolbox", "/planner_server", "/bt_navigator"} <= set(nodes)
+        actions = finished(*ROS2, "action", "list", domain=domain).stdout.split()
+        assert "/navigate_to_pose" in actions
+        scan = finished(*ROS2, "topic", "echo", "--once", "/scan", "--field", "header.frame_id", domain=domain)
+        assert scan.stdout.startswith("base_scan")
+        info = finished(*ROS2, "topic", "info", "/map", domain=domain).stdout
+        assert "nav_msgs/msg/OccupancyGrid" in info
+        with Command(*ROS2, "topic", "hz", "/odom", domain=domain) as rate:
+            line = rate.wait_for_line("average rate")
+            assert 20.0 < float(line.split(":")[1]) < 40.0
+            rate.interrupt()
+        assert demo.interrupt() == 0
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(240)
+@pytest.mark.parametrize(
+    ("x", "y", "why"),
+    [(50.0, 0.0, "outside of the map"), (-1.6, 2.2, "occupied|obstacle|blocked|no path")],
+    ids=["outside", "in a wall"],
+)
+def test_a_goal_that_cannot_be_is_refused_with_the_reason(domain: int, x: float, y: float, why: str) -> None:
+    with Command(*DEMO, "--no-browser", domain=domain) as demo:
+        demo.wait_for_line("look_around.*finished")
+        goal = f"{{pose: {{header: {{frame_id: map}}, pose: {{position: {{x: {x}, y: {y}}}}}}}}}"
+        words = ["action", "send_goal", "/navigate_to_pose", "nav2_msgs/action/NavigateToPose", goal]
+        done = finished(*ROS2, *words, domain=domain, timeout=120)
+        assert "Goal finished with status: ABORTED" in done.stdout
+        assert re.search(why, done.stdout)
+        echo = ["topic", "echo", "--once", "/odom", "--field", "pose.pose.position.x"]
+        travelled = float(finished(*ROS2, *echo, domain=domain).stdout.split()[0])
+        assert abs(travelled) < 0.1, "the robot has to stay where it was"
+        demo.interrupt()
