@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import _thread
+import contextlib
 import threading
 from collections.abc import Callable
 from typing import Any
@@ -59,15 +61,25 @@ class Session:
             member.close()
         self.backend.close()
 
+    def abandon(self, close: Callable[[], None]) -> None:
+        """Have something closed that nobody refers to any more; `close` must not refer to it.
+
+        The garbage collector finds such things on any thread, with any lock held: they are closed on another.
+        """
+        with contextlib.suppress(RuntimeError):  # the process ends, and all is closed anyway
+            _thread.start_new_thread(close, ())
+
     def create_node(self, name: str, namespace: str, enclave: str = "/") -> tuple[NodeInfo, Callable[[], None]]:
         """Join as a node; returns its description and what removes it."""
         node = self.backend.new_node(name, namespace, enclave)
         undeclare = self.backend.declare_node(node)
         self.graph.add_node(node)
+        once = [undeclare]
 
         def remove() -> None:
-            self.graph.remove_node(node.key)
-            undeclare()
+            if once:
+                once.pop()()
+                self.graph.remove_node(node.key)
 
         return node, remove
 

@@ -126,16 +126,19 @@ class Context:
         if not handle.try_shutdown() and not self._ended_by_signal:
             handle.shutdown()
         self._ended_by_signal = False
+        handle.release()
         self._finalize_logging()
 
     def try_shutdown(self) -> None:
         """End unless that was done before."""
         handle = self.__handle
-        if handle is not None and handle.try_shutdown():
+        if handle is not None:
+            handle.try_shutdown()
+            handle.release()
             self._finalize_logging()
 
     def shutdown_by_signal(self) -> None:
-        """End because the process was asked to."""
+        """End because the process was asked to; the graph is left later, by who runs outside the signal's handler."""
         handle = self.__handle
         if handle is not None and handle.try_shutdown():
             self._ended_by_signal = True
@@ -179,7 +182,8 @@ class Context:
         return self.__handle.get_domain_id()
 
     def __enter__(self) -> Context:
-        # Begun here, unless that was done before: then `with` only ends it.
+        if self.__handle is None:
+            self.init()
         return self
 
     def __exit__(

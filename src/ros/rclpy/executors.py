@@ -251,8 +251,8 @@ class Executor(AbstractContextManager["Executor"]):
                 return item, None, None
             if isinstance(item, _Failure):
                 raise item.error
-            if self._begin(item):
-                entity = item.entity
+            entity = self._begin(item)
+            if entity is not None:
                 return Task(self._run_entity, (item, entity), executor=self), entity, entity._rcl_node
 
     def _wait(self, deadline_ns: int | None, condition: Callable[[], bool] | None = None) -> Any:
@@ -309,19 +309,19 @@ class Executor(AbstractContextManager["Executor"]):
 
     # Running one entity's callback.
 
-    def _begin(self, hook: ReadyHook) -> bool:
-        """Reserve the entity's callback group; False when it must wait or is no longer ours."""
-        if hook.sink is not self._put:
-            return False  # removed meanwhile; it stays marked and is queued where it is attached next
-        entity = hook.entity
+    def _begin(self, hook: ReadyHook) -> Any:
+        """Reserve the entity's callback group; returns the entity, None when it must wait or is no longer ours."""
+        entity = hook.entity()
+        if entity is None or hook.sink is not self._put:
+            return None  # removed meanwhile; it stays marked and is queued where it is attached next
         group = entity.callback_group
         if group is not None and not group.beginning_execution(entity):
             self._deferred.append(hook)
             if group.can_execute(entity):
                 self._retry_deferred()
-            return False
+            return None
         hook.queued = False
-        return True
+        return entity
 
     def _retry_deferred(self) -> None:
         """Queue again what waited for a callback group."""
@@ -396,8 +396,9 @@ class SingleThreadedExecutor(Executor):
             while True:
                 item = self._wait(deadline_ns, condition)
                 if item.__class__ is ReadyHook:
-                    if self._begin(item):
-                        self._run_entity(item, item.entity)
+                    entity = self._begin(item)
+                    if entity is not None:
+                        self._run_entity(item, entity)
                         return
                 elif isinstance(item, _Failure):
                     raise item.error
@@ -431,8 +432,9 @@ class MultiThreadedExecutor(Executor):
             while True:
                 item = self._wait(deadline_ns, condition)
                 if item.__class__ is ReadyHook:
-                    if self._begin(item):
-                        self._submit(self._run_entity, item, item.entity)
+                    entity = self._begin(item)
+                    if entity is not None:
+                        self._submit(self._run_entity, item, entity)
                         return
                 elif isinstance(item, _Failure):
                     raise item.error

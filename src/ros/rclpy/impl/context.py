@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import functools
 import threading
 import weakref
 from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING
 
 from daidalos.transport import shared
 from daidalos.transport.environment import Environment, read_environment
@@ -12,6 +14,9 @@ from daidalos.transport.session import Session
 from rclpy.impl.arguments import RosArguments, parse
 from rclpy.impl.errors import RCLError
 from rclpy.impl.handle import Destroyable
+
+if TYPE_CHECKING:
+    from rclpy.impl.entities import NodeHandle
 
 
 class ContextHandle(Destroyable):
@@ -30,13 +35,24 @@ class ContextHandle(Destroyable):
         self.arguments: RosArguments = parse(arguments)
         self.environment: Environment = read_environment(domain=domain_id)
         self.session: Session = shared.acquire(self.environment)
-        self._lock = threading.Lock()
+        self._lock = threading.RLock()  # a signal may come while it is held
         self._ok = True
+        self._released = False
+        self._nodes: weakref.WeakSet[NodeHandle] = weakref.WeakSet()
         self._on_shutdown: list[weakref.ref[Callable[[], None]]] = []
 
     def ok(self) -> bool:
         """Tell whether the context is still valid."""
         return self._ok
+
+    @property
+    def is_released(self) -> bool:
+        """Whether the graph has been left."""
+        return self._released
+
+    def own(self, node: NodeHandle) -> None:
+        """Have a node leave the graph with the context."""
+        self._nodes.add(node)
 
     def get_domain_id(self) -> int:
         """Return the domain."""
@@ -71,6 +87,21 @@ class ContextHandle(Destroyable):
         self.session.graph.notify()
         return True
 
+    def release(self) -> None:
+        """Leave the graph with every node, after a shutdown. Not for signal handlers: it takes locks."""
+        with self._lock:
+            if self._released:
+                return
+            self._released = True
+        for node in list(self._nodes):
+            node.retire()
+        shared.release(self.environment)
+
     def _destroy(self) -> None:
         self.try_shutdown()
-        shared.release(self.environment)
+        self.release()
+
+    def __del__(self) -> None:
+        if getattr(self, "_released", True):
+            return
+        self.session.abandon(functools.partial(shared.release, self.environment))

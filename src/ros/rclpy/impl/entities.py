@@ -5,6 +5,7 @@ from __future__ import annotations
 import weakref
 from collections.abc import Callable
 from dataclasses import dataclass
+from types import MethodType
 from typing import Any
 
 from daidalos.transport.backend import RequestId
@@ -13,9 +14,10 @@ from daidalos.transport.session import Session
 from rclpy.impl import names
 from rclpy.impl.arguments import RosArguments, parse
 from rclpy.impl.context import ContextHandle
-from rclpy.impl.errors import NodeNameNonExistentError
+from rclpy.impl.errors import NodeNameNonExistentError, RCLError
 from rclpy.impl.handle import Destroyable
 from rclpy.impl.log_output import OUTPUT
+from rclpy.impl.ready import weakly
 
 
 class NodeHandle(Destroyable):
@@ -44,7 +46,8 @@ class NodeHandle(Destroyable):
         self.namespace = names.remap_namespace(self.remaps, name, names.absolute_namespace(namespace))
         self.name = names.remap_node(self.remaps, name)
         self.info, self._leave = self.session.create_node(self.name, self.namespace, shared_arguments.enclave)
-        self._members: weakref.WeakSet[Destroyable] = weakref.WeakSet()
+        self._members: weakref.WeakSet[EndpointHandle] = weakref.WeakSet()
+        context.own(self)
 
     @property
     def graph(self) -> Graph:
@@ -75,9 +78,23 @@ class NodeHandle(Destroyable):
         kind = "service" if is_service else "topic"
         return names.remap_name(self.remaps, kind, full, self.name, self.namespace)
 
-    def own(self, handle: Destroyable) -> None:
-        """Have a handle destroyed with the node."""
+    def own(self, handle: EndpointHandle) -> None:
+        """Have a handle destroyed with the node.
+
+        Raises
+        ------
+        RCLError
+            When the context was shut down.
+        """
+        if self.context.is_released:
+            raise RCLError(f"node '{self.info.full_name}' cannot make anything: its context was shut down")
         self._members.add(handle)
+
+    def retire(self) -> None:
+        """Leave the graph with everything of the node, because the context ended; handles stay, and reach nobody."""
+        for member in list(self._members):
+            member.retire()
+        self._leave()
 
     def find_node(self, name: str, namespace: str) -> NodeInfo:
         """Return the description of a node in the graph.
@@ -102,6 +119,10 @@ class NodeHandle(Destroyable):
         for member in list(self._members):
             member.destroy_when_not_in_use()
         self._leave()
+
+    def __del__(self) -> None:
+        if hasattr(self, "_leave") and not self.is_destroyed:
+            self.session.abandon(self._leave)
 
 
 @dataclass(frozen=True, slots=True)
@@ -143,13 +164,24 @@ class EndpointHandle(Destroyable):
         return self.endpoint.name
 
     def set_on_ready(self, on_ready: Callable[[], None]) -> None:
-        """Have `on_ready` called when something was queued, and at once if something is."""
-        self.impl.on_ready = on_ready
+        """Have `on_ready` called when something was queued, and at once if something is.
+
+        A bound method does not keep its object alive.
+        """
+        self.impl.on_ready = weakly(on_ready) if isinstance(on_ready, MethodType) else on_ready
         if len(self.impl):
             on_ready()
 
+    def retire(self) -> None:
+        """Leave the graph; the handle stays, and reaches nobody."""
+        self.impl.close()
+
     def _destroy(self) -> None:
         self.impl.close()
+
+    def __del__(self) -> None:
+        if hasattr(self, "impl") and not self.is_destroyed:
+            self.node.session.abandon(self.impl.close)
 
 
 class PublisherHandle(EndpointHandle):

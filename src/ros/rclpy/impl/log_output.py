@@ -54,7 +54,7 @@ class Output:
         self.to_console = True
         self.to_file = True
         self.file_stem = ""
-        self.handlers: dict[str, Callable[[Record], None]] = {}
+        self.handlers: dict[str, Callable[[], Callable[[Record], None] | None]] = {}
         self._format = os.environ.get("RCUTILS_CONSOLE_OUTPUT_FORMAT") or _DEFAULT_FORMAT
         self._use_stdout = os.environ.get("RCUTILS_LOGGING_USE_STDOUT") == "1"
         self._file: IO[str] | None = None
@@ -96,7 +96,7 @@ class Output:
     def _handler_of(self, name: str) -> Callable[[Record], None] | None:
         while name:
             if name in self.handlers:
-                return self.handlers[name]
+                return self.handlers[name]()
             name = name.rpartition(".")[0]
         return None
 

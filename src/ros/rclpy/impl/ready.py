@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import weakref
 from collections.abc import Callable
+from types import MethodType
 from typing import Any
 
 
@@ -11,12 +13,17 @@ class ReadyHook:
 
     An entity stands in its executor's queue at most once; what becomes ready while no executor is attached is
     put into the queue when one is. An executor may find an entity with nothing to do: it then passes over it.
+
+    Attributes
+    ----------
+    entity
+        Returns the entity, None when it is no more: the transport, which holds the hook, must not keep it alive.
     """
 
     __slots__ = ("entity", "queued", "sink")
 
     def __init__(self, entity: Any) -> None:
-        self.entity = entity
+        self.entity: Callable[[], Any] = weakref.ref(entity)
         self.queued = False
         self.sink: Callable[[ReadyHook], None] | None = None
 
@@ -37,3 +44,15 @@ class ReadyHook:
     def detach(self) -> None:
         """Direct the hook nowhere."""
         self.sink = None
+
+
+def weakly(method: MethodType) -> Callable[[], None]:
+    """Return what calls a bound method as long as its object lives."""
+    reference = weakref.WeakMethod(method)
+
+    def call() -> None:
+        alive = reference()
+        if alive is not None:
+            alive()
+
+    return call

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import weakref
 from typing import Any
 
 from rclpy.impl.entities import NodeHandle, PublisherHandle
@@ -17,7 +18,7 @@ class RosoutPublisher:
 
         self._publisher = PublisherHandle(handle, Log, "/rosout", qos)
         self._name = handle.logger_name()
-        self._handler = self._publish
+        self._handler = weakref.WeakMethod(self._publish)
         OUTPUT.handlers[self._name] = self._handler
 
     def _publish(self, record: Record) -> None:
