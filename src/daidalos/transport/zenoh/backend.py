@@ -106,6 +106,7 @@ class ZenohBackend(Backend):
         socket_file = self._registry.folder / f"{self._session_id}.sock"
         for leftover in (socket_file, socket_file.with_suffix(".sock.lock")):
             leftover.unlink(missing_ok=True)
+        del self._session, self._tokens  # zenoh keeps files open as long as these live
 
     def settle(self, timeout_s: float) -> bool:
         """Wait until the sessions that were alive at our start are connected and have told of themselves."""
