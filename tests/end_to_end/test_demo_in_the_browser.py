@@ -4,8 +4,8 @@ import math
 from collections.abc import Iterator
 
 import pytest
-from browser.cdp import Chromium, require_chromium
 
+from browser.cdp import Chromium, require_chromium
 from end_to_end.processes import DAIDALOS, Command
 
 GOAL = (1.9, -1.2)

@@ -8,8 +8,8 @@ from collections.abc import Iterator
 
 import foxglove
 import pytest
-from browser.cdp import Chromium, require_chromium
 
+from browser.cdp import Chromium, require_chromium
 from daidalos.studio.assets import AssetResolver
 from daidalos.studio.build import build, is_fresh
 from daidalos.studio.server import StudioServer

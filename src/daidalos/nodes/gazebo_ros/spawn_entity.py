@@ -9,6 +9,7 @@ from typing import Any
 
 from rclpy.utilities import remove_ros_args
 
+from daidalos.nodes.description_files import read_description
 from daidalos.nodes.runner import UserError, run_program
 
 
@@ -44,19 +45,7 @@ def _description(arguments: argparse.Namespace, node: Any) -> str:
     if arguments.topic:
         return _from_topic(node, arguments.topic, arguments.timeout)
     path = _model_file(arguments.database) if arguments.database else Path(arguments.file)
-    if path.suffix == ".xacro":
-        from daidalos.description.errors import DescriptionError
-        from daidalos.description.xacro import load_xacro
-        from daidalos.nodes.packages import package_share
-
-        try:
-            return load_xacro(path, resolve=package_share)
-        except DescriptionError as error:
-            raise UserError(str(error)) from None
-    try:
-        return path.read_text(encoding="utf-8")
-    except OSError as error:
-        raise UserError(f"cannot read '{path}': {error.strerror}") from None
+    return read_description(path)
 
 
 def _model_file(name: str) -> Path:

@@ -16,6 +16,7 @@ from daidalos.description import urdf
 from daidalos.description.errors import DescriptionError
 from daidalos.description.kinematics import KinematicTree
 from daidalos.nodes.conversions import nanoseconds
+from daidalos.nodes.description_files import read_description
 from daidalos.nodes.packages import package_share
 from daidalos.nodes.runner import UserError, run
 
@@ -28,13 +29,20 @@ class RobotStatePublisher(Node):
     Parameters of the node are those of ROS 2's: ``robot_description``, ``publish_frequency`` [Hz],
     ``ignore_timestamp``, ``frame_prefix``.
 
+    Parameters
+    ----------
+    source : str
+        Where the description comes from, for messages about its faults.
+    **kwargs
+        Of `Node`.
+
     Raises
     ------
     UserError
         When the description is missing or faulty.
     """
 
-    def __init__(self, **kwargs: Any) -> None:
+    def __init__(self, source: str = "robot_description", **kwargs: Any) -> None:
         super().__init__("robot_state_publisher", **kwargs)
         from sensor_msgs.msg import JointState
         from std_msgs.msg import String
@@ -47,18 +55,18 @@ class RobotStatePublisher(Node):
         self._description_publisher = self.create_publisher(String, "robot_description", _LATCHED)
         self._broadcaster = TransformBroadcaster(self)
         self._static_broadcaster = StaticTransformBroadcaster(self)
-        self._read(self.get_parameter("robot_description").value)
+        self._read(self.get_parameter("robot_description").value, source)
         self.create_subscription(JointState, "joint_states", self._on_joint_states, 10)
         self.add_on_set_parameters_callback(self._on_set_parameters)
 
-    def _read(self, text: str) -> None:
+    def _read(self, text: str, source: str = "robot_description") -> None:
         """Take a description and publish what does not move."""
         from std_msgs.msg import String
 
         if not text:
             raise UserError("the parameter 'robot_description' must hold a URDF document, it is empty")
         try:
-            robot = urdf.parse(text, "robot_description", package_share)
+            robot = urdf.parse(text, source, package_share)
         except DescriptionError as error:
             raise UserError(str(error)) from None
         self._tree = KinematicTree(robot)
@@ -134,19 +142,16 @@ class RobotStatePublisher(Node):
         return SetParametersResult(successful=True)
 
 
-def _from_file(path: str) -> list[Parameter[Any]]:
-    """Return the description in a file as a parameter: the node's old command line names one."""
-    try:
-        text = Path(path).read_text(encoding="utf-8")
-    except OSError as error:
-        raise UserError(f"cannot read '{path}': {error.strerror}") from None
-    return [Parameter("robot_description", value=text)]
+def _from_file(path: str) -> RobotStatePublisher:
+    """Make a node of a description in a file: the old command line names one."""
+    text = read_description(Path(path))
+    return RobotStatePublisher(source=path, parameter_overrides=[Parameter("robot_description", value=text)])
 
 
 def main() -> int:
     """Run the node."""
     files = remove_ros_args(sys.argv)[1:]
-    return run(lambda: RobotStatePublisher(parameter_overrides=_from_file(files[0]) if files else None))
+    return run(lambda: _from_file(files[0]) if files else RobotStatePublisher())
 
 
 if __name__ == "__main__":
