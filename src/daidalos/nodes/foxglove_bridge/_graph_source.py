@@ -28,9 +28,10 @@ from daidalos.studio.source import (
     SourceError,
     Topic,
 )
-from daidalos.transport.graph import EndpointInfo, EndpointKind
+from daidalos.transport.graph import EndpointInfo, EndpointKind, NodeInfo
 
 _DEPTH = 10
+_CLOCK = "/clock"
 
 
 class RosGraphSource:
@@ -46,14 +47,21 @@ class RosGraphSource:
         self._time: int | None = None
         self._observers: list[Observer] = []
         self._lock = threading.Lock()
+        self._clock_found = node.create_guard_condition(self._listen_to_clock)
 
     # Changes.
 
     def attach(self, observer: Observer) -> _Closing:
         """Tell an observer of changes of the graph and of simulated time."""
         self._observers.append(observer)
-        stop = self._graph.listen(lambda added, what: observer.graph_changed())
-        self._listen_to_clock()
+
+        def note(added: bool, what: NodeInfo | EndpointInfo) -> None:
+            if added and self._clock is None and what.name == _CLOCK:
+                self._clock_found.trigger()
+            observer.graph_changed()
+
+        stop = self._graph.listen(note)
+        self._clock_found.trigger()
 
         def close() -> None:
             stop()
@@ -63,12 +71,13 @@ class RosGraphSource:
         return _Closing(close)
 
     def _listen_to_clock(self) -> None:
-        if self._clock is not None:
+        """Listen to the clock once somebody publishes it: before that, a listener would only make a topic of it."""
+        if self._clock is not None or not self._graph.endpoints(EndpointKind.PUBLISHER, name=_CLOCK):
             return
         from rosgraph_msgs.msg import Clock
 
         qos = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
-        self._clock = SubscriptionHandle(self._handle, Clock, "/clock", qos)
+        self._clock = SubscriptionHandle(self._handle, Clock, _CLOCK, qos)
         self._clock.set_on_ready(self._on_clock)
 
     def _on_clock(self) -> None:

@@ -1,0 +1,125 @@
+"""Keys of the terminal as they are pressed, without waiting for Enter."""
+
+from __future__ import annotations
+
+import os
+import sys
+import threading
+import time
+from types import TracebackType
+from typing import Any, Self
+
+from daidalos.nodes.runner import UserError
+
+_ARROWS = {"A": "up", "B": "down", "C": "right", "D": "left"}
+_WINDOWS_ARROWS = {"H": "up", "P": "down", "M": "right", "K": "left"}
+_INTERRUPT = "\x03"
+_SEQUENCE_S = 0.05  # within which the rest of an escape sequence comes
+_LOOK_S = 0.02  # on Windows, where a console can not be waited for together with anything else
+
+
+class Keyboard:
+    """The keyboard of this process's terminal, while the ``with`` block lasts.
+
+    The terminal is as it was before at the end, however the program ends.
+
+    Raises
+    ------
+    UserError
+        When standard input is no terminal.
+    """
+
+    def __init__(self) -> None:
+        if not sys.stdin.isatty():
+            raise UserError("the keys are read from standard input, and that is no terminal: start this in one")
+        self._before: Any = None
+        self._woken = threading.Event()
+        self._pipe: tuple[int, int] | None = None
+
+    def __enter__(self) -> Self:
+        if sys.platform != "win32":
+            import termios
+
+            self._pipe = os.pipe()
+            self._before = termios.tcgetattr(sys.stdin)
+            wanted = termios.tcgetattr(sys.stdin)
+            wanted[3] &= ~(termios.ICANON | termios.ECHO)  # Ctrl-C stays a signal
+            termios.tcsetattr(sys.stdin, termios.TCSADRAIN, wanted)
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        if sys.platform != "win32" and self._pipe is not None:
+            import termios
+
+            termios.tcsetattr(sys.stdin, termios.TCSADRAIN, self._before)
+            for end in self._pipe:
+                os.close(end)
+            self._pipe = None
+
+    def wake(self) -> None:
+        """Let `read` return None from now on; may be called from any thread."""
+        self._woken.set()
+        if self._pipe is not None:
+            os.write(self._pipe[1], b"\0")
+
+    def read(self, timeout_s: float | None = None) -> str | None:
+        """Wait for a key.
+
+        Returns
+        -------
+        str, optional
+            The character, or ``up``, ``down``, ``left``, ``right``; empty when no key came in time; None when
+            there are no more.
+        """
+        return self._read_console(timeout_s) if sys.platform == "win32" else self._read_terminal(timeout_s)
+
+    def _read_terminal(self, timeout_s: float | None) -> str | None:
+        import select
+
+        assert self._pipe is not None, "read within the with block"
+        ready = select.select([sys.stdin, self._pipe[0]], [], [], timeout_s)[0]
+        if self._woken.is_set():
+            return None
+        if not ready:
+            return ""
+        character = self._character()
+        if character != "\x1b":
+            return character or None
+        sequence = ""
+        while select.select([sys.stdin], [], [], _SEQUENCE_S)[0]:
+            sequence += self._character()
+            if sequence[-1:].isalpha() or sequence[-1:] in ("", "~"):
+                break
+        return _ARROWS.get(sequence[-1:], "") if sequence[:1] in ("[", "O") else character
+
+    def _character(self) -> str:
+        """Return one character; not through the buffer of `sys.stdin`, which `select` does not see."""
+        content = os.read(sys.stdin.fileno(), 1)
+        while content and content[0] >= 0xC0 and not _is_whole(content):
+            content += os.read(sys.stdin.fileno(), 1)
+        return content.decode(errors="replace")
+
+    def _read_console(self, timeout_s: float | None) -> str | None:
+        import msvcrt
+
+        console: Any = msvcrt  # whose functions exist on Windows alone
+        until = None if timeout_s is None else time.monotonic() + timeout_s
+        while not console.kbhit():
+            if self._woken.wait(_LOOK_S):
+                return None
+            if until is not None and time.monotonic() > until:
+                return ""
+        character = str(console.getwch())
+        if character == _INTERRUPT:
+            raise KeyboardInterrupt
+        return _WINDOWS_ARROWS.get(console.getwch(), "") if character in ("\0", "\xe0") else character
+
+
+def _is_whole(content: bytes) -> bool:
+    try:
+        content.decode()
+    except UnicodeDecodeError:
+        return False
+    return True

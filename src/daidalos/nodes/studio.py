@@ -1,0 +1,96 @@
+"""The studio's server with the graph of a node."""
+
+from __future__ import annotations
+
+import os
+import sys
+import webbrowser
+from collections.abc import Sequence
+from pathlib import Path
+from urllib.parse import urlencode
+
+from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy, QoSProfile
+
+from daidalos.nodes.foxglove_bridge._graph_source import RosGraphSource
+from daidalos.nodes.packages import package_share
+from daidalos.studio.assets import AssetResolver
+from daidalos.studio.server import DEFAULT_PORT, LOOPBACK, StudioServer
+from daidalos.transport.graph import EndpointInfo, EndpointKind, NodeInfo
+
+_DISTRIBUTION = "jazzy"
+
+
+class Studio:
+    """Serves the page, and the graph for it, from now on.
+
+    Parameters
+    ----------
+    node
+        Listens, publishes and calls for the page; it must be spun.
+    port
+        The port to listen on, or the next free one above.
+    hosts
+        Addresses to listen on.
+
+    Raises
+    ------
+    PortError
+        When no port can be opened.
+    """
+
+    def __init__(self, node: Node, port: int = DEFAULT_PORT, hosts: Sequence[str] = LOOPBACK) -> None:
+        self._node = node
+        self._graph = node.handle.graph
+        self._assets = AssetResolver(_share_directory)
+        self._source = RosGraphSource(node)
+        self._server = StudioServer(
+            self._source,
+            port=port,
+            hosts=hosts,
+            assets=self._assets,
+            metadata={"ROS_DISTRO": os.environ.get("ROS_DISTRO", _DISTRIBUTION)},
+        )
+        self._server.start()
+        self._read: set[str] = set()
+        self._unread = node.create_guard_condition(self._read_descriptions)
+        self._stop_noting = self._graph.listen(self._note)
+        self._unread.trigger()
+
+    def url(self, panel: str = "", **details: str) -> str:
+        """Return the page's address for a browser on this machine, that of one panel where it is named."""
+        query = urlencode({"panel": panel, **details}, safe="/") if panel else ""
+        return f"{self._server.url}?{query}" if query else self._server.url
+
+    def close(self) -> None:
+        """Close the page's connections and the port."""
+        self._stop_noting()
+        self._server.stop()
+        self._source.close()
+
+    def _note(self, added: bool, what: NodeInfo | EndpointInfo) -> None:
+        if added and isinstance(what, EndpointInfo) and what.name.endswith("/robot_description"):
+            self._unread.trigger()
+
+    def _read_descriptions(self) -> None:
+        """Let the page have the meshes of every robot that is described in the graph."""
+        from std_msgs.msg import String
+
+        latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        published = {endpoint.name for endpoint in self._graph.endpoints(EndpointKind.PUBLISHER)}
+        for topic in {name for name in published if name.endswith("/robot_description")} - self._read:
+            self._read.add(topic)
+            self._node.create_subscription(String, topic, lambda text: self._assets.allow_meshes_of(text.data), latched)
+
+
+def open_in_browser(url: str) -> bool:
+    """Show an address in the user's browser, where there is a screen to show it on."""
+    has_screen = sys.platform in ("win32", "darwin") or any(
+        os.environ.get(name) for name in ("DISPLAY", "WAYLAND_DISPLAY", "BROWSER")
+    )
+    return has_screen and webbrowser.open(url)
+
+
+def _share_directory(name: str) -> Path | None:
+    found = package_share(name)
+    return None if found is None else Path(found)

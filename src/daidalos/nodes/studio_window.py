@@ -1,0 +1,81 @@
+"""The studio as the window of a program: served by a hidden node beside the program's own."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, TypeVar
+
+from daidalos.nodes.runner import UserError, ignore_interrupts, run_program
+from daidalos.studio.ports import PortError
+
+if TYPE_CHECKING:
+    from rclpy.node import Node
+
+    NodeT = TypeVar("NodeT", bound=Node)
+
+
+def run_with_window(make_node: Callable[[], NodeT], panel: str, details: Callable[[NodeT], Mapping[str, str]]) -> int:
+    """Spin a node until the process is asked to end; meanwhile its window can be looked at.
+
+    Parameters
+    ----------
+    make_node
+        Makes the node once rclpy is ready.
+    panel
+        The studio's panel that is the window.
+    details
+        Tells what else the address of the window says, from the node.
+
+    Returns
+    -------
+    int
+        The exit status.
+    """
+    import rclpy
+    from rclpy.executors import SingleThreadedExecutor
+    from rclpy.node import Node
+
+    from daidalos.nodes.studio import Studio
+
+    def body() -> None:
+        rclpy.init()
+        try:
+            node = make_node()
+        except RuntimeError as error:  # such as a parameter that is not valid
+            raise UserError(str(error)) from error
+        # Remappings and parameters on the command line are meant for the node, not for its window.
+        hidden = Node(
+            f"_{panel}_window_{os.getpid()}",
+            use_global_arguments=False,
+            enable_rosout=False,
+            start_parameter_services=False,
+        )
+        executor = SingleThreadedExecutor()
+        executor.add_node(node)
+        executor.add_node(hidden)
+        studio = None
+        try:
+            studio = Studio(hidden)
+            show(studio.url(panel, **details(node)))
+        except PortError as error:
+            node.get_logger().warning(f"There is no window: {error}")
+        try:
+            executor.spin()
+        finally:
+            ignore_interrupts()
+            if studio is not None:
+                studio.close()
+            hidden.destroy_node()
+            node.destroy_node()
+
+    return run_program(body)
+
+
+def show(url: str) -> None:
+    """Open a page in the browser, and say where it is for those who have it elsewhere."""
+    from daidalos.nodes.studio import open_in_browser
+
+    print(f"window: {url}", file=sys.stderr, flush=True)
+    open_in_browser(url)

@@ -1,0 +1,63 @@
+"""Running a node that is steered by keys: the keys in the main thread, its callbacks in another."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from contextlib import suppress
+from typing import TYPE_CHECKING, TypeVar
+
+from daidalos.nodes.keyboard import Keyboard
+from daidalos.nodes.runner import UserError, ignore_interrupts, run_program
+
+if TYPE_CHECKING:
+    from rclpy.node import Node
+
+    NodeT = TypeVar("NodeT", bound=Node)
+
+
+def run_with_keyboard(make_node: Callable[[], NodeT], steer: Callable[[NodeT, Keyboard], None]) -> int:
+    """Spin a node while keys steer it.
+
+    Parameters
+    ----------
+    make_node
+        Makes the node once rclpy is ready.
+    steer
+        Reads keys and acts on them, until `Keyboard.read` returns None or the user has enough.
+
+    Returns
+    -------
+    int
+        The exit status.
+    """
+    import rclpy
+    from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+
+    def body() -> None:
+        keyboard = Keyboard()
+        rclpy.init()
+        try:
+            node = make_node()
+        except RuntimeError as error:  # such as a parameter that is not valid
+            raise UserError(str(error)) from error
+        executor = SingleThreadedExecutor()
+        executor.add_node(node)
+
+        def spin() -> None:
+            with suppress(ExternalShutdownException):
+                executor.spin()
+
+        spinner = threading.Thread(target=spin, name="spin")
+        with keyboard:
+            rclpy.get_default_context().on_shutdown(keyboard.wake)
+            spinner.start()
+            try:
+                steer(node, keyboard)
+            finally:
+                ignore_interrupts()
+                executor.shutdown()
+                spinner.join()
+                node.destroy_node()
+
+    return run_program(body)

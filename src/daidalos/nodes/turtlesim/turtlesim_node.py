@@ -1,0 +1,210 @@
+"""`turtlesim_node`: turtles that drive and draw; its window is a page of the studio."""
+
+from __future__ import annotations
+
+import argparse
+import math
+import random
+import sys
+from typing import Any
+
+from rclpy.node import Node
+from rclpy.qos import QoSProfile
+from rclpy.utilities import remove_ros_args
+
+from daidalos.nodes.runner import run
+from daidalos.nodes.studio_window import run_with_window
+from daidalos.nodes.turtlesim._drawing import Drawing
+from daidalos.nodes.turtlesim._turtle import SIZE, UPDATE_S, Turtle
+from daidalos.nodes.turtlesim._turtle_interface import TurtleInterface
+
+_KINDS = 8  # drawings of turtles that the window has
+_BACKGROUND = {"r": (69, "Red"), "g": (86, "Green"), "b": (255, "Blue")}
+_STILL_UPDATES = 12  # a window in which nothing moves is told so this seldom
+
+
+class TurtleSim(Node):
+    """Simulates turtles.
+
+    Parameters of the node: ``background_r``, ``background_g``, ``background_b`` (0 to 255), ``holonomic`` (turtles
+    obey sideways commands). Services: ``clear``, ``reset``, ``spawn``, ``kill``; for those of each turtle see
+    `TurtleInterface`. The hidden topic ``~/_window`` and the hidden service ``~/_drawing`` are for the page.
+    """
+
+    def __init__(self, **kwargs: Any) -> None:
+        super().__init__("turtlesim", **kwargs)
+        from daidalos_msgs.msg import TurtleWindow
+        from daidalos_msgs.srv import GetTurtleDrawing
+        from rcl_interfaces.msg import ParameterDescriptor, ParameterEvent
+        from std_srvs.srv import Empty
+        from turtlesim.srv import Kill, Spawn
+
+        self.declare_parameter(
+            "holonomic", False, ParameterDescriptor(description="If true, then turtle will be a holonomic robot")
+        )
+        for channel, (value, name) in _BACKGROUND.items():
+            self.declare_parameter(f"background_{channel}", value, _channel_descriptor(name))
+        self._read_background()
+        self.create_subscription(ParameterEvent, "/parameter_events", self._on_parameters, 10)
+        self._turtles: dict[str, TurtleInterface] = {}
+        self._drawing = Drawing()
+        self._named = 0
+        self._shown: tuple[Any, ...] = ()
+        self._still = 0
+        self.create_service(Empty, "clear", self._on_clear)
+        self.create_service(Empty, "reset", self._on_reset)
+        self.create_service(Spawn, "spawn", self._on_spawn)
+        self.create_service(Kill, "kill", self._on_kill)
+        self._window = self.create_publisher(TurtleWindow, "~/_window", QoSProfile(depth=20))
+        self.create_service(GetTurtleDrawing, "~/_drawing", self._on_drawing)
+        self.get_logger().info(f"Starting turtlesim with node name {self.get_fully_qualified_name()}")
+        self._spawn("", SIZE / 2, SIZE / 2, 0.0)
+        self.create_timer(UPDATE_S, self._update)
+
+    @property
+    def window_topic(self) -> str:
+        """The topic that the page shows."""
+        return str(self._window.topic_name)
+
+    def _update(self) -> None:
+        now_s = self.get_clock().now().nanoseconds * 1e-9
+        for interface in self._turtles.values():
+            turtle = interface.turtle
+            before = (turtle.x, turtle.y)
+            interface.turn()
+            hit = turtle.step(now_s)
+            if hit is not None:
+                self.get_logger().warning(f"Oh no! I hit the wall! (Clamping from [x={hit[0]:f}, y={hit[1]:f}])")
+            interface.publish(self._drawing.colour_at(turtle.x, turtle.y) or self._background)
+            self._draw(turtle, before)
+        self._show()
+
+    def _draw(self, turtle: Turtle, before: tuple[float, float]) -> None:
+        """Draw what a turtle's pen left behind on its way."""
+        if turtle.pen.is_down and (turtle.x, turtle.y) != before:
+            self._drawing.draw(before, (turtle.x, turtle.y), turtle.pen)
+
+    def _on_parameters(self, event: Any) -> None:
+        if event.node == self.get_fully_qualified_name():
+            self._read_background()
+
+    def _read_background(self) -> None:
+        r, g, b = (int(self.get_parameter(f"background_{channel}").value) for channel in _BACKGROUND)
+        self._background = (r, g, b)
+
+    # Services.
+
+    def _on_clear(self, request: Any, response: Any) -> Any:
+        self.get_logger().info("Clearing turtlesim.")
+        self._drawing.clear()
+        return response
+
+    def _on_reset(self, request: Any, response: Any) -> Any:
+        self.get_logger().info("Resetting turtlesim.")
+        for interface in self._turtles.values():
+            interface.close()
+        self._turtles.clear()
+        self._named = 0
+        self._spawn("", SIZE / 2, SIZE / 2, 0.0)
+        self._drawing.clear()
+        return response
+
+    def _on_spawn(self, request: Any, response: Any) -> Any:
+        if all(map(math.isfinite, (request.x, request.y, request.theta))):
+            response.name = self._spawn(request.name, request.x, request.y, request.theta)
+        else:
+            self.get_logger().error("A turtle can not be spawned where no number says")
+        return response
+
+    def _on_kill(self, request: Any, response: Any) -> Any:
+        interface = self._turtles.pop(request.name, None)
+        if interface is None:
+            self.get_logger().error(f"Tried to kill turtle [{request.name}], which does not exist")
+        else:
+            interface.close()
+        return response
+
+    def _spawn(self, wanted: str, x: float, y: float, theta: float) -> str:
+        """Add a turtle and return its name, empty when there can not be one of that name."""
+        from rclpy.exceptions import InvalidTopicNameException
+        from rclpy.validate_topic_name import validate_topic_name
+
+        if wanted in self._turtles:
+            self.get_logger().error(f"A turtle named [{wanted}] already exists")
+            return ""
+        name = wanted or self._free_name()
+        try:
+            validate_topic_name(f"{name}/pose")
+        except InvalidTopicNameException as error:
+            self.get_logger().error(f"A turtle can not be named [{name}]: {error}")
+            return ""
+        turtle = Turtle(name, x, y, theta, kind=random.randrange(_KINDS))
+        self._turtles[name] = TurtleInterface(self, turtle, self._draw)
+        self.get_logger().info(f"Spawning turtle [{name}] at x=[{x:f}], y=[{y:f}], theta=[{theta:f}]")
+        return name
+
+    def _free_name(self) -> str:
+        while True:
+            self._named += 1
+            name = f"turtle{self._named}"
+            if name not in self._turtles:
+                return name
+
+    # The window.
+
+    def _show(self) -> None:
+        """Tell the page what is to be seen, at once where something moved."""
+        from daidalos_msgs.msg import TurtleSprite, TurtleWindow
+
+        drawing = self._drawing
+        turtles = [interface.turtle for interface in self._turtles.values()]
+        seen = [(turtle.name, turtle.kind, turtle.x, turtle.y, turtle.theta) for turtle in turtles]
+        shown = (self._background, drawing.clearings, drawing.drawn, seen)
+        self._still = self._still + 1 if shown == self._shown else 0
+        self._shown = shown
+        if self._still % _STILL_UPDATES or not self._window.get_subscription_count():
+            return
+        (r, g, b), (lines, pens) = self._background, drawing.news()
+        self._window.publish(
+            TurtleWindow(
+                width=SIZE,
+                height=SIZE,
+                r=r,
+                g=g,
+                b=b,
+                turtles=[TurtleSprite(name=name, kind=kind, x=x, y=y, theta=theta) for name, kind, x, y, theta in seen],
+                clearings=drawing.clearings,
+                drawn=drawing.drawn,
+                lines=lines,
+                pens=pens,
+            )
+        )
+
+    def _on_drawing(self, request: Any, response: Any) -> Any:
+        response.clearings, response.drawn = self._drawing.clearings, self._drawing.drawn
+        response.lines, response.pens = self._drawing.all_lines()
+        response.picture = self._drawing.picture()
+        return response
+
+
+def _channel_descriptor(name: str) -> Any:
+    from rcl_interfaces.msg import IntegerRange, ParameterDescriptor
+
+    return ParameterDescriptor(
+        description=f"{name} channel of the background color",
+        integer_range=[IntegerRange(from_value=0, to_value=255, step=1)],
+    )
+
+
+def main() -> int:
+    """Run the node."""
+    parser = argparse.ArgumentParser(prog="turtlesim_node", description="Simulate turtles that draw.")
+    parser.add_argument("--headless", action="store_true", help="open no window and serve none")
+    arguments = parser.parse_args(remove_ros_args(sys.argv)[1:])
+    if arguments.headless:
+        return run(TurtleSim)
+    return run_with_window(TurtleSim, "turtlesim", lambda node: {"window": node.window_topic})
+
+
+if __name__ == "__main__":
+    sys.exit(main())
