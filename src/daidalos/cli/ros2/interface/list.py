@@ -5,7 +5,7 @@ from __future__ import annotations
 from argparse import ArgumentParser, Namespace
 
 from daidalos.cli.ros2.extension import Status, Verb
-from daidalos.cli.ros2.interface import KINDS, add_kind_arguments, wanted
+from daidalos.cli.ros2.interface_arguments import KINDS, add_kind_arguments, wanted
 
 
 class ListVerb(Verb):

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from daidalos.cli.ros2.errors import CliError
 from daidalos.cli.ros2.extension import Status, Verb
-from daidalos.cli.ros2.interface import add_type_argument
+from daidalos.cli.ros2.interface_arguments import add_type_argument
 from daidalos.interfaces.definition import PRIMITIVES
 
 
@@ -99,7 +99,7 @@ def _without_comment(line: str) -> str:
 def _path(name: str) -> Path:
     from rosidl_runtime_py import get_interface_path
 
-    from daidalos.cli.ros2.interface import KINDS
+    from daidalos.cli.ros2.interface_arguments import KINDS
     from daidalos.cli.ros2.interfaces import interface_names
     from daidalos.cli.ros2.suggestions import did_you_mean
 
