@@ -55,7 +55,7 @@ def _run(argv: list[str]) -> int:
     if "_ARGCOMPLETE" in os.environ:
         import argcomplete
 
-        argcomplete.autocomplete(parser, exclude=["-h", "--help"])
+        argcomplete.autocomplete(parser, always_complete_options=False, exclude=["-h", "--help"])
     args = parser.parse_args(argv)
     if not args.use_python_default_buffering and hasattr(sys.stdout, "reconfigure"):
         sys.stdout.reconfigure(line_buffering=True)

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import os
 from argparse import ArgumentParser, Namespace
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from daidalos.cli.ros2.completion import complete, complete_packages
+from daidalos.cli.ros2.completion import complete
 from daidalos.cli.ros2.errors import CliError
 from daidalos.cli.ros2.extension import Command, Status
 from daidalos.cli.ros2.suggestions import did_you_mean
@@ -79,8 +79,9 @@ class LaunchCommand(Command):
             help="Regex pattern for filtering which executables the --launch-prefix is applied to by matching the "
             "executable name.",
         )
-        complete_packages(
-            parser.add_argument("package_name", help="Name of the ROS package which contains the launch file")
+        complete(
+            parser.add_argument("package_name", help="Name of the ROS package which contains the launch file"),
+            _complete_first,
         )
         complete(
             parser.add_argument("launch_file_name", nargs="?", help="Name of the launch file"),
@@ -231,7 +232,20 @@ def arguments_text(description: LaunchDescription) -> str:
     return "\n".join(lines if declared else [*lines, "", "  No arguments."])
 
 
-def _argument_names(args: Any) -> Iterator[str]:
-    path, _ = _file_and_arguments(args)
-    for argument in _load(path)[1].get_launch_arguments():
-        yield f"{argument.name}:="
+def _complete_first(prefix: str, **_: Any) -> list[str]:
+    """Return packages, and launch files as paths."""
+    from argcomplete.completers import FilesCompleter
+
+    from daidalos.cli.ros2.packages import package_names
+
+    files: list[str] = FilesCompleter(("py", "xml", "yaml", "yml", "launch"))(prefix)
+    return [*package_names(), *files]
+
+
+def _argument_names(args: Any) -> list[str]:
+    try:
+        path, _ = _file_and_arguments(args)
+        description = _load(path)[1]
+    except CliError:
+        return []  # what stands before is not complete itself
+    return [f"{argument.name}:=" for argument in description.get_launch_arguments()]
