@@ -62,7 +62,6 @@ def add_qos_arguments(parser: ArgumentParser, purpose: str, preset: str, default
         )
     parser.add_argument(
         "--qos-liveliness-lease-duration-seconds",
-        metavar="SECONDS",
         type=float,
         help=f"Quality of service liveliness lease duration setting to {purpose} (overrides liveliness lease "
         "duration value of --qos-profile option, default: infinite)",

@@ -137,8 +137,11 @@ def _listen(
     from rclpy.task import Future
 
     done = Future()
+    losses = Losses()
 
     def on_message(message: Any, info: Any) -> None:
+        if not args.no_lost_messages:
+            losses.note(info)
         if done.done() or (accept is not None and not accept(message)):
             return
         show(message, info)
@@ -147,6 +150,27 @@ def _listen(
 
     subscribe(node, args, args.topic_name, message_type, on_message, raw=args.raw)
     spin(node, done, args.timeout)
+
+
+class Losses:
+    """Tells, by the numbers that publishers give their messages, when one did not get here."""
+
+    def __init__(self) -> None:
+        self._last: dict[bytes, int] = {}
+        self._total = 0
+
+    def note(self, info: Any) -> int:
+        """Note a message's info; return how many are missing before it, and say so on standard error."""
+        number, publisher = info["publication_sequence_number"], info["publisher_gid"]
+        if number is None or publisher is None:
+            return 0
+        last = self._last.get(publisher["data"], number - 1)
+        self._last[publisher["data"]] = max(number, last)
+        lost: int = max(number - last - 1, 0)
+        if lost:
+            self._total += lost
+            print(f"A message was lost!!!\n\ttotal count change:{lost}\n\ttotal count: {self._total}", file=sys.stderr)
+        return lost
 
 
 def _printer(args: Namespace) -> Callable[[Any, Any], None]:
