@@ -73,7 +73,7 @@ def get_resource_types() -> set[str]:
     for prefix in get_all_prefixes():
         folder = os.path.join(prefix, RESOURCE_INDEX_SUBFOLDER)
         if os.path.isdir(folder):
-            types.update(entry.name for entry in os.scandir(folder) if entry.is_dir())
+            types.update(name for name in os.listdir(folder) if os.path.isdir(os.path.join(folder, name)))
     return types
 
 
@@ -117,10 +117,9 @@ def _resource_path(prefix: str, resource_type: str, resource_name: str) -> str:
 def _names_in(prefix: str, resource_type: str) -> Iterator[str]:
     folder = os.path.join(prefix, RESOURCE_INDEX_SUBFOLDER, resource_type)
     if os.path.isdir(folder):
-        for entry in os.scandir(folder):
+        with os.scandir(folder) as entries:
             # Other tools leave hidden files in these folders.
-            if entry.is_file() and not entry.name.startswith("."):
-                yield entry.name
+            yield from [entry.name for entry in entries if entry.is_file() and not entry.name.startswith(".")]
     if resource_type == "packages" and prefix == get_built_in_prefix():
         yield from _built_in_packages()
 
@@ -129,9 +128,7 @@ def _built_in_packages() -> Iterator[str]:
     prefix = get_built_in_prefix()
     share = os.path.join(prefix or "", "share")
     if prefix is not None and os.path.isdir(share):
-        for entry in os.scandir(share):
-            if _is_built_in(prefix, entry.name):
-                yield entry.name
+        yield from (name for name in os.listdir(share) if _is_built_in(prefix, name))
 
 
 def _is_built_in(prefix: str, package_name: str) -> bool:
