@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import codecs
 import signal
-from collections.abc import Callable, Coroutine, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -90,7 +90,8 @@ class ProcessRunner:
         self._logger = get_logger(self._description.final_name)
         self._loggers = get_output_loggers(self._description.final_name, options.output)
         self._child: ChildProcess | None = None
-        self._tasks: set[asyncio.Task[None]] = set()
+        self._life: asyncio.Task[None] | None = None
+        self._escalation: asyncio.Task[None] | None = None
         self._stopping: asyncio.Future[None] = context.asyncio_loop.create_future()
         self.completed: asyncio.Future[None] = context.asyncio_loop.create_future()
         self.details: dict[str, Any] | None = None
@@ -102,12 +103,7 @@ class ProcessRunner:
     def start(self) -> None:
         """Begin to run the process."""
         self._context.register_event_handler(self._handler)
-        self._start_task(self._run())
-
-    def _start_task(self, coroutine: Coroutine[Any, Any, None]) -> None:
-        task = self._context.asyncio_loop.create_task(coroutine)
-        self._tasks.add(task)
-        task.add_done_callback(self._tasks.discard)
+        self._life = self._context.asyncio_loop.create_task(self._run())
 
     # The life of the process ----------------------------------------------------------------------
 
@@ -157,6 +153,7 @@ class ProcessRunner:
             # It was asked to stop while it was being started.
             self._stop_child()
         self.return_code = await self._child.wait()
+        await self._stop_escalating()
         await self._after_exit(self._child, self.return_code)
         return True
 
@@ -221,14 +218,14 @@ class ProcessRunner:
 
     def _stop_child(self) -> None:
         self._emit_signal(signal.SIGINT)
-        self._start_task(self._escalate())
+        self._escalation = self._context.asyncio_loop.create_task(self._escalate())
 
     async def _escalate(self) -> None:
         """Send harder and harder signals until the process has ended."""
         name = self._description.final_name
         sent = "SIGINT"
         for seconds, signum in zip(self._options.patience, (signal.SIGTERM, _SIGKILL), strict=True):
-            await asyncio.wait([self.completed], timeout=seconds)
+            await asyncio.sleep(seconds)
             if not self._child.running:
                 return
             self._logger.error(
@@ -237,6 +234,11 @@ class ProcessRunner:
             )
             sent = signum.name
             self._emit_signal(signum)
+
+    async def _stop_escalating(self) -> None:
+        if self._escalation is not None:
+            self._escalation.cancel()
+            await asyncio.wait([self._escalation])
 
     def _emit_signal(self, signum: signal.Signals) -> None:
         self._context.emit_event_sync(SignalProcess(signal_number=signum, process_matcher=matches_action(self._action)))

@@ -15,6 +15,7 @@ from launch.actions import (
     EmitEvent,
     ExecuteLocal,
     ExecuteProcess,
+    GroupAction,
     LogInfo,
     OpaqueFunction,
     RegisterEventHandler,
@@ -168,6 +169,39 @@ def test_command_lines_are_made_of_substitutions(run_launch):
     assert action.get_stdout() == "5\n"
     assert action.cmd == [sys.executable, "-c", "print(5)"]
     assert action.name.startswith("proc_5-")
+
+
+def test_what_began_before_a_mistake_is_ended(run_launch, python):
+    def fail(context):
+        raise ValueError("a mistake")
+
+    stubborn = python(
+        "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN); print('ready'); signal.pause()",
+        sigterm_timeout="0.2",
+    )
+    quick = ExecuteProcess(cmd=["sleep", "1000"])
+    nested = ExecuteProcess(cmd=["sleep", "1000"])
+    mistaken = [quick, GroupAction([OpaqueFunction(function=fail)])]
+    ready = RegisterEventHandler(OnProcessIO(target_action=stubborn, on_stdout=lambda event: mistaken))
+    service = run_launch(ready, stubborn, GroupAction([nested]), expected=1)
+    assert service.error.reason == "a mistake"
+    assert (stubborn.return_code, nested.return_code) == (-15, -2)
+    for action in (quick, nested, stubborn):
+        if action.process_details is not None:
+            assert action.return_code is not None
+            with pytest.raises(ProcessLookupError):
+                os.kill(action.process_details["pid"], 0)
+
+
+def test_a_mistake_beside_a_process(run_launch):
+    def fail(context):
+        raise ValueError("a mistake")
+
+    action = ExecuteProcess(cmd=["sleep", "1000"])
+    run_launch(GroupAction([action, OpaqueFunction(function=fail)]), expected=1)
+    assert action.get_asyncio_future().done()
+    if action.process_details is not None:
+        assert action.return_code == -2
 
 
 def test_an_action_runs_once(run_launch, python, capsys):
@@ -464,9 +498,10 @@ def test_one_process_is_stopped(run_launch, python):
 def test_signals_are_sent(run_launch, python):
     program = """
 import signal
-signal.signal(signal.SIGUSR1, lambda signum, frame: print('usr1'))
+signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGUSR1])
 print('ready')
-signal.pause()
+signal.sigwait([signal.SIGUSR1])
+print('usr1')
 """
     action = python(program, cached_output=True)
     send = EmitEvent(event=SignalProcess(signal_number="SIGUSR1", process_matcher=matches_action(action)))

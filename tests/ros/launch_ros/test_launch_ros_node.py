@@ -2,6 +2,7 @@
 
 import itertools
 import os
+import pathlib
 import re
 import sys
 import types
@@ -61,7 +62,7 @@ def make(**kwargs):
 
 def params(arguments):
     files = [value for option, value in itertools.pairwise(arguments) if option == "--params-file"]
-    return [yaml.safe_load(open(file, encoding="utf-8")) for file in files]
+    return [yaml.safe_load(pathlib.Path(file).read_text(encoding="utf-8")) for file in files]
 
 
 # Names ------------------------------------------------------------------------------------------------
@@ -201,7 +202,7 @@ def test_parameters(context, tmp_path):
 
 def test_texts_are_quoted_for_other_readers(context):
     arguments = command_line(context, make(parameters=[{"a": "y", "b": ["on", "1e5"]}]))
-    text = open(arguments[-1], encoding="utf-8").read()  # noqa: SIM115
+    text = pathlib.Path(arguments[-1]).read_text(encoding="utf-8")
     for quoted in ("'y'", "'on'", "'1e5'"):
         assert quoted in text
     assert "/**" in yaml.safe_load(text)

@@ -23,6 +23,9 @@ def visit_all_entities_and_collect_futures(
             pairs.extend(visit_all_entities_and_collect_futures(sub_entity, context))
     except Exception as error:
         add_location(error, *getattr(entity, "origin", (None, None)))
+        # What has begun has to be waited for, although nobody gets the pairs now.
+        for _, future in pairs:
+            context.add_completion_future(future)
         raise
     future = entity.get_asyncio_future()
     if future is not None:
