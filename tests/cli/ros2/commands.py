@@ -4,9 +4,11 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 from dataclasses import dataclass
 from pathlib import Path
 
+PATIENCE_S = 40.0
 ROS2 = [sys.executable, "-m", "daidalos.cli.ros2"]
 
 
@@ -26,9 +28,9 @@ def environment(domain: int, **more: str) -> dict[str, str]:
 
 
 def ros2(
-    *words: str, env: dict[str, str], cwd: Path | None = None, interrupt_after_s: float | None = None, stdin: str = ""
+    *words: str, env: dict[str, str], cwd: Path | None = None, interrupt_after_lines: int | None = None, stdin: str = ""
 ) -> Result:
-    """Run a command to its end, or have it interrupted."""
+    """Run a command to its end, or press Ctrl-C once it has printed so many lines."""
     process = subprocess.Popen(
         [*ROS2, *words],
         stdin=subprocess.PIPE,
@@ -38,11 +40,17 @@ def ros2(
         env=env,
         cwd=cwd,
     )
+    alarm = threading.Timer(PATIENCE_S, process.kill)
+    alarm.start()
     try:
-        out, err = process.communicate(stdin, timeout=interrupt_after_s or 60)
-        status: int | None = process.returncode
-    except subprocess.TimeoutExpired:
-        process.send_signal(signal.SIGINT)
-        out, err = process.communicate(timeout=5)
-        status = None if interrupt_after_s else process.returncode
-    return Result(status, out, err)
+        head, interrupted = "", False
+        if interrupt_after_lines is not None:
+            assert process.stdout is not None
+            head = "".join(process.stdout.readline() for _ in range(interrupt_after_lines))
+            interrupted = process.poll() is None
+            if interrupted:
+                process.send_signal(signal.SIGINT)
+        out, err = process.communicate(stdin)
+    finally:
+        alarm.cancel()
+    return Result(None if interrupted else process.returncode, head + out, err)

@@ -11,7 +11,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from commands import Result, environment, ros2
+
+from .commands import Result, environment, ros2
 
 _SHARED = Path(os.environ.get("DAIDALOS_SHARED_DATA", Path(__file__).parents[4] / "shared" / "data"))
 _FILE = _SHARED / "cli" / "transcripts.json"
@@ -73,9 +74,11 @@ def _run_all(folder: Path) -> dict[int, Result]:
     def run(job: tuple[int, int]) -> None:
         env = environment(DOMAIN + job[0])
         for number in jobs[job]:
-            patience = TRANSCRIPTS[number].get("interrupted_after_s")
-            limit = min(patience, 3.6) if patience else None
-            found[number] = ros2(*TRANSCRIPTS[number]["command"][1:], env=env, cwd=folder, interrupt_after_s=limit)
+            transcript = TRANSCRIPTS[number]
+            lines = None
+            if "interrupted_after_s" in transcript:
+                lines = min(transcript["stdout"].count("\n"), 4)
+            found[number] = ros2(*transcript["command"][1:], env=env, cwd=folder, interrupt_after_lines=lines)
 
     with ThreadPoolExecutor(len(jobs)) as pool:
         list(pool.map(run, jobs))

@@ -1,0 +1,29 @@
+from daidalos.cli.ros2.suggestions import did_you_mean, hint_line, near
+
+TOPICS = ["/chatter", "/lab/enable", "/lab/add_two_ints", "/scan"]
+
+
+def test_a_slip_is_recognised():
+    assert near("/chater", TOPICS) == ["/chatter"]
+    assert near("/Chatter", TOPICS) == ["/chatter"]
+
+
+def test_a_forgotten_namespace_is_recognised():
+    assert near("/add_two_ints", TOPICS) == ["/lab/add_two_ints"]
+
+
+def test_a_shared_beginning_makes_no_likeness():
+    assert near("/lab/none", TOPICS) == []
+    assert near("std_srvs/srv/Nope", ["std_srvs/srv/Empty", "std_srvs/srv/SetBool"]) == []
+
+
+def test_the_nearest_comes_first_and_three_are_enough():
+    names = ["speed", "speeds", "spread", "speedy", "spend"]
+    assert near("speeed", names)[0] == "speed"
+    assert len(near("speeed", names)) == 3
+
+
+def test_texts():
+    assert did_you_mean("/chater", TOPICS) == "\nDid you mean '/chatter'?"
+    assert hint_line("/chater", TOPICS) == "Did you mean '/chatter'?\n"
+    assert did_you_mean("/nothing", TOPICS) == hint_line("/nothing", TOPICS) == ""
