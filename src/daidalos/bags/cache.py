@@ -1,0 +1,185 @@
+"""Between the threads that receive messages and the disk: a queue with a limit, or the last moments as a snapshot."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections import Counter, deque
+from collections.abc import Callable
+
+from daidalos.bags.errors import BagError
+from daidalos.bags.message import BagMessage
+from daidalos.bags.writer import BagWriter
+
+_OVERHEAD = 100
+"""Bytes that a queued message takes beside its data."""
+_GATHER_S = 0.05
+"""How long messages are gathered before the thread writes them: it is not woken for each."""
+_GATHER_BYTES = 4 * 1024 * 1024
+"""Nor does it wait longer when there are so many bytes."""
+_FLUSH_S = 1.0
+"""How long a message may wait in this process's memory before the operating system has it."""
+
+
+class WriterThread:
+    """Writes messages to a bag in a thread of its own.
+
+    Parameters
+    ----------
+    writer
+        The bag.
+    max_size
+        How many bytes may wait; what comes when there are more is lost. 0 for no limit.
+    on_error
+        Called, on the thread, when the bag can not be written any more.
+
+    Attributes
+    ----------
+    lost : Counter
+        How many messages were lost, by topic.
+    """
+
+    def __init__(self, writer: BagWriter, max_size: int, on_error: Callable[[BagError], None]) -> None:
+        self.writer = writer
+        self.lost: Counter[str] = Counter()
+        self._max_size = max_size
+        self._on_error = on_error
+        self._queue: deque[BagMessage | Callable[[], None]] = deque()
+        self._size = 0
+        self._lock = threading.Lock()
+        self._begun = threading.Event()
+        self._urgent = threading.Event()
+        self._ending = False
+        self._failed = False
+        self._dirty = False
+        self._last_flush = time.monotonic()
+        self._thread = threading.Thread(target=self._run, name="bag writer", daemon=True)
+        self._thread.start()
+
+    def write(self, message: BagMessage) -> None:
+        """Queue a message."""
+        size = len(message.data) + _OVERHEAD
+        if self._failed or (self._max_size and self._size + size > self._max_size):
+            self.lost[message.topic] += 1
+            return
+        with self._lock:
+            self._size += size
+            self._queue.append(message)
+        if not self._begun.is_set():
+            self._begun.set()
+        if self._size > _GATHER_BYTES:
+            self._urgent.set()
+
+    def call(self, work: Callable[[], None]) -> None:
+        """Have something done with the writer after what is queued, and wait until it is."""
+        done = threading.Event()
+
+        def item() -> None:
+            try:
+                work()
+            finally:
+                done.set()
+
+        with self._lock:
+            if self._ending:
+                return
+            self._queue.append(item)
+        self._wake()
+        done.wait()
+
+    def close(self) -> None:
+        """Write what is queued and end the thread; the bag stays open."""
+        with self._lock:
+            self._ending = True
+        self._wake()
+        self._thread.join()
+
+    def _wake(self) -> None:
+        self._urgent.set()
+        self._begun.set()
+
+    def _run(self) -> None:
+        while True:
+            begun = self._begun.wait(_FLUSH_S if self._dirty else None)
+            if begun:
+                self._urgent.wait(_GATHER_S)
+            self._begun.clear()
+            self._urgent.clear()
+            with self._lock:
+                batch, self._queue, self._size = self._queue, deque(), 0
+                ending = self._ending and not batch
+                if self._ending:
+                    self._begun.set()
+                    self._urgent.set()
+            if ending:
+                return
+            self._work_off(batch)
+
+    def _work_off(self, batch: deque[BagMessage | Callable[[], None]]) -> None:
+        try:
+            for item in batch:
+                if isinstance(item, BagMessage):
+                    self._write(item)
+                else:
+                    item()
+            if self._dirty and time.monotonic() - self._last_flush >= _FLUSH_S:
+                self.writer.flush()
+                self._dirty = False
+                self._last_flush = time.monotonic()
+        except BagError as error:
+            self._failed = True
+            self._dirty = False
+            self._on_error(error)
+
+    def _write(self, message: BagMessage) -> None:
+        if self._failed:
+            self.lost[message.topic] += 1
+            return
+        self.writer.write(message)
+        self._dirty = True
+
+
+class SnapshotBuffer:
+    """Keeps the last messages in memory and writes them when asked to.
+
+    Parameters
+    ----------
+    writer
+        The bag.
+    max_size
+        How many bytes are kept.
+    """
+
+    def __init__(self, writer: BagWriter, max_size: int) -> None:
+        self.writer = writer
+        self.lost: Counter[str] = Counter()
+        self._max_size = max_size
+        self._kept: deque[BagMessage] = deque()
+        self._size = 0
+        self._lock = threading.Lock()
+
+    def write(self, message: BagMessage) -> None:
+        """Keep a message, and forget the oldest ones that there is no room for."""
+        with self._lock:
+            self._kept.append(message)
+            self._size += len(message.data) + _OVERHEAD
+            while self._size > self._max_size and len(self._kept) > 1:
+                self._size -= len(self._kept.popleft().data) + _OVERHEAD
+
+    def call(self, work: Callable[[], None]) -> None:
+        """Do something with the writer."""
+        work()
+
+    def take(self) -> bool:
+        """Write what is kept to a file of its own; False when there is nothing."""
+        with self._lock:
+            kept, self._kept, self._size = self._kept, deque(), 0
+        for message in kept:
+            self.writer.write(message)
+        if kept:
+            self.writer.split()
+        return bool(kept)
+
+    def close(self) -> None:
+        """Forget what is kept."""
+        self._kept.clear()

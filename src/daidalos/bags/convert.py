@@ -1,0 +1,132 @@
+"""Writing bags anew: several into one, one into several, other storages, other compression, fewer topics."""
+
+from __future__ import annotations
+
+import heapq
+import shutil
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass, field, replace
+from operator import attrgetter
+from pathlib import Path
+
+from daidalos.bags.errors import BagError
+from daidalos.bags.message import BagMessage, Topic
+from daidalos.bags.reader import FOREVER_NS, BagReader
+from daidalos.bags.selection import Selection
+from daidalos.bags.writer import BagWriter, WriterOptions
+
+
+@dataclass(frozen=True)
+class Output:
+    """A bag to be written.
+
+    Attributes
+    ----------
+    folder, options
+        Where and how.
+    selection
+        Which topics it gets; all where nothing is asked for.
+    start_ns, stop_ns
+        First and last time of its messages.
+    """
+
+    folder: Path
+    options: WriterOptions = field(default_factory=WriterOptions)
+    selection: Selection = field(default_factory=Selection)
+    start_ns: int = 0
+    stop_ns: int = FOREVER_NS
+
+
+def convert(
+    inputs: Sequence[tuple[Path, str]],
+    outputs: Sequence[Output],
+    progress: Callable[[int, int], None] | None = None,
+) -> list[str]:
+    """Write the messages of some bags into others.
+
+    Parameters
+    ----------
+    inputs
+        Bags with their storages (empty to find out); their messages are put in one order by time.
+    outputs
+        What to write.
+    progress
+        Called now and then with the number of messages that were read and that there are.
+
+    Returns
+    -------
+    list of str
+        What was broken in the inputs.
+
+    Raises
+    ------
+    BagError
+        When an input can not be read, or an output is there already.
+    """
+    for output in outputs:
+        if output.folder.exists():
+            raise BagError(output.folder, "already exists; a bag is not written over another")
+        output.selection.check()
+    with ExitStack() as stack:
+        readers = [stack.enter_context(BagReader(path, storage)) for path, storage in inputs]
+        topics = _topics(readers)
+        writers = [_begun(stack, output) for output in outputs]
+        takers = [_taker(output, writer, topics) for output, writer in zip(outputs, writers, strict=True)]
+        total = sum(reader.metadata.message_count for reader in readers)
+        for count, message in enumerate(_merged(readers), 1):
+            for take in takers:
+                take(message)
+            if progress and (count % 1000 == 0 or count == total):
+                progress(count, total)
+        return [note for reader in readers for note in reader.notes]
+
+
+def _begun(stack: ExitStack, output: Output) -> BagWriter:
+    """Begin an output; it is completed with the stack, or removed when something fails."""
+    writer = BagWriter(output.folder, output.options)
+
+    def end(kind: object, error: BaseException | None, trace: object) -> None:
+        try:
+            writer.close()
+        finally:
+            if error is not None:
+                shutil.rmtree(output.folder, ignore_errors=True)
+
+    stack.push(end)
+    return writer
+
+
+def _topics(readers: Iterable[BagReader]) -> dict[str, Topic]:
+    found: dict[str, Topic] = {}
+    for reader in readers:
+        for name, topic in reader.topics_with_definitions().items():
+            known = found.setdefault(name, topic)
+            if known.type != topic.type:
+                raise BagError(reader.path, f"topic {name} is of type {topic.type} here and {known.type} in another")
+    return found
+
+
+def _taker(output: Output, writer: BagWriter, topics: dict[str, Topic]) -> Callable[[BagMessage], None]:
+    selection = output.selection
+    wanted = {name: topic for name, topic in topics.items() if _wants(selection, name, topic.type)}
+    for topic in wanted.values():
+        writer.add_topic(topic)
+
+    def take(message: BagMessage) -> None:
+        if message.topic in wanted and output.start_ns <= message.received_ns <= output.stop_ns:
+            writer.write(message)
+
+    return take
+
+
+def _wants(selection: Selection, name: str, type_name: str) -> bool:
+    """Tell whether a topic is wanted; who asks for nothing in particular gets all that is not excluded."""
+    if selection.is_empty:
+        selection = replace(selection, all_topics=True, all_services=True, hidden=True)
+    return selection.wants(name, type_name)
+
+
+def _merged(readers: Sequence[BagReader]) -> Iterator[BagMessage]:
+    streams = [reader.messages() for reader in readers]
+    return streams[0] if len(streams) == 1 else heapq.merge(*streams, key=attrgetter("received_ns"))

@@ -1,0 +1,140 @@
+"""What a bag holds, read from its files: where there is no `metadata.yaml`, or to write it anew."""
+
+from __future__ import annotations
+
+import re
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+
+from daidalos.bags.compression import FILE, FORMATS, MESSAGE, decompress_file
+from daidalos.bags.errors import BagError
+from daidalos.bags.message import BagMessage
+from daidalos.bags.metadata import BagFile, BagMetadata, TopicCount, parse_metadata, total, write_metadata
+from daidalos.bags.storage import SUFFIXES, ZSTD_MAGIC, ZSTD_SUFFIX, StorageReader, open_reader, storage_of
+
+
+def describe(path: str | Path, storage_id: str = "") -> tuple[BagMetadata, list[str]]:
+    """Read what a bag's files, or a single file of a bag, hold.
+
+    Parameters
+    ----------
+    path
+        The folder or the file.
+    storage_id
+        The files' format; by default it is found out.
+
+    Returns
+    -------
+    BagMetadata
+        The description.
+    list of str
+        What is broken in some of the files though the rest can be read; a line each.
+
+    Raises
+    ------
+    BagError
+        When there are no files, or none that can be read.
+    """
+    place = Path(path)
+    paths = [place] if place.is_file() else bag_files(place, storage_id)
+    folder = place if place.is_dir() else place.parent
+    if not paths:
+        raise BagError(place, "no bag: it holds no file that ends in " + " or ".join(SUFFIXES.values()))
+    storages = {storage_id or storage_of(one) for one in paths if one.stat().st_size} or {""}
+    if len(storages) > 1:
+        raise BagError(place, f"it holds files of several storages: {', '.join(sorted(storages))}; choose one")
+    storage_id = storages.pop()
+    files: list[BagFile] = []
+    topics: dict[str, TopicCount] = {}
+    faults: list[str] = []
+    known = BagMetadata("")
+    packed = False
+    for one in paths:
+        try:
+            with opened(one, storage_id) as reader:
+                files.append(reader.as_file(one.relative_to(folder).as_posix()))
+                known = _kept(reader, one) or replace(known, ros_distro=known.ros_distro or reader.ros_distro)
+                packed = packed or _has_packed_messages(reader)
+                if reader.damage:
+                    faults.append(f"{one}: {reader.damage}")
+                for name, more in reader.topics.items():
+                    before = topics.get(name)
+                    topics[name] = TopicCount(more.topic, more.count + (before.count if before else 0))
+        except BagError as error:
+            if len(paths) == 1:
+                raise
+            faults.append(str(error))
+    if not files:
+        raise BagError(place, f"none of its files can be read; the first: {faults[0]}")
+    mode = MESSAGE if packed else FILE if paths[0].name.endswith(ZSTD_SUFFIX) else ""
+    metadata = total(
+        storage_id,
+        files,
+        (topics[name] for name in sorted(topics)),
+        compression_format=FORMATS[0] if mode else "",
+        compression_mode=mode,
+        custom_data=known.custom_data,
+        ros_distro=known.ros_distro,
+    )
+    return metadata, faults
+
+
+def reindex(folder: str | Path, storage_id: str = "") -> tuple[BagMetadata, list[str]]:
+    """Write a bag's `metadata.yaml` anew from its files; returns what `describe` does.
+
+    Raises
+    ------
+    BagError
+        As `describe` does, or when it can not be written.
+    """
+    metadata, faults = describe(folder, storage_id)
+    write_metadata(folder, metadata)
+    return metadata, faults
+
+
+def bag_files(folder: Path, storage_id: str = "") -> list[Path]:
+    """Return the files of a bag in the order in which they were written."""
+    suffixes = tuple(SUFFIXES[one] for one in ([storage_id] if storage_id in SUFFIXES else SUFFIXES))
+    found = [path for path in folder.iterdir() if path.name.removesuffix(ZSTD_SUFFIX).endswith(suffixes)]
+    return sorted(found, key=lambda path: [int(t) if t.isdigit() else t for t in re.split(r"(\d+)", path.name)])
+
+
+@contextmanager
+def opened(path: Path, storage_id: str) -> Iterator[StorageReader]:
+    """Give a reader of a file, which may be compressed as a whole.
+
+    Raises
+    ------
+    BagError
+        When it is missing or can not be read.
+    """
+    with tempfile.TemporaryDirectory(prefix="bag_") as folder:
+        source = decompress_file(path, Path(folder)) if path.name.endswith(ZSTD_SUFFIX) else path
+        reader = open_reader(source, storage_id or storage_of(path))
+        try:
+            yield reader
+        finally:
+            reader.close()
+
+
+def _kept(reader: StorageReader, path: Path) -> BagMetadata | None:
+    """Return the description that a file keeps of its bag, None where it has none that can be read."""
+    if not reader.metadata:
+        return None
+    try:
+        return parse_metadata(reader.metadata, path)
+    except BagError:
+        return None
+
+
+def _has_packed_messages(reader: StorageReader) -> bool:
+    """Tell whether messages are compressed one by one: none that is not begins with zstd's magic number."""
+    first: BagMessage | None = None
+    for name, one in reader.topics.items():
+        if one.count:
+            first = next(reader.messages({name}, 0, 2**63 - 1), None)
+            break
+    return first is not None and first.data.startswith(ZSTD_MAGIC)

@@ -1,0 +1,73 @@
+"""What bags hold: topics and serialised messages."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from daidalos.transport.qos import Qos
+
+SERVICE_EVENTS = "/_service_event"
+
+
+@dataclass(frozen=True)
+class Definition:
+    """The text that defines a message type, with all that it refers to, and how that text is written."""
+
+    text: str
+    encoding: str = "ros2msg"
+
+
+@dataclass(frozen=True)
+class Topic:
+    """A topic of a bag.
+
+    Attributes
+    ----------
+    name, type
+        Such as ``/chatter`` and ``std_msgs/msg/String``.
+    serialization_format
+        How its messages are serialised.
+    qos
+        What its publishers offered.
+    type_hash
+        ``RIHS01_...``; empty where it is not known.
+    definition
+        The type's definition, None where it is not known.
+    """
+
+    name: str
+    type: str
+    serialization_format: str = "cdr"
+    qos: tuple[Qos, ...] = ()
+    type_hash: str = ""
+    definition: Definition | None = None
+
+    @property
+    def is_service_event(self) -> bool:
+        """Whether its messages tell of the calls of a service."""
+        return is_service_event(self.name, self.type)
+
+    @property
+    def service_name(self) -> str:
+        """The service whose calls its messages tell of."""
+        return self.name.removesuffix(SERVICE_EVENTS)
+
+    @property
+    def service_type(self) -> str:
+        """The type of that service."""
+        return self.type.removesuffix("_Event")
+
+
+def is_service_event(name: str, type_name: str) -> bool:
+    """Tell whether a topic's messages tell of the calls of a service."""
+    return name.endswith(SERVICE_EVENTS) and "/srv/" in type_name and type_name.endswith("_Event")
+
+
+class BagMessage(NamedTuple):
+    """A message as it was recorded; times are Unix time, or the robot's, in nanoseconds."""
+
+    topic: str
+    data: bytes
+    received_ns: int
+    sent_ns: int
