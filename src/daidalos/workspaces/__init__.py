@@ -1,0 +1,1 @@
+"""Workspaces: colcon packages that CMake would build, read without CMake, and the dependencies of packages."""

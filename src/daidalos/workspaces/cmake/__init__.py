@@ -1,0 +1,1 @@
+"""A reader of CMakeLists.txt: what a package would install, found without running CMake."""

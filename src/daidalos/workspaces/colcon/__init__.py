@@ -1,0 +1,1 @@
+"""The extension of colcon: packages of build type ament_cmake, where there is no ament_cmake."""

@@ -1,0 +1,85 @@
+"""The build task for packages of build type ament_cmake."""
+
+from __future__ import annotations
+
+import asyncio
+import sys
+from pathlib import Path
+from typing import Any
+
+from colcon_core.environment import create_environment_scripts
+from colcon_core.logging import colcon_logger
+from colcon_core.plugin_system import satisfies_version
+from colcon_core.python_install_path import get_python_install_path
+from colcon_core.shell import create_environment_hook, get_command_environment
+from colcon_core.task import TaskExtensionPoint, run
+
+_logger = colcon_logger.getChild(__name__)
+
+
+class CmakePackageBuildTask(TaskExtensionPoint):  # type: ignore[misc]
+    """Builds a package of build type ament_cmake without CMake."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        satisfies_version(TaskExtensionPoint.EXTENSION_POINT_VERSION, "^1.0")
+
+    async def build(self) -> int:
+        """Build and install the package; returns the exit status."""
+        from daidalos.workspaces import package_build
+        from daidalos.workspaces.compiling import LeftOut, summary
+        from daidalos.workspaces.errors import WorkspaceError
+
+        package, args = self.context.pkg, self.context.args
+        try:
+            environment = await get_command_environment("build", args.build_base, self.context.dependencies)
+        except RuntimeError as error:
+            _logger.error(str(error))
+            return 1
+        place = _place(args)
+        loop = asyncio.get_running_loop()
+        try:
+            build = await loop.run_in_executor(None, package_build.begin, place, arguments(args))
+            for compilation in list(build.compilations):
+                completed = await run(self.context, compilation.command, cwd=args.path, env=environment)
+                if completed.returncode:
+                    return int(completed.returncode)
+            needs = sorted(dependency.name for dependency in package.get_dependencies(categories=["run"]))
+            await loop.run_in_executor(None, package_build.finish, build, place, package.name, needs, environment)
+        except WorkspaceError as error:
+            self.print(str(error), file=sys.stderr)
+            return 1
+        for note in build.contents.notes:
+            self.print(note)
+        tests = [LeftOut(name, "a test in C++") for name in build.contents.left_out_tests]
+        line = summary([*build.left_out, *tests])
+        if line:
+            self.print(f"{package.name}: {line}", file=sys.stderr)
+        self._create_environment(build.contents.hooks)
+        return 0
+
+    def _create_environment(self, hooks: list[str]) -> None:
+        package, args = self.context.pkg, self.context.args
+        prefix = Path(args.install_base)
+        own = create_environment_hook(
+            "ament_prefix_path", prefix, package.name, "AMENT_PREFIX_PATH", "", mode="prepend"
+        )
+        create_environment_scripts(package, args, additional_hooks=[*own, *(str(prefix / hook) for hook in hooks)])
+
+
+def arguments(args: Any) -> list[str]:
+    """Return what the command line hands to CMake."""
+    return [*(getattr(args, "cmake_args", None) or []), *(getattr(args, "ament_cmake_args", None) or [])]
+
+
+def _place(args: Any) -> Any:
+    from daidalos.workspaces.package_build import Place
+
+    python_folder = get_python_install_path("purelib", {"base": args.install_base, "platbase": args.install_base})
+    return Place(
+        source=Path(args.path),
+        build=Path(args.build_base),
+        prefix=Path(args.install_base),
+        python_folder=Path(python_folder).relative_to(args.install_base).as_posix(),
+        symlink=args.symlink_install,
+    )

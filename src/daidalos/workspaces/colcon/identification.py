@@ -1,0 +1,71 @@
+"""Which packages are ours to build."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Any
+
+from colcon_core.logging import colcon_logger
+from colcon_core.package_identification import IgnoreLocationException, PackageIdentificationExtensionPoint
+from colcon_core.plugin_system import satisfies_version
+from colcon_ros.package_identification.ros import RosPackageIdentification, get_package_with_build_type
+
+from daidalos.workspaces.errors import WorkspaceError
+from daidalos.workspaces.manifest import ENVIRONMENT, read
+
+PACKAGE_TYPE = "ros.ament_cmake.daidalos"
+_logger = colcon_logger.getChild(__name__)
+
+
+class CmakePackageIdentification(PackageIdentificationExtensionPoint):  # type: ignore[misc]
+    """Claims packages of build type ament_cmake, unless ament_cmake itself is installed to build them."""
+
+    # Before the extension that knows all ROS packages.
+    PRIORITY = RosPackageIdentification.PRIORITY + 10
+
+    def __init__(self) -> None:
+        super().__init__()
+        satisfies_version(PackageIdentificationExtensionPoint.EXTENSION_POINT_VERSION, "^1.0")
+        _prepare_environment()
+
+    def identify(self, desc: Any) -> None:
+        """Fill in name and type of a package that is ours."""
+        if desc.type is not None or any((desc.path / name).exists() for name in ("AMENT_IGNORE", "CATKIN_IGNORE")):
+            return
+        self._check_manifest(desc.path)
+        package, build_type = get_package_with_build_type(str(desc.path))
+        if build_type != "ament_cmake" or _has_ament_cmake():
+            return
+        desc.type = PACKAGE_TYPE
+        desc.name = desc.name or package.name
+
+    def _check_manifest(self, folder: Path) -> None:
+        """Say in one line what is wrong with a package.xml, and leave its package out."""
+        path = folder / "package.xml"
+        if not path.is_file():
+            return
+        try:
+            read(path)
+        except WorkspaceError as error:
+            _logger.error(str(error))
+            raise IgnoreLocationException from None
+
+
+def _prepare_environment() -> None:
+    """Set what ROS 2's own setup files would, for the conditions in manifests and for the programs of the build.
+
+    The packages of today's courses tell setuptools of their tests as an older one understood; that is no news.
+    """
+    for name, value in ENVIRONMENT.items():
+        os.environ.setdefault(name, value)
+    quiet = "ignore:Unknown distribution option:UserWarning"
+    before = os.environ.get("PYTHONWARNINGS", "")
+    if quiet not in before:
+        os.environ["PYTHONWARNINGS"] = f"{before},{quiet}" if before else quiet
+
+
+def _has_ament_cmake() -> bool:
+    """Tell whether ROS 2 itself is there, with what compiles against it."""
+    prefixes = os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)
+    return any(prefix and os.path.isdir(os.path.join(prefix, "share", "ament_cmake", "cmake")) for prefix in prefixes)

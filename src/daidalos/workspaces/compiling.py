@@ -1,0 +1,124 @@
+"""Executables in C++ that need nothing but a compiler, and why others are left out."""
+
+from __future__ import annotations
+
+import os
+import shutil
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from daidalos.workspaces.cmake.contents import Target
+
+_SYSTEM_LIBRARIES = {"m": "-lm", "dl": "-ldl", "rt": "-lrt", "pthread": "-pthread", "Threads::Threads": "-pthread"}
+_SYSTEM_LIBRARIES["${CMAKE_THREAD_LIBS_INIT}"] = "-pthread"
+_CPP = {".cpp", ".cc", ".cxx", ".C"}
+_C = {".c"}
+
+
+@dataclass(frozen=True)
+class Compilation:
+    """A command that makes an executable, and where that is installed."""
+
+    command: list[str]
+    output: Path
+    destination: str
+
+
+@dataclass(frozen=True)
+class LeftOut:
+    """A target that is not built, and why."""
+
+    name: str
+    why: str
+
+
+def plan(targets: Mapping[str, Target], build: Path) -> tuple[list[Compilation], list[LeftOut]]:
+    """Tell how the executables of a package are built, and which of its targets can not be.
+
+    Libraries are compiled into the executables that use them; nobody else can load them here.
+
+    Parameters
+    ----------
+    targets
+        What CMakeLists.txt declares, by name.
+    build
+        Where executables are put before they are installed.
+    """
+    compilations: list[Compilation] = []
+    left_out: list[LeftOut] = []
+    for target in targets.values():
+        if target.kind != "executable":
+            if target.sources and target.destination and _foreign(target, targets):
+                left_out.append(LeftOut(target.name, _why(_foreign(target, targets))))
+            continue
+        foreign = _foreign(target, targets)
+        compiler = _compiler(target, targets)
+        if foreign:
+            left_out.append(LeftOut(target.name, _why(foreign)))
+        elif compiler is None:
+            left_out.append(LeftOut(target.name, "this machine has no C++ compiler"))
+        else:
+            compilations.append(_compilation(target, targets, compiler, build))
+    return compilations, left_out
+
+
+def summary(left_out: Iterable[LeftOut]) -> str:
+    """Return one line about the targets that are left out; empty when there are none."""
+    by_reason: dict[str, list[str]] = {}
+    for target in left_out:
+        by_reason.setdefault(target.why, []).append(target.name)
+    parts = [f"{', '.join(names)} ({why})" for why, names in by_reason.items()]
+    return f"left out: {'; '.join(parts)}" if parts else ""
+
+
+def _why(foreign: list[str]) -> str:
+    return f"C++ that needs {', '.join(foreign)}, of which only the Python side comes with Daidalos"
+
+
+def _parts(target: Target, targets: Mapping[str, Target]) -> list[Target]:
+    """Return a target and the package's own libraries that it uses, directly or not."""
+    found: dict[str, Target] = {}
+    pending = [target]
+    while pending:
+        part = pending.pop()
+        if part.name not in found:
+            found[part.name] = part
+            pending += [targets[link] for link in part.links if link in targets]
+    return list(found.values())
+
+
+def _foreign(target: Target, targets: Mapping[str, Target]) -> list[str]:
+    """Return the packages that a target needs from elsewhere."""
+    names = [
+        link.split("::")[0].lstrip("-l")
+        for part in _parts(target, targets)
+        for link in part.links
+        if link not in targets and link not in _SYSTEM_LIBRARIES
+    ]
+    return list(dict.fromkeys(names))
+
+
+def _compiler(target: Target, targets: Mapping[str, Target]) -> str | None:
+    suffixes = {path.suffix for part in _parts(target, targets) for path in part.sources}
+    names = (os.environ.get("CC"), "cc", "gcc", "clang")
+    if suffixes & _CPP or not suffixes & _C:
+        names = (os.environ.get("CXX"), "c++", "g++", "clang++")
+    return next(filter(None, (shutil.which(name) for name in names if name)), None)
+
+
+def _compilation(target: Target, targets: Mapping[str, Target], compiler: str, build: Path) -> Compilation:
+    output = build / (target.output_name or target.name)
+    parts = _parts(target, targets)
+    command = [compiler, "-O2", f"-std=c++{target.standard or '17'}"]
+    if all(path.suffix in _C for part in parts for path in part.sources):
+        command.pop()
+    for part in parts:
+        command += part.options
+        command += [f"-D{name}" for name in part.definitions]
+        command += [f"-I{folder}" for folder in part.includes if folder.is_dir()]
+    command += [str(path) for part in parts for path in part.sources if path.suffix in _CPP | _C]
+    command += ["-o", str(output)]
+    links = [_SYSTEM_LIBRARIES[link] for part in parts for link in part.links if link in _SYSTEM_LIBRARIES]
+    destination = f"{target.destination}/{output.name}" if target.destination else ""
+    return Compilation([*command, *dict.fromkeys(links)], output, destination)

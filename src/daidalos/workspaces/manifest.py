@@ -1,0 +1,75 @@
+"""Reading package.xml, formats 1 to 3."""
+
+from __future__ import annotations
+
+import os
+import re
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+from daidalos.workspaces.errors import WorkspaceError
+
+ENVIRONMENT = {"ROS_VERSION": "2", "ROS_PYTHON_VERSION": "3", "ROS_DISTRO": "jazzy"}
+"""What conditions in manifests ask for, where no ROS 2 has set it."""
+
+
+def read(path: Path) -> Any:
+    """Return a manifest as `catkin_pkg.package.Package`, conditions evaluated; None for what is no ROS manifest.
+
+    Raises
+    ------
+    WorkspaceError
+        Naming the file and the line at fault.
+    """
+    from catkin_pkg.package import InvalidPackage, parse_package_string
+
+    text = _text(path)
+    if _root(path, text) != "package":
+        return None
+    try:
+        package = parse_package_string(text, str(path))
+        package.evaluate_conditions({**ENVIRONMENT, **os.environ})
+        package.get_build_type()
+    except (InvalidPackage, AssertionError) as error:
+        raise WorkspaceError(_located(path, text, str(error))) from None
+    return package
+
+
+def _text(path: Path) -> str:
+    try:
+        text = path.read_text(encoding="utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise WorkspaceError(f"{path}: byte {error.start} is no UTF-8") from None
+    if not text.strip():
+        raise WorkspaceError(f"{path}:1: the file is empty")
+    return text
+
+
+def _root(path: Path, text: str) -> str:
+    try:
+        return ElementTree.fromstring(text.encode()).tag
+    except ElementTree.ParseError as error:
+        line, column = error.position
+        what = str(error).partition(":")[0]
+        raise WorkspaceError(f"{path}:{line}: this is no XML: {what} (column {column + 1})") from None
+
+
+def _located(path: Path, text: str, message: str) -> str:
+    """Return one line about a fault, with the line of the element or value that it names."""
+    lines = [line.strip(" -") for line in message.splitlines()]
+    faults = [line for line in lines if line and not line.startswith("Error(s) in")]
+    fault = "; ".join(faults) if faults else message.replace("\n", " ")
+    fault = fault.replace(f"Error(s) in package '{path}':", "").strip().rstrip(".")
+    return f"{path}:{_line(text, fault)}: {fault}"
+
+
+def _line(text: str, fault: str) -> int:
+    """Return the line of the first thing that the message quotes, or of the tag that it names; else the first."""
+    lines = text.splitlines()
+    quoted = re.findall(r"[\"'<]([^\"'<>]+)[\"'>]", fault)
+    for word in [*(f"<{name}" for name in quoted), *(f">{value}<" for value in quoted), *quoted]:
+        for number, line in enumerate(lines, 1):
+            if word in line:
+                return number
+    return next((number for number, line in enumerate(lines, 1) if "<package" in line), 1)

@@ -1,0 +1,111 @@
+"""Building a package of build type ament_cmake without CMake."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from daidalos.workspaces.cmake.contents import Contents
+from daidalos.workspaces.cmake.reader import read_package
+from daidalos.workspaces.compiling import Compilation, LeftOut, plan
+from daidalos.workspaces.installation import Installation
+from daidalos.workspaces.interface_package import install_interfaces
+from daidalos.workspaces.package_tests import write_tests
+
+_INDEX = "share/ament_index/resource_index"
+_RECORD = "installed_files.txt"
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where a package is, where it is built, and where it is installed."""
+
+    source: Path
+    build: Path
+    prefix: Path
+    python_folder: str
+    symlink: bool
+
+
+@dataclass
+class Build:
+    """What has been read, what is to be compiled, and what can not be."""
+
+    contents: Contents
+    compilations: list[Compilation]
+    left_out: list[LeftOut]
+    installation: Installation
+
+
+def begin(place: Place, cmake_arguments: Iterable[str] = ()) -> Build:
+    """Read a package's CMakeLists.txt and plan what is compiled.
+
+    Raises
+    ------
+    WorkspaceError
+        Naming the file and the line at fault.
+    """
+    place.build.mkdir(parents=True, exist_ok=True)
+    contents = read_package(place.source, place.build, place.prefix, place.python_folder, definitions(cmake_arguments))
+    compilations, left_out = plan(contents.targets, place.build)
+    installation = Installation(place.prefix, place.build / _RECORD, place.symlink)
+    return Build(contents, compilations, left_out, installation)
+
+
+def finish(
+    build: Build, place: Place, name: str, run_dependencies: Sequence[str], environment: Mapping[str, str]
+) -> None:
+    """Install the package, after what had to be compiled has been.
+
+    Raises
+    ------
+    WorkspaceError
+        Naming the file and the line at fault.
+    """
+    contents, installation = build.contents, build.installation
+    write_tests(contents.tests, place.build)
+    prefixes = [Path(folder) for folder in environment.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if folder]
+    if contents.interfaces:
+        install_interfaces(name, contents.interfaces.files, installation, place.python_folder, prefixes)
+    for file in contents.files:
+        installation.put(file.source, file.destination, file.executable)
+    for package in contents.python_packages:
+        for script, function in package.scripts:
+            _make_script(installation, package.scripts_destination, script, function)
+    for compilation in build.compilations:
+        if compilation.destination:
+            installation.put(compilation.output, compilation.destination, executable=True)
+    for resource in contents.resources:
+        installation.write(f"{_INDEX}/{resource.type}/{resource.name}", resource.content)
+    installation.put(place.source / "package.xml", f"share/{name}/package.xml")
+    installation.write(f"{_INDEX}/packages/{name}", "")
+    installation.write(f"{_INDEX}/package_run_dependencies/{name}", ";".join(run_dependencies))
+    installation.write(f"{_INDEX}/parent_prefix_path/{name}", os.pathsep.join(str(prefix) for prefix in prefixes))
+    installation.finish()
+
+
+def definitions(cmake_arguments: Iterable[str]) -> dict[str, str]:
+    """Return the variables that ``-DNAME=value`` and ``-DNAME:TYPE=value`` set."""
+    found = {}
+    for argument in cmake_arguments:
+        if argument.startswith("-D"):
+            name, _, value = argument[2:].partition("=")
+            found[name.partition(":")[0]] = value
+    return found
+
+
+def _make_script(installation: Installation, destination: str, name: str, function: str) -> None:
+    """Install a program that calls ``module:function``, as the system needs it."""
+    from distlib.scripts import ScriptMaker
+
+    folder = installation.prefix / destination
+    folder.mkdir(parents=True, exist_ok=True)
+    maker = ScriptMaker(None, str(folder))
+    maker.executable = sys.executable
+    maker.variants = {""}
+    maker.clobber = maker.set_mode = True
+    for path in maker.make(f"{name} = {function}"):
+        installation.adopt(Path(path))

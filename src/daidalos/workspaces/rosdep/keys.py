@@ -1,0 +1,113 @@
+"""What a dependency named in a package.xml means here."""
+
+from __future__ import annotations
+
+import importlib.util
+import re
+from dataclasses import dataclass
+from enum import Enum
+from importlib import metadata
+
+_BUILD = re.compile(
+    r"ament_.*|rosidl_.*|catkin|cmake|git|ros_environment|ros_workspace|python_cmake_module|"
+    r"build-essential|pkg-config|colcon.*|rmw.*|rosidl|ros_(base|core)|ros_testing|desktop(_full)?|"
+    r"ros2(cli|launch|run|topic|node|pkg|param|service|action|bag|interface|doctor|component|lifecycle|test|_control|_controllers).*|"
+    r"launch_testing_.*|rosbag2.*|domain_coordinator|osrf_.*|python3(-dev)?|python3-setuptools.*|python3-catkin-pkg.*"
+)
+_COMPILED = re.compile(
+    r"rclcpp.*|pluginlib|class_loader|rcl|rcl_.*|rcutils|rcpputils|libstatistics_collector|eigen3?|eigen3_cmake_module|"
+    r"boost|lib[a-z].*|qt.*|pcl.*|tf2|tf2_eigen|tf2_kdl|kdl.*|orocos_kdl.*|urdfdom.*|image_transport|console_bridge.*|"
+    r"spdlog.*|tinyxml.*|yaml[-_]cpp.*|rviz_(common|rendering|ogre_vendor)|controller_interface|hardware_interface|gtest|"
+    r"nav2_(core|util|costmap_2d)|behaviortree_cpp.*|gazebo(_dev)?|resource_retriever|cv_bridge_cpp|ceres-solver"
+)
+_DISTRIBUTIONS = {
+    "opencv": "opencv-python-headless",
+    "yaml": "pyyaml",
+    "serial": "pyserial",
+    "pil": "pillow",
+    "imaging": "pillow",
+    "skimage": "scikit-image",
+    "sklearn": "scikit-learn",
+    "bs4": "beautifulsoup4",
+    "usb": "pyusb",
+    "zmq": "pyzmq",
+    "qt5-bindings": "pyqt5",
+    "pyqt5": "pyqt5",
+    "paho-mqtt": "paho-mqtt",
+    "tk": "",
+    "venv": "",
+    "pip": "",
+    "distutils": "",
+    "lxml": "lxml",
+    "dateutil": "python-dateutil",
+    "transforms3d": "transforms3d",
+    "pykdl": "",
+    "mock": "mock",
+    "pygraphviz": "pygraphviz",
+    "pydot": "pydot",
+    "torch": "torch",
+    "ultralytics": "ultralytics",
+}
+
+
+class Answer(Enum):
+    """What can be said of a dependency."""
+
+    HERE = "here"
+    """It is installed, or a build does without it."""
+    COMPILED = "compiled"
+    """Only C++ needs it, which is left out of a build."""
+    PYTHON = "python"
+    """The Python package index has it."""
+    UNKNOWN = "unknown"
+    """Nothing is known of it."""
+
+
+@dataclass(frozen=True)
+class Resolution:
+    """What a dependency is; `distribution` is what the package index calls it."""
+
+    answer: Answer
+    distribution: str = ""
+
+
+def resolve(key: str) -> Resolution:
+    """Tell what a dependency of a package is here."""
+    if _is_package(key) or _BUILD.fullmatch(key):
+        return Resolution(Answer.HERE)
+    if key.startswith(("python-", "python3-")):
+        distribution = _distribution(key)
+        if not distribution or _is_installed(distribution):
+            return Resolution(Answer.HERE, distribution)
+        return Resolution(Answer.PYTHON, distribution)
+    if _COMPILED.fullmatch(key):
+        return Resolution(Answer.COMPILED)
+    return Resolution(Answer.UNKNOWN)
+
+
+def _is_package(key: str) -> bool:
+    from ament_index_python.packages import get_packages_with_prefixes
+
+    from daidalos.interfaces.library import BUILT_IN
+
+    if key in get_packages_with_prefixes() or (BUILT_IN / key).is_dir():
+        return True
+    return re.fullmatch(r"[a-z]\w*", key) is not None and importlib.util.find_spec(key) is not None
+
+
+def _distribution(key: str) -> str:
+    """Return what the package index calls a key such as ``python3-opencv`` or ``python3-ruckig-pip``."""
+    name = key.partition("-")[2].removesuffix("-pip")
+    return _DISTRIBUTIONS.get(name, name)
+
+
+def _is_installed(distribution: str) -> bool:
+    # One library goes under several names there.
+    names = {distribution, distribution.removesuffix("-headless")}
+    for name in names:
+        try:
+            metadata.version(name)
+        except metadata.PackageNotFoundError:
+            continue
+        return True
+    return False
