@@ -12,13 +12,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daidalos.description.errors import DescriptionError
-from daidalos.description.geometry import Empty, Heightmap, Mesh, Plane
+from daidalos.description.geometry import Box, Empty, Heightmap, Mesh, Plane
 from daidalos.description.images import read_grey, read_rgba
 from daidalos.description.link import Material, Rgba, Visual
 from daidalos.description.meshes import read_scene, triangles_of
 from daidalos.description.pose import quaternion_between, rotation_matrix
 
 GREY: Rgba = (0.7, 0.7, 0.7, 1.0)
+WHITE: Rgba = (1.0, 1.0, 1.0, 1.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,7 +79,7 @@ def visual_parts(visual: Visual, segments: int = 32) -> tuple[Part, ...]:
         parts = [_terrain(shape)]
     else:
         mesh = triangles_of(shape, segments)
-        parts = [_flat(mesh.vertices, mesh.faces)]
+        parts = [_wrapped(_flat(mesh.vertices, mesh.faces), boxed=isinstance(shape, Box))]
     return tuple(_painted(part, material, visual.transparency, isinstance(shape, Mesh)) for part in parts)
 
 
@@ -152,6 +153,30 @@ def _flat(vertices: NDArray[np.float64], faces: NDArray[np.int32]) -> Part:
     return Part(corners.reshape(-1, 3).astype(np.float32), smooth.astype(np.float32), triangles, GREY)
 
 
+def _wrapped(part: Part, boxed: bool) -> Part:
+    """Give a shape texture coordinates: each side of a box a whole image, anything round one around its z axis.
+
+    What points up or down is seen from above; images stand upright on the sides, seen from outside.
+    """
+    corners = part.vertices[part.faces].astype(np.float64)
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    lowest, extent = part.vertices.min(axis=0), np.ptp(part.vertices, axis=0).clip(1e-12)
+    x, y, z = np.moveaxis((corners - lowest) / extent, -1, 0)
+    side = np.abs(normals).argmax(axis=1)[:, None]
+    ahead = np.take_along_axis(normals, side, axis=1) > 0
+    flat = np.where(ahead, x, 1 - x), y
+    if boxed:
+        u = np.where(side == 0, np.where(ahead, y, 1 - y), np.where(side == 1, np.where(ahead, 1 - x, x), flat[0]))
+        v = np.where(side == 2, flat[1], z)
+    else:
+        turn = np.arctan2(corners[..., 1], corners[..., 0]) / (2 * np.pi) + 0.5
+        # A triangle across the seam goes on beyond 1; textures repeat.
+        turn = np.where((np.ptp(turn, axis=1, keepdims=True) > 0.5) & (turn < 0.5), turn + 1, turn)
+        lid = (np.ptp(z, axis=1, keepdims=True) < 1e-6) & (side == 2)
+        u, v = np.where(lid, flat[0], turn), np.where(lid, flat[1], z)
+    return replace(part, uv=np.stack((u, v), axis=-1).reshape(-1, 2).astype(np.float32))
+
+
 def _plane(plane: Plane) -> Part:
     turn = rotation_matrix(quaternion_between((0.0, 0.0, 1.0), plane.normal))
     x, y = plane.size[0] / 2, plane.size[1] / 2
@@ -196,6 +221,7 @@ def _painted(part: Part, material: Material | None, transparency: float, is_mesh
         color = material.color or color
         if material.texture_path is not None and part.uv is not None:
             texture = read_rgba(material.texture_path)
+            color = material.color or WHITE
         elif material.color is not None:
             texture = None
     red, green, blue, alpha = color

@@ -47,6 +47,9 @@ class Noise:
         return noisy
 
 
+SILENT = Noise()
+
+
 class NoiseVector:
     """The noise of n numbers that are measured together, each with its own settings.
 

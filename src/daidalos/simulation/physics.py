@@ -9,6 +9,7 @@ import mujoco
 
 from daidalos.simulation.conversion.build import GeomInfo
 from daidalos.simulation.errors import SimulationError
+from daidalos.simulation.stage import Stage
 
 _DIVERGED = (
     mujoco.mjtWarning.mjWARN_BADQPOS,
@@ -27,15 +28,23 @@ class Physics:
         Place of each geom to the name of its model and what it stands for.
     heard : callable
         Tells whether anyone listens to a topic.
+    stage : Stage
+        What cameras see.
     """
 
     def __init__(
-        self, model: Any, data: Any, geoms: Mapping[int, tuple[str, GeomInfo]], heard: Callable[[str], bool]
+        self,
+        model: Any,
+        data: Any,
+        geoms: Mapping[int, tuple[str, GeomInfo]],
+        heard: Callable[[str], bool],
+        stage: Stage,
     ) -> None:
         self.model = model
         self.data = data
         self.geoms = geoms
         self.heard = heard
+        self.stage = stage
         self.changed()
 
     def step(self, count: int) -> None:

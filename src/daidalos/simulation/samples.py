@@ -7,9 +7,12 @@ quaternions are x, y, z, w, topics are absolute, frame ids are without a leading
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+from daidalos.description.pose import Pose
 
 Array = NDArray[np.float64]
 
@@ -69,13 +72,70 @@ class PointCloudSample(Sample):
     Parameters
     ----------
     points : array (rows, columns, 3) of float32
-        [m], in the frame; ``inf`` where nothing is in reach.
-    intensities : array (rows, columns) of float32
+        [m], in the frame; ``inf`` (a lidar) or ``nan`` (a camera) where nothing is in reach.
+    intensities : array (rows, columns) of float32 or None
         The ``laser_retro`` of what was hit.
+    colors : array (rows, columns, 3) of uint8 or None
+        Red, green, blue.
     """
 
     points: NDArray[np.float32]
-    intensities: NDArray[np.float32]
+    intensities: NDArray[np.float32] | None = None
+    colors: NDArray[np.uint8] | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class ImageSample(Sample):
+    """A picture.
+
+    Parameters
+    ----------
+    encoding : str
+        ROS's name for what the pixels hold, such as ``rgb8`` or ``32FC1`` (depths in metres, REP 118).
+    pixels : array (height, width) or (height, width, bands)
+    """
+
+    encoding: str
+    pixels: NDArray[Any]
+
+
+@dataclass(frozen=True, eq=False)
+class CameraInfoSample(Sample):
+    """The calibration of a camera.
+
+    Parameters
+    ----------
+    width, height : int
+        [pixels].
+    distortion : tuple of 5 floats
+        k1, k2, p1, p2, k3 (``plumb_bob``).
+    matrix : array (3, 3)
+        Of the raw image.
+    projection : array (3, 4)
+        Of the rectified image.
+    """
+
+    width: int
+    height: int
+    distortion: tuple[float, float, float, float, float]
+    matrix: Array
+    projection: Array
+
+
+@dataclass(frozen=True, eq=False)
+class LogicalImageSample(Sample):
+    """The models that a logical camera sees.
+
+    Parameters
+    ----------
+    pose : Pose
+        Of the camera in the world.
+    models : tuple of (str, Pose)
+        Names, with their poses in the camera's frame.
+    """
+
+    pose: Pose
+    models: tuple[tuple[str, Pose], ...]
 
 
 @dataclass(frozen=True, eq=False)

@@ -33,6 +33,7 @@ from daidalos.simulation.instance import Instance, JointView
 from daidalos.simulation.physics import Physics
 from daidalos.simulation.samples import Sample
 from daidalos.simulation.schedule import Schedule
+from daidalos.simulation.stage import Stage
 
 Array = NDArray[np.float64]
 
@@ -88,6 +89,7 @@ class Simulation:
         self.warnings: list[str] = []
         self.heard = heard
         self._warn_user = _log.warning if warn is None else warn
+        self.stage = Stage(self.world, self._warn)
         self._instances: dict[str, Instance] = {}
         self._schedule = Schedule()
         self._monitors: list[ContactMonitor] = []
@@ -386,9 +388,10 @@ class Simulation:
             for instance in self._instances.values()
             for geom, info in instance.build.geoms.items()
         }
-        self._physics = Physics(model, data, geoms, self._is_heard)
+        self._physics = Physics(model, data, geoms, self._is_heard, self.stage)
         for instance in self._instances.values():
             instance.bind(self._physics)
+        self.stage.bind(self._instances.values())
         for monitor in self._monitors:
             monitor.bind(self._physics)
 

@@ -6,6 +6,7 @@ from daidalos.description.link import Material, Rgba
 from daidalos.description.markup import Element
 from daidalos.description.named_colors import named_color
 from daidalos.description.sdf.context import Context
+from daidalos.description.sdf.ogre_materials import OgreMaterial, find_material
 
 
 def read_material(element: Element | None, context: Context) -> Material | None:
@@ -15,14 +16,16 @@ def read_material(element: Element | None, context: Context) -> Material | None:
     script = element.first("script") or Element("script")
     name = script.text_of("name", default=element.text.strip())
     named, texture = named_color(name), _texture(element)
+    scripted = _scripted(script, name, context)
+    color = scripted.diffuse or scripted.ambient or named
     return Material(
         name=name,
-        color=read_color(element, "diffuse") or named,
-        ambient=read_color(element, "ambient") or named,
+        color=read_color(element, "diffuse") or color,
+        ambient=read_color(element, "ambient") or color,
         specular=read_color(element, "specular"),
-        emissive=read_color(element, "emissive"),
-        texture=texture,
-        texture_path=context.find(texture) if texture else None,
+        emissive=read_color(element, "emissive") or scripted.emissive,
+        texture=texture or ("" if scripted.texture is None else scripted.texture.name),
+        texture_path=context.find(texture) if texture else scripted.texture,
     )
 
 
@@ -36,6 +39,12 @@ def read_color(element: Element, tag: str) -> Rgba | None:
         return red, green, blue, 1.0
     red, green, blue, alpha = child.vector(4)
     return red, green, blue, alpha
+
+
+def _scripted(script: Element, name: str, context: Context) -> OgreMaterial:
+    """Look a material up in the scripts that the element names."""
+    found = [path for uri in script.all("uri") if (path := context.find(uri.text.strip())) is not None]
+    return find_material(name, found) or OgreMaterial()
 
 
 def _texture(element: Element) -> str:

@@ -159,6 +159,106 @@ def _joint_state(sample: samples.JointStateSample) -> Any:
     )
 
 
+def _image_type() -> Any:
+    from sensor_msgs.msg import Image
+
+    return Image
+
+
+def _image(sample: samples.ImageSample) -> Any:
+    pixels = np.ascontiguousarray(sample.pixels)
+    return _image_type()(
+        header=_header(sample),
+        height=pixels.shape[0],
+        width=pixels.shape[1],
+        encoding=sample.encoding,
+        is_bigendian=0,
+        step=pixels.strides[0],
+        data=_bytes(pixels),
+    )
+
+
+def _bytes(values: Any) -> array[int]:
+    result = array("B")
+    result.frombytes(memoryview(values).cast("B"))
+    return result
+
+
+def _camera_info_type() -> Any:
+    from sensor_msgs.msg import CameraInfo
+
+    return CameraInfo
+
+
+def _camera_info(sample: samples.CameraInfoSample) -> Any:
+    return _camera_info_type()(
+        header=_header(sample),
+        height=sample.height,
+        width=sample.width,
+        distortion_model="plumb_bob",
+        d=list(sample.distortion),
+        k=sample.matrix.ravel(),
+        r=np.eye(3).ravel(),
+        p=sample.projection.ravel(),
+    )
+
+
+def _points_type() -> Any:
+    from sensor_msgs.msg import PointCloud2
+
+    return PointCloud2
+
+
+def _points(sample: samples.PointCloudSample) -> Any:
+    from sensor_msgs.msg import PointField
+
+    rows, columns = sample.points.shape[:2]
+    extras = {"intensity": sample.intensities, "rgb": None if sample.colors is None else _packed(sample.colors)}
+    bands = {"x": None, "y": None, "z": None} | {name: band for name, band in extras.items() if band is not None}
+    buffer = np.empty((rows, columns, len(bands)), dtype=np.float32)
+    buffer[:, :, :3] = sample.points
+    for place, band in enumerate(bands.values()):
+        if band is not None:
+            buffer[:, :, place] = band
+    fields = [
+        PointField(name=name, offset=4 * place, datatype=PointField.FLOAT32, count=1)
+        for place, name in enumerate(bands)
+    ]
+    return _points_type()(
+        header=_header(sample),
+        height=rows,
+        width=columns,
+        fields=fields,
+        is_bigendian=False,
+        point_step=4 * len(bands),
+        row_step=4 * len(bands) * columns,
+        data=_bytes(buffer),
+        is_dense=bool(np.isfinite(sample.points).all()),
+    )
+
+
+def _packed(colors: Any) -> Any:
+    """Return colours as PCL packs them: three bytes in the bits of a float."""
+    packed = np.zeros((*colors.shape[:2], 4), dtype=np.uint8)
+    packed[:, :, :3] = colors[:, :, ::-1]
+    return packed.view("<f4")[:, :, 0]
+
+
+def _logical_type() -> Any:
+    from ros_gz_interfaces.msg import LogicalCameraImage
+
+    return LogicalCameraImage
+
+
+def _logical(sample: samples.LogicalImageSample) -> Any:
+    from ros_gz_interfaces.msg import LogicalCameraImageModel
+
+    from daidalos.nodes.gazebo_ros._states import pose_message
+
+    models = [LogicalCameraImageModel(name=name, pose=pose_message(pose)) for name, pose in sample.models]
+    return _logical_type()(header=_header(sample), pose=pose_message(sample.pose), model=models)
+
+
 def _twist_type() -> Any:
     from geometry_msgs.msg import Twist
 
@@ -172,6 +272,10 @@ def _twist(message: Any) -> samples.TwistCommand:
 
 OUTGOING: dict[type[samples.Sample], Outgoing] = {
     samples.LaserScanSample: Outgoing(_scan_type, _scan),
+    samples.PointCloudSample: Outgoing(_points_type, _points),
+    samples.ImageSample: Outgoing(_image_type, _image),
+    samples.CameraInfoSample: Outgoing(_camera_info_type, _camera_info),
+    samples.LogicalImageSample: Outgoing(_logical_type, _logical),
     samples.ImuSample: Outgoing(_imu_type, _imu),
     samples.OdometrySample: Outgoing(_odometry_type, _odometry),
     samples.TransformSample: Outgoing(_transforms_type, _transforms),

@@ -95,6 +95,10 @@ class Parameters:
         own = self.element.attribute("name", "") if name.startswith("~/") else ""
         return absolute_topic(f"{own}/{bare}" if own else bare, self.namespace)
 
+    def is_remapped(self, name: str) -> bool:
+        """Tell whether ``<ros><remapping>`` speaks of a name, private or not."""
+        return any(written in self._remappings for written in (name, f"~/{name}"))
+
     def scoped(self, name: str) -> str:
         """Return the model's name for a link or joint that a nested model's plugin mentions."""
         return f"{self.scope}::{name}" if self.scope and name else name

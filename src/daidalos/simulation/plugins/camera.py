@@ -1,0 +1,86 @@
+"""Gazebo classic's camera plugins: topics, frames and limits of a camera sensor."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from daidalos.description.markup import Element
+from daidalos.simulation.plugins.base import Parameters, SensorPlugin
+from daidalos.simulation.sensors.base import Sensor
+from daidalos.simulation.sensors.camera import Camera, Lens
+from daidalos.simulation.topics import frame
+
+
+class CameraOfSensor(SensorPlugin):
+    """``libgazebo_ros_camera.so`` of ROS 1 and 2, with its relatives for depth and several eyes."""
+
+    names = (
+        *("gazebo_ros_camera", "gazebo_ros_triggered_camera", "gazebo_ros_prosilica"),
+        *("gazebo_ros_depth_camera", "gazebo_ros_openni_kinect"),
+        *("gazebo_ros_multicamera", "gazebo_ros_triggered_multicamera"),
+    )
+
+    def configure(self, sensor: Sensor, parameters: Parameters) -> None:
+        """Take topics, frame, distortion, baseline and limits of depths."""
+        element = parameters.element
+        if not isinstance(sensor, Camera):
+            sensor.setting.warn(f"{element.where}: plugin {parameters.library} needs a camera, left out")
+            return
+        rate = element.number_of("updateRate", "update_rate", default=0.0)
+        if rate > 0:
+            sensor.period = 1.0 / rate
+        ros1 = any(child.tag in _ROS1 for child in element)
+        name = element.text_of("cameraName", "camera_name", default="" if ros1 else sensor.name)
+        frame_id = frame(element.text_of("frameName", "frame_name", default=sensor.frame_id))
+        for lens in sensor.lenses:
+            prefixes = [name, lens.settings.name] if len(sensor.lenses) > 1 else [name]
+            lens.frame_id, lens.points_ahead_x = frame_id, False
+            _set_topics(lens, prefixes, parameters, deep=sensor.kind in ("depth", "rgbd"))
+            _set_optics(lens, element)
+
+
+_ROS1 = ("imageTopicName", "cameraInfoTopicName", "cameraName", "frameName", "depthImageTopicName")
+
+
+def _set_topics(lens: Lens, prefixes: Sequence[str], parameters: Parameters, deep: bool) -> None:
+    element = parameters.element
+
+    def topic(default: str, *tags: str) -> str:
+        name = element.text_of(*tags, default=default) if tags else default
+        return parameters.topic(_remapped(parameters, prefixes, name))
+
+    lens.image = topic("image_raw", "imageTopicName")
+    infos = [topic("camera_info", "cameraInfoTopicName")]
+    if deep:
+        lens.depth = topic("depth/image_raw", "depthImageTopicName")
+        lens.points = topic("points", "pointCloudTopicName")
+        infos.append(topic("depth/camera_info", "depthImageCameraInfoTopicName", "depthImageInfoTopicName"))
+    lens.infos = tuple(dict.fromkeys(infos))
+
+
+def _remapped(parameters: Parameters, prefixes: Sequence[str], name: str) -> str:
+    """Return the name below the camera's, unless the bare name is what a remapping speaks of."""
+    full = name if name.startswith("/") else "/".join([*filter(None, prefixes), name])
+    return full if parameters.is_remapped(full) or not parameters.is_remapped(name) else name
+
+
+def _set_optics(lens: Lens, element: Element) -> None:
+    settings = lens.settings
+    bent = tuple(
+        element.number_of(f"distortion{key.upper()}", f"distortion_{key}", default=value)
+        for key, value in zip(("k1", "k2", "t1", "t2", "k3"), settings.pinhole.distortion, strict=True)
+    )
+    near = element.number_of("pointCloudCutoff", "min_depth", default=settings.depth_near)
+    far = element.number_of("pointCloudCutoffMax", "max_depth", default=settings.depth_far)
+    if not 0 <= near < far:
+        raise element.error(f"expected 0 <= min_depth < max_depth, got {near:g} and {far:g}")
+    k1, k2, p1, p2, k3 = bent
+    lens.settings = replace(
+        settings,
+        pinhole=replace(settings.pinhole, distortion=(k1, k2, p1, p2, k3)),
+        depth_near=near,
+        depth_far=far,
+        depth_encoding="16UC1" if element.flag_of("useDepth16UC1Format", default=False) else settings.depth_encoding,
+    )
+    lens.baseline = element.number_of("hackBaseline", "hack_baseline", default=0.0) or lens.baseline

@@ -1,0 +1,67 @@
+"""What happens to a picture behind the lens: distortion, noise, a Bayer mosaic. Compiled loops over pixels."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from daidalos.simulation.rendering.compilation import compiled
+
+
+@compiled
+def bend(ideal: Any, lookup: Any, bent: Any) -> None:
+    """Take each pixel of a picture from a place between four pixels of the undistorted one.
+
+    Parameters
+    ----------
+    ideal : array (rows, columns, 3) of uint8
+    lookup : array (height, width, 2) of float32
+        Column and row in `ideal`.
+    bent : array (height, width, 3) of uint8
+        The result.
+    """
+    rows, columns = ideal.shape[:2]
+    for row in range(lookup.shape[0]):
+        for column in range(lookup.shape[1]):
+            x = min(max(lookup[row, column, 0], 0.0), columns - 1.0)
+            y = min(max(lookup[row, column, 1], 0.0), rows - 1.0)
+            i, j = min(int(x), columns - 2), min(int(y), rows - 2)
+            s, t = x - i, y - j
+            for band in range(3):
+                upper = (1 - s) * ideal[j, i, band] + s * ideal[j, i + 1, band]
+                lower = (1 - s) * ideal[j + 1, i, band] + s * ideal[j + 1, i + 1, band]
+                bent[row, column, band] = np.uint8((1 - t) * upper + t * lower + 0.5)
+
+
+@compiled
+def pick(ideal: Any, lookup: Any, bent: Any) -> None:
+    """Take each pixel from the nearest one of the undistorted array: depths and labels do not mix."""
+    rows, columns = ideal.shape
+    for row in range(lookup.shape[0]):
+        for column in range(lookup.shape[1]):
+            i = min(max(math.floor(lookup[row, column, 0] + 0.5), 0), columns - 1)
+            j = min(max(math.floor(lookup[row, column, 1] + 0.5), 0), rows - 1)
+            bent[row, column] = ideal[j, i]
+
+
+@compiled
+def add_noise(picture: Any, noise: Any, start: Any) -> None:
+    """Add numbers of a table, from a place on and around, to the bytes of a picture."""
+    place = start
+    size = len(noise)
+    for index in range(len(picture)):
+        value = picture[index] + noise[place]
+        picture[index] = np.uint8(min(max(value, np.float32(0.0)), np.float32(255.0)) + np.float32(0.5))
+        place += 1
+        if place == size:
+            place = 0
+
+
+@compiled
+def mosaic(picture: Any, pattern: Any, raw: Any) -> None:
+    """Keep of each pixel the band that its place in a two by two pattern lets through."""
+    for row in range(raw.shape[0]):
+        for column in range(raw.shape[1]):
+            raw[row, column] = picture[row, column, pattern[row & 1, column & 1]]

@@ -1,0 +1,229 @@
+"""Draws a scene as a camera sees it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daidalos.description.link import Light, Rgba
+from daidalos.description.pose import Pose, rotate
+from daidalos.simulation.rendering.lighting import Lighting
+from daidalos.simulation.rendering.optics import OPTICAL, Pinhole
+from daidalos.simulation.rendering.raster import EDGES, NOTHING, draw, place_parts
+from daidalos.simulation.rendering.scene import Scene
+from daidalos.simulation.rendering.shading import DIRECTIONAL, LAMP, POINT, SPOT, shade
+from daidalos.simulation.rendering.shadows import ShadowMap
+
+Array = NDArray[np.float64]
+
+_SKY: tuple[Rgba, Rgba] = ((0.75, 0.84, 0.93, 1.0), (0.25, 0.47, 0.80, 1.0))
+_KINDS = {"point": POINT, "spot": SPOT, "directional": DIRECTIONAL}
+_NO_SHADOW = np.zeros((0, 0), dtype=np.float32)
+
+
+@dataclass(frozen=True, eq=False)
+class View:
+    """What a camera sees; the arrays are used again by the next `Renderer.render`.
+
+    Parameters
+    ----------
+    inverse : array (rows, columns) of float32
+        Inverse depth along the optical axis [1/m].
+    triangles : array (rows, columns) of int32
+        Rows of the scene's faces; negative for nothing.
+    scene : Scene
+    """
+
+    inverse: NDArray[np.float32]
+    triangles: NDArray[np.int32]
+    scene: Scene
+
+    def depth(self) -> NDArray[np.float32]:
+        """Return depths along the optical axis [m], infinite where nothing is."""
+        with np.errstate(divide="ignore"):
+            return np.where(self.triangles < 0, np.float32(np.inf), np.float32(1.0) / self.inverse)
+
+    def of_parts(self, values: NDArray[Any], nothing: int = 0) -> NDArray[Any]:
+        """Return for each pixel the value of the part that it sees."""
+        result = values[self.scene.face_part[self.triangles.clip(0)]] if len(values) else self.triangles * 0
+        return np.where(self.triangles < 0, np.asarray(nothing, dtype=result.dtype), result)
+
+
+@dataclass(eq=False)
+class _Buffers:
+    """Arrays that depend on the scene's size."""
+
+    scene: Scene
+    placed: Array = field(init=False)
+    transformed: Array = field(init=False)
+    edges: Array = field(init=False)
+    flipped: NDArray[np.bool_] = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.placed = np.zeros((len(self.scene.body), 3, 4))
+        self.transformed = np.zeros_like(self.scene.vertices)
+        self.edges = np.zeros((len(self.scene.faces), EDGES))
+        self.flipped = np.zeros(len(self.scene.faces), dtype=np.bool_)
+
+
+class Renderer:
+    """One camera's rasteriser with its buffers.
+
+    Parameters
+    ----------
+    pinhole : Pinhole
+        Without distortion.
+    near, far : float
+        Depths between which things are seen [m].
+    mask : int
+        Sees parts whose visibility flags have a bit in common with it.
+    """
+
+    def __init__(self, pinhole: Pinhole, near: float, far: float, mask: int = 0xFFFFFFFF) -> None:
+        self.pinhole = pinhole
+        self.near, self.far = near, far
+        self._mask = np.uint32(mask & 0xFFFFFFFF)
+        shape = (pinhole.height, pinhole.width)
+        self._inverse = np.empty(shape, dtype=np.float32)
+        self._triangles = np.empty(shape, dtype=np.int32)
+        self._glass: tuple[NDArray[np.float32], NDArray[np.int32]] | None = None
+        self._buffers: _Buffers | None = None
+        self._shadow_map: ShadowMap | None = None
+
+    def render(self, scene: Scene, positions: Array, rotations: Array, pose: Pose) -> View:
+        """Find what each pixel sees.
+
+        Parameters
+        ----------
+        scene : Scene
+        positions, rotations : array (bodies, 3) and (bodies, 9)
+            Of MuJoCo's bodies.
+        pose : Pose
+            The sensor's frame (x ahead, z up) in the world.
+        """
+        if self._buffers is None or self._buffers.scene is not scene:
+            self._buffers = _Buffers(scene)
+        self._eye = pose @ OPTICAL
+        self._view = self._eye.inverse.matrix[:3]
+        place_parts(scene.body, scene.pose, positions, rotations, self._view, self._buffers.placed)
+        self._inverse.fill(1.0 / self.far)
+        self._triangles.fill(NOTHING)
+        seen = scene.visible & ((scene.flags & self._mask) != 0)
+        self._draw(seen & scene.opaque, self._inverse, self._triangles)
+        self._transparent = seen & ~scene.opaque
+        return View(self._inverse, self._triangles, scene)
+
+    def paint(self, positions: Array, rotations: Array, lighting: Lighting) -> NDArray[np.uint8]:
+        """Return the colours (rows, columns, 3) of what the last `render` saw; glass in front of it included."""
+        assert self._buffers is not None
+        scene = self._buffers.scene
+        sun, lamps = _sorted(lighting)
+        direction = np.array((0.0, 0.0, -1.0)) if sun is None else _shines(*sun)
+        shadow = self._shadow(scene, positions, rotations, direction, lighting, sun)
+        picture = np.empty((*self._triangles.shape, 3), dtype=np.uint8)
+        self._shade(self._triangles, self._inverse, lighting, sun, direction, lamps, shadow, picture, blend=False)
+        if self._transparent.any():
+            if self._glass is None:
+                self._glass = np.empty_like(self._inverse), np.empty_like(self._triangles)
+            inverse, triangles = self._glass
+            np.copyto(inverse, self._inverse)
+            triangles.fill(NOTHING)
+            self._draw(self._transparent, inverse, triangles)
+            self._shade(triangles, inverse, lighting, sun, direction, lamps, shadow, picture, blend=True)
+        return picture
+
+    def _draw(self, wanted: NDArray[np.bool_], inverse: NDArray[np.float32], triangles: NDArray[np.int32]) -> None:
+        assert self._buffers is not None
+        scene, buffers = self._buffers.scene, self._buffers
+        draw(
+            wanted, buffers.placed, scene.spheres, scene.face_ranges, scene.vertex_ranges, scene.two_sided,
+            scene.vertices, scene.faces, self.pinhole.lens, self.near, self.far, buffers.transformed, buffers.edges,
+            buffers.flipped, inverse, triangles,
+        )  # fmt: skip
+
+    def _shadow(
+        self,
+        scene: Scene,
+        positions: Array,
+        rotations: Array,
+        direction: Array,
+        lighting: Lighting,
+        sun: tuple[Light, Pose] | None,
+    ) -> ShadowMap | None:
+        if sun is None or not sun[0].cast_shadows or not lighting.shadows:
+            return None
+        if self._shadow_map is None:
+            self._shadow_map = ShadowMap()
+        ahead = np.array(rotate(self._eye.orientation, (0.0, 0.0, 1.0)))
+        eye = np.array(self._eye.position)
+        self._shadow_map.update(scene, positions, rotations, direction, eye, ahead, self.far)
+        return self._shadow_map
+
+    def _shade(
+        self,
+        triangles: NDArray[np.int32],
+        inverse: NDArray[np.float32],
+        lighting: Lighting,
+        sun: tuple[Light, Pose] | None,
+        direction: Array,
+        lamps: list[tuple[Light, Pose]],
+        shadow: ShadowMap | None,
+        picture: NDArray[np.uint8],
+        blend: bool,
+    ) -> None:
+        assert self._buffers is not None
+        scene, buffers, view = self._buffers.scene, self._buffers, self._view
+        eye = self._eye.matrix
+        to_shadow = np.zeros((3, 4)) if shadow is None else shadow.to_map @ eye
+        offset = np.zeros(2) if shadow is None else np.array((1.5, 1.0)) * shadow.texel
+        colors = _SKY if lighting.sky else (lighting.background, lighting.background)
+        shade(
+            triangles, inverse, buffers.edges, buffers.flipped, scene.face_part, scene.faces, scene.normals, scene.uv,
+            buffers.placed, scene.colors, scene.emissions, scene.alphas, scene.texture_of, scene.atlas.texels,
+            scene.atlas.textures, scene.atlas.levels, self.pinhole.lens,
+            np.array([color[:3] for color in colors], dtype=np.float32), np.ascontiguousarray(eye[2, :3]),
+            np.array(lighting.ambient[:3], dtype=np.float32), -(view[:, :3] @ direction),
+            np.zeros(3, dtype=np.float32) if sun is None else _strength(sun[0]), _lamp_table(lamps, view),
+            _NO_SHADOW if shadow is None else shadow.depths, _NO_SHADOW if shadow is None else shadow.coarse,
+            to_shadow, offset, picture, blend,
+        )  # fmt: skip
+
+
+def _sorted(lighting: Lighting) -> tuple[tuple[Light, Pose] | None, list[tuple[Light, Pose]]]:
+    """Return the parallel light that shadows are drawn for, and all others."""
+    shining = [pair for pair in lighting.lights if pair[0].on and pair[0].intensity > 0]
+    parallel = [pair for pair in shining if pair[0].type == "directional"]
+    sun = next((pair for pair in parallel if pair[0].cast_shadows), parallel[0] if parallel else None)
+    return sun, [pair for pair in shining if pair is not sun]
+
+
+def _shines(light: Light, pose: Pose) -> Array:
+    """Return the unit vector in which a light shines, in the world."""
+    direction = np.array(rotate(pose.orientation, light.direction))
+    length = float(np.linalg.norm(direction))
+    return direction / length if length > 0 else np.array((0.0, 0.0, -1.0))
+
+
+def _strength(light: Light) -> NDArray[np.float32]:
+    return np.array(light.diffuse[:3], dtype=np.float32) * np.float32(light.intensity)
+
+
+def _lamp_table(lamps: list[tuple[Light, Pose]], view: Array) -> Array:
+    table = np.zeros((len(lamps), LAMP))
+    for row, (light, pose) in zip(table, lamps, strict=True):
+        row[0] = _KINDS.get(light.type, POINT)
+        row[1:4] = view[:, :3] @ pose.position + view[:, 3]
+        row[4:7] = view[:, :3] @ _shines(light, pose)
+        row[7:10] = _strength(light)
+        row[10:14] = (
+            light.attenuation_range,
+            light.attenuation_constant,
+            light.attenuation_linear,
+            light.attenuation_quadratic,
+        )
+        row[14:17] = np.cos(light.spot_inner_angle / 2), np.cos(light.spot_outer_angle / 2), light.spot_falloff or 1.0
+        row[17] = 1.0
+    return table

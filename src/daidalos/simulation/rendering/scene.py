@@ -1,0 +1,185 @@
+"""All that can be seen in a simulation, as arrays for the rasteriser."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daidalos.description.errors import DescriptionError
+from daidalos.description.geometry import Mesh
+from daidalos.description.link import Visual
+from daidalos.description.pose import Pose
+from daidalos.description.visuals import Part, visual_parts
+from daidalos.simulation.rendering.textures import TextureAtlas, make_atlas
+
+Array = NDArray[np.float64]
+
+UNLABELLED = 0
+_ALL = 0xFFFFFFFF
+
+
+@dataclass(frozen=True)
+class Item:
+    """A visual in the simulation.
+
+    Parameters
+    ----------
+    visual : Visual
+    body : int
+        The body in MuJoCo's arrays that carries it.
+    fixed : bool
+        Whether that body never moves.
+    owner : int
+        Number of its model.
+    label : int
+        Class that a segmentation camera reports.
+    """
+
+    visual: Visual
+    body: int
+    fixed: bool
+    owner: int
+    label: int
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """Triangles of n parts: v vertices, f faces, in arrays that lie behind one another.
+
+    Parameters
+    ----------
+    vertices, normals : array (v, 3)
+        In the parts' frames.
+    uv : array (v, 2)
+    faces : array (f, 3) of int32
+    face_part : array (f,) of int32
+    body : array (n,) of int64
+    pose : array (n, 3, 4)
+        Of each part in its body.
+    spheres : array (n, 4)
+        Centre and radius of a ball around each part, in its frame.
+    face_ranges, vertex_ranges : array (n, 2) of int64
+    two_sided, opaque, visible, fixed, casts : array (n,) of bool
+    colors, emissions : array (n, 3) of float32
+    alphas : array (n,) of float32
+    texture_of : array (n,) of int32
+    flags : array (n,) of uint32
+        Visibility flags; a camera sees a part when its mask has a bit in common.
+    labels, owners : array (n,) of int32
+    atlas : TextureAtlas
+    """
+
+    vertices: Array
+    normals: Array
+    uv: Array
+    faces: NDArray[np.int32]
+    face_part: NDArray[np.int32]
+    body: NDArray[np.int64]
+    pose: Array
+    spheres: Array
+    face_ranges: NDArray[np.int64]
+    vertex_ranges: NDArray[np.int64]
+    two_sided: NDArray[np.bool_]
+    opaque: NDArray[np.bool_]
+    visible: NDArray[np.bool_]
+    fixed: NDArray[np.bool_]
+    casts: NDArray[np.bool_]
+    colors: NDArray[np.float32]
+    emissions: NDArray[np.float32]
+    alphas: NDArray[np.float32]
+    texture_of: NDArray[np.int32]
+    flags: NDArray[np.uint32]
+    labels: NDArray[np.int32]
+    owners: NDArray[np.int32]
+    atlas: TextureAtlas
+
+
+def make_scene(items: Iterable[Item], warn: Callable[[str], None]) -> Scene:
+    """Gather the triangles of visuals.
+
+    Parameters
+    ----------
+    items : iterable of Item
+    warn : callable
+        Takes a line for each visual that can not be drawn; it is left out.
+    """
+    pairs: list[tuple[Item, Part]] = []
+    for item in items:
+        try:
+            parts = _parts(replace(item.visual, pose=Pose(), name="", label=None))
+        except DescriptionError as problem:
+            warn(f"{problem}; the visual is not drawn")
+            continue
+        pairs += [(item, part) for part in parts if len(part.faces)]
+    images: dict[int, NDArray[np.uint8]] = {id(p.texture): p.texture for _, p in pairs if p.texture is not None}
+    numbers = {key: number for number, key in enumerate(images)}
+    vertex_ends = np.cumsum([len(part.vertices) for _, part in pairs], dtype=np.int64)
+    face_ends = np.cumsum([len(part.faces) for _, part in pairs], dtype=np.int64)
+    vertex_starts = np.concatenate(([0], vertex_ends[:-1])).astype(np.int64)[: len(pairs)]
+    face_starts = np.concatenate(([0], face_ends[:-1])).astype(np.int64)[: len(pairs)]
+    alphas = np.array([part.color[3] for _, part in pairs], dtype=np.float32)
+    return Scene(
+        vertices=_stack([part.vertices for _, part in pairs], 3),
+        normals=_stack([part.normals for _, part in pairs], 3),
+        uv=_stack([np.zeros((len(p.vertices), 2)) if p.uv is None else p.uv for _, p in pairs], 2),
+        faces=_stack([p.faces + start for (_, p), start in zip(pairs, vertex_starts, strict=True)], 3).astype(np.int32),
+        face_part=np.repeat(np.arange(len(pairs), dtype=np.int32), face_ends - face_starts),
+        body=np.array([item.body for item, _ in pairs], dtype=np.int64),
+        pose=np.array([item.visual.pose.matrix[:3] for item, _ in pairs]).reshape(-1, 3, 4),
+        spheres=np.array([_ball(part.vertices) for _, part in pairs]).reshape(-1, 4),
+        face_ranges=np.stack((face_starts, face_ends), axis=1),
+        vertex_ranges=np.stack((vertex_starts, vertex_ends), axis=1),
+        # Whoever made a mesh may have turned its triangles either way.
+        two_sided=np.array([isinstance(item.visual.geometry, Mesh) for item, _ in pairs], dtype=np.bool_),
+        opaque=alphas >= 1.0,
+        visible=alphas > 0.0,
+        fixed=np.array([item.fixed for item, _ in pairs], dtype=np.bool_),
+        casts=np.array([item.visual.cast_shadows for item, _ in pairs], dtype=np.bool_) & (alphas >= 1.0),
+        colors=np.array([part.color[:3] for _, part in pairs], dtype=np.float32).reshape(-1, 3),
+        emissions=np.array([_emission(item.visual) for item, _ in pairs], dtype=np.float32).reshape(-1, 3),
+        alphas=alphas,
+        texture_of=np.array([-1 if p.texture is None else numbers[id(p.texture)] for _, p in pairs], dtype=np.int32),
+        flags=np.array([item.visual.visibility_flags & _ALL for item, _ in pairs], dtype=np.uint32),
+        labels=np.array([item.label for item, _ in pairs], dtype=np.int32),
+        owners=np.array([item.owner for item, _ in pairs], dtype=np.int32),
+        atlas=make_atlas(list(images.values())),
+    )
+
+
+@lru_cache(maxsize=512)
+def _parts(visual: Visual) -> tuple[Part, ...]:
+    """Return what a visual shows, with the vertices merged that are alike in everything."""
+    return tuple(_merged(part) for part in visual_parts(visual))
+
+
+def _merged(part: Part) -> Part:
+    columns = [part.vertices, part.normals] + ([] if part.uv is None else [part.uv])
+    rows = np.ascontiguousarray(np.concatenate(columns, axis=1, dtype=np.float32) + np.float32(0.0))
+    keys = rows.view(np.dtype((np.void, rows.dtype.itemsize * rows.shape[1]))).ravel()
+    _, first, place = np.unique(keys, return_index=True, return_inverse=True)
+    return replace(
+        part,
+        vertices=part.vertices[first],
+        normals=part.normals[first],
+        uv=None if part.uv is None else part.uv[first],
+        faces=place.ravel()[part.faces].astype(np.int32),
+    )
+
+
+def _ball(vertices: NDArray[np.float32]) -> tuple[float, float, float, float]:
+    x, y, z = (vertices.min(axis=0).astype(float) + vertices.max(axis=0)) / 2
+    return x, y, z, float(np.linalg.norm(vertices - np.array((x, y, z)), axis=1).max())
+
+
+def _emission(visual: Visual) -> tuple[float, float, float]:
+    glow = visual.material.emissive if visual.material is not None else None
+    return (0.0, 0.0, 0.0) if glow is None else (glow[0], glow[1], glow[2])
+
+
+def _stack(arrays: list[Any], width: int) -> Array:
+    return np.concatenate(arrays).astype(np.float64) if arrays else np.zeros((0, width))

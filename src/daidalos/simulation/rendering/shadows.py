@@ -1,0 +1,131 @@
+"""The shadow map of a parallel light: what it sees of the surroundings of a camera."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daidalos.simulation.rendering.raster import draw_flat, place_parts
+from daidalos.simulation.rendering.scene import Scene
+from daidalos.simulation.rendering.shading import coarsen
+
+Array = NDArray[np.float64]
+
+_LARGEST_REACH = 16.0
+_NEVER = np.array((1 << 30, -1, 1 << 30, -1), dtype=np.int64)
+
+
+class ShadowMap:
+    """Depths along a light, of a square around a camera.
+
+    What never moves is drawn again only when the square moves on; what does is drawn over it each time.
+
+    Parameters
+    ----------
+    size : int
+        Pixels a side.
+
+    Attributes
+    ----------
+    depths : array (size, size) of float32
+    coarse : array of float32
+        The nearest depth in each block.
+    to_map : array (3, 4)
+        From the world to pixels and depth.
+    texel : float
+        Side of a pixel [m].
+    """
+
+    def __init__(self, size: int = 1024) -> None:
+        self.depths = np.full((size, size), np.inf, dtype=np.float32)
+        self.coarse = np.full((size // 16 + 1, size // 16 + 1), np.inf, dtype=np.float32)
+        self.to_map = np.zeros((3, 4))
+        self.texel = 1.0
+        self._still = self.depths.copy()
+        self._scene: Scene | None = None
+        self._light = np.zeros(3)
+        self._corner = (math.nan, math.nan)
+        self._dirty = _NEVER.copy()
+
+    def update(
+        self, scene: Scene, positions: Array, rotations: Array, light: Array, eye: Array, ahead: Array, far: float
+    ) -> None:
+        """Bring the map up to date.
+
+        Parameters
+        ----------
+        scene : Scene
+        positions, rotations : array (bodies, 3) and (bodies, 9)
+            Of MuJoCo's bodies.
+        light : array (3,)
+            Unit vector in which the light shines.
+        eye, ahead : array (3,)
+            Where the camera is and where it looks.
+        far : float
+            How far it sees [m].
+        """
+        reach = min(_LARGEST_REACH, max(far, 0.5)) / 2
+        moved = self._aim(light, eye + ahead * 0.8 * reach, 1.2 * reach)
+        placed = np.empty((len(scene.body), 3, 4))
+        place_parts(scene.body, scene.pose, positions, rotations, self.to_map, placed)
+        if moved or scene is not self._scene:
+            self._scene = scene
+            self._draw_still(scene, placed)
+        self._draw_moving(scene, placed)
+
+    def _aim(self, light: Array, centre: Array, reach: float) -> bool:
+        """Lay the square around a place, in steps so that it seldom moves; tell whether it did."""
+        size = len(self.depths)
+        texel = 2 * reach / size
+        up = np.array((0.0, 1.0, 0.0)) if abs(light[2]) > 0.9 else np.array((0.0, 0.0, 1.0))
+        right = np.cross(up, light)
+        right /= np.linalg.norm(right)
+        axes = np.stack((right, np.cross(light, right), light))
+        step = reach / 4
+        x, y = (math.floor(value / step) * step for value in (axes[:2] @ centre).tolist())
+        corner = (x + step / 2 - reach, y + step / 2 - reach)
+        if corner == self._corner and texel == self.texel and np.array_equal(light, self._light):
+            return False
+        self._corner, self.texel, self._light = corner, texel, light.copy()
+        self.to_map[:, :3] = axes
+        self.to_map[:, 3] = 0.0
+        self.to_map[:2] /= texel
+        self.to_map[0, 3], self.to_map[1, 3] = -corner[0] / texel, -corner[1] / texel
+        return True
+
+    def _draw_still(self, scene: Scene, placed: Array) -> None:
+        self._still.fill(np.inf)
+        self._draw(scene, placed, scene.casts & scene.fixed, self._still, _NEVER.copy())
+        self.depths[:] = self._still
+        size = len(self.depths)
+        coarsen(self.depths, self.coarse, np.array((0, size - 1, 0, size - 1), dtype=np.int64))
+        self._dirty = _NEVER.copy()
+
+    def _draw_moving(self, scene: Scene, placed: Array) -> None:
+        old = self._dirty
+        if old[1] >= old[0]:
+            rows, columns = slice(old[0], old[1] + 1), slice(old[2], old[3] + 1)
+            self.depths[rows, columns] = self._still[rows, columns]
+        box = _NEVER.copy()
+        self._draw(scene, placed, scene.casts & ~scene.fixed, self.depths, box)
+        both = np.array(
+            (min(box[0], old[0]), max(box[1], old[1]), min(box[2], old[2]), max(box[3], old[3])), dtype=np.int64
+        )
+        if both[1] >= both[0]:
+            coarsen(self.depths, self.coarse, both)
+        self._dirty = box
+
+    def _draw(
+        self,
+        scene: Scene,
+        placed: Array,
+        wanted: NDArray[np.bool_],
+        depths: NDArray[np.float32],
+        box: NDArray[np.int64],
+    ) -> None:
+        scratch = np.empty_like(scene.vertices)
+        draw_flat(
+            wanted, placed, scene.face_ranges, scene.vertex_ranges, scene.vertices, scene.faces, scratch, depths, box
+        )

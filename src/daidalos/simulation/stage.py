@@ -1,0 +1,152 @@
+"""All that cameras see: what the models look like, the lamps, and the sky."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from daidalos.description.link import Light
+from daidalos.description.pose import Pose
+from daidalos.description.world import World
+from daidalos.simulation.errors import NameTakenError, UnknownNameError
+from daidalos.simulation.rendering.lighting import Lighting
+
+if TYPE_CHECKING:
+    from daidalos.simulation.instance import Instance
+    from daidalos.simulation.physics import Physics
+    from daidalos.simulation.rendering.scene import Item, Scene
+
+
+class Stage:
+    """What is to be seen in a simulation; its scene is made when the first camera looks.
+
+    Parameters
+    ----------
+    world : World
+    warn : callable
+        Takes a line for each visual that can not be drawn.
+    """
+
+    def __init__(self, world: World, warn: Callable[[str], None]) -> None:
+        self._look = world.scene
+        self._lamps = {light.name: light for light in world.lights}
+        self._switched: dict[str, Light] = {}
+        self._warn_user = warn
+        self._warned: set[str] = set()
+        self._instances: tuple[Instance, ...] = ()
+        self._scene: Scene | None = None
+
+    def bind(self, instances: Iterable[Instance]) -> None:
+        """Take the models of a newly compiled world."""
+        self._instances = tuple(instances)
+        self._scene = None
+
+    @property
+    def owners(self) -> tuple[str, ...]:
+        """Names of the models; their places are the scene's `owners`."""
+        return tuple(instance.name for instance in self._instances)
+
+    @property
+    def scene(self) -> Scene:
+        """All triangles."""
+        if self._scene is None:
+            from daidalos.simulation.rendering.scene import make_scene
+
+            self._scene = make_scene(self._items(), self._warn)
+        return self._scene
+
+    @property
+    def lighting(self) -> Lighting:
+        """What shines now."""
+        look = self._look
+        return Lighting(
+            [(light, pose) for _, light, pose in self._shining()],
+            look.ambient,
+            look.background,
+            look.sky,
+            look.shadows,
+        )
+
+    # Lamps
+
+    @property
+    def lights(self) -> dict[str, Light]:
+        """The lamps by name, those on links as ``model::link::name``, with their poses in the world."""
+        return {name: replace(light, pose=pose) for name, light, pose in self._shining()}
+
+    def light(self, name: str) -> Light:
+        """Return a lamp.
+
+        Raises
+        ------
+        UnknownNameError
+        """
+        lights = self.lights
+        if name not in lights:
+            raise UnknownNameError("light", name, lights)
+        return lights[name]
+
+    def add_light(self, light: Light) -> None:
+        """Put a lamp into the world.
+
+        Raises
+        ------
+        NameTakenError
+        """
+        if light.name in self._lamps:
+            raise NameTakenError(light.name)
+        self._lamps[light.name] = light
+
+    def set_light(self, name: str, light: Light) -> None:
+        """Change a lamp; one on a link stays where it is.
+
+        Raises
+        ------
+        UnknownNameError
+        """
+        self.light(name)
+        (self._lamps if name in self._lamps else self._switched)[name] = light
+
+    def remove_light(self, name: str) -> None:
+        """Take a lamp of the world away.
+
+        Raises
+        ------
+        UnknownNameError
+        """
+        if name not in self._lamps:
+            raise UnknownNameError("light", name, self._lamps)
+        del self._lamps[name]
+
+    def _shining(self) -> Iterator[tuple[str, Light, Pose]]:
+        for name, light in self._lamps.items():
+            yield name, light, light.pose
+        for instance in self._instances:
+            for link in instance.model.links.values():
+                for light in link.lights:
+                    name = f"{instance.name}::{link.name}::{light.name}"
+                    yield name, self._switched.get(name, light), instance.link(link.name).pose @ light.pose
+
+    def _warn(self, line: str) -> None:
+        """Say what can not be drawn once, however often the scene is made."""
+        if line not in self._warned:
+            self._warned.add(line)
+            self._warn_user(line)
+
+    def _items(self) -> Iterator[Item]:
+        from daidalos.simulation.rendering.scene import UNLABELLED, Item
+
+        for owner, instance in enumerate(self._instances):
+            for link in instance.model.links.values():
+                body = instance.link(link.name).body
+                fixed = _is_fixed(instance.physics, body)
+                for visual in link.visuals:
+                    label = UNLABELLED if visual.label is None else visual.label
+                    yield Item(visual, body, fixed, owner, label)
+
+
+def _is_fixed(physics: Physics, body: int) -> bool:
+    """Tell whether a body never moves: it hangs on the world without joint."""
+    model = physics.model
+    return bool(model.body_weldid[body] == 0 and model.body_mocapid[model.body_rootid[body]] < 0)
