@@ -38,6 +38,7 @@ class Publisher:
         self._latched = qos.transient_local
         self._history: deque[tuple[Any, ...]] = deque(maxlen=qos.limit if self._latched else 0)
         self._undo: Callable[[], None] | None = None
+        self._observers: tuple[Callable[[], None], ...] = ()
 
     def publish(self, message: Any) -> None:
         """Send a message, or its CDR bytes, to everyone who listens.
@@ -54,6 +55,8 @@ class Publisher:
                 raise TypeError(f"Expected {self._type}, got {type(message)}")
             self._publish_bytes(bytes(message))
             return
+        if self._observers:
+            self.note()
         heard = self._heard
         if self._targets or heard or self._latched:
             sequence, stamp = self._next_sequence(), time.time_ns()
@@ -65,6 +68,7 @@ class Publisher:
                 self._wire.put(self._codec.parts(message), sequence, stamp)
 
     def _publish_bytes(self, data: bytes) -> None:
+        self.note()
         sequence, stamp = self._next_sequence(), time.time_ns()
         if self._latched:
             self._history.append((self._codec.decode(data), stamp, sequence, self._gid))
@@ -72,6 +76,15 @@ class Publisher:
             subscription.accept_local((self._codec.decode(data), stamp, sequence, self._gid))
         if self._heard and self._wire is not None:
             self._wire.put([data], sequence, stamp)
+
+    def observe(self, observer: Callable[[], None]) -> None:
+        """Call `observer` with every message, and with every `note`."""
+        self._observers = (*self._observers, observer)
+
+    def note(self) -> None:
+        """Note that the publisher shows that it is alive."""
+        for observer in self._observers:
+            observer()
 
     @property
     def is_heard(self) -> bool:

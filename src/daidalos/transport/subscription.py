@@ -41,7 +41,7 @@ class Subscription:
         self._wire: WireSubscription | None = None
         self._undo: Callable[[], None] | None = None
         self._refused: frozenset[bytes] = frozenset()
-        self._filter: Callable[[SampleInfo], bool] | None = None
+        self._observers: tuple[Callable[[SampleInfo], None], ...] = ()
         self._last_take = 0
         self._take_interval = _FAST_NS * 10
         self._space = threading.Event()
@@ -90,23 +90,35 @@ class Subscription:
 
     def accept_local(self, item: tuple[Any, ...]) -> None:
         """Queue a sample of this process."""
+        if self._observers:
+            _, stamp, sequence, gid = item
+            self._tell(SampleInfo(stamp, stamp, sequence, gid))
         self._queue.append(item)
         self.on_ready()
 
     def accept(self, sample: Any) -> None:
         """Queue a sample of another process."""
         item = (None, sample, time.time_ns())
-        if self._refused or self._filter:
+        if self._refused or self._observers:
             wire = self._wire
             if wire is None:
                 return
             info = wire.info(sample, item[2])
-            if info.gid in self._refused or (self._filter and not self._filter(info)):
+            if info.gid in self._refused:
                 return
+            self._tell(info)
         if self._limit is not None and len(self._queue) >= self._limit:
             self._wait_for_space()
         self._queue.append(item)
         self.on_ready()
+
+    def observe(self, observer: Callable[[SampleInfo], None]) -> None:
+        """Call `observer` with every sample, on the thread that queues it."""
+        self._observers = (*self._observers, observer)
+
+    def _tell(self, info: SampleInfo) -> None:
+        for observer in self._observers:
+            observer(info)
 
     def _note_take(self) -> None:
         """Measure how fast the queue is emptied, and let a waiting receiver go on."""
@@ -145,10 +157,6 @@ class Subscription:
     def refuse(self, gids: frozenset[bytes]) -> None:
         """Note the publishers whose samples must not be delivered: their QoS does not satisfy ours."""
         self._refused = gids
-
-    def set_filter(self, accept: Callable[[SampleInfo], bool] | None) -> None:
-        """Ask `accept` of every sample of another process whether it may be queued."""
-        self._filter = accept
 
     def detach(self) -> None:
         """Forget the middleware and the queue."""

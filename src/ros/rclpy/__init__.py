@@ -7,6 +7,8 @@ timers and parameters, has their callbacks run by `spin`, and ends with `shutdow
 from __future__ import annotations
 
 from collections.abc import Sequence
+from importlib import import_module
+from importlib.util import find_spec
 from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
@@ -18,16 +20,17 @@ from rclpy.signals import (
     uninstall_signal_handlers,
     watch_context,
 )
+from rclpy.task import Future
 from rclpy.utilities import get_default_context, get_rmw_implementation_identifier, ok, try_shutdown
 from rclpy.utilities import shutdown as _shutdown
 
 if TYPE_CHECKING:
     from rclpy.executors import Executor
     from rclpy.node import Node
-    from rclpy.task import Future
 
 __all__ = [
     "Context",
+    "Future",
     "InitContextManager",
     "Parameter",
     "SignalHandlerOptions",
@@ -45,6 +48,13 @@ __all__ = [
 ]
 
 __executor: Executor | None = None
+
+
+def __getattr__(name: str) -> Any:
+    """Import a module of the package when it is first asked for: programs write ``rclpy.executors`` and the like."""
+    if name.startswith("__") or find_spec(f"{__name__}.{name}") is None:
+        raise AttributeError(f"module '{__name__}' has no attribute '{name}'")
+    return import_module(f"{__name__}.{name}")
 
 
 class InitContextManager:
@@ -174,24 +184,26 @@ def create_node(
 def spin_once(node: Node, *, executor: Executor | None = None, timeout_sec: float | None = None) -> None:
     """Run one callback of a node; wait for it at most `timeout_sec` seconds (None: however long it takes)."""
     executor = executor or get_global_executor()
+    added = executor.add_node(node)
     try:
-        executor.add_node(node)
         executor.spin_once(timeout_sec=timeout_sec)
     finally:
-        executor.remove_node(node)
+        if added:
+            executor.remove_node(node)
 
 
 def spin(node: Node, executor: Executor | None = None) -> None:
     """Run a node's callbacks until the context is shut down."""
     executor = executor or get_global_executor()
+    added = executor.add_node(node)
     try:
-        executor.add_node(node)
         while executor.context.ok():
             executor.spin()
             if executor._is_shutdown:
                 return
     finally:
-        executor.remove_node(node)
+        if added:
+            executor.remove_node(node)
 
 
 def spin_until_future_complete(
@@ -199,8 +211,9 @@ def spin_until_future_complete(
 ) -> None:
     """Run a node's callbacks until a future is done or cancelled, for at most `timeout_sec` seconds."""
     executor = executor or get_global_executor()
+    added = executor.add_node(node)
     try:
-        executor.add_node(node)
         executor.spin_until_future_complete(future, timeout_sec)
     finally:
-        executor.remove_node(node)
+        if added:
+            executor.remove_node(node)

@@ -5,19 +5,26 @@ from __future__ import annotations
 import threading
 import weakref
 from collections.abc import Callable
-from types import TracebackType
-from typing import Any, Self
+from types import GenericAlias, TracebackType
+from typing import TYPE_CHECKING, Any, Self
 
 from rclpy.callback_groups import CallbackGroup
 from rclpy.context import Context
 from rclpy.impl.entities import ClientHandle
 from rclpy.impl.ready import ReadyHook
+from rclpy.impl.running import wait_for
 from rclpy.qos import QoSProfile
 from rclpy.task import Future
+
+if TYPE_CHECKING:
+    from rclpy.clock import Clock
+    from rclpy.service_introspection import ServiceIntrospectionState
 
 
 class Client:
     """Calls a service; made by `Node.create_client`."""
+
+    __class_getitem__ = classmethod(GenericAlias)
 
     def __init__(
         self,
@@ -45,7 +52,8 @@ class Client:
     def call(self, request: Any, timeout_sec: float | None = None) -> Any:
         """Call the service and wait for the response.
 
-        It needs no executor: called from a callback, even of a single-threaded executor, it waits by itself.
+        It needs no executor that spins. Called from a callback, other callbacks of the executor run meanwhile, as
+        far as callback groups allow.
 
         Returns
         -------
@@ -56,16 +64,16 @@ class Client:
         ------
         TypeError
             When the request is of the wrong type.
+        ROSInterruptException
+            When the context is shut down meanwhile.
         """
         if not isinstance(request, self.srv_type.Request):
             raise TypeError()
-        done = threading.Event()
         with self._lock:
             self._has_own_waiter += 1
         try:
             future = self.call_async(request)
-            future.on_wake(done.set)
-            if not done.wait(timeout_sec):
+            if not wait_for(future, self.context, (self.__client.name,), timeout_sec):
                 self.remove_pending_request(future)
                 return None
         finally:
@@ -140,6 +148,23 @@ class Client:
         """The name that the client's node logs under."""
         return self.__client.node.logger_name()
 
+    def configure_introspection(
+        self, clock: Clock, service_event_qos_profile: QoSProfile, introspection_state: ServiceIntrospectionState
+    ) -> None:
+        """Tell of requests and responses on ``<service>/_service_event``.
+
+        Parameters
+        ----------
+        clock
+            Stamps the events.
+        service_event_qos_profile
+            Quality of service of that topic.
+        introspection_state
+            OFF, METADATA, or CONTENTS for the messages as well.
+        """
+        with self.handle as handle:
+            handle.configure_introspection(clock, self.srv_type, service_event_qos_profile, introspection_state)
+
     def destroy(self) -> None:
         """Let go; use `Node.destroy_client` instead."""
         self.__client.destroy_when_not_in_use()
@@ -157,6 +182,9 @@ class Client:
     def _rcl_take(self) -> tuple[Callable[..., Any], tuple[Any, ...]] | None:
         taken = self.__client.take_response()
         return None if taken is None else (self._finish, taken)
+
+    # A response only finishes a future: that need not wait for the callback group.
+    _rcl_take_unbound = _rcl_take
 
     def _finish(self, header: Any, response: Any) -> None:
         with self._lock:

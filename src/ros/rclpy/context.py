@@ -6,6 +6,7 @@ import sys
 import threading
 import weakref
 from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager
 from types import TracebackType
 
 from rclpy.exceptions import NotInitializedException
@@ -16,7 +17,7 @@ g_logging_configure_lock = threading.Lock()
 g_logging_ref_count = 0
 
 
-class Context:
+class Context(AbstractContextManager["Context"]):
     """Everything that one `init` and `shutdown` enclose; usable as ``with Context() as context:`` too."""
 
     def __init__(self) -> None:

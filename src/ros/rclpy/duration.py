@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Protocol
 
 from rclpy.constants import S_TO_NS
 
 _MAX = 2**63 - 1
+
+
+class DurationType(Protocol):
+    """What the middleware takes for a duration."""
+
+    nanoseconds: int
 
 
 class Duration:

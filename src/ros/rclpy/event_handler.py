@@ -11,11 +11,17 @@ from rclpy.callback_groups import CallbackGroup
 from rclpy.impl.entities import EndpointHandle
 from rclpy.impl.errors import UnsupportedEventTypeError
 from rclpy.impl.events import (
-    IncompatibleQosStatus,
     IncompatibleTypeStatus,
+    LivelinessChangedStatus,
+    LivelinessLostStatus,
     MatchedStatus,
+    MessageLostStatus,
+    OfferedDeadlineMissedStatus,
+    OfferedIncompatibleQosStatus,
     QoSPublisherEventType,
     QoSSubscriptionEventType,
+    RequestedDeadlineMissedStatus,
+    RequestedIncompatibleQosStatus,
     event_source,
 )
 from rclpy.impl.ready import ReadyHook
@@ -23,8 +29,13 @@ from rclpy.logging import get_logger
 from rclpy.qos import qos_policy_name_from_kind
 from rclpy.waitable import Waitable
 
-QoSOfferedIncompatibleQoSInfo = IncompatibleQosStatus
-QoSRequestedIncompatibleQoSInfo = IncompatibleQosStatus
+QoSOfferedDeadlineMissedInfo = OfferedDeadlineMissedStatus
+QoSRequestedDeadlineMissedInfo = RequestedDeadlineMissedStatus
+QoSLivelinessLostInfo = LivelinessLostStatus
+QoSLivelinessChangedInfo = LivelinessChangedStatus
+QoSMessageLostInfo = MessageLostStatus
+QoSOfferedIncompatibleQoSInfo = OfferedIncompatibleQosStatus
+QoSRequestedIncompatibleQoSInfo = RequestedIncompatibleQosStatus
 QoSSubscriptionMatchedInfo = MatchedStatus
 QoSPublisherMatchedInfo = MatchedStatus
 IncompatibleTypeInfo = IncompatibleTypeStatus

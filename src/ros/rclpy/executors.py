@@ -16,15 +16,16 @@ import threading
 import time
 import weakref
 from collections import deque
-from collections.abc import Callable, Coroutine
-from concurrent.futures import ThreadPoolExecutor
-from contextlib import AbstractContextManager
+from collections.abc import Callable, Coroutine, Iterable, Iterator
+from contextlib import AbstractContextManager, contextmanager
 from queue import Empty, SimpleQueue
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
 
 from rclpy.context import Context
 from rclpy.impl.ready import ReadyHook
+from rclpy.impl.running import THREAD, BlockedCalls
+from rclpy.impl.thread_pool import ThreadPool
 from rclpy.impl.timer import TimerHandle
 from rclpy.task import Future, Task
 from rclpy.utilities import get_default_context
@@ -87,6 +88,9 @@ class Executor(AbstractContextManager["Executor"]):
         The default context where None.
     """
 
+    _helps = True
+    """Whether a callback that waits for a response runs other callbacks meanwhile."""
+
     def __init__(self, *, context: Context | None = None) -> None:
         super().__init__()
         self._context = context or get_default_context()
@@ -98,6 +102,7 @@ class Executor(AbstractContextManager["Executor"]):
         self._timers_lock = threading.Lock()
         self._timer_count = itertools.count().__next__
         self._deferred: deque[ReadyHook] = deque()
+        self._calls = BlockedCalls()
         self._is_shutdown = False
         self._spins = False  # within `spin`, where nobody counts the callbacks that run
         self._waiting_thread: int | None = None
@@ -118,6 +123,10 @@ class Executor(AbstractContextManager["Executor"]):
         task._requeue = self._put
         self._put(task)
         return task
+
+    def create_future(self) -> Future:
+        """Return a future whose callbacks this executor calls."""
+        return Future(executor=self)
 
     def add_node(self, node: Node) -> bool:
         """Run a node's callbacks from now on; False when they are already.
@@ -255,6 +264,28 @@ class Executor(AbstractContextManager["Executor"]):
             if entity is not None:
                 return Task(self._run_entity, (item, entity), executor=self), entity, entity._rcl_node
 
+    def _wait_for_ready_callbacks(self, *args: Any, **kwargs: Any) -> Iterator[tuple[Task, Any, Node | None]]:
+        """Yield what `wait_for_ready_callbacks` returns, for ever."""
+        while True:
+            yield self.wait_for_ready_callbacks(*args, **kwargs)
+
+    def _help_until_done(self, future: Future, entity: Any, services: Iterable[str], timeout_s: float | None) -> None:
+        """Run other callbacks while the one of `entity` waits for a future that one of `services` finishes."""
+        future.on_wake(self.wake)
+        deadline = _deadline(timeout_s)
+        with self._blocked(entity, services):
+            while not future._pending_over() and not self._is_shutdown:
+                if deadline is not None and time.monotonic_ns() >= deadline:
+                    return
+                self._spin_once(deadline, future._pending_over)
+
+    @contextmanager
+    def _blocked(self, entity: Any, services: Iterable[str]) -> Iterator[None]:
+        """Note that the callback of `entity` waits for `services`."""
+        with self._calls.waiting(services, entity.callback_group if entity is not None else None):
+            self._retry_deferred()
+            yield
+
     def _wait(self, deadline_ns: int | None, condition: Callable[[], bool] | None = None) -> Any:
         """Return the next hook, task or failure of the queue."""
         self._waiting_thread = threading.get_ident()
@@ -315,7 +346,12 @@ class Executor(AbstractContextManager["Executor"]):
         if entity is None or hook.sink is not self._put:
             return None  # removed meanwhile; it stays marked and is queued where it is attached next
         group = entity.callback_group
-        if group is not None and not group.beginning_execution(entity):
+        if group is not None and not group.beginning_execution(entity) and not self._calls.may_enter(entity):
+            unbound = getattr(entity, "_rcl_take_unbound", None)
+            work = unbound() if unbound is not None else None
+            while work is not None:
+                work[0](*work[1])
+                work = unbound()
             self._deferred.append(hook)
             if group.can_execute(entity):
                 self._retry_deferred()
@@ -342,6 +378,9 @@ class Executor(AbstractContextManager["Executor"]):
     def _run_entity(self, hook: ReadyHook, entity: Any) -> None:
         """Take what is ready and run the callback; its group has been reserved."""
         suspended = False
+        thread = THREAD
+        outer = thread.executor, thread.entity
+        thread.executor, thread.entity = self, entity
         try:
             work = entity._rcl_take()
             if work is None:
@@ -353,6 +392,7 @@ class Executor(AbstractContextManager["Executor"]):
             if result is not None and inspect.iscoroutine(result):
                 suspended = self._run_coroutine(result, entity)
         finally:
+            thread.executor, thread.entity = outer
             if not suspended:
                 self._end(entity)
 
@@ -360,6 +400,7 @@ class Executor(AbstractContextManager["Executor"]):
         """Run a callback that is a coroutine; True when it waits for something and so holds its group."""
         task = Task(coroutine, executor=self)
         task._requeue = self._put
+        task._entity = entity
         task()
         if task.done():
             _raise_from(task)
@@ -368,7 +409,13 @@ class Executor(AbstractContextManager["Executor"]):
         return True
 
     def _run_task(self, task: Task) -> None:
-        task()
+        thread = THREAD
+        outer = thread.executor, thread.entity
+        thread.executor, thread.entity = self, task._entity
+        try:
+            task()
+        finally:
+            thread.executor, thread.entity = outer
         if task.done():
             _raise_from(task)
 
@@ -415,17 +462,23 @@ class MultiThreadedExecutor(Executor):
     Parameters
     ----------
     num_threads
-        Size of the pool; as many as there are processors (at least 2) where None.
+        How many callbacks run at a time; as many as there are processors (at least 2) where None. Those that wait
+        for a response do not count.
     context
         The default context where None.
     """
 
+    _helps = False
+
     def __init__(self, num_threads: int | None = None, *, context: Context | None = None) -> None:
         super().__init__(context=context)
-        threads = num_threads or max(os.cpu_count() or 2, 2)
-        self._num_threads = threads
-        self._executor = ThreadPoolExecutor(threads, thread_name_prefix="rclpy")
-        weakref.finalize(self, self._executor.shutdown, wait=False)
+        self._executor = ThreadPool(num_threads or max(os.cpu_count() or 2, 2))
+        weakref.finalize(self, self._executor.close)
+
+    @contextmanager
+    def _blocked(self, entity: Any, services: Iterable[str]) -> Iterator[None]:
+        with super()._blocked(entity, services), self._executor.blocked():
+            yield
 
     def _spin_once(self, deadline_ns: int | None, condition: Callable[[], bool] | None) -> None:
         try:
@@ -463,5 +516,5 @@ class MultiThreadedExecutor(Executor):
     def shutdown(self, timeout_sec: float | None = None) -> bool:
         """Stop, after the callbacks that run have ended; see `Executor.shutdown`."""
         ended = super().shutdown(timeout_sec)
-        self._executor.shutdown(wait=False)
+        self._executor.close()
         return ended

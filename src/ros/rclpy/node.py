@@ -35,7 +35,7 @@ from rclpy.subscription import Subscription
 from rclpy.time_source import TimeSource
 from rclpy.timer import Rate, Timer
 from rclpy.type_description_service import TypeDescriptionService
-from rclpy.type_support import check_is_valid_msg_type, check_is_valid_srv_type
+from rclpy.type_support import check_for_type_support, check_is_valid_msg_type, check_is_valid_srv_type
 from rclpy.utilities import get_default_context
 from rclpy.validate_namespace import validate_namespace
 from rclpy.validate_node_name import validate_node_name
@@ -45,9 +45,10 @@ if TYPE_CHECKING:
     from rclpy.executors import Executor
     from rclpy.impl.rcutils_logger import RcutilsLogger
     from rclpy.qos_overriding_options import QoSOverridingOptions
+    from rclpy.subscription_content_filter_options import ContentFilterOptions
 
 HIDDEN_NODE_PREFIX = "_"
-__all__ = ["HIDDEN_NODE_PREFIX", "PARAMETER_SEPARATOR_STRING", "S_TO_NS", "Node"]
+__all__ = ["HIDDEN_NODE_PREFIX", "PARAMETER_SEPARATOR_STRING", "S_TO_NS", "Node", "check_for_type_support"]
 
 
 class Node(NodeParameters, NodeGraph):
@@ -378,6 +379,7 @@ class Node(NodeParameters, NodeGraph):
         event_callbacks: SubscriptionEventCallbacks | None = None,
         qos_overriding_options: QoSOverridingOptions | None = None,
         raw: bool = False,
+        content_filter_options: ContentFilterOptions | None = None,
     ) -> Subscription:
         """Receive a topic's messages.
 
@@ -399,6 +401,8 @@ class Node(NodeParameters, NodeGraph):
             Which policies may be overridden by parameters.
         raw
             Whether the callback gets the serialised bytes.
+        content_filter_options
+            Which messages are wanted; all where None.
 
         Raises
         ------
@@ -423,6 +427,10 @@ class Node(NodeParameters, NodeGraph):
                 raw,
                 event_callbacks or SubscriptionEventCallbacks(),
             )
+            if content_filter_options is not None:
+                subscription.set_content_filter(
+                    content_filter_options.filter_expression, content_filter_options.expression_parameters
+                )
         except Exception:
             subscription_handle.destroy_when_not_in_use()
             raise
@@ -653,6 +661,8 @@ def _attach(entity: Any, executor: Executor) -> None:
     hook.attach(executor._put)
     if isinstance(entity, Timer):
         entity.handle.attach(executor.schedule)
+    elif hasattr(entity, "_rcl_adapter"):
+        entity._rcl_adapter.attach(executor.schedule)
 
 
 def _detach(entity: Any) -> None:
@@ -662,3 +672,5 @@ def _detach(entity: Any) -> None:
     hook.detach()
     if isinstance(entity, Timer):
         entity.handle.attach(None)
+    elif hasattr(entity, "_rcl_adapter"):
+        entity._rcl_adapter.attach(None)

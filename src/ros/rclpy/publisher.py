@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from types import TracebackType
+from types import GenericAlias, TracebackType
 from typing import Any, Self
 
 from rclpy.callback_groups import CallbackGroup
@@ -15,6 +15,8 @@ from rclpy.qos import QoSProfile
 
 class Publisher:
     """Sends messages on a topic; made by `Node.create_publisher`."""
+
+    __class_getitem__ = classmethod(GenericAlias)
 
     def __init__(
         self,

@@ -35,8 +35,8 @@ class QoSPolicyKind(IntEnum):
 
 
 def qos_policy_name_from_kind(policy_kind: QoSPolicyKind | int) -> str:
-    """Return a policy's name as rmw writes it, such as ``DURABILITY_QOS_POLICY``."""
-    return f"{QoSPolicyKind(policy_kind).name}_QOS_POLICY"
+    """Return a policy's name, such as ``DURABILITY``."""
+    return QoSPolicyKind(policy_kind).name
 
 
 class InvalidQoSProfileException(Exception):

@@ -3,17 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from types import TracebackType
-from typing import Any, Self
+from types import GenericAlias, TracebackType
+from typing import TYPE_CHECKING, Any, Self
 
 from rclpy.callback_groups import CallbackGroup
 from rclpy.impl.entities import ServiceHandle
 from rclpy.impl.ready import ReadyHook
 from rclpy.qos import QoSProfile
 
+if TYPE_CHECKING:
+    from rclpy.clock import Clock
+    from rclpy.service_introspection import ServiceIntrospectionState
+
 
 class Service:
     """Answers requests; made by `Node.create_service`."""
+
+    __class_getitem__ = classmethod(GenericAlias)
 
     def __init__(
         self,
@@ -33,6 +39,7 @@ class Service:
         self.callback_group = callback_group
         self._executor_event = False
         self.qos_profile = qos_profile
+        self._rcl_serves = frozenset((service_impl.name,))
         service_impl.set_on_ready(self._rcl_hook)
 
     def send_response(self, response: Any, header: Any) -> None:
@@ -66,6 +73,23 @@ class Service:
     def logger_name(self) -> str:
         """The name that the service's node logs under."""
         return self.__service.node.logger_name()
+
+    def configure_introspection(
+        self, clock: Clock, service_event_qos_profile: QoSProfile, introspection_state: ServiceIntrospectionState
+    ) -> None:
+        """Tell of requests and responses on ``<service>/_service_event``.
+
+        Parameters
+        ----------
+        clock
+            Stamps the events.
+        service_event_qos_profile
+            Quality of service of that topic.
+        introspection_state
+            OFF, METADATA, or CONTENTS for the messages as well.
+        """
+        with self.handle as handle:
+            handle.configure_introspection(clock, self.srv_type, service_event_qos_profile, introspection_state)
 
     def destroy(self) -> None:
         """Let go; use `Node.destroy_service` instead."""

@@ -5,14 +5,17 @@ from __future__ import annotations
 import inspect
 from collections.abc import Callable, Sequence
 from enum import Enum
-from types import TracebackType
-from typing import Any, Self, TypedDict
+from types import GenericAlias, TracebackType
+from typing import TYPE_CHECKING, Any, Self, TypedDict
 
 from rclpy.callback_groups import CallbackGroup
 from rclpy.event_handler import EventHandler, SubscriptionEventCallbacks
 from rclpy.impl.entities import SubscriptionHandle
 from rclpy.impl.ready import ReadyHook
 from rclpy.qos import QoSProfile
+
+if TYPE_CHECKING:
+    from rclpy.subscription_content_filter_options import ContentFilterOptions
 
 
 class MessageInfo(TypedDict):
@@ -27,6 +30,8 @@ class MessageInfo(TypedDict):
 
 class Subscription:
     """Receives a topic's messages; made by `Node.create_subscription`."""
+
+    __class_getitem__ = classmethod(GenericAlias)
 
     class CallbackType(Enum):
         """What the callback takes."""
@@ -57,6 +62,7 @@ class Subscription:
         self.qos_profile = qos_profile
         self.raw = raw
         self._take_one = self._impl.take_raw if raw else self._impl.take
+        self._filter: ContentFilterOptions | None = None
         self.event_handlers: Sequence[EventHandler] = event_callbacks.create_event_handlers(
             callback_group, subscription_impl, topic
         )
@@ -100,6 +106,43 @@ class Subscription:
         """The name that the subscription's node logs under."""
         return self.__subscription.node.logger_name()
 
+    def set_content_filter(self, filter_expression: str, expression_parameters: Sequence[str] = ()) -> None:
+        """Receive only messages that fulfil a condition; all again where the expression is empty.
+
+        Parameters
+        ----------
+        filter_expression
+            In the language of DDS 1.4, annex B, such as ``int32_value > %0 AND name LIKE 'test%'``.
+        expression_parameters
+            What ``%0``, ``%1`` ... stand for.
+
+        Raises
+        ------
+        ContentFilterError
+            When the expression cannot be understood, or does not fit the topic's type.
+        """
+        from rclpy.subscription_content_filter_options import ContentFilterOptions
+
+        take = self._impl.take_raw if self.raw else self._impl.take
+        if not filter_expression:
+            self._filter, self._take_one = None, take
+            return
+        from rclpy.impl.content_filter import filtered
+
+        self._take_one = filtered(take, self.msg_type, self.raw, filter_expression, expression_parameters)
+        self._filter = ContentFilterOptions(filter_expression, list(expression_parameters))
+
+    def get_content_filter(self) -> ContentFilterOptions:
+        """Return the condition that messages must fulfil; one with an empty expression where there is none."""
+        from rclpy.subscription_content_filter_options import ContentFilterOptions
+
+        return self._filter or ContentFilterOptions()
+
+    @property
+    def is_cft_enabled(self) -> bool:
+        """Whether messages must fulfil a condition."""
+        return self._filter is not None
+
     def _rcl_take(self) -> tuple[Callable[..., Any], tuple[Any, ...]] | None:
         taken = self._take_one()
         if taken is None:
@@ -116,7 +159,10 @@ class Subscription:
             received_timestamp=info.received_ns,
             publication_sequence_number=info.sequence,
             reception_sequence_number=None,
-            publisher_gid={"implementation_identifier": "", "data": info.gid},
+            publisher_gid={
+                "implementation_identifier": self.__subscription.node.session.backend.identifier,
+                "data": info.gid,
+            },
         )
 
     def _rcl_has_more(self) -> bool:

@@ -8,6 +8,7 @@ import threading
 import warnings
 import weakref
 from collections.abc import Callable, Generator
+from types import GenericAlias
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -20,6 +21,8 @@ def _write_warning(error: BaseException) -> None:
 
 class Future:
     """The result of something that is not yet done; a coroutine may ``await`` it."""
+
+    __class_getitem__ = classmethod(GenericAlias)
 
     def __init__(self, *, executor: Executor | None = None) -> None:
         self._done = False
@@ -181,6 +184,7 @@ class Task(Future):
         self._executing = False
         self._task_lock = threading.Lock()
         self._requeue: Callable[[Task], None] | None = None
+        self._entity: Any = None  # whose callback group the task holds
 
     def __call__(self) -> None:
         """Go on until it is done, or until it waits for something."""
@@ -231,6 +235,9 @@ class Task(Future):
             return
         if isinstance(waits_for, Future):
             waits_for.on_wake(lambda: requeue(self))
+        elif getattr(waits_for, "_asyncio_future_blocking", None):  # an asyncio future, whose loop somebody runs
+            waits_for._asyncio_future_blocking = False
+            waits_for.add_done_callback(lambda _: requeue(self))
         else:
             requeue(self)  # an awaitable of another kind: ask again
 

@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Protocol
 
 from rclpy.clock_type import ClockType
 from rclpy.constants import S_TO_NS
 from rclpy.duration import Duration
 
 _MAX = 2**63 - 1
+
+
+class TimeHandle(Protocol):
+    """What the middleware takes for a point in time."""
+
+    nanoseconds: int
+    clock_type: ClockType
 
 
 class Time:

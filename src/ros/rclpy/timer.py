@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Callable
 from types import TracebackType
 from typing import Any, Self
 
 from rclpy.callback_groups import CallbackGroup
 from rclpy.clock import Clock
+from rclpy.clock_type import ClockType
 from rclpy.context import Context
 from rclpy.exceptions import ROSInterruptException
 from rclpy.impl.errors import InvalidHandle, TimerCancelledError
@@ -20,7 +22,13 @@ from rclpy.utilities import get_default_context
 class TimerInfo:
     """When a call of a timer was due, and when it was made."""
 
-    def __init__(self, expected_call_time: int, actual_call_time: int, clock_type: Any) -> None:
+    def __init__(
+        self,
+        *,
+        expected_call_time: int = 0,
+        actual_call_time: int = 0,
+        clock_type: ClockType = ClockType.SYSTEM_TIME,
+    ) -> None:
         self._expected = Time(nanoseconds=max(expected_call_time, 0), clock_type=clock_type)
         self._actual = Time(nanoseconds=actual_call_time, clock_type=clock_type)
 
@@ -134,7 +142,8 @@ class Timer:
         if self._callback is None:
             return None
         if self._with_info:
-            return self._callback, (TimerInfo(expected, actual, self._clock.clock_type),)
+            info = TimerInfo(expected_call_time=expected, actual_call_time=actual, clock_type=self._clock.clock_type)
+            return self._callback, (info,)
         return self._callback, ()
 
     def _rcl_has_more(self) -> bool:
@@ -150,8 +159,16 @@ class Timer:
 
 
 def _takes_info(callback: Callable[..., Any] | None) -> bool:
-    annotations = getattr(callback, "__annotations__", None)
-    return bool(annotations) and any(kind in (TimerInfo, "TimerInfo") for kind in annotations.values())
+    """Tell whether a callback has a parameter annotated as `TimerInfo`."""
+    try:
+        parameters = inspect.signature(callback).parameters if callback is not None else {}
+    except (TypeError, ValueError):
+        return False  # a built-in function
+    return any(_names_info(one.annotation) for one in parameters.values())
+
+
+def _names_info(annotation: Any) -> bool:
+    return annotation is TimerInfo or (isinstance(annotation, str) and annotation.split(".")[-1] == "TimerInfo")
 
 
 class Rate:

@@ -6,7 +6,7 @@ import threading
 import uuid
 import weakref
 from collections.abc import Callable
-from types import TracebackType
+from types import GenericAlias, TracebackType
 from typing import TYPE_CHECKING, Any, Self
 
 from rclpy.callback_groups import CallbackGroup
@@ -14,6 +14,7 @@ from rclpy.impl.entities import ClientHandle, SubscriptionHandle
 from rclpy.impl.errors import InvalidHandle
 from rclpy.impl.node_graph import checked_name
 from rclpy.impl.ready import ReadyHook
+from rclpy.impl.running import wait_for
 from rclpy.qos import (
     QoSProfile,
     qos_profile_action_status_default,
@@ -24,11 +25,15 @@ from rclpy.type_support import check_is_valid_action_type
 from rclpy.waitable import NumberOfEntities, Waitable
 
 if TYPE_CHECKING:
+    from rclpy.clock import Clock
     from rclpy.node import Node
+    from rclpy.service_introspection import ServiceIntrospectionState
 
 
 class ClientGoalHandle:
     """A goal that was sent, as its sender sees it."""
+
+    __class_getitem__ = classmethod(GenericAlias)
 
     def __init__(self, action_client: ActionClient, goal_id: Any, goal_response: Any) -> None:
         self._action_client = action_client
@@ -101,6 +106,8 @@ class ActionClient(Waitable):
 status_sub_qos_profile
         Quality of service of the parts.
     """
+
+    __class_getitem__ = classmethod(GenericAlias)
 
     def __init__(
         self,
@@ -185,6 +192,16 @@ status_sub_qos_profile
             else:
                 sample = source.impl.take()
                 taken = None if sample is None else (sample[0],)
+            if taken is not None:
+                return callback, taken
+        return None
+
+    def _rcl_take_unbound(self) -> tuple[Callable[..., Any], tuple[Any, ...]] | None:
+        """Take a response, which only finishes a future; a result waits for the feedback that came before it."""
+        for source, callback in self._sources:
+            if source is self._result_client and len(self._feedback_subscription.impl):
+                return None
+            taken = source.take_response() if isinstance(source, ClientHandle) else None
             if taken is not None:
                 return callback, taken
         return None
@@ -282,13 +299,12 @@ status_sub_qos_profile
 
     def _wait(self, call: Callable[[], Future], timeout_s: float | None = None) -> Any:
         """Return the result of a call's future, taking care of responses ourselves meanwhile; None when it is late."""
-        done = threading.Event()
         with self._lock:
             self._own_waiters += 1
         try:
             future = call()
-            future.on_wake(done.set)
-            done.wait(timeout_s)
+            services = (self._goal_client, self._cancel_client, self._result_client)
+            wait_for(future, self._client_node.context, [one.name for one in services], timeout_s)
         finally:
             with self._lock:
                 self._own_waiters -= 1
@@ -379,6 +395,18 @@ status_sub_qos_profile
         limit = None if timeout_sec is None or timeout_sec < 0 else timeout_sec
         graph.wait_for(lambda: not context.ok() or self.server_is_ready(), limit)
         return self.server_is_ready()
+
+    def configure_introspection(
+        self, clock: Clock, service_event_qos_profile: QoSProfile, introspection_state: ServiceIntrospectionState
+    ) -> None:
+        """Tell of what passes the action's three services; see `Client.configure_introspection`."""
+        impl = self._action_type.Impl
+        for client, kind in (
+            (self._goal_client, impl.SendGoalService),
+            (self._cancel_client, impl.CancelGoalService),
+            (self._result_client, impl.GetResultService),
+        ):
+            client.configure_introspection(clock, kind, service_event_qos_profile, introspection_state)
 
     def destroy(self) -> None:
         """Call no more."""

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import threading
-import time
 import traceback
 from collections.abc import Callable
 from enum import Enum
-from types import TracebackType
+from types import GenericAlias, TracebackType
 from typing import TYPE_CHECKING, Any, Self
 
 from rclpy.action._goal_state import GoalEvent, GoalState, next_state
@@ -26,7 +25,9 @@ from rclpy.type_support import check_is_valid_action_type
 from rclpy.waitable import NumberOfEntities, Waitable
 
 if TYPE_CHECKING:
+    from rclpy.clock import Clock
     from rclpy.node import Node
+    from rclpy.service_introspection import ServiceIntrospectionState
 
 
 class GoalResponse(Enum):
@@ -45,6 +46,8 @@ class CancelResponse(Enum):
 
 class ServerGoalHandle:
     """A goal that a server has accepted."""
+
+    __class_getitem__ = classmethod(GenericAlias)
 
     def __init__(self, action_server: ActionServer, goal_info: Any, goal_request: Any) -> None:
         self._action_server = action_server
@@ -94,7 +97,7 @@ class ServerGoalHandle:
                 return
             self._state = next_state(self._state, event)
             if not self._state.is_active:
-                self.ended_ns = time.monotonic_ns()
+                self.ended_ns = self._action_server._now_ns()
         self._action_server._publish_status()
         if not self._state.is_active:
             self._action_server.notify_goal_done()
@@ -194,6 +197,8 @@ status_pub_qos_profile
         How long results are kept, in seconds; for ever where negative.
     """
 
+    __class_getitem__ = classmethod(GenericAlias)
+
     def __init__(
         self,
         node: Node,
@@ -253,6 +258,7 @@ status_pub_qos_profile
             (self._cancel_service, self._execute_cancel_request),
             (self._result_service, self._execute_get_result_request),
         )
+        self._rcl_serves = frozenset(service.name for service, _ in self._services)
         self._expiry = _Expiry(self, node)
         for service, _ in self._services:
             service.set_on_ready(self._rcl_hook)
@@ -433,6 +439,10 @@ status_pub_qos_profile
         if not self._destroyed and future.done():
             self._result_service.send_response(future.result(), header)
 
+    def _now_ns(self) -> int:
+        """Return the time that results age by: the node's, which a simulator may give."""
+        return self._server_node.get_clock().now().nanoseconds
+
     def _forget(self, key: bytes) -> None:
         with self._lock:
             self._goal_handles.pop(key, None)
@@ -442,7 +452,7 @@ status_pub_qos_profile
         """Forget the goals whose results were kept long enough."""
         if self._result_timeout < 0:
             return
-        limit = time.monotonic_ns() - int(self._result_timeout * 1e9)
+        limit = self._now_ns() - int(self._result_timeout * 1e9)
         with self._lock:
             expired = [
                 key for key, goal in self._goal_handles.items() if goal.ended_ns is not None and goal.ended_ns <= limit
@@ -491,6 +501,15 @@ status_pub_qos_profile
         if not callable(execute_callback):
             raise TypeError("Failed to register goal execution callback: not callable")
         self._execute_callback = execute_callback
+
+    def configure_introspection(
+        self, clock: Clock, service_event_qos_profile: QoSProfile, introspection_state: ServiceIntrospectionState
+    ) -> None:
+        """Tell of what passes the action's three services; see `Service.configure_introspection`."""
+        impl = self._action_type.Impl
+        kinds = (impl.SendGoalService, impl.CancelGoalService, impl.GetResultService)
+        for (service, _), kind in zip(self._services, kinds, strict=True):
+            service.configure_introspection(clock, kind, service_event_qos_profile, introspection_state)
 
     def destroy(self) -> None:
         """Serve no more; goals that are not over end as they are."""
@@ -543,9 +562,9 @@ class _Expiry:
             ended = [goal.ended_ns for goal in server._goal_handles.values() if goal.ended_ns is not None]
             if not ended:
                 return
-            left = min(ended) + int(server._result_timeout * 1e9) - time.monotonic_ns()
+            left = min(ended) + int(server._result_timeout * 1e9) - server._now_ns()
         self.close()
-        self._timer = self._rcl_node.create_timer(max(left, 0) / 1e9, self._expire, server.callback_group, _steady())
+        self._timer = self._rcl_node.create_timer(max(left, 0) / 1e9, self._expire, server.callback_group)
 
     def _expire(self) -> None:
         self.close()
@@ -556,10 +575,3 @@ class _Expiry:
         timer, self._timer = self._timer, None
         if timer is not None:
             self._rcl_node.destroy_timer(timer)
-
-
-def _steady() -> Any:
-    from rclpy.clock import Clock
-    from rclpy.clock_type import ClockType
-
-    return Clock(clock_type=ClockType.STEADY_TIME)

@@ -145,12 +145,14 @@ class ClockHandle(Destroyable):
                 return
         timer.on_due()
 
-    def add_clock_callback(self, owner: Any, on_clock_change: bool, min_forward: int, min_backward: int) -> None:
-        """Have `owner.call_pre` and `owner.call_post` called at jumps over these thresholds (0: never)."""
+    def add_clock_callback(
+        self, pyjump_handle: Any, on_clock_change: bool, min_forward: int, min_backward: int
+    ) -> None:
+        """Have the handle's `call_pre` and `call_post` called at jumps over these thresholds (0: never)."""
         with self.changed:
-            self._jumps.append(_JumpCallback(owner, on_clock_change, min_forward, min_backward))
+            self._jumps.append(_JumpCallback(pyjump_handle, on_clock_change, min_forward, min_backward))
 
-    def remove_clock_callback(self, owner: Any) -> None:
+    def remove_clock_callback(self, pyjump_handle: Any) -> None:
         """End that."""
         with self.changed:
-            self._jumps = [jump for jump in self._jumps if jump.owner is not owner]
+            self._jumps = [jump for jump in self._jumps if jump.owner is not pyjump_handle]

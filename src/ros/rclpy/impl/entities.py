@@ -10,14 +10,18 @@ from typing import Any
 
 from daidalos.transport.backend import RequestId
 from daidalos.transport.graph import EndpointInfo, EndpointKind, Graph, NodeInfo, names_and_types
+from daidalos.transport.publisher import Publisher
+from daidalos.transport.qos import Liveliness, Qos
 from daidalos.transport.session import Session
 from rclpy.impl import names
 from rclpy.impl.arguments import RosArguments, parse
+from rclpy.impl.best_available import best_available_offer, best_available_request
 from rclpy.impl.context import ContextHandle
 from rclpy.impl.errors import NodeNameNonExistentError, RCLError
 from rclpy.impl.handle import Destroyable
+from rclpy.impl.introspection import Introspection
 from rclpy.impl.log_output import OUTPUT
-from rclpy.impl.ready import weakly
+from rclpy.impl.ready import Announcer, weakly
 
 
 class NodeHandle(Destroyable):
@@ -142,14 +146,16 @@ class ServiceInfo:
     received_timestamp: int
 
 
-class EndpointHandle(Destroyable):
+class EndpointHandle(Announcer, Destroyable):
     """Base of the four kinds of endpoints; `impl` is the transport's object."""
 
     impl: Any
+    introspection: Introspection | None = None
 
     def __init__(self, node: NodeHandle) -> None:
         super().__init__()
         self.node = node
+        self._stop_new: Callable[[], None] | None = None
         node.own(self)
 
     @property
@@ -168,9 +174,32 @@ class EndpointHandle(Destroyable):
 
         A bound method does not keep its object alive.
         """
-        self.impl.on_ready = weakly(on_ready) if isinstance(on_ready, MethodType) else on_ready
+        self.announce_to(weakly(on_ready) if isinstance(on_ready, MethodType) else on_ready)
         if len(self.impl):
             on_ready()
+
+    def _wire(self, call: Callable[[], None]) -> None:
+        self.impl.on_ready = call
+
+    def _set_on_new(self, callback: Callable[[int], None]) -> None:
+        """Call ``callback(count)`` when something was queued, and at once if something is."""
+        self._clear_on_new()
+        self._stop_new = self.listen(lambda: callback(1))
+        if len(self.impl):
+            callback(len(self.impl))
+
+    def _clear_on_new(self) -> None:
+        stop, self._stop_new = self._stop_new, None
+        if stop is not None:
+            stop()
+
+    def configure_introspection(self, clock: Any, service_type: Any, qos: Any, state: Any) -> None:
+        """Tell of requests and responses from now on as `state` says."""
+        before, self.introspection = self.introspection, None
+        if before is not None:
+            before.close()
+        if state:
+            self.introspection = Introspection(self, service_type, clock, qos, state)
 
     def retire(self) -> None:
         """Leave the graph; the handle stays, and reaches nobody."""
@@ -184,16 +213,43 @@ class EndpointHandle(Destroyable):
             self.node.session.abandon(self.impl.close)
 
 
+def signs_topic(topic: str) -> str:
+    """Return the hidden topic on which a topic's manual publishers show that they are alive without publishing."""
+    return f"{topic}/_liveliness"
+
+
 class PublisherHandle(EndpointHandle):
     """A publisher."""
 
     def __init__(self, node: NodeHandle, message_type: Any, topic: str, qos: Any) -> None:
         super().__init__(node)
-        self.impl = node.session.create_publisher(node.info, topic, message_type, qos.resolved())
+        resolved = best_available_offer(qos, node.graph, topic).resolved()
+        self.impl = node.session.create_publisher(node.info, topic, message_type, resolved)
+        self._signs: Publisher | None = None
 
     def get_topic_name(self) -> str:
         """Return the full topic name."""
         return self.name
+
+    def assert_liveliness(self) -> None:
+        """Show that the publisher is alive, though it publishes nothing."""
+        if self.endpoint.qos.liveliness is not Liveliness.MANUAL_BY_TOPIC:
+            return
+        from rmw_dds_common.msg import Gid
+
+        if self._signs is None:
+            self._signs = self.node.session.create_publisher(self.node.info, signs_topic(self.name), Gid, Qos())
+        self.impl.note()
+        self._signs.publish(Gid(data=list(self.endpoint.gid)))
+
+    def retire(self) -> None:
+        """Leave the graph; the handle stays, and reaches nobody."""
+        super().retire()
+        if self._signs is not None:
+            self._signs.close()
+
+    def _destroy(self) -> None:
+        self.retire()
 
     def get_subscription_count(self) -> int:
         """Return how many subscriptions get the samples."""
@@ -205,7 +261,8 @@ class SubscriptionHandle(EndpointHandle):
 
     def __init__(self, node: NodeHandle, message_type: Any, topic: str, qos: Any) -> None:
         super().__init__(node)
-        self.impl = node.session.create_subscription(node.info, topic, message_type, qos.resolved())
+        resolved = best_available_request(qos, node.graph, topic).resolved()
+        self.impl = node.session.create_subscription(node.info, topic, message_type, resolved)
 
     def get_topic_name(self) -> str:
         """Return the full topic name."""
@@ -214,6 +271,22 @@ class SubscriptionHandle(EndpointHandle):
     def get_publisher_count(self) -> int:
         """Return how many publishers send samples here."""
         return len(self.node.session.counterparts(self.endpoint))
+
+    def take_message(self, message_type: Any, raw: bool = False) -> tuple[Any, dict[str, Any]] | None:
+        """Return the oldest message, or its CDR bytes, with what is known of it; None when there is none."""
+        taken = self.impl.take_raw() if raw else self.impl.take()
+        if taken is None:
+            return None
+        info = self.impl.info(taken[1])
+        return taken[0], {"source_timestamp": info.source_ns, "received_timestamp": info.received_ns}
+
+    def set_on_new_message_callback(self, callback: Callable[[int], None]) -> None:
+        """Call ``callback(count)`` when messages came, on the thread that receives them."""
+        self._set_on_new(callback)
+
+    def clear_on_new_message_callback(self) -> None:
+        """Undo that."""
+        self._clear_on_new()
 
 
 class ServiceHandle(EndpointHandle):
@@ -229,11 +302,28 @@ class ServiceHandle(EndpointHandle):
         if taken is None:
             return None
         request, identity, source_ns, received_ns = taken
+        if self.introspection is not None:
+            self.introspection.tell("REQUEST_RECEIVED", identity.client, identity.sequence, request=request)
         return request, ServiceInfo(RequestHeader(identity.sequence, identity), source_ns, received_ns)
+
+    def service_take_request(self, request_type: Any) -> tuple[Any, Any]:
+        """Return the oldest request with its header, or (None, None)."""
+        return self.take_request() or (None, None)
+
+    def set_on_new_request_callback(self, callback: Callable[[int], None]) -> None:
+        """Call ``callback(count)`` when requests came, on the thread that receives them."""
+        self._set_on_new(callback)
+
+    def clear_on_new_request_callback(self) -> None:
+        """Undo that."""
+        self._clear_on_new()
 
     def send_response(self, response: Any, header: Any) -> None:
         """Answer a request; `header` is what `take_request` gave, or its `request_id`."""
-        self.impl.reply(getattr(header, "request_id", header).identity, response)
+        identity = getattr(header, "request_id", header).identity
+        if self.introspection is not None:
+            self.introspection.tell("RESPONSE_SENT", identity.client, identity.sequence, response=response)
+        self.impl.reply(identity, response)
 
 
 class ClientHandle(EndpointHandle):
@@ -246,14 +336,26 @@ class ClientHandle(EndpointHandle):
     def send_request(self, request: Any) -> int:
         """Send a request; returns its sequence number."""
         number: int = self.impl.send(request)
+        if self.introspection is not None:
+            self.introspection.tell("REQUEST_SENT", self.endpoint.gid, number, request=request)
         return number
 
-    def take_response(self) -> tuple[ServiceInfo, Any] | None:
+    def set_on_new_response_callback(self, callback: Callable[[int], None]) -> None:
+        """Call ``callback(count)`` when responses came, on the thread that receives them."""
+        self._set_on_new(callback)
+
+    def clear_on_new_response_callback(self) -> None:
+        """Undo that."""
+        self._clear_on_new()
+
+    def take_response(self, response_type: Any = None) -> tuple[ServiceInfo, Any] | None:
         """Return the oldest response with its header, or None."""
         taken = self.impl.take()
         if taken is None:
             return None
         response, number, source_ns, received_ns = taken
+        if self.introspection is not None:
+            self.introspection.tell("RESPONSE_RECEIVED", self.endpoint.gid, number, response=response)
         return ServiceInfo(RequestHeader(number, None), source_ns, received_ns), response
 
     def service_server_is_available(self) -> bool:
@@ -261,14 +363,24 @@ class ClientHandle(EndpointHandle):
         return self.node.session.server_is_ready(self.impl)
 
 
-class GuardConditionHandle(Destroyable):
+class GuardConditionHandle(Announcer, Destroyable):
     """A flag that wakes an executor."""
 
     def __init__(self, context: ContextHandle, on_ready: Callable[[], None]) -> None:
         super().__init__()
         self.context = context
-        self._on_ready = on_ready
+        self._triggered = False
+        self.announce_to(on_ready)
+
+    def _wire(self, call: Callable[[], None]) -> None:
+        self._on_ready = call
 
     def trigger_guard_condition(self) -> None:
         """Wake the executor."""
+        self._triggered = True
         self._on_ready()
+
+    def take_trigger(self) -> bool:
+        """Tell whether it was triggered since the last call."""
+        triggered, self._triggered = self._triggered, False
+        return triggered

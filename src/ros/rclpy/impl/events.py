@@ -1,17 +1,26 @@
-"""Events of publishers and subscriptions: matched, incompatible QoS, incompatible type."""
+"""Events of publishers and subscriptions, by what the graph and the samples show: no middleware is asked for them.
+
+Names and values are rcl's and rmw's. When an event is counted is DDS 1.4, 2.2.4: a deadline is missed each time
+that long passes without a sample; a manual publisher is alive as long as it publishes or says so within its lease.
+"""
 
 from __future__ import annotations
 
 import threading
+import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from enum import IntEnum
 from typing import Any
 
+from daidalos.transport.alarms import ALARMS, Alarm
+from daidalos.transport.backend import SampleInfo
 from daidalos.transport.graph import EndpointInfo, EndpointKind
-from daidalos.transport.qos import incompatibilities
-from rclpy.impl.entities import EndpointHandle
+from daidalos.transport.qos import INFINITE_NS, Liveliness, Qos, incompatibilities
+from daidalos.transport.subscription import Subscription
+from rclpy.impl.entities import EndpointHandle, signs_topic
 from rclpy.impl.errors import UnsupportedEventTypeError
+from rclpy.impl.ready import Announcer, weakly
 from rclpy.qos import QoSPolicyKind
 
 
@@ -37,6 +46,34 @@ class QoSSubscriptionEventType(IntEnum):
 
 
 @dataclass(frozen=True)
+class CountStatus:
+    """How often something happened, and how often since the last look."""
+
+    total_count: int = 0
+    total_count_change: int = 0
+
+
+class OfferedDeadlineMissedStatus(CountStatus):
+    """How often a publisher was later than its deadline."""
+
+
+class RequestedDeadlineMissedStatus(CountStatus):
+    """How often nothing came to a subscription within its deadline."""
+
+
+class LivelinessLostStatus(CountStatus):
+    """How often a publisher failed to show that it was alive."""
+
+
+class MessageLostStatus(CountStatus):
+    """How many messages did not reach a subscription."""
+
+
+class IncompatibleTypeStatus(CountStatus):
+    """How many endpoints could not be matched because of their type."""
+
+
+@dataclass(frozen=True)
 class MatchedStatus:
     """How many endpoints of the other kind are and were matched, and the changes since the last look."""
 
@@ -55,31 +92,47 @@ class IncompatibleQosStatus:
     last_policy_kind: QoSPolicyKind = QoSPolicyKind.INVALID
 
 
+class OfferedIncompatibleQosStatus(IncompatibleQosStatus):
+    """The same, of a publisher."""
+
+
+class RequestedIncompatibleQosStatus(IncompatibleQosStatus):
+    """The same, of a subscription."""
+
+
 @dataclass(frozen=True)
-class IncompatibleTypeStatus:
-    """How many endpoints could not be matched because of their type."""
+class LivelinessChangedStatus:
+    """How many of the matched publishers are alive and how many are not, and the changes since the last look."""
 
-    total_count: int = 0
-    total_count_change: int = 0
+    alive_count: int = 0
+    not_alive_count: int = 0
+    alive_count_change: int = 0
+    not_alive_count_change: int = 0
 
 
-class EventSource:
-    """Watches the graph for one kind of event of one endpoint; `on_ready` is called when its status changes."""
+class EventSource(Announcer):
+    """Base: holds the status of one event of one endpoint; `on_ready` is called when it changes."""
 
     def __init__(self, handle: EndpointHandle, on_ready: Callable[[], None], status: Any) -> None:
+        self._handle = handle
         self._mine = handle.endpoint
-        self._lock = threading.Lock()
+        self._lock = threading.RLock()
         self._status = status
-        self._changed = False
-        self._on_ready = on_ready
-        self._stop = handle.node.session.watch(self._mine.name, self._on_change)
+        self.is_ready = False
+        self.announce_to(on_ready)
+
+    def _wire(self, call: Callable[[], None]) -> None:
+        self._on_ready = call
 
     def take(self) -> Any:
         """Return the status and begin to count changes anew; None when nothing changed."""
         with self._lock:
-            if not self._changed:
-                return None
-            self._changed = False
+            return self.read() if self.is_ready else None
+
+    def read(self) -> Any:
+        """Return the status, changed or not, and begin to count changes anew."""
+        with self._lock:
+            self.is_ready = False
             status = self._status
             zero = {name: 0 for name in status.__dataclass_fields__ if name.endswith("_change")}
             self._status = replace(status, **zero)
@@ -87,21 +140,41 @@ class EventSource:
 
     def close(self) -> None:
         """Watch no more."""
+
+    def _change(self, **steps: int) -> None:
+        """Add to counts of the status, and to their changes; a field without one is set."""
+        with self._lock:
+            fields: dict[str, Any] = {}
+            for name, step in steps.items():
+                changes = f"{name}_change"
+                if hasattr(self._status, changes):
+                    fields[name] = getattr(self._status, name) + step
+                    fields[changes] = getattr(self._status, changes) + step
+                else:
+                    fields[name] = step
+            self._status = replace(self._status, **fields)
+            self.is_ready = True
+        self._on_ready()
+
+
+class GraphSource(EventSource):
+    """An event that comes from endpoints which come and go."""
+
+    def __init__(self, handle: EndpointHandle, on_ready: Callable[[], None], status: Any) -> None:
+        super().__init__(handle, on_ready, status)
+        self._stop = handle.node.session.watch(self._mine.name, weakly(self._on_change))
+
+    def close(self) -> None:
+        """Watch no more."""
         self._stop()
 
     def _on_change(self, added: bool, other: EndpointInfo) -> None:
         opposite = EndpointKind.SUBSCRIPTION if self._mine.kind is EndpointKind.PUBLISHER else EndpointKind.PUBLISHER
-        if other.kind is not opposite:
-            return
-        with self._lock:
-            status = self._next(added, other)
-            if status is None:
-                return
-            self._status, self._changed = status, True
-        self._on_ready()
+        if other.kind is opposite:
+            self._note(added, other)
 
-    def _next(self, added: bool, other: EndpointInfo) -> Any:
-        """Return the new status, None when the change is of no interest."""
+    def _note(self, added: bool, other: EndpointInfo) -> None:
+        """Look at an endpoint of the other kind that came or went."""
         raise NotImplementedError
 
     def _same_type(self, other: EndpointInfo) -> bool:
@@ -112,61 +185,230 @@ class EventSource:
             return list(incompatibilities(self._mine.qos, other.qos))
         return list(incompatibilities(other.qos, self._mine.qos))
 
+    def _matches(self, other: EndpointInfo) -> bool:
+        return self._same_type(other) and not self._faults(other)
 
-class MatchedSource(EventSource):
+
+class MatchedSource(GraphSource):
     """Counts endpoints that match."""
 
-    def _next(self, added: bool, other: EndpointInfo) -> Any:
-        if not self._same_type(other) or self._faults(other):
-            return None
-        old, step = self._status, 1 if added else -1
-        return MatchedStatus(
-            old.total_count + added,
-            old.total_count_change + added,
-            old.current_count + step,
-            old.current_count_change + step,
-        )
+    def _note(self, added: bool, other: EndpointInfo) -> None:
+        if self._matches(other):
+            self._change(total_count=int(added), current_count=1 if added else -1)
 
 
-class IncompatibleQosSource(EventSource):
+class IncompatibleQosSource(GraphSource):
     """Counts endpoints whose QoS forbids a match."""
 
-    def _next(self, added: bool, other: EndpointInfo) -> Any:
+    def _note(self, added: bool, other: EndpointInfo) -> None:
         faults = self._faults(other) if added and self._same_type(other) else []
-        if not faults:
-            return None
-        old = self._status
-        return IncompatibleQosStatus(old.total_count + 1, old.total_count_change + 1, QoSPolicyKind(int(faults[-1])))
+        if faults:
+            self._change(total_count=1, last_policy_kind=QoSPolicyKind(int(faults[-1])))
 
 
-class IncompatibleTypeSource(EventSource):
+class IncompatibleTypeSource(GraphSource):
     """Counts endpoints of another type."""
 
-    def _next(self, added: bool, other: EndpointInfo) -> Any:
-        if not added or self._same_type(other):
-            return None
-        old = self._status
-        return IncompatibleTypeStatus(old.total_count + 1, old.total_count_change + 1)
+    def _note(self, added: bool, other: EndpointInfo) -> None:
+        if added and not self._same_type(other):
+            self._change(total_count=1)
 
 
-_SOURCES: dict[IntEnum, tuple[type[EventSource], type[Any]]] = {
-    QoSPublisherEventType.RCL_PUBLISHER_MATCHED: (MatchedSource, MatchedStatus),
-    QoSPublisherEventType.RCL_PUBLISHER_OFFERED_INCOMPATIBLE_QOS: (
-        IncompatibleQosSource,
-        IncompatibleQosStatus,
-    ),
-    QoSPublisherEventType.RCL_PUBLISHER_INCOMPATIBLE_TYPE: (IncompatibleTypeSource, IncompatibleTypeStatus),
-}
-_SUBSCRIPTION_SOURCES: dict[IntEnum, tuple[type[EventSource], type[Any]]] = {
-    QoSSubscriptionEventType.RCL_SUBSCRIPTION_MATCHED: (MatchedSource, MatchedStatus),
-    QoSSubscriptionEventType.RCL_SUBSCRIPTION_REQUESTED_INCOMPATIBLE_QOS: (
-        IncompatibleQosSource,
-        IncompatibleQosStatus,
-    ),
-    QoSSubscriptionEventType.RCL_SUBSCRIPTION_INCOMPATIBLE_TYPE: (
-        IncompatibleTypeSource,
-        IncompatibleTypeStatus,
-    ),
+class LivelinessChangedSource(GraphSource):
+    """Counts publishers that are alive: those in the graph, and manual ones only as long as they show it."""
+
+    def __init__(self, handle: EndpointHandle, on_ready: Callable[[], None], status: Any) -> None:
+        self._leases: dict[bytes, _Lease] = {}
+        self._signs: Subscription | None = None
+        super().__init__(handle, on_ready, status)
+        handle.impl.observe(weakly(self._on_sample))
+
+    def _note(self, added: bool, other: EndpointInfo) -> None:
+        if not self._matches(other):
+            return
+        if added:
+            if other.qos.liveliness is Liveliness.MANUAL_BY_TOPIC and other.qos.liveliness_lease_ns < INFINITE_NS:
+                self._leases[other.gid] = _Lease(other.qos.liveliness_lease_ns, self._on_lapse)
+                if self._signs is None:
+                    self._signs = self._listen_for_signs()
+            self._change(alive_count=1)
+            return
+        lease = self._leases.pop(other.gid, None)
+        if lease is None or lease.end():
+            self._change(alive_count=-1)
+        else:
+            self._change(not_alive_count=-1)
+
+    def _listen_for_signs(self) -> Subscription:
+        from rmw_dds_common.msg import Gid
+
+        node = self._handle.node
+        on_ready = weakly(self._read_signs)
+        return node.session.create_subscription(node.info, signs_topic(self._mine.name), Gid, Qos(), on_ready)
+
+    def _read_signs(self) -> None:
+        signs = self._signs
+        taken = signs.take() if signs is not None else None
+        while signs is not None and taken is not None:
+            self._on_sign(bytes(taken[0].data))
+            taken = signs.take()
+
+    def _on_lapse(self) -> None:
+        self._change(alive_count=-1, not_alive_count=1)
+
+    def _on_sample(self, info: SampleInfo) -> None:
+        self._on_sign(info.gid)
+
+    def _on_sign(self, gid: bytes) -> None:
+        lease = self._leases.get(gid)
+        if lease is not None and not lease.renew():
+            self._change(alive_count=1, not_alive_count=-1)
+
+    def close(self) -> None:
+        """Watch no more."""
+        super().close()
+        if self._signs is not None:
+            self._signs.close()
+        for lease in self._leases.values():
+            lease.end()
+
+
+class _Lease:
+    """A time within which something must happen again; `on_lapse` is called when it did not."""
+
+    def __init__(self, span_ns: int, on_lapse: Any) -> None:
+        self._span = span_ns
+        self._on_lapse = weakly(on_lapse)
+        self._lock = threading.Lock()
+        self._valid = False
+        self._alarm: Alarm | None = None
+        self._until = 0
+        self.renew()
+
+    def renew(self) -> bool:
+        """Begin the span anew; tell whether it had not ended."""
+        with self._lock:
+            was, self._valid = self._valid, True
+            self._until = time.monotonic_ns() + self._span
+            if not was:
+                self._alarm = ALARMS.at(self._until, self._check)
+        return was
+
+    def _check(self) -> None:
+        with self._lock:
+            if not self._valid:
+                return
+            if self._until > time.monotonic_ns():  # renewed meanwhile
+                self._alarm = ALARMS.at(self._until, self._check)
+                return
+            self._valid = False
+        self._on_lapse()
+
+    def end(self) -> bool:
+        """Watch no more; tell whether it had not ended."""
+        with self._lock:
+            was, self._valid = self._valid, False
+            alarm, self._alarm = self._alarm, None
+        if alarm:
+            alarm.cancel()
+        return was
+
+
+class LivelinessLostSource(EventSource):
+    """Counts how often a manual publisher did not show that it was alive."""
+
+    def __init__(self, handle: EndpointHandle, on_ready: Callable[[], None], status: Any) -> None:
+        super().__init__(handle, on_ready, status)
+        qos = self._mine.qos
+        self._lease: _Lease | None = None
+        if qos.liveliness is Liveliness.MANUAL_BY_TOPIC and qos.liveliness_lease_ns < INFINITE_NS:
+            self._lease = _Lease(qos.liveliness_lease_ns, self._on_lapse)
+            handle.impl.observe(weakly(self._lease.renew))
+
+    def _on_lapse(self) -> None:
+        self._change(total_count=1)
+
+    def close(self) -> None:
+        """Watch no more."""
+        if self._lease:
+            self._lease.end()
+
+
+class DeadlineSource(EventSource):
+    """Counts how often a deadline passed without a sample, from the first sample on."""
+
+    def __init__(self, handle: EndpointHandle, on_ready: Callable[[], None], status: Any) -> None:
+        super().__init__(handle, on_ready, status)
+        self._span = self._mine.qos.deadline_ns
+        self._last = self._start = 0
+        self._alarm: Alarm | None = None
+        self._closed = False
+        if self._span < INFINITE_NS:
+            handle.impl.observe(weakly(self._on_sample))
+
+    def _on_sample(self, info: SampleInfo | None = None) -> None:
+        first, self._last = not self._last, time.monotonic_ns()
+        if first:
+            self._plan()
+
+    def _plan(self) -> None:
+        """Have the deadline looked at that the last sample began."""
+        with self._lock:
+            if not self._closed:
+                self._start = self._last
+                self._alarm = ALARMS.at(self._start + self._span, weakly(self._check))
+
+    def _check(self) -> None:
+        if self._last == self._start:
+            if self._has_counterparts():
+                self._change(total_count=1)
+            self._last += self._span
+        self._plan()
+
+    def _has_counterparts(self) -> bool:
+        """Tell whether somebody could have sent: a subscription without publishers misses nothing."""
+        return self._mine.kind is EndpointKind.PUBLISHER or bool(self._handle.node.session.counterparts(self._mine))
+
+    def close(self) -> None:
+        """Watch no more."""
+        with self._lock:
+            self._closed = True
+            alarm, self._alarm = self._alarm, None
+        if alarm:
+            alarm.cancel()
+
+
+class MessageLostSource(EventSource):
+    """Counts the gaps in publishers' sequence numbers."""
+
+    def __init__(self, handle: EndpointHandle, on_ready: Callable[[], None], status: Any) -> None:
+        super().__init__(handle, on_ready, status)
+        self._last: dict[bytes, int] = {}
+        handle.impl.observe(weakly(self._on_sample))
+
+    def _on_sample(self, info: SampleInfo) -> None:
+        last, self._last[info.gid] = self._last.get(info.gid, info.sequence - 1), info.sequence
+        lost = info.sequence - last - 1
+        if lost > 0:
+            self._change(total_count=lost)
+
+
+_P, _S = QoSPublisherEventType, QoSSubscriptionEventType
+_SOURCES: dict[tuple[type[IntEnum], int], tuple[type[EventSource], type[Any]]] = {
+    (type(kind), int(kind)): (source, status)
+    for kind, source, status in (
+        (_P.RCL_PUBLISHER_OFFERED_DEADLINE_MISSED, DeadlineSource, OfferedDeadlineMissedStatus),
+        (_P.RCL_PUBLISHER_LIVELINESS_LOST, LivelinessLostSource, LivelinessLostStatus),
+        (_P.RCL_PUBLISHER_OFFERED_INCOMPATIBLE_QOS, IncompatibleQosSource, OfferedIncompatibleQosStatus),
+        (_P.RCL_PUBLISHER_INCOMPATIBLE_TYPE, IncompatibleTypeSource, IncompatibleTypeStatus),
+        (_P.RCL_PUBLISHER_MATCHED, MatchedSource, MatchedStatus),
+        (_S.RCL_SUBSCRIPTION_REQUESTED_DEADLINE_MISSED, DeadlineSource, RequestedDeadlineMissedStatus),
+        (_S.RCL_SUBSCRIPTION_LIVELINESS_CHANGED, LivelinessChangedSource, LivelinessChangedStatus),
+        (_S.RCL_SUBSCRIPTION_REQUESTED_INCOMPATIBLE_QOS, IncompatibleQosSource, RequestedIncompatibleQosStatus),
+        (_S.RCL_SUBSCRIPTION_MESSAGE_LOST, MessageLostSource, MessageLostStatus),
+        (_S.RCL_SUBSCRIPTION_INCOMPATIBLE_TYPE, IncompatibleTypeSource, IncompatibleTypeStatus),
+        (_S.RCL_SUBSCRIPTION_MATCHED, MatchedSource, MatchedStatus),
+    )
 }
 
 
@@ -176,10 +418,10 @@ def event_source(handle: EndpointHandle, event_type: IntEnum, on_ready: Callable
     Raises
     ------
     UnsupportedEventTypeError
-        For an event that the middleware does not have.
+        For what is no event.
     """
-    table = _SOURCES if isinstance(event_type, QoSPublisherEventType) else _SUBSCRIPTION_SOURCES
-    if event_type not in table:
-        raise UnsupportedEventTypeError(f"the middleware has no event {event_type.name}")
-    source, status = table[event_type]
+    found = _SOURCES.get((type(event_type), int(event_type)))
+    if found is None:
+        raise UnsupportedEventTypeError(f"there is no event {event_type!r}")
+    source, status = found
     return source(handle, on_ready, status())

@@ -46,13 +46,56 @@ class ReadyHook:
         self.sink = None
 
 
-def weakly(method: MethodType) -> Callable[[], None]:
+def _nothing() -> None:
+    """Stand in for a function that nobody gave."""
+
+
+class Announcer:
+    """Base of what calls a function, and perhaps listeners beside it, when something becomes ready."""
+
+    _first: Callable[[], None] = staticmethod(_nothing)
+    _others: tuple[Callable[[], None], ...] = ()
+
+    def announce_to(self, function: Callable[[], None]) -> None:
+        """Call this function, instead of the one before."""
+        self._first = function
+        self._wire(self._combined())
+
+    def listen(self, listener: Callable[[], None]) -> Callable[[], None]:
+        """Call a listener as well; the result ends that."""
+        self._others = (*self._others, listener)
+        self._wire(self._combined())
+
+        def stop() -> None:
+            self._others = tuple(other for other in self._others if other is not listener)
+            self._wire(self._combined())
+
+        return stop
+
+    def _combined(self) -> Callable[[], None]:
+        first, others = self._first, self._others
+        if not others:
+            return first
+
+        def call() -> None:
+            first()
+            for other in others:
+                other()
+
+        return call
+
+    def _wire(self, call: Callable[[], None]) -> None:
+        """Have `call` called when something becomes ready."""
+        raise NotImplementedError
+
+
+def weakly(method: MethodType) -> Callable[..., None]:
     """Return what calls a bound method as long as its object lives."""
     reference = weakref.WeakMethod(method)
 
-    def call() -> None:
+    def call(*arguments: Any) -> None:
         alive = reference()
         if alive is not None:
-            alive()
+            alive(*arguments)
 
     return call

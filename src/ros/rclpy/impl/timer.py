@@ -10,12 +10,13 @@ from rclpy.clock_type import ClockType
 from rclpy.impl.clock import ClockHandle
 from rclpy.impl.errors import TimerCancelledError
 from rclpy.impl.handle import Destroyable
+from rclpy.impl.ready import Announcer
 
 Schedule = Callable[[int, "TimerHandle"], None]
 """Asks for `on_due` when ``time.monotonic_ns()`` reaches a deadline."""
 
 
-class TimerHandle(Destroyable):
+class TimerHandle(Announcer, Destroyable):
     """A timer with a period in nanoseconds of its clock.
 
     Attributes
@@ -29,7 +30,7 @@ class TimerHandle(Destroyable):
     def __init__(self, clock: ClockHandle, period_ns: int, on_due: Callable[[], None], autostart: bool = True) -> None:
         super().__init__()
         self.clock = clock
-        self.on_due = on_due
+        self.announce_to(on_due)
         self.version = 0
         self._period = period_ns
         self._schedule: Schedule | None = None
@@ -37,6 +38,9 @@ class TimerHandle(Destroyable):
         self._lock = threading.Lock()
         self._last_call = clock.now_ns()
         self._next_call = self._last_call + period_ns
+
+    def _wire(self, call: Callable[[], None]) -> None:
+        self.on_due = call
 
     # The clock's and the executor's side.
 

@@ -1,0 +1,91 @@
+"""Which callback the present thread is in: who blocks in one must not block the executor that runs it."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager, nullcontext, suppress
+from typing import TYPE_CHECKING, Any
+
+from rclpy.exceptions import ROSInterruptException
+
+if TYPE_CHECKING:
+    from rclpy.callback_groups import CallbackGroup
+    from rclpy.context import Context
+    from rclpy.executors import Executor
+    from rclpy.task import Future
+
+
+class _Thread(threading.local):
+    """The present thread's executor and entity, None outside of callbacks."""
+
+    executor: Executor | None = None
+    entity: Any = None
+
+
+THREAD = _Thread()
+
+
+class BlockedCalls:
+    """The services that callbacks of an executor wait for, with the callback groups that these callbacks hold."""
+
+    def __init__(self) -> None:
+        self._calls: list[tuple[frozenset[str], CallbackGroup | None]] = []
+
+    @contextmanager
+    def waiting(self, services: Iterable[str], group: CallbackGroup | None) -> Iterator[None]:
+        """Note a call that waits, and the group that cannot be free meanwhile."""
+        call = (frozenset(services), group)
+        self._calls.append(call)
+        try:
+            yield
+        finally:
+            self._calls.remove(call)
+
+    def may_enter(self, entity: Any) -> bool:
+        """Tell whether an entity serves a call whose caller holds the entity's group: the caller only waits for it."""
+        serves = getattr(entity, "_rcl_serves", ())
+        return any(
+            group is entity.callback_group and not services.isdisjoint(serves) for services, group in self._calls
+        )
+
+
+def wait_for(future: Future, context: Context, services: Iterable[str], timeout_s: float | None) -> bool:
+    """Wait for a future that a response of one of `services` finishes; False when time runs out.
+
+    In a callback, the executor goes on with other callbacks meanwhile.
+
+    Raises
+    ------
+    ROSInterruptException
+        When the context is shut down.
+    """
+    executor = THREAD.executor
+    if executor is not None and executor._helps:
+        executor._help_until_done(future, THREAD.entity, services, timeout_s)
+    else:
+        gate = _Gate()
+        future.on_wake(gate.open)
+        context.on_shutdown(gate.open)
+        with nullcontext() if executor is None else executor._blocked(THREAD.entity, services):
+            gate.pass_through(timeout_s)
+    if not future._pending_over() and not context.ok():
+        raise ROSInterruptException()
+    return future._pending_over()
+
+
+class _Gate:
+    """Closed until somebody opens it; a lock wakes who waits several times faster than ``threading.Event``."""
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._lock.acquire()
+
+    def open(self) -> None:
+        """Let through who waits."""
+        with suppress(RuntimeError):  # it is open
+            self._lock.release()
+
+    def pass_through(self, timeout_s: float | None) -> None:
+        """Wait until the gate is open, for at most `timeout_s` seconds."""
+        self._lock.acquire(timeout=-1 if timeout_s is None or timeout_s < 0 else timeout_s)

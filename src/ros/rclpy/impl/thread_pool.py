@@ -1,0 +1,72 @@
+"""A pool of threads in which a thread that only waits makes room for another."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from queue import SimpleQueue
+from typing import Any
+
+
+class ThreadPool:
+    """Carries out functions, at most `size` at a time; its threads end with `close`."""
+
+    def __init__(self, size: int) -> None:
+        self._size = size
+        self._lock = threading.Lock()
+        self._work: SimpleQueue[tuple[Callable[..., Any], tuple[Any, ...]] | None] = SimpleQueue()
+        self._threads = 0  # those that are not blocked
+        self._load = 0  # functions that wait for a thread or are carried out, those that are blocked excepted
+        self._blocked = 0
+        self._closed = False
+
+    def submit(self, function: Callable[..., Any], *arguments: Any) -> None:
+        """Have a function carried out, which must raise nothing."""
+        self._work.put((function, arguments))
+        with self._lock:
+            self._load += 1
+            self._grow()
+
+    def _grow(self) -> None:
+        if self._threads < min(self._load, self._size) and not self._closed:
+            self._threads += 1
+            threading.Thread(target=self._run, name="rclpy", daemon=True).start()
+
+    def _run(self) -> None:
+        while True:
+            item = self._work.get()
+            if item is None:
+                return
+            item[0](*item[1])
+            item = None  # what was carried out may be collected while the thread waits
+            with self._lock:
+                self._load -= 1
+                if self._threads > self._size:
+                    self._threads -= 1
+                    return
+
+    @contextmanager
+    def blocked(self) -> Iterator[None]:
+        """Note, in a thread of the pool, that the function only waits: another one may take its place."""
+        with self._lock:
+            self._blocked += 1
+            self._load -= 1
+            self._threads -= 1
+            self._grow()
+        try:
+            yield
+        finally:
+            with self._lock:
+                self._blocked -= 1
+                self._load += 1
+                self._threads += 1
+
+    def close(self) -> None:
+        """End the threads, after what they carry out."""
+        with self._lock:
+            if self._closed:
+                return
+            self._closed = True
+            for _ in range(self._threads + self._blocked):
+                self._work.put(None)

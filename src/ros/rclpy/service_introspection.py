@@ -1,0 +1,11 @@
+"""Service introspection: a service's requests and responses as messages on ``<service>/_service_event``."""
+
+from enum import IntEnum
+
+
+class ServiceIntrospectionState(IntEnum):
+    """What is told of a request or a response."""
+
+    OFF = 0
+    METADATA = 1
+    CONTENTS = 2
