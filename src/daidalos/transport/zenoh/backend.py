@@ -14,7 +14,7 @@ from collections.abc import Callable
 from typing import Any
 
 import zenoh
-from zenoh.handlers import Callback, FifoChannel
+from zenoh.handlers import FifoChannel
 
 from daidalos.transport.backend import (
     Backend,
@@ -43,6 +43,7 @@ _MANY_TOKENS = 1_000_000
 """More tokens than ever wait to be read; a full channel would hold zenoh up."""
 
 _CLOSING_S = 1.0
+_LOOK_S = 0.002
 """How long the thread that reads tokens may take to end; it may be in a listener's hands."""
 
 
@@ -118,18 +119,13 @@ class ZenohBackend(Backend):
             routers = list(self._session.info.routers_zid())
             return (not router or bool(routers)) and self._alive() <= there
 
-        linked = threading.Condition()
-
-        def on_transport(event: Any) -> None:
-            with linked:
-                linked.notify_all()
-
-        links = self._session.info.declare_transport_events_listener(Callback(on_transport, indirect=False))
-        with linked:
-            complete = linked.wait_for(connected, timeout_s)
-        links.undeclare()
+        # We look ourselves: a listener would need Python's lock within zenoh's.
+        while not (complete := connected()) and time.monotonic() < deadline:
+            time.sleep(_LOOK_S)
         left = max(deadline - time.monotonic(), 0.05)
-        for reply in self._session.liveliness().get(keys.tokens(self._domain), timeout=left):
+        # The tokens that are known already are handed out before anybody can read: all must fit into the channel.
+        channel = FifoChannel(_MANY_TOKENS)
+        for reply in self._session.liveliness().get(keys.tokens(self._domain), handler=channel, timeout=left):
             if reply.ok is not None:
                 self._add(str(reply.ok.key_expr))
         return complete
