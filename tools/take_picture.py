@@ -14,6 +14,7 @@ UNDERWAY = "Math.hypot(daidalos.state().robotPose.x, daidalos.state().robotPose.
 
 
 def main(picture: Path) -> None:
+    """Run the demonstration, send the robot on its way and write the picture."""
     sys.path.insert(0, str(TESTS))
     from browser.cdp import Chromium
     from end_to_end.processes import DAIDALOS, Command
