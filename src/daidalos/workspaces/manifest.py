@@ -67,9 +67,9 @@ def _located(path: Path, text: str, message: str) -> str:
 def _line(text: str, fault: str) -> int:
     """Return the line of the first thing that the message quotes, or of the tag that it names; else the first."""
     lines = text.splitlines()
-    quoted = re.findall(r"[\"'<]([^\"'<>]+)[\"'>]", fault)
-    for word in [*(f"<{name}" for name in quoted), *(f">{value}<" for value in quoted), *quoted]:
+    quoted = [re.escape(word) for word in re.findall(r"[\"'<]([^\"'<>]+)[\"'>]", fault)]
+    for pattern in [*(rf"<{word}\b" for word in quoted), *(rf"(?<!\w){word}(?!\w)" for word in quoted)]:
         for number, line in enumerate(lines, 1):
-            if word in line:
+            if re.search(pattern, line):
                 return number
     return next((number for number, line in enumerate(lines, 1) if "<package" in line), 1)

@@ -68,16 +68,15 @@ class _Reader:
         self._scope = scope
 
     def any(self) -> bool:
-        result = self._all()
-        while self._skip("OR"):
-            result = self._all() or result
-        return result
-
-    def _all(self) -> bool:
+        """Read tests with AND and OR between them, neither of which binds closer than the other."""
         result = self._not()
-        while self._skip("AND"):
-            result = self._not() and result
-        return result
+        while True:
+            if self._skip("AND"):
+                result = self._not() and result
+            elif self._skip("OR"):
+                result = self._not() or result
+            else:
+                return result
 
     def _not(self) -> bool:
         return not self._not() if self._skip("NOT") else self._test()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -210,8 +211,10 @@ class Interpreter:
         elif name in self._handlers:
             try:
                 self._handlers[name](self, call)
-            except (IndexError, StopIteration):
-                raise self._fault(command, f"{name}() needs more arguments") from None
+            except WorkspaceError:
+                raise
+            except (IndexError, ValueError, re.error) as error:
+                raise self._fault(command, f"{name}() can not be run with these arguments: {error}") from None
         elif name not in self._ignored:
             self.contents.notes.append(f"{call.where}: {name}() is not understood and was left out")
 

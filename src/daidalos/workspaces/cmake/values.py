@@ -8,9 +8,8 @@ from collections.abc import Iterable, Mapping
 
 from daidalos.workspaces.cmake.syntax import Argument
 
-_REFERENCE = re.compile(r"\$(?P<where>ENV|CACHE)?\{(?P<name>[^${}]*)\}")
-_ESCAPE = re.compile(r"\\(.)", re.DOTALL)
-_ESCAPES = {"n": "\n", "t": "\t", "r": "\r"}
+_PIECE = re.compile(r"\\(?P<escaped>.)|\$(?P<where>ENV|CACHE)?\{|(?P<end>\})", re.DOTALL)
+_ESCAPES = {"n": "\n", "t": "\t", "r": "\r", ";": "\\;"}
 
 
 def expand(arguments: Iterable[Argument], variables: Mapping[str, str]) -> list[str]:
@@ -19,32 +18,47 @@ def expand(arguments: Iterable[Argument], variables: Mapping[str, str]) -> list[
     for argument in arguments:
         if argument.kind == "bracket":
             values.append(argument.text)
-            continue
-        text = _unescape(substitute(argument.text, variables))
-        if argument.kind == "quoted":
-            values.append(text)
+        elif argument.kind == "quoted":
+            values.append(substitute(argument.text, variables).replace("\\;", ";"))
         else:
-            values += split(text)
+            values += split(substitute(argument.text, variables))
     return values
 
 
 def substitute(text: str, variables: Mapping[str, str]) -> str:
-    """Fill in ``${NAME}`` and ``$ENV{NAME}``, the innermost first; what is not set is empty."""
-
-    def value(match: re.Match[str]) -> str:
-        name = match["name"]
-        return os.environ.get(name, "") if match["where"] == "ENV" else variables.get(name, "")
-
-    while True:
-        text, count = _REFERENCE.subn(value, text)
-        if not count:
-            return text
+    """Fill in ``${NAME}`` and ``$ENV{NAME}``, also within one another, and backslashes; what is not set is empty."""
+    return _Scanner(text, variables).run()
 
 
 def split(text: str) -> list[str]:
     """Return the items of a list."""
-    return [item for item in text.split(";") if item]
+    return [item.replace("\\;", ";") for item in re.split(r"(?<!\\);", text) if item]
 
 
-def _unescape(text: str) -> str:
-    return _ESCAPE.sub(lambda match: _ESCAPES.get(match[1], match[1]), text)
+class _Scanner:
+    """Goes through a text once, so that what a variable holds is not looked into again."""
+
+    def __init__(self, text: str, variables: Mapping[str, str]) -> None:
+        self._text = text
+        self._variables = variables
+        self._position = 0
+
+    def run(self, depth: int = 0) -> str:
+        parts: list[str] = []
+        while match := _PIECE.search(self._text, self._position):
+            parts.append(self._text[self._position : match.start()])
+            self._position = match.end()
+            if match["escaped"]:
+                parts.append(_ESCAPES.get(match["escaped"], match["escaped"]))
+            elif not match["end"]:
+                parts.append(self._value(match["where"], self.run(depth + 1)))
+            elif depth:
+                return "".join(parts)
+            else:
+                parts.append("}")
+        parts.append(self._text[self._position :])
+        self._position = len(self._text)
+        return "".join(parts)
+
+    def _value(self, where: str | None, name: str) -> str:
+        return os.environ.get(name, "") if where == "ENV" else self._variables.get(name, "")

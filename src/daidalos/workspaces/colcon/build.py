@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import asyncio
-import sys
 from pathlib import Path
 from typing import Any
 
 from colcon_core.environment import create_environment_scripts
+from colcon_core.event.output import StderrLine, StdoutLine
 from colcon_core.logging import colcon_logger
 from colcon_core.plugin_system import satisfies_version
 from colcon_core.python_install_path import get_python_install_path
@@ -47,16 +47,20 @@ class CmakePackageBuildTask(TaskExtensionPoint):  # type: ignore[misc]
             needs = sorted(dependency.name for dependency in package.get_dependencies(categories=["run"]))
             await loop.run_in_executor(None, package_build.finish, build, place, package.name, needs, environment)
         except WorkspaceError as error:
-            self.print(str(error), file=sys.stderr)
+            self._post(StderrLine, str(error))
             return 1
         for note in build.contents.notes:
-            self.print(note)
+            self._post(StdoutLine, note)
         tests = [LeftOut(name, "a test in C++") for name in build.contents.left_out_tests]
         line = summary([*build.left_out, *tests])
         if line:
-            self.print(f"{package.name}: {line}", file=sys.stderr)
+            self._post(StderrLine, f"{package.name}: {line}")
         self._create_environment(build.contents.hooks)
         return 0
+
+    def _post(self, kind: type, line: str) -> None:
+        # Bytes, as from a program: colcon's own `print` posts text, which not every listener can take.
+        self.context.put_event_into_queue(kind(f"{line}\n".encode()))
 
     def _create_environment(self, hooks: list[str]) -> None:
         package, args = self.context.pkg, self.context.args
