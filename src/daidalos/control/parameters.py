@@ -46,9 +46,12 @@ def parameter(default: Any, *checks: Check, read_only: bool = False) -> Any:
     return field(default=default, metadata={"checks": checks, "read_only": read_only})
 
 
-def per_name(kind: type, by: str) -> dict[str, Any]:
-    """Return the metadata of a field, a mapping, that has a group for each name in the parameter `by`."""
-    return {"kind": kind, "by": by}
+def per_name(kind: type, by: str, at: str | None = None) -> dict[str, Any]:
+    """Return the metadata of a field, a mapping, that has a group for each name in the parameter `by`.
+
+    Its parameters are called ``<at>.<name>.<parameter>``; `at` is the field where None.
+    """
+    return {"kind": kind, "by": by, "at": at}
 
 
 def read_parameters(kind: type[T], get: Callable[[Leaf], Any]) -> T:
@@ -108,10 +111,9 @@ def _read(kind: type[T], get: Callable[[Leaf], Any], prefix: str) -> T:
             values[entry.name] = _leaf(entry, hints[entry.name], name, get)
     for entry in fields(kind):  # type: ignore[arg-type]
         if "by" in entry.metadata:
-            group_kind, by = entry.metadata["kind"], entry.metadata["by"]
-            values[entry.name] = {
-                one: _read(group_kind, get, f"{prefix}{entry.name}.{one}.") for one in dict.fromkeys(values[by])
-            }
+            group_kind, by, at = (entry.metadata[key] for key in ("kind", "by", "at"))
+            place = f"{prefix}{at or entry.name}"
+            values[entry.name] = {one: _read(group_kind, get, f"{place}.{one}.") for one in dict.fromkeys(values[by])}
     return kind(**values)
 
 

@@ -1,0 +1,101 @@
+"""Odometry of a base from what its wheels did: pose, smoothed velocity, messages."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daidalos.simulation.odometry import PlanarPose, transform_of, yaw_quaternion
+from daidalos.simulation.samples import OdometrySample, TransformSample
+
+Array = NDArray[np.float64]
+
+
+class BaseOdometry:
+    """Where a base is in the plane, by arcs.
+
+    Parameters
+    ----------
+    odom_frame, base_frame : str
+    pose_covariance, twist_covariance : sequence of 6 floats
+        Diagonals over x, y, z and rotations about them.
+    window : int
+        Over how many cycles velocities are averaged.
+
+    Attributes
+    ----------
+    pose : PlanarPose
+    """
+
+    def __init__(
+        self,
+        odom_frame: str,
+        base_frame: str,
+        pose_covariance: Sequence[float],
+        twist_covariance: Sequence[float],
+        window: int = 1,
+    ) -> None:
+        self.odom_frame, self.base_frame = odom_frame, base_frame
+        self._pose_covariance = np.diag(pose_covariance).ravel().astype(np.float64)
+        self._twist_covariance = np.diag(twist_covariance).ravel().astype(np.float64)
+        self._window = max(window, 1)
+        self.reset()
+
+    def reset(self) -> None:
+        """Be at the origin, at rest."""
+        self.pose = PlanarPose()
+        self._velocities: deque[tuple[float, float, float]] = deque(maxlen=self._window)
+
+    def move(self, forward: float, turn: float, period: float, sideways: float = 0.0) -> None:
+        """Go on by an arc.
+
+        Parameters
+        ----------
+        forward, turn, sideways : float
+            Travel along the base's axes [m] and change of heading [rad].
+        period : float
+            How long it took [s].
+        """
+        self.pose = self.pose.moved(forward, turn, sideways)
+        if period > 0.0:
+            self._velocities.append((forward / period, sideways / period, turn / period))
+
+    @property
+    def velocity(self) -> tuple[float, float, float]:
+        """Smoothed speed ahead, to the left, and turn rate [m/s, m/s, rad/s]."""
+        count = len(self._velocities)
+        if not count:
+            return 0.0, 0.0, 0.0
+        ahead, sideways, turn = map(sum, zip(*self._velocities, strict=True))
+        return ahead / count, sideways / count, turn / count
+
+    def sample(self, now_ns: int, topic: str) -> OdometrySample:
+        """Return the odometry as it is now."""
+        ahead, sideways, turn = self.velocity
+        return OdometrySample(
+            stamp_ns=now_ns,
+            topic=topic,
+            frame_id=self.odom_frame,
+            child_frame_id=self.base_frame,
+            position=np.array((self.pose.x, self.pose.y, 0.0)),
+            orientation=yaw_quaternion(self.pose.yaw),
+            linear=np.array((ahead, sideways, 0.0)),
+            angular=np.array((0.0, 0.0, turn)),
+            pose_covariance=self._pose_covariance,
+            twist_covariance=self._twist_covariance,
+        )
+
+    def transform(self, now_ns: int, topic: str = "/tf") -> TransformSample:
+        """Return the base's pose as a transform."""
+        return transform_of(self.sample(now_ns, ""), topic)
+
+
+def prefixed_frame(frame: str, namespace: str, prefix: str, enabled: bool) -> str:
+    """Return a frame with a prefix in front: the given one, or the controller's namespace where that is empty."""
+    if not enabled:
+        return frame
+    prefix = (prefix or namespace).strip("/")
+    return f"{prefix}/{frame}" if prefix else frame

@@ -1,0 +1,258 @@
+"""The contract of controllers: interfaces in, interfaces out, commands and samples beside."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, ClassVar
+
+from daidalos.control.interfaces import Interfaces, Loan
+from daidalos.description.robot import Robot
+from daidalos.simulation.samples import Sample
+
+
+def _always(topic: str) -> bool:
+    """Take it that somebody listens."""
+    return True
+
+
+def _ignore(line: str) -> None:
+    """Take a line and drop it."""
+
+
+@dataclass(frozen=True)
+class ControllerSetting:
+    """Where a controller finds itself when it is configured.
+
+    Parameters
+    ----------
+    name : str
+    update_rate : float
+        Its own [Hz].
+    robot : Robot or None
+        Its description, once that is known.
+    namespace : str
+        Of the controller, such as ``/robot1``.
+    state_names : tuple of str
+        All state interfaces that the hardware has.
+    heard : callable
+        Tells whether anyone listens to one of its topics.
+    warn : callable
+        Takes a line for the user.
+    """
+
+    name: str
+    update_rate: float = 100.0
+    robot: Robot | None = None
+    namespace: str = "/"
+    state_names: tuple[str, ...] = ()
+    heard: Callable[[str], bool] = _always
+    warn: Callable[[str], None] = _ignore
+
+
+@dataclass(frozen=True)
+class Subscription:
+    """A topic that a controller listens to: the command's class and who takes it."""
+
+    type: type
+    take: Callable[[Any], None]
+
+
+@dataclass(frozen=True)
+class Service:
+    """A question that a controller answers: the class of the question and who answers it."""
+
+    type: type
+    answer: Callable[[Any], Any]
+
+
+@dataclass(eq=False)
+class Goal:
+    """What an action is asked to do, and how it is going.
+
+    Parameters
+    ----------
+    request : object
+        Of the action's class.
+    feedback : callable
+        Takes what there is to say on the way.
+    done : callable
+        Takes ``succeeded``, ``aborted`` or ``canceled``, and the result.
+    """
+
+    request: Any
+    feedback: Callable[[Any], None] = field(default=lambda feedback: None)
+    done: Callable[[str, Any], None] = field(default=lambda status, result: None)
+    status: str = ""
+    result: Any = None
+
+    def finish(self, status: str, result: Any) -> None:
+        """End, once."""
+        if not self.status:
+            self.status, self.result = status, result
+            self.done(status, result)
+
+
+@dataclass(frozen=True)
+class Action:
+    """An action that a controller carries out.
+
+    Parameters
+    ----------
+    type : type
+        Of its requests.
+    refuse : callable
+        Returns why a request is not accepted; nothing when it is.
+    start : callable
+        Takes a goal whose request was accepted.
+    cancel : callable
+        Takes a goal that should end.
+    """
+
+    type: type
+    refuse: Callable[[Any], str]
+    start: Callable[[Goal], None]
+    cancel: Callable[[Goal], None]
+
+
+class Controller:
+    """Turns states into commands, once in each of its periods.
+
+    Adding a file with a subclass to this folder adds its types; a package of the user's does the same through
+    the entry point group ``daidalos.controllers``, or is named by its place.
+
+    Parameters
+    ----------
+    parameters : object
+        Of the class `parameters`.
+    setting : ControllerSetting
+
+    Attributes
+    ----------
+    types : tuple of str
+        Class attribute: the names that it goes by in parameter files.
+    parameters : type
+        Class attribute: a dataclass; see `daidalos.control.parameters`.
+    chainable : bool
+        Class attribute: whether other controllers may command it.
+    command_names, state_names : tuple of str
+        The interfaces that it needs.
+    references : Interfaces
+        What other controllers may command, without the controller's name in front.
+    exported : Interfaces
+        What it tells other controllers.
+    chained : bool
+        Whether another controller commands it now.
+    now_ns : int
+        Time of the cycle.
+
+    Raises
+    ------
+    ParameterError
+        When parameters do not fit together.
+    """
+
+    types: ClassVar[tuple[str, ...]] = ()
+    parameters: ClassVar[type]
+    chainable: ClassVar[bool] = False
+
+    def __init__(self, parameters: Any, setting: ControllerSetting) -> None:
+        self.p = parameters
+        self.setting = setting
+        self.command_names: tuple[str, ...] = ()
+        self.state_names: tuple[str, ...] = ()
+        self.references = Interfaces()
+        self.exported = Interfaces()
+        self.chained = False
+        self.now_ns = 0
+        self.commands = Loan()
+        self.states = Loan()
+        self.configure()
+
+    def configure(self) -> None:
+        """Set the names of the interfaces, and make what the controller needs."""
+
+    def reconfigure(self, parameters: Any) -> None:
+        """Take changed parameters while running; those that are read only stay as they are."""
+        self.p = parameters
+
+    def assign(self, commands: Loan, states: Loan) -> None:
+        """Take the interfaces, in the order of their names."""
+        self.commands, self.states = commands, states
+
+    def activate(self, now_ns: int) -> None:
+        """Begin; the interfaces are there."""
+
+    def deactivate(self) -> None:
+        """End; whatever is written to commands is the last."""
+
+    def take_references(self, now_ns: int, period: float) -> None:
+        """Set the references from what was received; only called while no controller commands them."""
+
+    def update(self, now_ns: int, period: float) -> Iterable[Sample]:
+        """Write commands and return what there is to say.
+
+        Parameters
+        ----------
+        now_ns : int
+            [ns].
+        period : float
+            Since the last update [s].
+        """
+        raise NotImplementedError
+
+    @property
+    def publications(self) -> Mapping[str, type[Sample]]:
+        """Topics of its samples, ``~/`` in front for its own, with their classes."""
+        return {}
+
+    @property
+    def subscriptions(self) -> Mapping[str, Subscription]:
+        """Topics that it takes commands from."""
+        return {}
+
+    @property
+    def services(self) -> Mapping[str, Service]:
+        """Questions that it answers."""
+        return {}
+
+    @property
+    def actions(self) -> Mapping[str, Action]:
+        """Actions that it carries out."""
+        return {}
+
+
+class Pulse:
+    """Tells when something is due that happens at a rate, however the cycles fall.
+
+    Parameters
+    ----------
+    rate : float
+        [Hz]; every time where 0 or less.
+    """
+
+    def __init__(self, rate: float) -> None:
+        self._period = 1e9 / rate if rate > 0 else 0.0
+        self.restart()
+
+    def restart(self) -> None:
+        """Be due when next asked, and count from then on."""
+        self._start_ns: int | None = None
+        self._count = 0
+
+    def due(self, now_ns: int) -> bool:
+        """Tell whether it is due now."""
+        if self._period == 0.0:
+            return True
+        if self._start_ns is None or now_ns < self._start_ns:
+            self._start_ns, self._count = now_ns, 1
+            return True
+        if now_ns < self._start_ns + round(self._count * self._period):
+            return False
+        self._count = int((now_ns - self._start_ns) / self._period) + 1
+        return True
+
+
+def interface_names(joints: Sequence[str], interfaces: Sequence[str]) -> tuple[str, ...]:
+    """Return the names of interfaces: all joints of the first kind, then of the second."""
+    return tuple(f"{joint}/{interface}" for interface in interfaces for joint in joints)

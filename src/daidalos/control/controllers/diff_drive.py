@@ -1,0 +1,222 @@
+"""Differential drive: wheel speeds from a wanted velocity of the base, odometry from the wheels."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from daidalos.control.base_odometry import BaseOdometry, prefixed_frame
+from daidalos.control.controllers.base import Controller, Pulse, Subscription
+from daidalos.control.errors import ParameterError
+from daidalos.control.interfaces import Interfaces
+from daidalos.control.parameters import above, not_empty, parameter, size, unique
+from daidalos.control.samples import VelocitySample
+from daidalos.control.speed_limiter import SpeedLimiter, SpeedLimits
+from daidalos.control.velocity_input import VelocityInput
+from daidalos.simulation.samples import OdometrySample, Sample, TransformSample
+
+_ZEROS = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+_REFERENCES = ("linear/velocity", "angular/velocity")
+
+
+@dataclass(frozen=True)
+class LinearLimits:
+    """Limits along the base's x axis."""
+
+    x: SpeedLimits = field(default_factory=SpeedLimits)
+
+
+@dataclass(frozen=True)
+class AngularLimits:
+    """Limits about the base's z axis."""
+
+    z: SpeedLimits = field(default_factory=SpeedLimits)
+
+
+@dataclass(frozen=True)
+class DiffDriveParameters:
+    """Parameters, as ROS names them; those of both Humble and Jazzy.
+
+    Parameters
+    ----------
+    left_wheel_names, right_wheel_names : tuple of str
+        Joints; as many on each side.
+    wheel_separation, wheel_radius : float
+        [m].
+    wheel_separation_multiplier, left_wheel_radius_multiplier, right_wheel_radius_multiplier : float
+        Corrections.
+    wheels_per_side : int
+        Read for old files.
+    tf_frame_prefix_enable, tf_frame_prefix : bool, str
+        Put this, or the namespace, before frames.
+    odom_frame_id, base_frame_id : str
+    pose_covariance_diagonal, twist_covariance_diagonal : tuple of 6 floats
+    open_loop : bool
+        Odometry from commands and not from wheels.
+    position_feedback : bool
+        Wheels tell angles, and not speeds.
+    enable_odom_tf : bool
+    cmd_vel_timeout : float
+        Age at which a command counts no more [s].
+    publish_limited_velocity : bool
+    velocity_rolling_window_size : int
+    use_stamped_vel : bool
+        ``~/cmd_vel`` with stamps, or ``~/cmd_vel_unstamped``.
+    publish_rate : float
+        Of the odometry [Hz].
+    linear, angular : LinearLimits, AngularLimits
+    """
+
+    left_wheel_names: tuple[str, ...] = parameter((), not_empty, unique, read_only=True)
+    right_wheel_names: tuple[str, ...] = parameter((), not_empty, unique, read_only=True)
+    wheel_separation: float = parameter(0.0, above(0.0))
+    wheel_radius: float = parameter(0.0, above(0.0))
+    wheel_separation_multiplier: float = parameter(1.0, above(0.0))
+    left_wheel_radius_multiplier: float = parameter(1.0, above(0.0))
+    right_wheel_radius_multiplier: float = parameter(1.0, above(0.0))
+    wheels_per_side: int = parameter(0)
+    tf_frame_prefix_enable: bool = parameter(default=True, read_only=True)
+    tf_frame_prefix: str = parameter("", read_only=True)
+    odom_frame_id: str = parameter("odom", read_only=True)
+    base_frame_id: str = parameter("base_link", read_only=True)
+    pose_covariance_diagonal: tuple[float, ...] = parameter(_ZEROS, size(6), read_only=True)
+    twist_covariance_diagonal: tuple[float, ...] = parameter(_ZEROS, size(6), read_only=True)
+    open_loop: bool = parameter(default=False, read_only=True)
+    position_feedback: bool = parameter(default=True, read_only=True)
+    enable_odom_tf: bool = parameter(default=True, read_only=True)
+    cmd_vel_timeout: float = parameter(0.5)
+    publish_limited_velocity: bool = parameter(default=False, read_only=True)
+    velocity_rolling_window_size: int = parameter(10, above(0), read_only=True)
+    use_stamped_vel: bool = parameter(default=True, read_only=True)
+    publish_rate: float = parameter(50.0, above(0.0), read_only=True)
+    linear: LinearLimits = field(default_factory=LinearLimits)
+    angular: AngularLimits = field(default_factory=AngularLimits)
+
+    def check(self) -> None:
+        """Refuse sides of different size."""
+        left, right = len(self.left_wheel_names), len(self.right_wheel_names)
+        if left != right:
+            raise ParameterError("right_wheel_names", f"has {right} elements, left_wheel_names has {left}")
+
+
+class DiffDriveController(Controller):
+    """Drives a base on wheels that do not steer; all wheels of a side turn alike."""
+
+    types = ("diff_drive_controller/DiffDriveController",)
+    parameters = DiffDriveParameters
+    chainable = True
+    p: DiffDriveParameters
+
+    def configure(self) -> None:
+        """Name the wheels' interfaces."""
+        p, setting = self.p, self.setting
+        wheels = (*p.left_wheel_names, *p.right_wheel_names)
+        feedback = "position" if p.position_feedback else "velocity"
+        self.command_names = tuple(f"{wheel}/velocity" for wheel in wheels)
+        self.state_names = () if p.open_loop else tuple(f"{wheel}/{feedback}" for wheel in wheels)
+        self.references = Interfaces(_REFERENCES)
+        self._count = len(p.left_wheel_names)
+        prefix = (setting.namespace, p.tf_frame_prefix, p.tf_frame_prefix_enable)
+        self._odometry = BaseOdometry(
+            prefixed_frame(p.odom_frame_id, *prefix),
+            prefixed_frame(p.base_frame_id, *prefix),
+            p.pose_covariance_diagonal,
+            p.twist_covariance_diagonal,
+            p.velocity_rolling_window_size,
+        )
+        self._publishing = Pulse(p.publish_rate)
+        self._input = VelocityInput(self)
+        self._take_parameters()
+
+    def reconfigure(self, parameters: DiffDriveParameters) -> None:
+        """Take limits, sizes and the timeout."""
+        super().reconfigure(parameters)
+        self._take_parameters()
+
+    def _take_parameters(self) -> None:
+        p = self.p
+        self._input.timeout = p.cmd_vel_timeout
+        self._limiters = (SpeedLimiter(p.linear.x, "linear.x"), SpeedLimiter(p.angular.z, "angular.z"))
+        self._separation = p.wheel_separation * p.wheel_separation_multiplier
+        self._radii = (
+            p.wheel_radius * p.left_wheel_radius_multiplier,
+            p.wheel_radius * p.right_wheel_radius_multiplier,
+        )
+
+    @property
+    def publications(self) -> Mapping[str, type[Sample]]:
+        """Odometry, its transform, and what the limits let pass."""
+        topics: dict[str, type[Sample]] = {"~/odom": OdometrySample}
+        if self.p.enable_odom_tf:
+            topics["/tf"] = TransformSample
+        if self.p.publish_limited_velocity:
+            topics["~/cmd_vel_out"] = VelocitySample
+        return topics
+
+    @property
+    def subscriptions(self) -> Mapping[str, Subscription]:
+        """The commanded velocity."""
+        return self._input.subscription("~/cmd_vel", self.p.use_stamped_vel)
+
+    def activate(self, now_ns: int) -> None:
+        """Stand at the origin of the odometry."""
+        self._input.reset()
+        self._odometry.reset()
+        self.references.values[:] = np.nan
+        self._last, self._before = np.zeros(2), np.zeros(2)
+        self._angles: np.ndarray | None = None
+        self._publishing.restart()
+
+    def deactivate(self) -> None:
+        """Stand."""
+        self.commands.write(np.zeros(len(self.command_names)))
+
+    def take_references(self, now_ns: int, period: float) -> None:
+        """Take the last velocity that is fresh."""
+        latest = self._input.latest(now_ns)
+        if latest is not None:
+            self.references.values[:] = latest[0], latest[2]
+
+    def update(self, now_ns: int, period: float) -> Iterable[Sample]:
+        """Measure the wheels, then tell them their speeds."""
+        wanted = np.nan_to_num(self.references.values)
+        self._measure(period)
+        allowed = np.array(
+            [
+                limiter.limit(float(wanted[row]), float(self._last[row]), float(self._before[row]), period)
+                for row, limiter in enumerate(self._limiters)
+            ]
+        )
+        self._before, self._last = self._last, allowed
+        self._drive(*allowed)
+        if self._publishing.due(now_ns):
+            yield self._odometry.sample(now_ns, "~/odom")
+            if self.p.enable_odom_tf:
+                yield self._odometry.transform(now_ns)
+        if self.p.publish_limited_velocity:
+            linear, angular = np.array((allowed[0], 0.0, 0.0)), np.array((0.0, 0.0, allowed[1]))
+            yield VelocitySample(now_ns, "~/cmd_vel_out", self._odometry.base_frame, linear, angular)
+
+    def _drive(self, speed: float, turn: float) -> None:
+        rims = speed - turn * self._separation / 2, speed + turn * self._separation / 2
+        speeds = [rim / radius for rim, radius in zip(rims, self._radii, strict=True)]
+        self.commands.write(np.repeat(speeds, self._count))
+
+    def _measure(self, period: float) -> None:
+        """Go on by what the wheels did since the last cycle, or by what they were told."""
+        if self.p.open_loop:
+            self._odometry.move(float(self._last[0]) * period, float(self._last[1]) * period, period)
+            return
+        values = self.states.read()
+        if self.p.position_feedback:
+            turned = np.zeros_like(values) if self._angles is None else values - self._angles
+            self._angles = values
+        else:
+            turned = values * period
+        if np.isnan(turned).any():
+            return
+        left = turned[: self._count].mean() * self._radii[0]
+        right = turned[self._count :].mean() * self._radii[1]
+        self._odometry.move((left + right) / 2, (right - left) / self._separation, period)

@@ -1,0 +1,146 @@
+"""Forward controllers: what is commanded goes to the interfaces as it is."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from daidalos.control.controllers.base import Controller, Subscription
+from daidalos.control.interfaces import Interfaces
+from daidalos.control.parameters import not_empty, parameter, unique
+from daidalos.control.samples import ValuesCommand
+from daidalos.simulation.samples import Sample
+
+
+@dataclass(frozen=True)
+class ForwardCommandParameters:
+    """Joints, and the interface of each that is commanded."""
+
+    joints: tuple[str, ...] = parameter((), not_empty, unique, read_only=True)
+    interface_name: str = parameter("", not_empty, read_only=True)
+
+
+@dataclass(frozen=True)
+class MultiInterfaceParameters:
+    """One joint, and those of its interfaces that are commanded."""
+
+    joint: str = parameter("", not_empty, read_only=True)
+    interface_names: tuple[str, ...] = parameter((), not_empty, unique, read_only=True)
+
+
+@dataclass(frozen=True)
+class GroupParameters:
+    """Joints of a group."""
+
+    joints: tuple[str, ...] = parameter((), not_empty, unique, read_only=True)
+
+
+class ForwardController(Controller):
+    """Base of all that forward ``~/commands``; the order is that of the interfaces."""
+
+    chainable = True
+
+    def interfaces(self) -> tuple[str, ...]:
+        """Return the names of the interfaces that are commanded."""
+        raise NotImplementedError
+
+    def configure(self) -> None:
+        """Offer each interface to other controllers as well."""
+        self.command_names = self.interfaces()
+        self.references = Interfaces(self.command_names)
+        self._received: np.ndarray | None = None
+
+    @property
+    def subscriptions(self) -> Mapping[str, Subscription]:
+        """The commands."""
+        return {"~/commands": Subscription(ValuesCommand, self._take)}
+
+    def _take(self, command: ValuesCommand) -> None:
+        count = len(self.command_names)
+        if len(command.values) != count:
+            self.setting.warn(f"command has {len(command.values)} values instead of {count}; it is not executed")
+            return
+        self._received = np.asarray(command.values, dtype=np.float64)
+
+    def activate(self, now_ns: int) -> None:
+        """Wait for the first command."""
+        self._received = None
+        self.references.values[:] = np.nan
+
+    def deactivate(self) -> None:
+        """Forget the command."""
+        self._received = None
+
+    def take_references(self, now_ns: int, period: float) -> None:
+        """Take what was received last."""
+        if self._received is not None:
+            self.references.values[:] = self._received
+
+    def update(self, now_ns: int, period: float) -> tuple[Sample, ...]:
+        """Write the references that are known; where one is not, the interface keeps its command."""
+        wanted = self.references.values
+        unknown = np.isnan(wanted)
+        if unknown.any():
+            if unknown.all():
+                return ()
+            wanted = np.where(unknown, self.commands.read(), wanted)
+        self.commands.write(wanted)
+        return ()
+
+
+class ForwardCommandController(ForwardController):
+    """One interface of several joints."""
+
+    types = ("forward_command_controller/ForwardCommandController",)
+    parameters = ForwardCommandParameters
+    p: ForwardCommandParameters
+
+    def interfaces(self) -> tuple[str, ...]:
+        """Return the interface of each joint."""
+        return tuple(f"{joint}/{self.p.interface_name}" for joint in self.p.joints)
+
+
+class MultiInterfaceForwardCommandController(ForwardController):
+    """Several interfaces of one joint."""
+
+    types = ("forward_command_controller/MultiInterfaceForwardCommandController",)
+    parameters = MultiInterfaceParameters
+    p: MultiInterfaceParameters
+
+    def interfaces(self) -> tuple[str, ...]:
+        """Return the joint's interfaces."""
+        return tuple(f"{self.p.joint}/{name}" for name in self.p.interface_names)
+
+
+class JointGroupPositionController(ForwardController):
+    """Positions of joints."""
+
+    types = ("position_controllers/JointGroupPositionController",)
+    parameters = GroupParameters
+    kind = "position"
+    p: GroupParameters
+
+    def interfaces(self) -> tuple[str, ...]:
+        """Return the interface of each joint."""
+        return tuple(f"{joint}/{self.kind}" for joint in self.p.joints)
+
+
+class JointGroupVelocityController(JointGroupPositionController):
+    """Velocities of joints; they stand when it stops."""
+
+    types = ("velocity_controllers/JointGroupVelocityController",)
+    kind = "velocity"
+
+    def deactivate(self) -> None:
+        """Stand."""
+        super().deactivate()
+        self.commands.write(np.zeros(len(self.command_names)))
+
+
+class JointGroupEffortController(JointGroupVelocityController):
+    """Efforts of joints; none when it stops."""
+
+    types = ("effort_controllers/JointGroupEffortController",)
+    kind = "effort"

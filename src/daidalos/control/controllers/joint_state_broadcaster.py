@@ -1,0 +1,137 @@
+"""Joint state broadcaster: publishes what the hardware says of its joints."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from daidalos.control.controllers.base import Controller
+from daidalos.control.parameters import parameter, unique
+from daidalos.control.samples import DynamicJointSample
+from daidalos.description.joint import JointType
+from daidalos.simulation.samples import JointStateSample, Sample
+
+_FIELDS = ("position", "velocity", "effort")
+
+
+@dataclass(frozen=True)
+class InterfaceMap:
+    """Which interfaces stand for the fields of the message."""
+
+    position: str = parameter("position", read_only=True)
+    velocity: str = parameter("velocity", read_only=True)
+    effort: str = parameter("effort", read_only=True)
+
+
+@dataclass(frozen=True)
+class JointStateBroadcasterParameters:
+    """Parameters.
+
+    Parameters
+    ----------
+    use_local_topics : bool
+        Publish on topics of its own.
+    joints, interfaces : tuple of str
+        Only these, in this order; where one is empty all interfaces.
+    extra_joints : tuple of str
+        Published as well, at zero.
+    map_interface_to_joint_state : InterfaceMap
+    use_urdf_to_filter : bool
+        Leave what is no joint of the robot's description out of the joint states.
+    frame_id : str
+        In the messages' headers.
+    publish_dynamic_joint_states : bool
+        Whether all interfaces are published as well.
+    """
+
+    use_local_topics: bool = parameter(default=False, read_only=True)
+    joints: tuple[str, ...] = parameter((), unique, read_only=True)
+    extra_joints: tuple[str, ...] = parameter((), unique, read_only=True)
+    interfaces: tuple[str, ...] = parameter((), unique, read_only=True)
+    map_interface_to_joint_state: InterfaceMap = field(default_factory=InterfaceMap)
+    use_urdf_to_filter: bool = parameter(default=True, read_only=True)
+    frame_id: str = parameter("base_link", read_only=True)
+    publish_dynamic_joint_states: bool = parameter(default=True, read_only=True)
+
+
+class JointStateBroadcaster(Controller):
+    """``joint_states`` of joints that have a position, velocity or effort; ``dynamic_joint_states`` of everything."""
+
+    types = ("joint_state_broadcaster/JointStateBroadcaster",)
+    parameters = JointStateBroadcasterParameters
+    p: JointStateBroadcasterParameters
+
+    def configure(self) -> None:
+        """Choose interfaces and joints."""
+        p = self.p
+        if p.joints and p.interfaces:
+            self.state_names = tuple(f"{joint}/{interface}" for joint in p.joints for interface in p.interfaces)
+        else:
+            self.state_names = self.setting.state_names
+        prefix = "~/" if p.use_local_topics else ""
+        self._topic, self._dynamic_topic = f"{prefix}joint_states", f"{prefix}dynamic_joint_states"
+        chosen = p.map_interface_to_joint_state
+        self._wanted = dict(zip((chosen.position, chosen.velocity, chosen.effort), _FIELDS, strict=True))
+        places: dict[str, dict[str, int]] = {}
+        for place, name in enumerate(self.state_names):
+            joint, _, interface = name.rpartition("/")
+            places.setdefault(joint, {})[interface] = place
+        self._dynamic = {**places, **{joint: {} for joint in p.extra_joints if joint not in places}}
+        joints = [joint for joint in places if self._is_joint(joint) and self._wanted.keys() & places[joint].keys()]
+        self._joints = (*joints, *(joint for joint in p.extra_joints if joint not in joints))
+        count = len(self.state_names)
+        self._rows = {
+            kind: np.array([places.get(joint, {}).get(interface, count) for joint in self._joints], dtype=np.intp)
+            for interface, kind in self._wanted.items()
+        }
+        self._missing = np.array([np.nan] * len(joints) + [0.0] * (len(self._joints) - len(joints)))
+
+    def _is_joint(self, name: str) -> bool:
+        """Tell whether a name belongs into joint states."""
+        robot = self.setting.robot
+        if robot is None or self.p.joints or not self.p.use_urdf_to_filter:
+            return True
+        return name in robot.joints and robot.joints[name].type is not JointType.FIXED
+
+    @property
+    def publications(self) -> Mapping[str, type[Sample]]:
+        """Joint states, and all interfaces where they are wanted."""
+        topics: dict[str, type[Sample]] = {self._topic: JointStateSample}
+        if self.p.publish_dynamic_joint_states:
+            topics[self._dynamic_topic] = DynamicJointSample
+        return topics
+
+    def update(self, now_ns: int, period: float) -> Iterable[Sample]:
+        """Read all and say it."""
+        values = self.states.read()
+        if self.setting.heard(self._topic):
+            yield self._joint_states(now_ns, values)
+        if self.p.publish_dynamic_joint_states and self.setting.heard(self._dynamic_topic):
+            yield DynamicJointSample(
+                stamp_ns=now_ns,
+                topic=self._dynamic_topic,
+                frame_id=self.p.frame_id,
+                joints={
+                    joint: {interface: float(values[place]) for interface, place in places.items()}
+                    or dict.fromkeys(_FIELDS, 0.0)
+                    for joint, places in self._dynamic.items()
+                },
+            )
+
+    def _joint_states(self, now_ns: int, values: np.ndarray) -> JointStateSample:
+        with_nothing = np.append(values, np.nan)
+        columns = {kind: with_nothing[rows] for kind, rows in self._rows.items()}
+        extra = self._missing == 0.0
+        for column in columns.values():
+            column[extra] = 0.0
+        return JointStateSample(
+            stamp_ns=now_ns,
+            topic=self._topic,
+            frame_id=self.p.frame_id,
+            names=self._joints,
+            positions=columns["position"],
+            velocities=columns["velocity"],
+            efforts=columns["effort"],
+        )

@@ -1,0 +1,68 @@
+"""Commanded velocities of a base: the last one counts, for as long as it is fresh."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from daidalos.control.controllers.base import Controller, Subscription
+from daidalos.control.samples import VelocityCommand
+from daidalos.simulation.samples import TwistCommand
+
+
+class VelocityInput:
+    """Takes stamped or plain velocities and says which one holds.
+
+    Parameters
+    ----------
+    controller : Controller
+        Its clock, and whom to warn.
+
+    Attributes
+    ----------
+    timeout : float
+        Age after which a command counts no more [s]; 0 or less for never.
+    """
+
+    def __init__(self, controller: Controller) -> None:
+        self._controller = controller
+        self.timeout = 0.0
+        self.reset()
+
+    def reset(self) -> None:
+        """Forget the last command."""
+        self._command: VelocityCommand | None = None
+
+    def subscription(self, topic: str, stamped: bool) -> dict[str, Subscription]:
+        """Return the subscription to a topic; plain velocities are on one that ends in ``_unstamped``."""
+        if stamped:
+            return {topic: Subscription(VelocityCommand, self.take)}
+        return {f"{topic}_unstamped": Subscription(TwistCommand, self.take_plain)}
+
+    def take_plain(self, command: TwistCommand) -> None:
+        """Take a velocity that counts from now."""
+        self.take(VelocityCommand(command.linear, command.angular))
+
+    def take(self, command: VelocityCommand) -> None:
+        """Take a velocity that counts from its stamp, or from now where it has none."""
+        now_ns = self._controller.now_ns
+        if not (np.all(np.isfinite(command.linear)) and np.all(np.isfinite(command.angular))):
+            self._controller.setting.warn("a velocity that is no number was ignored")
+            return
+        stamp_ns = command.stamp_ns or now_ns
+        if self._is_old(stamp_ns, now_ns):
+            late = (now_ns - stamp_ns) * 1e-9
+            self._controller.setting.warn(f"a velocity whose stamp is {late:.3f} s old was ignored")
+            return
+        self._command = VelocityCommand(command.linear, command.angular, stamp_ns)
+
+    def latest(self, now_ns: int) -> tuple[float, float, float] | None:
+        """Return speed ahead, to the left and turn rate; None without a command, at rest when it is too old."""
+        command = self._command
+        if command is None:
+            return None
+        if self._is_old(command.stamp_ns, now_ns):
+            return 0.0, 0.0, 0.0
+        return float(command.linear[0]), float(command.linear[1]), float(command.angular[2])
+
+    def _is_old(self, stamp_ns: int, now_ns: int) -> bool:
+        return self.timeout > 0.0 and now_ns - stamp_ns > round(self.timeout * 1e9)
