@@ -1,8 +1,7 @@
 """Small worlds and models for the tests."""
 
-from description.robots import SHARE, share_of
-
 from daidalos.description import sdf, urdf
+from description.robots import SHARE, share_of
 
 GROUND = "<include><uri>model://ground_plane</uri></include>"
 

@@ -45,6 +45,17 @@ class Contact:
     forces: Array
     depths: Array
 
+    def swapped(self) -> Contact:
+        """Return the same with the two sides exchanged."""
+        return Contact(
+            *(self.model2, self.link2, self.collision2),
+            *(self.model1, self.link1, self.collision1),
+            positions=self.positions,
+            normals=-self.normals,
+            forces=-self.forces,
+            depths=self.depths,
+        )
+
 
 @dataclass(frozen=True)
 class Touch:
@@ -66,11 +77,20 @@ class Touch:
     last_ns: int
 
 
-def read_contacts(physics: Physics) -> list[Contact]:
-    """Return all contacts now, grouped by pairs of collisions."""
+def read_contacts(physics: Physics, wanted: NDArray[np.bool_] | None = None) -> list[Contact]:
+    """Return the contacts now, grouped by pairs of collisions.
+
+    Parameters
+    ----------
+    physics : Physics
+    wanted : array (geoms,) of bool or None
+        Leave out contacts between two geoms that are not wanted.
+    """
     data = _all_awake(physics)
     grouped: dict[tuple[int, int], list[int]] = {}
-    for index in range(data.ncon):
+    pairs = data.contact.geom.reshape(-1, 2)
+    rows = range(data.ncon) if wanted is None else np.flatnonzero(wanted[pairs].any(axis=1)).tolist()
+    for index in rows:
         pair = data.contact.geom[index]
         grouped.setdefault((int(pair[0]), int(pair[1])), []).append(index)
     return [_contact(physics, data, first, second, rows) for (first, second), rows in grouped.items()]

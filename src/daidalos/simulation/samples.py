@@ -7,12 +7,15 @@ quaternions are x, y, z, w, topics are absolute, frame ids are without a leading
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from daidalos.description.pose import Pose
+
+if TYPE_CHECKING:
+    from daidalos.simulation.contacts import Contact
 
 Array = NDArray[np.float64]
 
@@ -160,6 +163,97 @@ class ImuSample(Sample):
     orientation_covariance: Array
     angular_velocity_covariance: Array
     linear_acceleration_covariance: Array
+
+
+@dataclass(frozen=True, eq=False)
+class RangeSample(Sample):
+    """The distance to the nearest thing in a cone along x.
+
+    Parameters
+    ----------
+    field_of_view : float
+        [rad].
+    range_min, range_max : float
+        [m].
+    range : float
+        [m]; ``inf`` for nothing in reach, ``-inf`` for something too near.
+    ultrasound : bool
+        Rather than infrared.
+    """
+
+    field_of_view: float
+    range_min: float
+    range_max: float
+    range: float
+    ultrasound: bool
+
+
+@dataclass(frozen=True, eq=False)
+class NavSatSample(Sample):
+    """A place on Earth.
+
+    Parameters
+    ----------
+    latitude, longitude : float
+        [deg].
+    altitude : float
+        Over the ellipsoid [m].
+    velocity : array (3,)
+        East, north, up [m/s].
+    covariance : array (9,)
+        Of the position, east, north, up [m^2].
+    """
+
+    latitude: float
+    longitude: float
+    altitude: float
+    velocity: Array
+    covariance: Array
+
+
+@dataclass(frozen=True, eq=False)
+class MagneticFieldSample(Sample):
+    """A magnetic field (3,) in the frame [T], with its covariance (9,)."""
+
+    field: Array
+    covariance: Array
+
+
+@dataclass(frozen=True, eq=False)
+class AltimeterSample(Sample):
+    """Height over a reference [m], its change [m/s], and the reference's height in the world [m]."""
+
+    position: float
+    velocity: float
+    reference: float
+
+
+@dataclass(frozen=True, eq=False)
+class PressureSample(Sample):
+    """Air pressure [Pa] and its variance."""
+
+    pressure: float
+    variance: float
+
+
+@dataclass(frozen=True, eq=False)
+class WrenchSample(Sample):
+    """Force (3,) [N] and torque (3,) [N m] in the frame."""
+
+    force: Array
+    torque: Array
+
+
+@dataclass(frozen=True, eq=False)
+class ContactsSample(Sample):
+    """What touches a link, pair by pair; the link's collision is the first of each."""
+
+    contacts: tuple[Contact, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class BumperSample(ContactsSample):
+    """The same, for those who know Gazebo classic's bumper."""
 
 
 @dataclass(frozen=True, eq=False)

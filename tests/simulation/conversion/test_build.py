@@ -2,12 +2,12 @@ import math
 
 import numpy as np
 import pytest
-from description.robots import ARM
 
 from daidalos.description import sdf, urdf
 from daidalos.description.kinematics import KinematicTree
 from daidalos.description.pose import Pose
 from daidalos.simulation import Simulation
+from description.robots import ARM
 from simulation.models import box, world
 
 SECOND = 1_000_000_000

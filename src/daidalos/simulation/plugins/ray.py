@@ -51,4 +51,21 @@ class RaySensor(SensorPlugin):
         sensor.frame_id = frame(element.text_of("frame_name", default=sensor.frame_id))
         if isinstance(sensor, Lidar):
             kind = element.text_of("output_type", default="sensor_msgs/PointCloud2")
-            sensor.as_points = not kind.endswith("LaserScan")
+            sensor.as_points = not kind.endswith(("LaserScan", "Range"))
+            sensor.as_range = kind.endswith("Range")
+            if kind.endswith("PointCloud"):
+                sensor.setting.warn(f"{element.where}: <output_type> is {kind}; it is published as PointCloud2")
+
+
+class RangeSensor(SensorPlugin):
+    """``libgazebo_ros_range.so``: the nearest ray, as an infrared or ultrasound sensor would tell it."""
+
+    names = ("gazebo_ros_range",)
+
+    def configure(self, sensor: Sensor, parameters: Parameters) -> None:
+        """Take topic, frame and noise."""
+        Laser().configure(sensor, parameters)
+        element = parameters.element
+        sensor.topic = parameters.topic(element.text_of("topicName", "topic_name", default="range"))
+        if isinstance(sensor, Lidar):
+            sensor.as_range = True

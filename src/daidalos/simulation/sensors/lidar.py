@@ -15,7 +15,7 @@ from daidalos.description.pose import rotation_matrix
 from daidalos.simulation.conversion.geometry import RAY_GROUPS
 from daidalos.simulation.instance import Instance
 from daidalos.simulation.noise import read_noise
-from daidalos.simulation.samples import LaserScanSample, PointCloudSample, Sample
+from daidalos.simulation.samples import LaserScanSample, PointCloudSample, RangeSample, Sample
 from daidalos.simulation.sensors.base import Sensor
 
 Array = NDArray[np.float64]
@@ -53,6 +53,8 @@ class Lidar(Sensor):
     ----------
     as_points : bool
         Speak in points rather than ranges; so from the start when there is more than one ring.
+    as_range : bool
+        Speak of the nearest of all rays alone.
     """
 
     types = ("ray", "lidar", "gpu_ray", "gpu_lidar")
@@ -72,11 +74,14 @@ class Lidar(Sensor):
         self.resolution = limits.number_of("resolution", default=0.0)
         self.noise = read_noise(settings.first("noise"))
         self.as_points = self.vertical.count > 1
+        self.as_range = False
         self._directions = _directions(self.horizontal.angles, self.vertical.angles)
 
     @property
     def publications(self) -> Mapping[str, type[Sample]]:
         """One topic."""
+        if self.as_range:
+            return {self.topic: RangeSample}
         return {self.topic: PointCloudSample if self.as_points else LaserScanSample}
 
     def bind(self, instance: Instance) -> None:
@@ -99,7 +104,12 @@ class Lidar(Sensor):
             ranges[seen] = np.round(ranges[seen] / self.resolution) * self.resolution
         ranges[seen] = np.clip(ranges[seen], self.range_min, self.range_max)
         intensities = np.where(far, np.float32(0.0), self._reflection[geoms])
-        yield (self._points(now_ns, ranges, intensities) if self.as_points else self._scan(now_ns, ranges, intensities))
+        if self.as_range:
+            yield self._nearest(now_ns, ranges)
+        elif self.as_points:
+            yield self._points(now_ns, ranges, intensities)
+        else:
+            yield self._scan(now_ns, ranges, intensities)
 
     def _cast(self) -> tuple[Array, NDArray[np.int32]]:
         """Return the true range of each ray and the geom that it hit (-1: none)."""
@@ -139,6 +149,12 @@ class Lidar(Sensor):
         start = origin + self.range_min * ray
         distance = mujoco.mj_ray(physics.model, physics.data, start, ray, RAY_GROUPS, True, self.link.body, geom)
         return (math.inf, -1) if distance < 0 else (distance + self.range_min, int(geom[0]))
+
+    def _nearest(self, now_ns: int, ranges: Array) -> RangeSample:
+        angle = max(self.horizontal.last - self.horizontal.first, self.vertical.last - self.vertical.first)
+        limits = self.range_min, self.range_max
+        nearest = float(ranges.min())
+        return RangeSample(now_ns, self.topic, self.frame_id, angle, *limits, nearest, ultrasound=False)
 
     def _scan(self, now_ns: int, ranges: Array, intensities: NDArray[np.float32]) -> LaserScanSample:
         return LaserScanSample(

@@ -1,0 +1,37 @@
+"""Gazebo classic's plugins that do no more than name a sensor's topic and frame."""
+
+from __future__ import annotations
+
+from daidalos.simulation.plugins.base import Parameters, SensorPlugin
+from daidalos.simulation.sensors.base import Sensor
+from daidalos.simulation.sensors.contact import ContactSensor
+from daidalos.simulation.topics import frame
+
+
+class NamesTopic(SensorPlugin):
+    """GPS, sonar, altimeter and magnetometer of ROS 2: ``~/out`` unless told otherwise."""
+
+    names = (
+        *("gazebo_ros_gps_sensor", "gazebo_ros_sonar", "hector_gazebo_ros_sonar"),
+        *("gazebo_ros_magnetometer", "gazebo_ros_altimeter"),
+    )
+
+    def configure(self, sensor: Sensor, parameters: Parameters) -> None:
+        """Take topic and frame."""
+        element = parameters.element
+        sensor.topic = parameters.topic(element.text_of("topicName", "topic_name", default="~/out"))
+        sensor.frame_id = frame(element.text_of("frameName", "frame_name", "frameId", default=sensor.frame_id))
+
+
+class Bumper(SensorPlugin):
+    """``libgazebo_ros_bumper.so``: a contact sensor's ``bumper_states``."""
+
+    names = ("gazebo_ros_bumper",)
+
+    def configure(self, sensor: Sensor, parameters: Parameters) -> None:
+        """Take topic and frame."""
+        element = parameters.element
+        sensor.topic = parameters.topic(element.text_of("bumperTopicName", "topicName", default="bumper_states"))
+        sensor.frame_id = frame(element.text_of("frameName", "frame_name", default=sensor.frame_id))
+        if isinstance(sensor, ContactSensor):
+            sensor.as_bumper = True

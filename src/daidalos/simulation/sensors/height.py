@@ -1,0 +1,87 @@
+"""Sensors of height: the altimeter and the barometer."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+import numpy as np
+
+from daidalos.description.markup import Element
+from daidalos.description.pose import rotate
+from daidalos.simulation.noise import Noise
+from daidalos.simulation.samples import AltimeterSample, PressureSample, Sample
+from daidalos.simulation.sensors.noisy import Biases, NoisySensor, noise_below
+
+_GRAVITY = 9.80665
+_MOLAR_MASS = 0.0289644
+_GAS_CONSTANT = 8.3144598
+
+
+class Altimeter(NoisySensor):
+    """Height over where it started, and how fast it climbs."""
+
+    types = ("altimeter",)
+    default_topic = "altimeter"
+
+    def read(self, element: Element) -> None:
+        """Read the noise of height and speed."""
+        settings = element.first("altimeter") or Element("altimeter")
+        self._noises = noise_below(settings, "vertical_position"), noise_below(settings, "vertical_velocity")
+        self._reference = 0.0
+
+    @property
+    def noises(self) -> tuple[Noise, ...]:
+        """Of height and speed."""
+        return self._noises
+
+    @property
+    def publications(self) -> Mapping[str, type[Sample]]:
+        """One topic."""
+        return {self.topic: AltimeterSample}
+
+    def start(self) -> Biases:
+        """Take the height here as the reference."""
+        self._reference = (self.link.pose @ self.pose).position[2]
+        return super().start()
+
+    def measure(self, now_ns: int) -> Iterable[Sample]:
+        """Measure the sensor's point."""
+        pose = self.link.pose
+        linear, angular = self.link.velocity()
+        arm = np.array(rotate(pose.orientation, self.pose.position))
+        height = pose.position[2] + arm[2] - self._reference
+        climb = float((linear + np.cross(angular, arm))[2])
+        position, velocity = self.disturb(np.array((height, climb)), now_ns).tolist()
+        yield AltimeterSample(now_ns, self.topic, self.frame_id, position, velocity, self._reference)
+
+
+class Barometer(NoisySensor):
+    """Air pressure at its height, after the barometric formula with a constant temperature gradient."""
+
+    types = ("air_pressure",)
+    default_topic = "air_pressure"
+
+    def read(self, element: Element) -> None:
+        """Read the altitude of the world's origin and the noise."""
+        settings = element.first("air_pressure") or Element("air_pressure")
+        self._altitude = settings.number_of("reference_altitude", default=0.0)
+        self._noises = (noise_below(settings, "pressure"),)
+
+    @property
+    def noises(self) -> tuple[Noise, ...]:
+        """Of the pressure."""
+        return self._noises
+
+    @property
+    def publications(self) -> Mapping[str, type[Sample]]:
+        """One topic."""
+        return {self.topic: PressureSample}
+
+    def measure(self, now_ns: int) -> Iterable[Sample]:
+        """Work out the pressure [Pa]."""
+        air = self.setting.world.atmosphere
+        height = self._altitude + (self.link.pose @ self.pose).position[2]
+        exponent = _GRAVITY * _MOLAR_MASS / (_GAS_CONSTANT * -air.temperature_gradient)
+        share = max(1 + air.temperature_gradient * height / air.temperature, 0.0)
+        pressure = self.disturb(np.array((air.pressure * share**exponent,)), now_ns)
+        yield PressureSample(now_ns, self.topic, self.frame_id, float(pressure[0]), float(self.variance[0]))

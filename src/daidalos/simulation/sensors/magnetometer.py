@@ -1,0 +1,42 @@
+"""Magnetometer: the world's magnetic field, seen from the sensor."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+import numpy as np
+
+from daidalos.description.markup import Element
+from daidalos.description.pose import rotate
+from daidalos.simulation.noise import Noise
+from daidalos.simulation.samples import MagneticFieldSample, Sample
+from daidalos.simulation.sensors.noisy import NoisySensor, noise_of_axes
+
+
+class Magnetometer(NoisySensor):
+    """Measures in its own axes [T]."""
+
+    types = ("magnetometer",)
+    default_topic = "magnetometer"
+
+    def read(self, element: Element) -> None:
+        """Read the noise of each axis."""
+        self._noises = noise_of_axes(element.first("magnetometer"))
+
+    @property
+    def noises(self) -> tuple[Noise, ...]:
+        """Of the three axes."""
+        return self._noises
+
+    @property
+    def publications(self) -> Mapping[str, type[Sample]]:
+        """One topic."""
+        return {self.topic: MagneticFieldSample}
+
+    def measure(self, now_ns: int) -> Iterable[Sample]:
+        """Turn the field into the sensor's axes."""
+        mount = self.link.pose @ self.pose
+        field = np.array(rotate(mount.inverse.orientation, self.setting.world.magnetic_field))
+        measured = self.disturb(field, now_ns)
+        covariance = np.diag(self.variance).ravel()
+        yield MagneticFieldSample(now_ns, self.topic, self.frame_id, measured, covariance)

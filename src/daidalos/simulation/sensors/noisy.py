@@ -1,0 +1,72 @@
+"""What sensors of a few numbers share: noise with a bias on each of them."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daidalos.description.markup import Element
+from daidalos.simulation.noise import SILENT, Noise, NoiseVector, read_noise
+from daidalos.simulation.sensors.base import Sensor
+
+Array = NDArray[np.float64]
+
+
+@dataclass
+class Biases:
+    """Errors (n,) of n numbers: those that stay, and those that wander."""
+
+    constant: Array
+    wandering: Array
+    stamp_ns: int
+
+
+class NoisySensor(Sensor):
+    """A sensor of n numbers that are measured together."""
+
+    memory: Biases
+
+    @property
+    @abstractmethod
+    def noises(self) -> Sequence[Noise]:
+        """The noise of each number."""
+
+    def start(self) -> Biases:
+        """Draw the biases."""
+        noises = tuple(self.noises)
+        self._noise = NoiseVector(noises)
+        return Biases(self._noise.draw_bias(self.random), np.zeros(len(noises)), 0)
+
+    def disturb(self, values: Array, now_ns: int) -> Array:
+        """Return the values (n,) with noise and bias."""
+        biases, noise = self.memory, self._noise
+        biases.wandering = noise.wander(biases.wandering, (now_ns - biases.stamp_ns) * 1e-9, self.random)
+        biases.stamp_ns = now_ns
+        return noise.apply(values, biases.constant + biases.wandering, self.random)
+
+    @property
+    def variance(self) -> Array:
+        """Of the noise of each number (n,)."""
+        return self._noise.variance
+
+
+def noise_of_axes(element: Element | None) -> tuple[Noise, Noise, Noise]:
+    """Read the noise of ``<x>``, ``<y>`` and ``<z>``; one ``<noise>`` for all holds where an axis has none."""
+    if element is None:
+        return SILENT, SILENT, SILENT
+    x, y, z = (read_noise((element.first(axis) or element).first("noise")) for axis in ("x", "y", "z"))
+    return x, y, z
+
+
+def noise_below(element: Element, *tags: str) -> Noise:
+    """Read the ``<noise>`` that lies below nested elements; none where one of them is missing."""
+    for tag in tags:
+        child = element.first(tag)
+        if child is None:
+            return SILENT
+        element = child
+    return read_noise(element.first("noise"))
