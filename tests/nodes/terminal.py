@@ -95,12 +95,12 @@ class Terminal:
         self._process.send_signal(signal.SIGTERM)
         return self.wait()
 
-    def wait(self) -> int:
+    def wait(self, patience_s: float = END_S) -> int:
         """Return the exit status once it has ended, having left nothing behind and shown no traceback."""
         try:
-            status = self._process.wait(END_S)
+            status = self._process.wait(patience_s)
         except subprocess.TimeoutExpired:
-            raise AssertionError(f"still running after {END_S} s:\n{self.text}") from None
+            raise AssertionError(f"still running after {patience_s} s:\n{self.text}") from None
         assert not self._members(), "processes were left behind"
         assert termios.tcgetattr(self._line) == self._before, "the terminal is not as it was"
         with self._news:

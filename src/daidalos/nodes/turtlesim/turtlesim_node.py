@@ -138,7 +138,7 @@ class TurtleSim(Node):
         except InvalidTopicNameException as error:
             self.get_logger().error(f"A turtle can not be named [{name}]: {error}")
             return ""
-        turtle = Turtle(name, x, y, theta, kind=random.randrange(_KINDS))
+        turtle = Turtle(name, x, y, theta, kind=self._free_kind())
         self._turtles[name] = TurtleInterface(self, turtle, self._draw)
         self.get_logger().info(f"Spawning turtle [{name}] at x=[{x:f}], y=[{y:f}], theta=[{theta:f}]")
         return name
@@ -149,6 +149,11 @@ class TurtleSim(Node):
             name = f"turtle{self._named}"
             if name not in self._turtles:
                 return name
+
+    def _free_kind(self) -> int:
+        """Return how a new turtle looks: unlike the others, while there are enough kinds."""
+        taken = {interface.turtle.kind for interface in self._turtles.values()}
+        return random.choice([kind for kind in range(_KINDS) if kind not in taken] or range(_KINDS))
 
     # The window.
 

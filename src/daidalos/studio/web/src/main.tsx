@@ -7,8 +7,10 @@ import "./styles/theme.css";
 import "./styles/shell.css";
 import "./styles/controls.css";
 import "./styles/panels.css";
+import "./styles/turtlesim.css";
 import { Help } from "./app/help";
 import { Layout } from "./app/layout";
+import { readOpening } from "./app/opening";
 import { listenToKeys } from "./app/shortcuts";
 import { Studio } from "./app/studio";
 import { attachedWorld, installTestHooks } from "./app/test_hooks";
@@ -19,7 +21,7 @@ let layout: Layout;
 function App({ studio }: { studio: Studio }) {
   const dock = useRef<HTMLDivElement>(null);
   useEffect(() => {
-    layout = new Layout(dock.current as HTMLDivElement, studio);
+    layout = new Layout(dock.current as HTMLDivElement, studio, readOpening(location.search));
     studio.openPanel = (id) => layout.openById(id);
   }, []);
   return (

@@ -10,6 +10,7 @@ import {
 import { h, render } from "preact";
 import { PANELS } from "../panels/registry";
 import type { PanelType } from "../panels/panel";
+import type { Opening } from "./opening";
 import { forget, isRecord, read, write } from "./stored";
 import type { Studio } from "./studio";
 
@@ -19,14 +20,25 @@ const THEME = { name: "daidalos", className: "dockview-theme-daidalos", gap: 6 }
 const NARROW_PX = 1200;
 const DISPLAYS_NARROW_PX = 250;
 
+/** What stands beside a panel that is opened as a window of its own, and how wide. */
+const BESIDE: Readonly<Record<string, readonly [panel: string, width: number]>> = {
+  scene: ["displays", 290],
+  plot: ["topics", 330],
+  message: ["topics", 330],
+};
+
 export class Layout {
   private readonly dock: DockviewApi;
+  private readonly key: string;
   private saving = 0;
 
   constructor(
     private readonly element: HTMLElement,
     studio: Studio,
+    private readonly opening?: Opening,
   ) {
+    // A panel that is opened as a window has an arrangement of its own, and leaves the other one alone.
+    this.key = opening ? `${KEY}.${opening.panel.id}` : KEY;
     this.dock = createDockview(element, {
       theme: THEME,
       createComponent: ({ name }) => new PanelHost(panelType(name), studio),
@@ -53,13 +65,17 @@ export class Layout {
   }
 
   reset(): void {
-    forget(KEY);
+    forget(this.key);
     this.dock.clear();
     this.arrange();
   }
 
   private restore(): void {
-    const saved = read<SerializedDockview | undefined>(KEY, undefined, (value): value is SerializedDockview =>
+    if (this.opening && Object.keys(this.opening.details).length) {
+      this.arrange(); // what the address says comes before what was there
+      return;
+    }
+    const saved = read<SerializedDockview | undefined>(this.key, undefined, (value): value is SerializedDockview =>
       isRecord(value),
     );
     if (saved) {
@@ -75,9 +91,30 @@ export class Layout {
   }
 
   private arrange(): void {
-    const [width, height] = [window.innerWidth, window.innerHeight];
     // Sizes are shares of what there is: the dock must know how much that is.
     this.dock.layout(this.element.clientWidth, this.element.clientHeight);
+    if (this.opening) {
+      this.arrangeWindow(this.opening);
+    } else {
+      this.arrangeRoom();
+    }
+  }
+
+  private arrangeWindow({ panel: { id, title }, details }: Opening): void {
+    document.title = `${title} · Daidalos`;
+    const main = this.dock.addPanel({ id, component: id, title, params: details });
+    const [beside, width] = BESIDE[id] ?? [];
+    if (beside !== undefined && width !== undefined) {
+      const position = { referencePanel: id, direction: "left" } as const;
+      this.dock
+        .addPanel({ id: beside, component: beside, title: panelType(beside).title, position })
+        .api.setSize({ width });
+      main.api.setActive();
+    }
+  }
+
+  private arrangeRoom(): void {
+    const [width, height] = [window.innerWidth, window.innerHeight];
     const add = (id: string, beside?: string, direction: "within" | "left" | "right" | "below" = "within") =>
       this.dock.addPanel({
         id,
@@ -111,7 +148,7 @@ export class Layout {
   }
 
   private save(): void {
-    write(KEY, this.dock.toJSON());
+    write(this.key, this.dock.toJSON());
   }
 }
 

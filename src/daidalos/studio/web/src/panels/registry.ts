@@ -7,6 +7,7 @@ import type { PanelType } from "./panel";
 import { PLOT_PANEL } from "./plot_panel";
 import { SCENE_PANEL } from "./scene_panel";
 import { TOPICS_PANEL } from "./topics_panel";
+import { TURTLESIM_PANEL } from "./turtlesim_panel";
 
 export const PANELS: readonly PanelType[] = [
   SCENE_PANEL,
@@ -16,4 +17,5 @@ export const PANELS: readonly PanelType[] = [
   PLOT_PANEL,
   IMAGE_PANEL,
   LOG_PANEL,
+  TURTLESIM_PANEL,
 ];

@@ -1,0 +1,95 @@
+// Keeping a drawing in step with turtlesim's: new lines come with every message, all of them when some were missed.
+
+/** daidalos_msgs/msg/TurtleSprite */
+export interface TurtleSprite {
+  name: string;
+  kind: number;
+  x: number;
+  y: number;
+  theta: number;
+}
+
+/** Lines by the four: both ends in units of turtlesim; red, green, blue and width of the pen. */
+export interface Lines {
+  lines: Float32Array;
+  pens: Uint8Array;
+}
+
+interface Progress {
+  clearings: number;
+  drawn: number;
+}
+
+/** daidalos_msgs/msg/TurtleWindow */
+export interface TurtleWindow extends Lines, Progress {
+  width: number;
+  height: number;
+  r: number;
+  g: number;
+  b: number;
+  turtles: TurtleSprite[];
+}
+
+/** The response of daidalos_msgs/srv/GetTurtleDrawing */
+export interface TurtleDrawing extends Lines, Progress {
+  picture: Uint8Array;
+}
+
+export interface Sheet {
+  wipe(): void;
+  draw(lines: Lines): void;
+  /** Show this drawing in place of what is there. */
+  replace(drawing: TurtleDrawing): Promise<void>;
+}
+
+export class DrawingFollower {
+  private known: Progress | undefined;
+  private asking = false;
+
+  constructor(
+    private readonly sheet: Sheet,
+    private readonly ask: () => Promise<TurtleDrawing>,
+  ) {}
+
+  hear(message: TurtleWindow): void {
+    const fresh = message.lines.length / 4;
+    if (message.drawn === fresh && this.known?.clearings !== message.clearings) {
+      this.sheet.wipe();
+      this.known = { clearings: message.clearings, drawn: 0 };
+    }
+    if (!this.known || this.known.clearings !== message.clearings) {
+      void this.catchUp();
+      return;
+    }
+    const missing = message.drawn - this.known.drawn;
+    if (missing > fresh) {
+      void this.catchUp();
+    } else if (missing > 0) {
+      this.sheet.draw(newest(message, missing));
+      this.known.drawn = message.drawn;
+    }
+  }
+
+  /** Draw everything anew. */
+  async catchUp(): Promise<void> {
+    if (this.asking) {
+      return;
+    }
+    this.asking = true;
+    try {
+      const drawing = await this.ask();
+      await this.sheet.replace(drawing);
+      this.known = { clearings: drawing.clearings, drawn: drawing.drawn };
+    } catch {
+      // The simulator is gone or not there yet: the next message leads here again.
+      this.known = undefined;
+    } finally {
+      this.asking = false;
+    }
+  }
+}
+
+function newest({ lines, pens }: Lines, count: number): Lines {
+  const first = lines.length - 4 * count;
+  return { lines: lines.subarray(first), pens: pens.subarray(first) };
+}
