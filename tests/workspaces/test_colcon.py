@@ -347,3 +347,44 @@ def test_other_shells_can_source_it(built, terminal, workspace, shell):
     else:
         command = f"pwsh -Command '. {script}; ros2 pkg prefix mixed'"
     assert terminal().run(command).strip() == str(workspace / "install" / "mixed")
+
+
+def test_a_package_of_ros_1_shares_what_it_holds(workspace, terminal):
+    """As it was used from its own folder there: with messages, launch files and scripts, installed or not."""
+    folder = packages.write(
+        workspace.parent / "catkin_ws" / "src" / "beginner_tutorials",
+        {
+            "package.xml": """
+                <package>
+                  <name>beginner_tutorials</name>
+                  <version>0.1.0</version>
+                  <description>ROS 1</description>
+                  <maintainer email="me@example.org">me</maintainer>
+                  <license>BSD</license>
+                  <buildtool_depend>catkin</buildtool_depend>
+                  <build_depend>message_generation</build_depend>
+                  <run_depend>std_msgs</run_depend>
+                </package>
+                """,
+            "CMakeLists.txt": """
+                cmake_minimum_required(VERSION 2.8.3)
+                project(beginner_tutorials)
+                find_package(catkin REQUIRED COMPONENTS rospy std_msgs message_generation)
+                add_message_files(FILES Num.msg)
+                generate_messages(DEPENDENCIES std_msgs)
+                catkin_package()
+                catkin_install_python(PROGRAMS scripts/say.py DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
+                """,
+            "msg/Num.msg": "int64 num\n",
+            "launch/all.launch": "<launch/>\n",
+            "scripts/say.py": "#!/usr/bin/env python3\nprint('said')\n",
+        },
+    )
+    one = terminal()
+    one.run(f"cd {folder.parents[1]}")
+    printed = one.run("colcon build --symlink-install")
+    assert "1 package finished" in printed
+    one.run("source install/setup.bash")
+    assert one.run("ros2 interface show beginner_tutorials/msg/Num").strip() == "int64 num"
+    assert one.run("ros2 run beginner_tutorials say.py").strip() == "said"
+    assert (folder.parents[1] / "install/beginner_tutorials/share/beginner_tutorials/launch/all.launch").is_file()

@@ -12,6 +12,7 @@ from daidalos.workspaces.cmake.contents import Target
 
 _SYSTEM_LIBRARIES = {"m": "-lm", "dl": "-ldl", "rt": "-lrt", "pthread": "-pthread", "Threads::Threads": "-pthread"}
 _SYSTEM_LIBRARIES["${CMAKE_THREAD_LIBS_INIT}"] = "-pthread"
+_SHOWN = 4
 _CPP = {".cpp", ".cc", ".cxx", ".C"}
 _C = {".c"}
 
@@ -27,10 +28,11 @@ class Compilation:
 
 @dataclass(frozen=True)
 class LeftOut:
-    """A target that is not built, and why."""
+    """A target that is not built, why, and what it would need."""
 
     name: str
     why: str
+    needs: tuple[str, ...] = ()
 
 
 def plan(targets: Mapping[str, Target], build: Path) -> tuple[list[Compilation], list[LeftOut]]:
@@ -48,32 +50,35 @@ def plan(targets: Mapping[str, Target], build: Path) -> tuple[list[Compilation],
     compilations: list[Compilation] = []
     left_out: list[LeftOut] = []
     for target in targets.values():
-        if target.kind != "executable":
-            if target.sources and target.destination and _foreign(target, targets):
-                left_out.append(LeftOut(target.name, _why(_foreign(target, targets))))
-            continue
         foreign = _foreign(target, targets)
-        compiler = _compiler(target, targets)
-        if foreign:
-            left_out.append(LeftOut(target.name, _why(foreign)))
-        elif compiler is None:
-            left_out.append(LeftOut(target.name, "this machine has no C++ compiler"))
-        else:
-            compilations.append(_compilation(target, targets, compiler, build))
+        if target.kind == "executable":
+            compiler = _compiler(target, targets)
+            if foreign:
+                left_out.append(LeftOut(target.name, "C++", tuple(foreign)))
+            elif compiler is None:
+                left_out.append(LeftOut(target.name, "this machine has no C++ compiler"))
+            else:
+                compilations.append(_compilation(target, targets, compiler, build))
+        elif target.sources and target.destination and foreign:
+            left_out.append(LeftOut(target.name, "C++", tuple(foreign)))
     return compilations, left_out
 
 
 def summary(left_out: Iterable[LeftOut]) -> str:
     """Return one line about the targets that are left out; empty when there are none."""
-    by_reason: dict[str, list[str]] = {}
+    by_reason: dict[str, list[LeftOut]] = {}
     for target in left_out:
-        by_reason.setdefault(target.why, []).append(target.name)
-    parts = [f"{', '.join(names)} ({why})" for why, names in by_reason.items()]
+        by_reason.setdefault(target.why, []).append(target)
+    parts = [f"{', '.join(one.name for one in group)} ({_reason(why, group)})" for why, group in by_reason.items()]
     return f"left out: {'; '.join(parts)}" if parts else ""
 
 
-def _why(foreign: list[str]) -> str:
-    return f"C++ that needs {', '.join(foreign)}, of which only the Python side comes with Daidalos"
+def _reason(why: str, group: Iterable[LeftOut]) -> str:
+    needs = list(dict.fromkeys(name for target in group for name in target.needs))
+    if not needs:
+        return why
+    shown = ", ".join(needs[:_SHOWN]) + (" and more" if len(needs) > _SHOWN else "")
+    return f"{why} that needs {shown}, of which only the Python side comes with Daidalos"
 
 
 def _parts(target: Target, targets: Mapping[str, Target]) -> list[Target]:

@@ -8,6 +8,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from daidalos.workspaces.cmake.catkin import share_everything
 from daidalos.workspaces.cmake.contents import Contents
 from daidalos.workspaces.cmake.reader import read_package
 from daidalos.workspaces.compiling import Compilation, LeftOut, plan
@@ -28,6 +29,7 @@ class Place:
     prefix: Path
     python_folder: str
     symlink: bool
+    catkin: bool = False
 
 
 @dataclass
@@ -50,6 +52,8 @@ def begin(place: Place, cmake_arguments: Iterable[str] = ()) -> Build:
     """
     place.build.mkdir(parents=True, exist_ok=True)
     contents = read_package(place.source, place.build, place.prefix, place.python_folder, definitions(cmake_arguments))
+    if place.catkin:
+        share_everything(place.source, contents)
     compilations, left_out = plan(contents.targets, place.build)
     installation = Installation(place.prefix, place.build / _RECORD, place.symlink)
     return Build(contents, compilations, left_out, installation)

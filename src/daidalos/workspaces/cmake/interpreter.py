@@ -199,6 +199,10 @@ class Interpreter:
         try:
             return is_true(command.arguments, self)
         except (ValueError, IndexError) as error:
+            # What only a package's own CMake files would have set makes no mistake of the user's.
+            if len(expand(command.arguments, self.variables)) < len(command.arguments):
+                self.contents.notes.append(f"{self.source}:{command.line}: {error}; taken as false")
+                return False
             raise self._fault(command, str(error)) from None
 
     def _run_command(self, command: Command) -> None:

@@ -8,13 +8,13 @@ import sys
 from collections.abc import Mapping
 from pathlib import Path
 
-from daidalos.workspaces.cmake import basics, installs, targets
+from daidalos.workspaces.cmake import basics, catkin, installs, targets
 from daidalos.workspaces.cmake.contents import Contents
 from daidalos.workspaces.cmake.interpreter import Interpreter
 from daidalos.workspaces.errors import WorkspaceError
 
-_HANDLERS = basics.COMMANDS | installs.COMMANDS | targets.COMMANDS
-_IGNORED = basics.IGNORED | installs.IGNORED | targets.IGNORED
+_HANDLERS = basics.COMMANDS | installs.COMMANDS | targets.COMMANDS | catkin.COMMANDS
+_IGNORED = basics.IGNORED | installs.IGNORED | targets.IGNORED | catkin.IGNORED
 
 
 def read_package(
@@ -43,8 +43,8 @@ def read_package(
     path = folder / "CMakeLists.txt"
     if not path.is_file():
         raise WorkspaceError(f"{folder}: a package of build type ament_cmake needs a CMakeLists.txt")
-    variables = _variables(folder, build, prefix) | {"PYTHON_INSTALL_DIR": python_folder} | dict(definitions or {})
-    interpreter = Interpreter(_HANDLERS, _IGNORED, variables, folder)
+    variables = _variables(folder, build, prefix) | {"PYTHON_INSTALL_DIR": python_folder}
+    interpreter = Interpreter(_HANDLERS, _IGNORED, variables | dict(definitions or {}), folder)
     interpreter.run_file(path)
     if not interpreter.contents.project:
         raise WorkspaceError(f"{path}: there is no project() with the package's name")

@@ -100,6 +100,10 @@ def _include_directories(run: Interpreter, call: Call) -> None:
     _extend(run, "_INCLUDE_DIRECTORIES", [value for value in call.values if value not in _SCOPES])
 
 
+def _add_compile_definitions(run: Interpreter, call: Call) -> None:
+    _extend(run, "_COMPILE_OPTIONS", [f"-D{value.removeprefix('-D')}" for value in call.values if "$<" not in value])
+
+
 def _add_compile_options(run: Interpreter, call: Call) -> None:
     _extend(run, "_COMPILE_OPTIONS", [value for value in call.values if not value.startswith("$<")])
 
@@ -177,6 +181,7 @@ COMMANDS: dict[str, Handler] = {
     "set_target_properties": _target_properties,
     "include_directories": _include_directories,
     "add_compile_options": _add_compile_options,
+    "add_compile_definitions": _add_compile_definitions,
     "rclcpp_components_register_node": _register_component,
     "ament_add_pytest_test": _pytest,
     "add_launch_test": _launch_test,
@@ -188,5 +193,7 @@ COMMANDS: dict[str, Handler] = {
     "catkin_add_gtest": _compiled_test,
 }
 IGNORED = frozenset({
-    "pluginlib_enable_plugin_testing", "qt5_wrap_cpp", "qt6_wrap_cpp", "rclcpp_components_register_nodes",
+    "pluginlib_enable_plugin_testing", "qt5_wrap_cpp", "qt5_wrap_ui", "qt6_wrap_cpp", "qt6_wrap_ui",
+    "qt_standard_project_setup", "qt_wrap_cpp", "rclcpp_components_register_nodes",
+    "rclcpp_components_register_plugin",
 })  # fmt: skip

@@ -14,11 +14,13 @@ from colcon_core.python_install_path import get_python_install_path
 from colcon_core.shell import create_environment_hook, get_command_environment
 from colcon_core.task import TaskExtensionPoint, run
 
+from daidalos.workspaces.colcon.identification import TYPES
+
 _logger = colcon_logger.getChild(__name__)
 
 
 class CmakePackageBuildTask(TaskExtensionPoint):  # type: ignore[misc]
-    """Builds a package of build type ament_cmake without CMake."""
+    """Builds a package of build type ament_cmake, or one of ROS 1, without CMake."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -36,7 +38,7 @@ class CmakePackageBuildTask(TaskExtensionPoint):  # type: ignore[misc]
         except RuntimeError as error:
             _logger.error(str(error))
             return 1
-        place = _place(args)
+        place = _place(args, package.type)
         loop = asyncio.get_running_loop()
         try:
             build = await loop.run_in_executor(None, package_build.begin, place, arguments(args))
@@ -76,7 +78,7 @@ def arguments(args: Any) -> list[str]:
     return [*(getattr(args, "cmake_args", None) or []), *(getattr(args, "ament_cmake_args", None) or [])]
 
 
-def _place(args: Any) -> Any:
+def _place(args: Any, package_type: str) -> Any:
     from daidalos.workspaces.package_build import Place
 
     python_folder = get_python_install_path("purelib", {"base": args.install_base, "platbase": args.install_base})
@@ -86,4 +88,5 @@ def _place(args: Any) -> Any:
         prefix=Path(args.install_base),
         python_folder=Path(python_folder).relative_to(args.install_base).as_posix(),
         symlink=args.symlink_install,
+        catkin=package_type == TYPES["catkin"],
     )

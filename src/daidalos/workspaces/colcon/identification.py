@@ -14,12 +14,13 @@ from colcon_ros.package_identification.ros import RosPackageIdentification, get_
 from daidalos.workspaces.errors import WorkspaceError
 from daidalos.workspaces.manifest import ENVIRONMENT, read
 
-PACKAGE_TYPE = "ros.ament_cmake.daidalos"
+TYPES = {"ament_cmake": "ros.ament_cmake.daidalos", "catkin": "ros.catkin.daidalos"}
+"""Our types of packages, by the build type in package.xml."""
 _logger = colcon_logger.getChild(__name__)
 
 
 class CmakePackageIdentification(PackageIdentificationExtensionPoint):  # type: ignore[misc]
-    """Claims packages of build type ament_cmake, unless ament_cmake itself is installed to build them."""
+    """Claims packages of build type ament_cmake and those of ROS 1, unless ament_cmake itself is installed."""
 
     # Before the extension that knows all ROS packages.
     PRIORITY = RosPackageIdentification.PRIORITY + 10
@@ -35,9 +36,9 @@ class CmakePackageIdentification(PackageIdentificationExtensionPoint):  # type: 
             return
         self._check_manifest(desc.path)
         package, build_type = get_package_with_build_type(str(desc.path))
-        if build_type != "ament_cmake" or _has_ament_cmake():
+        if build_type not in TYPES or _has_ament_cmake():
             return
-        desc.type = PACKAGE_TYPE
+        desc.type = TYPES[build_type]
         desc.name = desc.name or package.name
 
     def _check_manifest(self, folder: Path) -> None:
