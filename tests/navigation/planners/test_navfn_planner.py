@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from daidalos.navigation.costmap.costmap import Costmap
+from daidalos.navigation.costmap.costmap import LETHAL_OBSTACLE, NO_INFORMATION, Costmap
 from daidalos.navigation.costmap.layers.inflation_layer import InflationLayer, InflationLayerParameters
 from daidalos.navigation.paths import path_length
 from daidalos.navigation.planners.navfn_planner import NavfnPlanner, NavfnPlannerParameters
@@ -113,6 +113,14 @@ def test_a_goal_too_near_to_a_wall_is_replaced_within_the_tolerance():
     assert path[-1, 2] == 1.0
     with pytest.raises(GoalOccupied, match="does not fit"):
         EXACT.create_plan(costmap, pose(1.0, 2.0), goal)
+
+
+def test_a_goal_within_a_wall_of_which_only_the_surface_was_seen_is_refused():
+    costmap = room()
+    costmap.costs[:, 41:] = NO_INFORMATION
+    costmap.costs[:, 40] = LETHAL_OBSTACLE
+    with pytest.raises(GoalOccupied, match="in an obstacle"):
+        NavfnPlanner().create_plan(costmap, pose(1.0, 1.0), pose(2.09, 1.0))
 
 
 def test_a_start_inside_of_inflation_gets_out_by_the_shortest_way():

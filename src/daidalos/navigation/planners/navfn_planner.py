@@ -39,6 +39,9 @@ The proportion of Nav2's neutral cost (50) and cost factor (0.8), so that tuned 
 effect.
 """
 
+OBSTACLE_SKIN = 0.1
+"""How deep [m] an obstacle is taken to be behind the surface that the sensors see: a goal there is refused."""
+
 ESCAPE_RADIUS = 0.5
 """How far [m] from a lethal start a free cell may be; localization is rarely farther off."""
 
@@ -93,8 +96,8 @@ class NavfnPlanner(GlobalPlanner):
 
     def _refuse_obstacles(self, costmap: Costmap, last: Cell, goal: Array) -> None:
         cost = int(costmap.costs[last[1], last[0]])
-        if cost == LETHAL_OBSTACLE:
-            raise GoalOccupied(f"the goal {_words(goal)} is in an obstacle")
+        if _touches_obstacle(costmap, last):
+            raise GoalOccupied(f"the goal {_words(goal)} is in an obstacle, or within {OBSTACLE_SKIN} m of one")
         if cost == NO_INFORMATION and not self.parameters.allow_unknown:
             raise GoalOccupied(f"the goal {_words(goal)} is in unknown space and allow_unknown is false")
 
@@ -139,6 +142,15 @@ def _cell(costmap: Costmap, pose: Array) -> Cell | None:
         return None
     column, row = costmap.world_to_map(float(pose[0]), float(pose[1]))
     return (column, row) if costmap.holds(column, row) else None
+
+
+def _touches_obstacle(costmap: Costmap, cell: Cell) -> bool:
+    reach = round(OBSTACLE_SKIN / costmap.resolution)
+    column, row = cell
+    left, below = max(column - reach, 0), max(row - reach, 0)
+    around = costmap.costs[below : row + reach + 1, left : column + reach + 1]
+    rows, columns = np.nonzero(around == LETHAL_OBSTACLE)
+    return bool(np.any((rows + below - row) ** 2 + (columns + left - column) ** 2 <= reach**2))
 
 
 def _way_out(costmap: Costmap, first: Cell, step: NDArray[np.float32], start: Array) -> Cell:
