@@ -9,6 +9,7 @@ from daidalos.cli.ros2.verbs import class_name
 
 BUILT_IN = {
     "action": "Various action related sub-commands",
+    "bag": "Various rosbag related sub-commands",
     "component": "Various component related sub-commands",
     "control": "Various control related sub-commands",
     "daemon": "Various daemon related sub-commands",

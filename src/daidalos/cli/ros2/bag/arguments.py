@@ -1,0 +1,135 @@
+"""What the verbs of `ros2 bag` share: arguments, the checks of their values, and how they say what is wrong."""
+
+from __future__ import annotations
+
+import os
+import sys
+from argparse import ArgumentParser, ArgumentTypeError
+
+from daidalos.bags.storage import SUFFIXES
+from daidalos.cli.ros2.errors import CliError
+
+STORAGES = tuple(SUFFIXES)
+
+
+def add_bag_arguments(parser: ArgumentParser) -> None:
+    """Declare the bag that is read."""
+    parser.add_argument("bag_path", type=existing_bag, help="Bag to open: a folder, or one file of a bag")
+    parser.add_argument(
+        "-s",
+        "--storage",
+        default="",
+        choices=STORAGES,
+        help="Storage implementation of the bag. By default it is found out.",
+    )
+
+
+def add_topic_arguments(parser: ArgumentParser) -> None:
+    """Declare which topics and services are played, and as what."""
+    parser.add_argument(
+        "--topics", default=[], nargs="+", metavar="topic", help="Topics to replay; all where none is named"
+    )
+    parser.add_argument(
+        "--services", default=[], nargs="+", metavar="service", help="Services to replay; all where none is named"
+    )
+    parser.add_argument(
+        "--qos-profile-overrides-path",
+        type=existing_file,
+        metavar="FILE",
+        help="Path to a YAML file that defines overrides of the QoS profile for specific topics",
+    )
+    parser.add_argument(
+        "-m",
+        "--remap",
+        default=[],
+        nargs="+",
+        metavar="old:=new",
+        help='Topics to be remapped, in the form "old_topic1:=new_topic1 old_topic2:=new_topic2"',
+    )
+    parser.add_argument(
+        "--storage-config-file", type=existing_file, metavar="FILE", help="Settings of the storage, as YAML"
+    )
+    parser.add_argument(
+        "--read-ahead-queue-size",
+        type=positive_int,
+        default=1000,
+        metavar="N",
+        help="How many messages are read before their time has come (default: %(default)s)",
+    )
+
+
+def remapping_arguments(rules: list[str]) -> list[str]:
+    """Return remapping rules as arguments of a node; CliError for what is no rule."""
+    words = []
+    for rule in rules:
+        old, sign, new = rule.partition(":=")
+        if not (old and sign and new):
+            raise error(f"--remap: '{rule}' is no remapping rule; expected such as /old:=/new")
+        words += ["--remap", rule]
+    return ["--ros-args", *words] if words else []
+
+
+def existing_bag(text: str) -> str:
+    """Check an argument: a bag that is there."""
+    if not os.path.exists(text):
+        raise ArgumentTypeError(f"Bag path '{text}' does not exist!")
+    return text
+
+
+def existing_file(text: str) -> str:
+    """Check an argument: a file that is there."""
+    if not os.path.isfile(text):
+        raise ArgumentTypeError(f"File '{text}' does not exist!")
+    return text
+
+
+def positive_float(text: str) -> float:
+    """Check an argument: a number above 0."""
+    value = _float(text)
+    if not 0.0 < value < float("inf"):
+        raise ArgumentTypeError(f"{text} is not in the valid range (> 0.0)")
+    return value
+
+
+def not_negative_float(text: str) -> float:
+    """Check an argument: a number that is 0 or more."""
+    value = _float(text)
+    if not 0.0 <= value < float("inf"):
+        raise ArgumentTypeError(f"Value {text} is less than zero.")
+    return value
+
+
+def _float(text: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        raise ArgumentTypeError(f"{text} is not the valid type (float)") from None
+
+
+def not_negative_int(text: str) -> int:
+    """Check an argument: a whole number that is 0 or more."""
+    try:
+        value = int(text)
+    except ValueError:
+        raise ArgumentTypeError(f"{text} is not the valid type (int)") from None
+    if value < 0:
+        raise ArgumentTypeError(f"Value {text} is less than zero.")
+    return value
+
+
+def positive_int(text: str) -> int:
+    """Check an argument: a whole number above 0."""
+    value = not_negative_int(text)
+    if value == 0:
+        raise ArgumentTypeError(f"{text} is not in the valid range (> 0)")
+    return value
+
+
+def error(text: str) -> CliError:
+    """Return the error that ends the command with this text."""
+    return CliError(f"[ERROR] [ros2bag]: {text}")
+
+
+def warn(text: str) -> None:
+    """Print a warning."""
+    print(f"[WARN] [ros2bag]: {text}", file=sys.stderr, flush=True)

@@ -1,0 +1,103 @@
+"""Keys pressed in the terminal, while something else goes on."""
+
+from __future__ import annotations
+
+import os
+import sys
+import threading
+from collections.abc import Callable
+
+SPACE, UP, DOWN, RIGHT = "space", "up", "down", "right"
+_KEYS = {
+    b" ": SPACE,
+    b"\x1b[A": UP,
+    b"\x1b[B": DOWN,
+    b"\x1b[C": RIGHT,
+    b"\x1bOA": UP,
+    b"\x1bOB": DOWN,
+    b"\x1bOC": RIGHT,
+}
+_WINDOWS_KEYS = {" ": SPACE, "\xe0H": UP, "\xe0P": DOWN, "\xe0M": RIGHT, "\0H": UP, "\0P": DOWN, "\0M": RIGHT}
+_WINDOWS_PAUSE_S = 0.05
+
+
+class Keyboard:
+    """Calls a function with every key that means something; does nothing where there is no terminal.
+
+    Parameters
+    ----------
+    on_key
+        Called with `SPACE`, `UP`, `DOWN` or `RIGHT`, on a thread of its own.
+    """
+
+    def __init__(self, on_key: Callable[[str], None]) -> None:
+        self._on_key = on_key
+        self._thread: threading.Thread | None = None
+        self._ended = threading.Event()
+
+    def start(self) -> None:
+        """Begin to listen."""
+        if not sys.stdin or not sys.stdin.isatty():
+            return
+        self._wake, self._waker = os.pipe()
+        listen = self._listen_windows if sys.platform == "win32" else self._listen
+        self._thread = threading.Thread(target=listen, name="keyboard", daemon=True)
+        self._thread.start()
+
+    def stop(self) -> None:
+        """Listen no more; the terminal is as it was before."""
+        if self._thread is None:
+            return
+        self._ended.set()
+        os.write(self._waker, b"x")
+        self._thread.join()
+        self._thread = None
+        os.close(self._wake)
+        os.close(self._waker)
+
+    def _listen(self) -> None:
+        if sys.platform == "win32":
+            return
+        import select
+        import termios
+        import tty
+
+        terminal = sys.stdin.fileno()
+        before = termios.tcgetattr(terminal)
+        try:
+            tty.setcbreak(terminal)
+            while not self._ended.is_set():
+                ready, _, _ = select.select([terminal, self._wake], [], [])
+                if self._wake in ready:
+                    return
+                pressed = os.read(terminal, 64)
+                if not pressed:
+                    return
+                for key in split_keys(pressed):
+                    self._on_key(key)
+        finally:
+            termios.tcsetattr(terminal, termios.TCSADRAIN, before)
+
+    def _listen_windows(self) -> None:
+        if sys.platform != "win32":
+            return
+        import msvcrt
+
+        while not self._ended.wait(_WINDOWS_PAUSE_S):
+            while msvcrt.kbhit():
+                pressed = msvcrt.getwch()
+                if pressed in ("\0", "\xe0"):
+                    pressed += msvcrt.getwch()
+                if pressed in _WINDOWS_KEYS:
+                    self._on_key(_WINDOWS_KEYS[pressed])
+
+
+def split_keys(data: bytes) -> list[str]:
+    """Return the keys that a terminal sent; what means nothing here is left out."""
+    found = []
+    while data:
+        length = next((len(code) for code in _KEYS if data.startswith(code)), 0)
+        if length:
+            found.append(_KEYS[data[:length]])
+        data = data[length or 1 :]
+    return found
