@@ -1,7 +1,4 @@
-"""Writes the versions of `uv.lock` into pyproject.toml as constraints: a lock without download addresses.
-
-    uv lock --upgrade && uv run python tools/pin_dependencies.py
-"""
+"""Writes the versions of `uv.lock` into pyproject.toml as constraints: a lock without download addresses."""
 
 import re
 import tomllib

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from mapping.bags import write_bag
 
 from daidalos.cli.daidalos import map as verb
 from daidalos.mapping.map_file import load_map
+from mapping.bags import write_bag
 
 
 def call(*words: object) -> int:

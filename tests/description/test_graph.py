@@ -1,11 +1,10 @@
 import re
 
-from simulation.models import turtlebot
-
 from daidalos.description import urdf
 from daidalos.description.graph import to_dot, to_svg
 from daidalos.description.markup import parse_markup
 from description.robots import ARM
+from simulation.models import turtlebot
 
 
 def boxes(svg):

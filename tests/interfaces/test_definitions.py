@@ -34,18 +34,14 @@ HASHES = {
     "example_interfaces/action/Fibonacci": "9508051da1ea4658de144b09bd0690ff3de52104683d847aed764d2915906f51",
     # Packages of which no hash is recorded in the shared data; read off generated code of a real build.
     "control_msgs/msg/PidState": "9ab329825048ab6152868c2d086fc19f5525ed2c6fec886f719577e1ae3a6acd",
-    "control_msgs/msg/SteeringControllerStatus": (
-        "151ec2fabdfdf10cabe982ceab9fec8882c9efff0effc8d07ba7a1d404cf8143"
-    ),
+    "control_msgs/msg/SteeringControllerStatus": ("151ec2fabdfdf10cabe982ceab9fec8882c9efff0effc8d07ba7a1d404cf8143"),
     "controller_manager_msgs/msg/ControllerManagerActivity": (
         "35b7de5d611b6780e89732de325f2f765eacdb8a7adfe5821a27af4a03a7c244"
     ),
     "dwb_msgs/msg/LocalPlanEvaluation": "6bb7af7f92591fcb4e637dd0803ca59a0b3125a0962eeb9919b55cd68db3e97b",
     "nav2_msgs/msg/Route": "e7a30327e3f17e37bb7c8d559ca6a84e189ed17725f0b6ecc02fbcceeef70184",
     "ros_gz_interfaces/msg/Light": "8efb44b207981d0c23827eae2490a4c4700c5e872f0151f0e6dd09aab4919f93",
-    "slam_toolbox/srv/DeserializePoseGraph": (
-        "ec7e27ad873d1c3961583c3288d7fe516bb0035fc9769078657f0377bd55547a"
-    ),
+    "slam_toolbox/srv/DeserializePoseGraph": ("ec7e27ad873d1c3961583c3288d7fe516bb0035fc9769078657f0377bd55547a"),
 }
 
 # rosbags hashes char as int8, ROS 2 as uint8.
@@ -163,8 +159,7 @@ def test_manifest_lists_what_the_package_uses(package):
 
 def test_packages_do_not_depend_on_each_other_in_circles():
     uses = {
-        package: set().union(*(packages_used(parse_file(path, package)) for path in files_of(package)))
-        - {package}
+        package: set().union(*(packages_used(parse_file(path, package)) for path in files_of(package))) - {package}
         for package in PACKAGES
     }
     while uses:

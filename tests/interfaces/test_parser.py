@@ -267,9 +267,7 @@ def test_an_apostrophe_in_a_comment_is_no_quote():
     assert only_field("int32 x  # the robot's, isn't it").comment == "the robot's, isn't it"
 
 
-@pytest.mark.parametrize(
-    "text", ["int32\tx", "int32 \t x\t", "  int32   x  ", "int32 x\r\n", "\tint32\tx\t# c"]
-)
+@pytest.mark.parametrize("text", ["int32\tx", "int32 \t x\t", "  int32   x  ", "int32 x\r\n", "\tint32\tx\t# c"])
 def test_white_space_does_not_matter(text):
     assert only_field(text).name == "x"
 

@@ -6,7 +6,7 @@ default (through the built-in module, as ``signal`` itself takes a while to impo
 ``site``, which ``-S`` keeps back. `rclpy.init` takes the signal over later.
 """
 
-import _signal
+import _signal  # type: ignore[import-not-found]
 import sys
 
 _signal.signal(_signal.SIGINT, _signal.SIG_DFL)

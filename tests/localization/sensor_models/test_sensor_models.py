@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from navigation.flat_world import arena
 
 from daidalos.localization.config import AmclConfig
 from daidalos.localization.errors import LocalizationError
@@ -16,6 +15,7 @@ from daidalos.localization.sensor_models.likelihood_field import LikelihoodField
 from daidalos.localization.sensor_models.sensor_model import Beams
 from daidalos.mapping.grid import OccupancyGrid
 from daidalos.mapping.scan import LaserScanData
+from navigation.flat_world import arena
 
 from ..wandering import map_of
 

@@ -115,9 +115,11 @@ def _end(process: subprocess.Popen[bytes]) -> None:
 def _kill(process: subprocess.Popen[bytes]) -> None:
     import psutil
 
-    for member in [*psutil.Process(process.pid).children(recursive=True), process]:
+    children = psutil.Process(process.pid).children(recursive=True)
+    process.kill()
+    for child in children:
         with contextlib.suppress(psutil.Error):
-            member.kill()
+            child.kill()
     process.wait()
 
 
@@ -132,7 +134,10 @@ def _run_trial(
     from daidalos.nodes.daidalos_demo.trial import Trial
 
     rclpy.init(args=[])
-    overrides = [Parameter("seed", value=arguments.seed), Parameter("goals", value=arguments.goals)]
+    overrides: list[Parameter[int]] = [
+        Parameter("seed", value=arguments.seed),
+        Parameter("goals", value=arguments.goals),
+    ]
     node = Trial(say, parameter_overrides=overrides)
     executor = SingleThreadedExecutor()
     executor.add_node(node)

@@ -26,9 +26,9 @@ from daidalos.transport.backend import (
 from daidalos.transport.environment import DiscoveryRange, Environment
 from daidalos.transport.graph import EndpointInfo, EndpointKind, Graph, NodeInfo
 from daidalos.transport.qos import Qos
+from daidalos.transport.registry import Peer, Registry
 from daidalos.transport.zenoh import keys
 from daidalos.transport.zenoh.config import ROUTER_PORT, session_config
-from daidalos.transport.zenoh.registry import Peer, Registry
 from daidalos.transport.zenoh.wires import (
     ZenohClient,
     ZenohPublisher,
@@ -70,7 +70,7 @@ class ZenohBackend(Backend):
             listen = self._listen_endpoints()
             endpoints = [endpoint for peer in peers for endpoint in peer.endpoints]
             config = session_config(self._environment, self._session_id, listen, endpoints)
-            self._session = zenoh.open(config)
+            self._session: Any = zenoh.open(config)
             self._session_id = str(self._session.zid())
             self._peers = {peer.session for peer in peers}
             self._registry.register(Peer(self._session_id, tuple(listen)))
@@ -124,7 +124,7 @@ class ZenohBackend(Backend):
             time.sleep(_LOOK_S)
         left = max(deadline - time.monotonic(), 0.05)
         # The tokens that are known already are handed out before anybody can read: all must fit into the channel.
-        channel = FifoChannel(_MANY_TOKENS)
+        channel: Any = FifoChannel(_MANY_TOKENS)
         for reply in self._session.liveliness().get(keys.tokens(self._domain), handler=channel, timeout=left):
             if reply.ok is not None:
                 self._add(str(reply.ok.key_expr))

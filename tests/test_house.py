@@ -1,0 +1,26 @@
+"""The rules that tools can hold: format, lint, types and layers."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from conftest import REPOSITORY
+
+SCRIPTS = Path(sys.executable).parent
+TOOLS = {
+    "format": ["ruff", "format", "--check"],
+    "lint": ["ruff", "check", "--output-format=concise"],
+    "types": ["mypy"],
+    "layers": ["lint-imports"],
+}
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(300)
+@pytest.mark.parametrize("name", TOOLS)
+def test_a_tool_has_nothing_to_say(name: str) -> None:
+    program, *arguments = TOOLS[name]
+    done = subprocess.run([SCRIPTS / program, *arguments], cwd=REPOSITORY, capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout[-5000:] + done.stderr[-2000:]
