@@ -13,7 +13,7 @@ from daidalos.transport.session import Session
 _lock = threading.Lock()
 _sessions: dict[tuple[int, Environment], tuple[Session, int]] = {}
 
-MIDDLEWARES = ("rmw_zenoh_cpp", "rmw_daidalos_inprocess")
+MIDDLEWARES = ("rmw_zenoh_cpp", "rmw_cyclonedds_cpp", "rmw_daidalos_inprocess")
 
 
 def acquire(environment: Environment) -> Session:
@@ -48,6 +48,10 @@ def _backend(environment: Environment) -> Backend:
             from daidalos.transport.zenoh.backend import ZenohBackend
 
             return ZenohBackend(environment)
+        case "rmw_cyclonedds_cpp":
+            from daidalos.transport.cyclonedds.backend import CycloneBackend
+
+            return CycloneBackend(environment)
         case "rmw_daidalos_inprocess":
             from daidalos.transport.inprocess import InProcessBackend
 

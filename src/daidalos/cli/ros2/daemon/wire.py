@@ -11,7 +11,7 @@ from typing import Any
 from daidalos.transport.environment import Environment, read_environment
 from daidalos.transport.graph import EndpointInfo, EndpointKind, Graph, NodeInfo
 from daidalos.transport.qos import Durability, History, Liveliness, Qos, Reliability
-from daidalos.transport.zenoh.registry import Registry, runtime_folder
+from daidalos.transport.registry import Registry, runtime_folder
 
 MAX_QUESTION = 4096
 

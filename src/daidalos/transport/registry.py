@@ -39,10 +39,20 @@ def runtime_folder() -> Path:
 
 
 class Registry:
-    """The live sessions of one domain."""
+    """The live sessions of one domain.
 
-    def __init__(self, domain: int, folder: Path | None = None) -> None:
-        self.folder = (folder or runtime_folder()) / "zenoh" / str(domain)
+    Parameters
+    ----------
+    domain
+        Its number.
+    folder
+        Where the registry is kept; the user's runtime folder where None.
+    family
+        Whose sessions: each middleware has its own.
+    """
+
+    def __init__(self, domain: int, folder: Path | None = None, family: str = "zenoh") -> None:
+        self.folder = (folder or runtime_folder()) / family / str(domain)
         self.folder.mkdir(mode=0o700, parents=True, exist_ok=True)
         self._entry: IO[bytes] | None = None
         self._data: Path | None = None

@@ -1,0 +1,1 @@
+"""DDS in rmw_cyclonedds's wire format, on the library inside the `cyclonedds` package."""

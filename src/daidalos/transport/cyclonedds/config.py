@@ -1,0 +1,55 @@
+"""The configuration of a DDS domain, from the environment as rmw_cyclonedds reads it."""
+
+from __future__ import annotations
+
+import os
+from xml.sax.saxutils import quoteattr
+
+from daidalos.transport.environment import DiscoveryRange, Environment
+
+_LOCALHOST = "127.0.0.1"
+_MOST_PARTICIPANTS = 99
+"""Highest index of a participant: how many processes of one machine find each other without multicast."""
+_FIRST_PORT, _PORTS_PER_DOMAIN, _LAST_PORT = 7400, 250, 65535
+_DATA_PORT_OFFSET = 11
+
+# A reliable writer waits while this much is on its way: enough to keep the wire busy, little enough that no
+# socket's buffer overflows. What was lost nevertheless is asked for again soon.
+_FLOW = (
+    "<Internal><Watermarks><WhcHigh>32kB</WhcHigh><WhcHighInit>32kB</WhcHighInit></Watermarks>"
+    "<NackDelay>2ms</NackDelay></Internal>"
+)
+
+
+def domain_config(environment: Environment) -> str:
+    """Return the configuration of the domain: XML fragments, the user's ``CYCLONEDDS_URI`` last."""
+    ours = f'<CycloneDDS><Domain Id="any">{_reach(environment)}{_FLOW}</Domain></CycloneDDS>'
+    users = os.environ.get("CYCLONEDDS_URI", "")
+    return f"{ours},{users}" if users else ours
+
+
+def _reach(environment: Environment) -> str:
+    """Return how far to look for others."""
+    match environment.discovery:
+        case DiscoveryRange.OFF:
+            return f"{_MULTICAST_OFF}<Discovery><Tag>ros_discovery_off_{os.getpid()}</Tag></Discovery>"
+        case DiscoveryRange.LOCALHOST:
+            return _MULTICAST_OFF + _peers(environment)
+    return _peers(environment)
+
+
+_MULTICAST_OFF = "<General><AllowMulticast>false</AllowMulticast></General>"
+
+
+def _peers(environment: Environment) -> str:
+    """Return what makes participants reachable at ports that can be guessed, and whom to tell of us.
+
+    This machine is always among them, so that nodes of a wider range are found by those of a narrower one.
+    """
+    highest = (_LAST_PORT - _FIRST_PORT - _PORTS_PER_DOMAIN * environment.domain - _DATA_PORT_OFFSET) // 2
+    listed = "".join(f"<Peer address={quoteattr(peer)}/>" for peer in (_LOCALHOST, *environment.static_peers))
+    return (
+        "<Discovery><ParticipantIndex>auto</ParticipantIndex>"
+        f"<MaxAutoParticipantIndex>{min(_MOST_PARTICIPANTS, highest)}</MaxAutoParticipantIndex>"
+        f"<Peers>{listed}</Peers></Discovery>"
+    )

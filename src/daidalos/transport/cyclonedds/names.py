@@ -1,0 +1,85 @@
+"""How rmw_cyclonedds writes names, types and what else it tells of an entity on the wire."""
+
+from __future__ import annotations
+
+from importlib import import_module
+
+from daidalos.transport.graph import EndpointKind
+
+DISCOVERY_TOPIC = "ros_discovery_info"
+DISCOVERY_TYPE = "rmw_dds_common/msg/ParticipantEntitiesInfo"
+_TOPIC, _REQUEST, _REPLY = "rt", "rq", "rr"
+
+
+def dds_type(type_name: str) -> str:
+    """``std_msgs/msg/String`` -> ``std_msgs::msg::dds_::String_``."""
+    package, kind, name = type_name.split("/")
+    return f"{package}::{kind}::dds_::{name}_"
+
+
+def ros_type(text: str) -> str:
+    """``std_msgs::msg::dds_::String_`` -> ``std_msgs/msg/String``; anything else is kept."""
+    parts = text.split("::")
+    if len(parts) == 4 and parts[2] == "dds_":
+        return f"{parts[0]}/{parts[1]}/{parts[3].removesuffix('_')}"
+    return text
+
+
+def topic_of(name: str) -> str:
+    """``/chatter`` -> ``rt/chatter``."""
+    return f"{_TOPIC}{name}"
+
+
+def request_topic_of(name: str) -> str:
+    """``/add`` -> ``rq/addRequest``."""
+    return f"{_REQUEST}{name}Request"
+
+
+def reply_topic_of(name: str) -> str:
+    """``/add`` -> ``rr/addReply``."""
+    return f"{_REPLY}{name}Reply"
+
+
+def parse_endpoint(topic: str, type_name: str, writes: bool) -> tuple[EndpointKind, str, str] | None:
+    """Read what a writer's or reader's topic and type mean to ROS.
+
+    Returns
+    -------
+    (kind, name, type) or None
+        A service is known by the reader of its requests, a client by their writer. None for what serves the
+        middleware itself, and for the side of a service that carries replies.
+    """
+    prefix, slash, rest = topic.partition("/")
+    if prefix == _TOPIC and slash:
+        return EndpointKind.PUBLISHER if writes else EndpointKind.SUBSCRIPTION, f"/{rest}", ros_type(type_name)
+    if prefix == _REQUEST and rest.endswith("Request"):
+        kind = EndpointKind.CLIENT if writes else EndpointKind.SERVICE
+        return kind, f"/{rest.removesuffix('Request')}", ros_type(type_name).removesuffix("_Request")
+    return None
+
+
+def parts_of_service(type_name: str) -> tuple[tuple[str, str], tuple[str, str]]:
+    """Return (type, hash) of a service's request and response; the hashes are empty where its class is not found."""
+    package, kind, name = type_name.split("/")
+    service = getattr(import_module(f"{package}.{kind}"), name, None)
+    request, response = getattr(service, "Request", None), getattr(service, "Response", None)
+    return (
+        (f"{type_name}_Request", getattr(request, "_TYPE_HASH", "")),
+        (f"{type_name}_Response", getattr(response, "_TYPE_HASH", "")),
+    )
+
+
+def write_user_data(**values: str) -> bytes:
+    """Write ``key=value;`` pairs, those without a value left out."""
+    return "".join(f"{key}={value};" for key, value in values.items() if value).encode()
+
+
+def read_user_data(data: bytes) -> dict[str, str]:
+    """Read ``key=value;`` pairs; what is none is passed over."""
+    pairs = (part.partition("=") for part in data.decode("utf-8", "replace").split(";"))
+    return {key.strip(): value.strip() for key, separator, value in pairs if separator}
+
+
+def dotted(identity: bytes) -> str:
+    """Write an identity as ``01.10.8c...``."""
+    return ".".join(f"{byte:02x}" for byte in identity)

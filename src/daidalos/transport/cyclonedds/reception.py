@@ -1,0 +1,146 @@
+"""A thread that waits for readers and hands on what arrives."""
+
+from __future__ import annotations
+
+import ctypes as c
+import itertools
+import logging
+import threading
+from collections.abc import Callable
+from typing import NamedTuple
+
+from daidalos.transport.cyclonedds.library import (
+    ANY_STATE,
+    DATA_AVAILABLE_STATUS,
+    INFINITE,
+    IoVector,
+    Library,
+    SampleInfo,
+)
+
+_LOGGER = logging.getLogger(__name__)
+_BATCH = 64
+_WAKE = 0
+_JOIN_S = 2.0
+
+
+class Sample(NamedTuple):
+    """What arrived: CDR bytes, when they were written (Unix time, ns) and the writer's handle."""
+
+    data: bytes
+    source_ns: int
+    writer: int
+
+
+class Reception:
+    """Waits for data on any number of readers, in one thread.
+
+    Parameters
+    ----------
+    library, participant
+        The library and the participant whose readers are waited for.
+    name
+        The thread's.
+    on_wake
+        Called on the thread after `wake`.
+    """
+
+    def __init__(
+        self, library: Library, participant: int, name: str, on_wake: Callable[[], None] = lambda: None
+    ) -> None:
+        self._library = library
+        self._on_wake = on_wake
+        self._number = itertools.count(_WAKE + 1).__next__
+        self._handlers: dict[int, Callable[[], None]] = {}
+        self._numbers: dict[int, int] = {}
+        self._closed = False
+        self._waitset = library.check(library.dds_create_waitset(participant), "make a waitset")
+        self._guard = library.check(library.dds_create_guardcondition(participant), "make a guard condition")
+        library.check(library.dds_waitset_attach(self._waitset, self._guard, _WAKE), "attach a guard condition")
+        self._thread = threading.Thread(target=self._run, name=name, daemon=True)
+        self._thread.start()
+
+    def add(self, reader: int, on_data: Callable[[], None]) -> None:
+        """Call `on_data` on the thread whenever data arrived; it must take all there is."""
+        library = self._library
+        number = self._numbers[reader] = self._number()
+        self._handlers[number] = on_data
+        library.check(library.dds_set_status_mask(reader, DATA_AVAILABLE_STATUS), "watch a reader")
+        library.check(library.dds_waitset_attach(self._waitset, reader, number), "watch a reader")
+
+    def remove(self, reader: int) -> None:
+        """Stop waiting for a reader."""
+        number = self._numbers.pop(reader, None)
+        if number is not None:
+            self._handlers.pop(number, None)
+            self._library.dds_waitset_detach(self._waitset, reader)
+
+    def wake(self) -> None:
+        """Have `on_wake` called."""
+        self._library.dds_set_guardcondition(self._guard, True)
+
+    def close(self) -> None:
+        """End the thread."""
+        self._closed = True
+        self.wake()
+        if threading.current_thread() is not self._thread:
+            self._thread.join(_JOIN_S)
+
+    def _run(self) -> None:
+        library, numbers = self._library, (c.c_ssize_t * _BATCH)()
+        while not self._closed:
+            count = library.dds_waitset_wait(self._waitset, numbers, _BATCH, INFINITE)
+            if count < 0:
+                return
+            for number in numbers[:count]:
+                if number == _WAKE:
+                    library.dds_set_guardcondition(self._guard, False)
+                    if self._closed:
+                        return
+                handler = self._on_wake if number == _WAKE else self._handlers.get(number)
+                if handler is None:
+                    continue  # removed meanwhile
+                try:
+                    handler()
+                except Exception:  # one bad entity must not silence all others
+                    _LOGGER.exception("receiving failed")
+
+
+class Taker:
+    """Takes samples from readers; belongs to one thread.
+
+    Parameters
+    ----------
+    library
+        The library.
+    """
+
+    def __init__(self, library: Library) -> None:
+        self._library = library
+        self._buffers = (c.c_void_p * _BATCH)()
+        self._pointer = c.cast(self._buffers, c.POINTER(c.c_void_p))
+        self._infos = (SampleInfo * _BATCH)()
+        self._vector = IoVector()
+        self._reference = c.byref(self._vector)
+
+    def take_all(self, reader: int, accept: Callable[[Sample], None]) -> None:
+        """Hand every sample of a reader to `accept`; what carries no data, such as a farewell, is passed over."""
+        library, infos, buffers = self._library, self._infos, self._buffers
+        while True:
+            count: int = library.dds_takecdr(reader, self._pointer, _BATCH, infos, ANY_STATE)
+            for index in range(count):
+                info = infos[index]
+                data = self._copy(buffers[index]) if info.valid_data else None
+                library.ddsi_serdata_unref(buffers[index])
+                if data is not None:
+                    accept(Sample(data, info.source_timestamp, info.publication_handle))
+            if count < _BATCH:
+                return
+
+    def _copy(self, serialised: int | None) -> bytes:
+        library, vector = self._library, self._vector
+        size = library.ddsi_serdata_size(serialised)
+        held = library.ddsi_serdata_to_ser_ref(serialised, 0, size, self._reference)
+        data = c.string_at(vector.base, vector.length)
+        library.ddsi_serdata_to_ser_unref(held, self._reference)
+        return data

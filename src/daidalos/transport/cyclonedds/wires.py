@@ -1,0 +1,272 @@
+"""Publisher, subscription, service and client over DDS."""
+
+from __future__ import annotations
+
+import ctypes as c
+import struct
+import threading
+import time
+from collections.abc import Callable
+from typing import Any
+
+from daidalos.interfaces.codec import CdrError
+from daidalos.transport.backend import (
+    RequestId,
+    SampleInfo,
+    WireClient,
+    WirePublisher,
+    WireService,
+    WireSubscription,
+)
+from daidalos.transport.cyclonedds.library import (
+    PUBLICATION_MATCHED_STATUS,
+    RETCODE_TIMEOUT,
+    SERDATA_DATA,
+    BuiltinEndpoint,
+    IoVector,
+    Library,
+)
+from daidalos.transport.cyclonedds.qos import BLOCKING_NS, user_data_of
+from daidalos.transport.cyclonedds.reception import Reception, Sample, Taker
+
+_ENCAPSULATION = 4
+_HEADER = struct.Struct("<Qq")
+"""What precedes the fields of a request and its reply: the client's number and its count of requests."""
+_REQUEST_ID = struct.Struct("<QQ")
+_PADDING = (b"", b"\0\0\0", b"\0\0", b"\0")
+_JOINED = 16_384
+"""Up to this size buffers are joined; larger ones are handed over where they are."""
+_CLIENT_PATIENCE_NS = 100_000_000
+
+
+class Writer:
+    """A DDS writer of serialised samples."""
+
+    def __init__(self, library: Library, entity: int) -> None:
+        self._library = library
+        self.entity = entity
+        self._type = c.c_void_p()
+        library.check(library.dds_get_entity_sertype(entity, c.byref(self._type)), "find a writer's type")
+        self._congested_until = 0
+
+    def write(self, parts: list[Any]) -> None:
+        """Write one sample, given as buffers.
+
+        A reader that does not keep up holds us back once; then samples are dropped for as long as that took,
+        so that one stopped process does not stop us.
+        """
+        if self._congested_until and time.monotonic_ns() < self._congested_until:
+            return
+        library = self._library
+        vectors, size, _kept = _vectors(parts)
+        serialised = library.ddsi_serdata_from_ser_iov(self._type, SERDATA_DATA, len(vectors), vectors, size)
+        if not serialised:
+            raise CdrError(f"DDS refused a sample of {size} bytes")
+        result = library.dds_writecdr(self.entity, serialised)
+        self._congested_until = time.monotonic_ns() + BLOCKING_NS if result == RETCODE_TIMEOUT else 0
+
+    def close(self) -> None:
+        """Delete the writer."""
+        self._library.dds_delete(self.entity)
+
+
+def _vectors(parts: list[Any]) -> tuple[Any, int, Any]:
+    """Return C's description of the buffers, padded to a multiple of four, their size, and what must be kept."""
+    size = sum(memoryview(part).nbytes for part in parts)
+    if size <= _JOINED:
+        data = b"".join(parts) + _PADDING[size & 3]
+        vectors = (IoVector * 1)()
+        vectors[0].base, vectors[0].length = c.cast(c.c_char_p(data), c.c_void_p), len(data)
+        return vectors, len(data), data
+    kept = [*parts, _PADDING[size & 3]] if size & 3 else parts
+    vectors = (IoVector * len(kept))()
+    for vector, part in zip(vectors, kept, strict=True):
+        vector.base, vector.length = _address(part)
+    return vectors, size + (-size & 3), kept
+
+
+def _address(part: Any) -> tuple[Any, int]:
+    """Return where a buffer's bytes are, and how many."""
+    if isinstance(part, bytes):
+        return c.cast(c.c_char_p(part), c.c_void_p), len(part)
+    address, count = part.buffer_info()
+    return address, count * part.itemsize
+
+
+class DdsPublisher(WirePublisher):
+    """Writes samples."""
+
+    def __init__(self, writer: Writer, on_close: Callable[[], None]) -> None:
+        self._writer = writer
+        self._on_close = on_close
+
+    def put(self, parts: list[Any], sequence: int, stamp_ns: int) -> None:
+        """Send one sample."""
+        self._writer.write(parts)
+
+    def close(self) -> None:
+        """Delete the writer."""
+        self._on_close()
+        self._writer.close()
+
+
+class DdsSubscription(WireSubscription):
+    """Takes samples on the receiving thread, which only queues them."""
+
+    def __init__(
+        self,
+        taker: Taker,
+        reception: Reception,
+        reader: int,
+        on_sample: Callable[[Any], None],
+        gid_of: Callable[[int, int], bytes],
+        on_close: Callable[[], None],
+    ) -> None:
+        self._reader = reader
+        self._gid_of = gid_of
+        self._on_close = on_close
+        reception.add(reader, lambda: taker.take_all(reader, on_sample))
+
+    def data(self, sample: Any) -> bytes:
+        """Return the sample's bytes."""
+        data: bytes = sample.data
+        return data
+
+    def info(self, sample: Any, received_ns: int) -> SampleInfo:
+        """Return what DDS tells; it counts no samples."""
+        return SampleInfo(sample.source_ns, received_ns, 0, self._gid_of(self._reader, sample.writer))
+
+    def close(self) -> None:
+        """Delete the reader."""
+        self._on_close()
+
+
+class DdsService(WireService):
+    """Reads requests and writes replies; every client gets every reply and keeps its own."""
+
+    def __init__(
+        self,
+        library: Library,
+        taker: Taker,
+        reception: Reception,
+        reader: int,
+        writer: Writer,
+        on_request: Callable[[Any], None],
+        on_close: Callable[[], None],
+    ) -> None:
+        self._library = library
+        self._reader = reader
+        self._writer = writer
+        self._on_close = on_close
+        self._reachable: set[int] = set()
+        self._lock = threading.Lock()
+        reception.add(reader, lambda: taker.take_all(reader, on_request))
+
+    def request(self, item: Any) -> tuple[bytes, RequestId, int]:
+        """Return the request's bytes, its identity and its source stamp."""
+        client, sequence, data = _split(item.data)
+        return data, RequestId(_REQUEST_ID.pack(client, item.writer), sequence), item.source_ns
+
+    def reply(self, request: RequestId, data: bytes) -> None:
+        """Send the reply, once the client's reader is known; a reader that is not would miss it."""
+        client, writer = _REQUEST_ID.unpack(request.client)
+        with self._lock:
+            if writer not in self._reachable and self._wait_for_reader(writer):
+                self._reachable.add(writer)
+        self._writer.write(_joined(client, request.sequence, data))
+
+    def _wait_for_reader(self, writer: int) -> bool:
+        """Wait a moment for the reader of the client that wrote a request; False when the client is gone."""
+        library = self._library
+        client = _client_of(library, library.dds_get_matched_publication_data(self._reader, writer))
+        if client is None:
+            return False
+        if not client or self._matches(client):
+            return True
+        waitset = library.dds_create_waitset(library.dds_get_participant(self._writer.entity))
+        library.dds_set_status_mask(self._writer.entity, PUBLICATION_MATCHED_STATUS)
+        library.dds_waitset_attach(waitset, self._writer.entity, 0)
+        deadline = time.monotonic_ns() + _CLIENT_PATIENCE_NS
+        found = False
+        while not (found := self._matches(client)) and (left := deadline - time.monotonic_ns()) > 0:
+            library.dds_waitset_wait(waitset, None, 0, left)
+            library.dds_get_publication_matched_status(self._writer.entity, None)
+        library.dds_delete(waitset)
+        return found
+
+    def _matches(self, client: str) -> bool:
+        """Tell whether our writer serves a reader of that client."""
+        library, writer = self._library, self._writer.entity
+        count = library.dds_get_matched_subscriptions(writer, None, 0)
+        handles = (c.c_uint64 * max(count, 1))()
+        count = library.dds_get_matched_subscriptions(writer, handles, count)
+        return any(
+            _client_of(library, library.dds_get_matched_subscription_data(writer, handle)) == client
+            for handle in handles[: max(count, 0)]
+        )
+
+    def close(self) -> None:
+        """Delete reader and writer."""
+        self._on_close()
+        self._writer.close()
+
+
+def _client_of(library: Library, endpoint: Any) -> str | None:
+    """Return what an endpoint's user data say of its client, empty where they do not; None where there is none."""
+    if not endpoint:
+        return None
+    found: BuiltinEndpoint = endpoint.contents
+    client = user_data_of(library, found.qos).get("clientid", "")
+    library.dds_builtintopic_free_endpoint(endpoint)
+    return client
+
+
+class DdsClient(WireClient):
+    """Writes requests and reads replies."""
+
+    def __init__(
+        self,
+        taker: Taker,
+        reception: Reception,
+        reader: int,
+        writer: Writer,
+        number: int,
+        on_response: Callable[[Any], None],
+        on_close: Callable[[], None],
+    ) -> None:
+        self._writer = writer
+        self._number = number
+        self._on_close = on_close
+        mine = number.to_bytes(8, "little")
+
+        def accept(sample: Sample) -> None:
+            if sample.data[_ENCAPSULATION : _ENCAPSULATION + 8] == mine:
+                on_response(sample)
+
+        reception.add(reader, lambda: taker.take_all(reader, accept))
+
+    def send(self, data: bytes, sequence: int, stamp_ns: int) -> None:
+        """Send one request."""
+        self._writer.write(_joined(self._number, sequence, data))
+
+    def response(self, item: Any) -> tuple[bytes, int, int]:
+        """Return the answer's bytes, its request's sequence number and its source stamp."""
+        _, sequence, data = _split(item.data)
+        return data, sequence, item.source_ns
+
+    def close(self) -> None:
+        """Delete reader and writer."""
+        self._on_close()
+        self._writer.close()
+
+
+def _joined(client: int, sequence: int, data: bytes) -> list[Any]:
+    return [data[:_ENCAPSULATION], _HEADER.pack(client, sequence), data[_ENCAPSULATION:]]
+
+
+def _split(data: bytes) -> tuple[int, int, bytes]:
+    """Return (client, sequence, message) of a request or reply."""
+    if len(data) < _ENCAPSULATION + _HEADER.size:
+        raise CdrError(f"{len(data)} bytes are no request or reply: the header takes {_HEADER.size}")
+    client, sequence = _HEADER.unpack_from(data, _ENCAPSULATION)
+    return client, sequence, data[:_ENCAPSULATION] + data[_ENCAPSULATION + _HEADER.size :]
