@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 
 from daidalos.description.link import Plugin as PluginDescription
 from daidalos.description.link import Sensor as SensorDescription
-from daidalos.description.world import Model
+from daidalos.description.world import Model, World
 from daidalos.simulation.component import Component, Setting
 from daidalos.simulation.plugins.base import Parameters, SensorPlugin
 from daidalos.simulation.registry import is_built_in, plugin_class, sensor_class
@@ -38,6 +38,13 @@ def make_components(model: Model, setting: Callable[[str], Setting]) -> list[Com
     for link, joint, sensor in _sensors(model):
         components += _sensor(sensor, link, joint, setting(f"{joint or link}::{sensor.name}"))
     return components
+
+
+def check_world_plugins(world: World, warn: Callable[[str], None]) -> None:
+    """Warn of a world's plugins that are not known; those that are, are built in."""
+    for plugin in world.plugins:
+        if not is_built_in(plugin.filename):
+            warn(_unknown(plugin))
 
 
 def _plugin(plugin: PluginDescription, setting: Setting) -> Iterator[Component]:

@@ -52,6 +52,22 @@ class Subscription:
     take: Callable[[Any], None]
 
 
+@dataclass(frozen=True)
+class Switch:
+    """A service that turns something on or off.
+
+    Parameters
+    ----------
+    take : callable
+        Takes on or off.
+    fixed : bool or None
+        What a service without an argument means; None for one that is told.
+    """
+
+    take: Callable[[bool], None]
+    fixed: bool | None = None
+
+
 class Component:
     """Something that acts when it is due and may say something then.
 
@@ -95,4 +111,9 @@ class Component:
     @property
     def subscriptions(self) -> Mapping[str, Subscription]:
         """Topics that it takes commands from."""
+        return {}
+
+    @property
+    def switches(self) -> Mapping[str, Switch]:
+        """Services that it offers, by absolute name."""
         return {}

@@ -9,6 +9,7 @@ import mujoco
 
 from daidalos.simulation.conversion.build import GeomInfo
 from daidalos.simulation.errors import SimulationError
+from daidalos.simulation.forces import Forces
 from daidalos.simulation.stage import Stage
 
 _DIVERGED = (
@@ -30,6 +31,8 @@ class Physics:
         Tells whether anyone listens to a topic.
     stage : Stage
         What cameras see.
+    forces : Forces
+        What pushes from outside.
     """
 
     def __init__(
@@ -39,12 +42,14 @@ class Physics:
         geoms: Mapping[int, tuple[str, GeomInfo]],
         heard: Callable[[str], bool],
         stage: Stage,
+        forces: Forces,
     ) -> None:
         self.model = model
         self.data = data
         self.geoms = geoms
         self.heard = heard
         self.stage = stage
+        self.forces = forces
         self.changed()
 
     def step(self, count: int) -> None:
@@ -66,6 +71,11 @@ class Physics:
                     f"the physics diverged at {self.data.time:.3f} s, first in {body}; "
                     "look at its inertia, limits and gains"
                 )
+
+    def wake(self) -> None:
+        """Wake everything that sleeps: MuJoCo wakes what is given a speed."""
+        asleep = self.data.tree_asleep >= 0
+        self.data.qvel[asleep[self.model.dof_treeid]] = 1e-9
 
     def changed(self) -> None:
         """Note that the state changed: what derives from it is out of date."""

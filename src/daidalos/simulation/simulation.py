@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import hashlib
 import logging
+import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
@@ -17,18 +18,21 @@ from numpy.typing import NDArray
 from daidalos.description.actors import actor_pose
 from daidalos.description.gazebo import model_from_robot
 from daidalos.description.joint import Joint
-from daidalos.description.pose import Pose
+from daidalos.description.link import Surface
+from daidalos.description.pose import Pose, Vector
 from daidalos.description.robot import Robot
 from daidalos.description.world import Actor, Model, World
 from daidalos.simulation.actors import ActorMotion
-from daidalos.simulation.assembly import make_components
+from daidalos.simulation.assembly import check_world_plugins, make_components
 from daidalos.simulation.component import Component, Setting
 from daidalos.simulation.contacts import Contact, ContactMonitor, read_contacts
 from daidalos.simulation.conversion.assets import Assets
 from daidalos.simulation.conversion.build import add_model
+from daidalos.simulation.conversion.contact import set_friction
 from daidalos.simulation.conversion.couplings import close_loop
 from daidalos.simulation.conversion.options import physics_step, set_options
 from daidalos.simulation.errors import NameTakenError, SimulationError, UnknownNameError
+from daidalos.simulation.forces import Forces, JointPush, Push
 from daidalos.simulation.instance import Instance, JointView
 from daidalos.simulation.physics import Physics
 from daidalos.simulation.samples import Sample
@@ -50,6 +54,7 @@ class State:
     compilation: int
     clocks: Mapping[int, tuple[int, int, int]]
     memories: tuple[tuple[Any, Any], ...]
+    pushes: tuple[Push | JointPush, ...]
 
 
 class Simulation:
@@ -90,6 +95,7 @@ class Simulation:
         self.heard = heard
         self._warn_user = _log.warning if warn is None else warn
         self.stage = Stage(self.world, self._warn)
+        self.forces = Forces()
         self._instances: dict[str, Instance] = {}
         self._schedule = Schedule()
         self._monitors: list[ContactMonitor] = []
@@ -102,6 +108,7 @@ class Simulation:
         set_options(self._spec, self.world, self.step_ns / substeps * 1e-9)
         for line in self.world.warnings:
             self._warn(line)
+        check_world_plugins(self.world, self._warn)
         self._compile_first()
 
     @property
@@ -220,9 +227,90 @@ class Simulation:
         self.instance(model).set_velocity(linear, angular)
         self._physics.changed()
 
+    def push(
+        self,
+        model: str,
+        link: str | None = None,
+        force: Vector = (0.0, 0.0, 0.0),
+        torque: Vector = (0.0, 0.0, 0.0),
+        point: Vector = (0.0, 0.0, 0.0),
+        delay_ns: int = 0,
+        duration_ns: int | None = None,
+        follows: bool = False,
+    ) -> None:
+        """Push a link for a time.
+
+        Parameters
+        ----------
+        model : str
+        link : str or None
+            None takes the model's first link.
+        force, torque : tuple of 3 floats
+            In world axes, or in the link's when it `follows` that [N, N m].
+        point : tuple of 3 floats
+            Where the force acts, in the link's frame [m].
+        delay_ns : int
+            From now until it begins.
+        duration_ns : int or None
+            How long; None is until `stop_pushing`.
+        follows : bool
+
+        Raises
+        ------
+        UnknownNameError
+        """
+        instance = self.instance(model)
+        link = link or next(iter(instance.model.links))
+        instance.link(link)
+        self.forces.add(Push(model, link, force, torque, point, *self._span(delay_ns, duration_ns), follows))
+
+    def push_joint(
+        self, model: str, joint: str, effort: float, delay_ns: int = 0, duration_ns: int | None = None
+    ) -> None:
+        """Put an effort [N m, N] on a joint for a time; see `push`."""
+        self.joint(model, joint)
+        self.forces.add(JointPush(model, joint, effort, *self._span(delay_ns, duration_ns)))
+
+    def stop_pushing(self, model: str, part: str) -> None:
+        """End all pushes on a link or joint of a model."""
+        mine = (model, part)
+        kept = [p for p in self.forces.pushes if (p.model, p.joint if isinstance(p, JointPush) else p.link) != mine]
+        self.forces.clear(keep=kept)
+
     def joint(self, model: str, joint: str) -> JointView:
         """Return a view on a joint: its position, velocity and effort."""
         return self.instance(model).joint(joint)
+
+    # The world
+
+    @property
+    def gravity(self) -> Vector:
+        """[m/s^2]."""
+        x, y, z = (float(value) for value in self._physics.model.opt.gravity)
+        return x, y, z
+
+    @gravity.setter
+    def gravity(self, gravity: Vector) -> None:
+        self._physics.model.opt.gravity[:] = gravity
+        self._spec.option.gravity = list(gravity)
+        self._physics.wake()
+        self._physics.changed()
+
+    def set_friction(self, model: str, friction: float, link: str | None = None) -> None:
+        """Change the friction of a model's collisions, or of those of one of its links.
+
+        Raises
+        ------
+        UnknownNameError
+        """
+        instance = self.instance(model)
+        if link is not None:
+            instance.link(link)
+        surface = Surface(mu=friction, mu2=friction)
+        for name, info in instance.build.geoms.items():
+            if link is None or info.link == link:
+                set_friction(self._spec.geom(name), surface)
+        self._recompile()
 
     # Time
 
@@ -298,7 +386,7 @@ class Simulation:
         )
         # All of MuJoCo's data, since sleeping models are no part of its smaller states.
         physics = copy.copy(self._physics.data)
-        return State(self.time_ns, physics, self._compilations, self._schedule.save(), memories)
+        return State(self.time_ns, physics, self._compilations, self._schedule.save(), memories, self.forces.pushes)
 
     def restore(self, state: State) -> None:
         """Go back to a saved state, bit for bit.
@@ -316,12 +404,14 @@ class Simulation:
             component.random.bit_generator.state = copy.deepcopy(random)
         self._schedule.restore(dict(state.clocks))
         self.time_ns = self._goal_ns = state.time_ns
+        self.forces.clear(keep=state.pushes)
         self._physics.changed()
 
     def reset(self) -> None:
         """Put every model back to where it came in, at time zero, with fresh sensors and plugins."""
         mujoco.mj_resetData(self._physics.model, self._physics.data)
         self.time_ns = self._goal_ns = 0
+        self.forces.clear()
         self._physics.changed()
         self._schedule.restart(0)
         for instance in self._instances.values():
@@ -331,6 +421,10 @@ class Simulation:
                 component.memory = component.start()
 
     # Inside
+
+    def _span(self, delay_ns: int, duration_ns: int | None) -> tuple[float, float]:
+        start = self.time_ns + max(0, delay_ns)
+        return start, math.inf if duration_ns is None else start + duration_ns
 
     def _add(self, model: Model, pose: Pose, namespace: str, actor: Actor | None = None) -> Instance:
         if model.name in self._instances:
@@ -388,7 +482,8 @@ class Simulation:
             for instance in self._instances.values()
             for geom, info in instance.build.geoms.items()
         }
-        self._physics = Physics(model, data, geoms, self._is_heard, self.stage)
+        self._physics = Physics(model, data, geoms, self._is_heard, self.stage, self.forces)
+        self.forces.bind(self._instances)
         for instance in self._instances.values():
             instance.bind(self._physics)
         self.stage.bind(self._instances.values())
@@ -421,6 +516,10 @@ class Simulation:
             count = max(1, min(-(-(until_ns - self.time_ns) // substep_ns), (goal_ns - self.time_ns) // substep_ns))
             if self._monitors:
                 count = min(count, max(1, _MONITOR_PERIOD_NS // substep_ns))
+            if self.forces.pushes:
+                change_ns = self.forces.next_change(self.time_ns)
+                count = 1 if change_ns <= self.time_ns + count * substep_ns else count
+            self.forces.apply(self._physics, self.time_ns)
             self._physics.step(count)
             self.time_ns += count * substep_ns
             for monitor in self._monitors:

@@ -37,11 +37,16 @@ def set_surface(geom: Any, surface: Surface) -> None:
     surface : Surface
         Two directions of friction become their mean, since a geom has only one coefficient.
     """
-    friction = friction_of(surface)
-    geom.priority = round(1000 * (MAX_FRICTION - friction))
+    set_friction(geom, surface)
     geom.solref[:2] = _bouncing(surface.restitution) if surface.restitution > 0 else SOLREF
     geom.solmix = BOUNCING_WEIGHT if surface.restitution > 0 else 1.0
     geom.margin = 0.0
+
+
+def set_friction(geom: Any, surface: Surface) -> None:
+    """Set a geom's friction alone."""
+    friction = friction_of(surface)
+    geom.priority = round(1000 * (MAX_FRICTION - friction))
     if friction < _FRICTIONLESS:
         geom.condim = 1
         return
