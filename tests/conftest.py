@@ -1,11 +1,13 @@
 """Fixtures that every test may use."""
 
+import itertools
 import os
 from pathlib import Path
 
 import pytest
 
 REPOSITORY = Path(__file__).resolve().parent.parent
+_numbers = itertools.count(os.getpid())
 
 
 @pytest.fixture(scope="session")
@@ -15,3 +17,9 @@ def shared_data() -> Path:
     if not folder.is_dir():
         pytest.skip(f"no shared data at {folder}; set DAIDALOS_SHARED_DATA")
     return folder
+
+
+@pytest.fixture
+def domain() -> int:
+    """A ROS domain in which most likely nobody else is."""
+    return 100 + next(_numbers) % 100
