@@ -1,0 +1,27 @@
+"""`fibonacci_action_server`: computes numbers of Fibonacci's sequence."""
+
+from __future__ import annotations
+
+import sys
+from typing import Any
+
+from daidalos.nodes.fibonacci import FibonacciServer
+from daidalos.nodes.runner import run
+
+
+class FibonacciActionServer(FibonacciServer):
+    """Serves ``action_tutorials_interfaces/action/Fibonacci``."""
+
+    def __init__(self, **kwargs: Any) -> None:
+        from action_tutorials_interfaces.action import Fibonacci
+
+        super().__init__("fibonacci_action_server", Fibonacci, "partial_sequence", "Feedback: {}", **kwargs)
+
+
+def main() -> int:
+    """Run the node."""
+    return run(FibonacciActionServer)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

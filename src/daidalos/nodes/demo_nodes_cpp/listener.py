@@ -1,0 +1,25 @@
+"""`listener`: hears what is published on ``chatter``."""
+
+from __future__ import annotations
+
+import sys
+from typing import Any
+
+from daidalos.nodes.hello_world import HelloListener
+from daidalos.nodes.runner import run
+
+
+class Listener(HelloListener):
+    """Logs each sentence."""
+
+    def __init__(self, **kwargs: Any) -> None:
+        super().__init__("listener", "chatter", "I heard: [{}]", **kwargs)
+
+
+def main() -> int:
+    """Run the node."""
+    return run(Listener)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

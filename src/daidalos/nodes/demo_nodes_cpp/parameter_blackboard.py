@@ -1,0 +1,36 @@
+"""`parameter_blackboard`: keeps whatever parameters others set."""
+
+from __future__ import annotations
+
+import sys
+from typing import Any
+
+from rclpy.node import Node
+
+from daidalos.nodes.runner import run
+
+
+class ParameterBlackboard(Node):
+    """Lets every parameter be set, declared or not."""
+
+    def __init__(self, **kwargs: Any) -> None:
+        super().__init__(
+            "parameter_blackboard",
+            allow_undeclared_parameters=True,
+            automatically_declare_parameters_from_overrides=True,
+            **kwargs,
+        )
+        count = len(self.get_parameters_by_prefix(""))
+        self.get_logger().info(
+            f"Parameter blackboard node named '{self.get_fully_qualified_name()}' ready, and serving "
+            f"'{count}' parameters already!"
+        )
+
+
+def main() -> int:
+    """Run the node."""
+    return run(ParameterBlackboard)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,25 @@
+"""`add_two_ints_server`: adds."""
+
+from __future__ import annotations
+
+import sys
+from typing import Any
+
+from daidalos.nodes.hello_world import Adder
+from daidalos.nodes.runner import run
+
+
+class AddTwoIntsServer(Adder):
+    """Serves ``add_two_ints``."""
+
+    def __init__(self, **kwargs: Any) -> None:
+        super().__init__("add_two_ints_server", **kwargs)
+
+
+def main() -> int:
+    """Run the node."""
+    return run(AddTwoIntsServer)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,33 @@
+"""`introspection_service`: adds, and tells who asks what on ``add_two_ints/_service_event``."""
+
+from __future__ import annotations
+
+import sys
+from typing import Any
+
+from daidalos.nodes.demo_nodes_py._introspection import follow_parameter
+from daidalos.nodes.hello_world import Adder
+from daidalos.nodes.runner import run
+
+
+class IntrospectionService(Adder):
+    """Serves ``add_two_ints``; ``service_configure_introspection`` says how much is told."""
+
+    def __init__(self, **kwargs: Any) -> None:
+        super().__init__("introspection_service", **kwargs)
+        from rclpy.qos import qos_profile_system_default
+
+        follow_parameter(
+            self,
+            "service_configure_introspection",
+            lambda state: self.adding.configure_introspection(self.get_clock(), qos_profile_system_default, state),
+        )
+
+
+def main() -> int:
+    """Run the node."""
+    return run(IntrospectionService)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

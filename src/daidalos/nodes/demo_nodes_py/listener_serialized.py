@@ -1,0 +1,25 @@
+"""`listener_serialized`: hears the bytes that are published on ``chatter``."""
+
+from __future__ import annotations
+
+import sys
+from typing import Any
+
+from daidalos.nodes.hello_world import HelloListener
+from daidalos.nodes.runner import run
+
+
+class ListenerSerialized(HelloListener):
+    """Logs each message as its bytes."""
+
+    def __init__(self, **kwargs: Any) -> None:
+        super().__init__("serialized_subscriber", "chatter", 'I heard: "{}"', raw=True, **kwargs)
+
+
+def main() -> int:
+    """Run the node."""
+    return run(ListenerSerialized)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

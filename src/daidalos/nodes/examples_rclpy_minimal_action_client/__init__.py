@@ -1,0 +1,3 @@
+"""The smallest action clients."""
+
+EXECUTABLES = {"client": "client", "client_asyncio": "client", "client_not_composable": "client"}

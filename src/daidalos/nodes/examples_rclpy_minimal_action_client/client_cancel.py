@@ -1,0 +1,40 @@
+"""`client_cancel`: sends a goal and cancels it after a while."""
+
+from __future__ import annotations
+
+import sys
+from typing import Any
+
+from daidalos.nodes.examples_rclpy_minimal_action_client.client import ORDER, MinimalActionClient
+from daidalos.nodes.fibonacci import run_client
+from daidalos.nodes.runner import run_program
+
+_PATIENCE_S = 2.0
+
+
+class CancellingActionClient(MinimalActionClient):
+    """Cancels its goal."""
+
+    def on_accepted(self, goal_handle: Any) -> None:
+        """Wait, then cancel."""
+
+        def cancel() -> None:
+            self.destroy_timer(timer)
+            self.get_logger().info("Canceling goal")
+            goal_handle.cancel_goal_async().add_done_callback(lambda answer: self._on_cancelled(answer.result()))
+
+        timer = self.create_timer(_PATIENCE_S, cancel)
+
+    def _on_cancelled(self, answer: Any) -> None:
+        cancelled = bool(answer.goals_canceling)
+        self.get_logger().info("Goal successfully canceled" if cancelled else "Goal failed to cancel")
+        self.over()
+
+
+def main() -> int:
+    """Ask for ten, and lose patience."""
+    return run_program(lambda: run_client(CancellingActionClient, ORDER, talkative=True))
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,34 @@
+"""`server_defer`: begins with a goal some time after it was accepted."""
+
+from __future__ import annotations
+
+import sys
+from typing import Any
+
+from daidalos.nodes.examples_rclpy_minimal_action_server.server import MinimalActionServer
+from daidalos.nodes.runner import run
+
+_DELAY_S = 3.0
+
+
+class DeferringActionServer(MinimalActionServer):
+    """Lets each goal wait."""
+
+    def on_accepted(self, goal_handle: Any) -> None:
+        """Begin later."""
+        self.get_logger().info("Deferring execution...")
+
+        def begin() -> None:
+            self.destroy_timer(timer)
+            goal_handle.execute()
+
+        timer = self.create_timer(_DELAY_S, begin)
+
+
+def main() -> int:
+    """Run the node."""
+    return run(DeferringActionServer)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,24 @@
+"""Asks what 41 and 1 are."""
+
+import sys
+
+from daidalos.nodes.hello_world import ask_for_sum
+from daidalos.nodes.runner import run_program
+
+_A, _B = 41, 1
+
+
+def main() -> int:
+    """Ask, and log the answer."""
+    return run_program(
+        lambda: ask_for_sum(
+            "minimal_client",
+            _A,
+            _B,
+            lambda node, total: node.get_logger().info(f"Result of add_two_ints: for {_A} + {_B} = {total}"),
+        )
+    )
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,25 @@
+"""Publishes on ``topic`` twice a second."""
+
+from __future__ import annotations
+
+import sys
+from typing import Any
+
+from daidalos.nodes.hello_world import HelloTalker
+from daidalos.nodes.runner import run
+
+
+class MinimalPublisher(HelloTalker):
+    """Publishes a sentence every half second."""
+
+    def __init__(self, **kwargs: Any) -> None:
+        super().__init__("minimal_publisher", "topic", 0.5, 'Publishing: "{}"', **kwargs)
+
+
+def main() -> int:
+    """Run the node."""
+    return run(MinimalPublisher)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,25 @@
+"""Hears what is published on ``topic``."""
+
+from __future__ import annotations
+
+import sys
+from typing import Any
+
+from daidalos.nodes.hello_world import HelloListener
+from daidalos.nodes.runner import run
+
+
+class MinimalSubscriber(HelloListener):
+    """Logs each sentence."""
+
+    def __init__(self, **kwargs: Any) -> None:
+        super().__init__("minimal_subscriber", "topic", 'I heard: "{}"', **kwargs)
+
+
+def main() -> int:
+    """Run the node."""
+    return run(MinimalSubscriber)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
