@@ -50,7 +50,7 @@ def _costmap() -> Costmap:
 
 
 def _plan(costmap: Costmap) -> None:
-    start, goal, walled = (np.array([x, y, 0.0]) for x, y in ((1.0, 2.0), (3.0, 2.0), (1.0, 0.1)))
+    start, goal, walled = (np.array([x, y, 0.0]) for x, y in ((1.0, 2.0), (3.0, 2.0), (1.0, 0.18)))
     planner = NavfnPlanner()
     path = planner.create_plan(costmap, start, goal)
     planner.create_plan(costmap, walled, goal)

@@ -196,7 +196,7 @@ def _print_table(report: TrialReport, used: Load) -> None:
     console.print(f"contacts: {report.contacts}" + "".join(f"\n  {name}" for name in report.contact_names))
     if report.map is not None:
         shares = f"{report.map.walls_found:.1%} of the walls found, {report.map.walls_true:.1%} of the found are walls"
-        console.print(f"map: {report.map.width} x {report.map.height} cells of {report.map.resolution_m} m, {shares}")
+        console.print(f"map: {report.map.width} x {report.map.height} cells of {report.map.resolution_m:g} m, {shares}")
     console.print(
         f"localization: {1000 * report.localization_rmse_m:.0f} mm rms, "
         f"real-time factor {report.real_time_factor:.2f}, {used.cpu_percent:.0f} % of a core, "
