@@ -321,6 +321,31 @@ class JointStateSample(Sample):
 
 
 @dataclass(frozen=True, eq=False)
+class FlagSample(Sample):
+    """Whether something holds."""
+
+    value: bool
+
+
+@dataclass(frozen=True, eq=False)
+class WheelSlipSample(Sample):
+    """How wheels slip, arrays (n,).
+
+    Parameters
+    ----------
+    names : tuple of n strings
+    lateral : array (n,)
+        Between where each points and where it goes [rad].
+    longitudinal : array (n,)
+        Slip speed over rim speed.
+    """
+
+    names: tuple[str, ...]
+    lateral: Array
+    longitudinal: Array
+
+
+@dataclass(frozen=True, eq=False)
 class TwistCommand:
     """A wanted velocity in the frame of the base.
 
@@ -332,3 +357,36 @@ class TwistCommand:
 
     linear: Array = field(default_factory=lambda: np.zeros(3))
     angular: Array = field(default_factory=lambda: np.zeros(3))
+
+
+@dataclass(frozen=True, eq=False)
+class WrenchCommand:
+    """A wanted force (3,) [N] and torque (3,) [N m]."""
+
+    force: Array = field(default_factory=lambda: np.zeros(3))
+    torque: Array = field(default_factory=lambda: np.zeros(3))
+
+
+@dataclass(frozen=True, eq=False)
+class NumberCommand:
+    """A wanted position, speed or effort of one joint."""
+
+    value: float = 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class TrajectoryCommand:
+    """Positions of joints over time.
+
+    Parameters
+    ----------
+    joints : tuple of n strings
+    times : array (k,)
+        From the start [s].
+    positions : array (k, n)
+        [rad, m].
+    """
+
+    joints: tuple[str, ...]
+    times: Array
+    positions: Array

@@ -24,7 +24,7 @@ from daidalos.description.robot import Robot
 from daidalos.description.world import Actor, Model, World
 from daidalos.simulation.actors import ActorMotion
 from daidalos.simulation.assembly import check_world_plugins, make_components
-from daidalos.simulation.component import Component, Setting
+from daidalos.simulation.component import Component, Setting, Switch
 from daidalos.simulation.contacts import Contact, ContactMonitor, read_contacts
 from daidalos.simulation.conversion.assets import Assets
 from daidalos.simulation.conversion.build import add_model
@@ -358,6 +358,11 @@ class Simulation:
     def subscriptions(self) -> dict[str, type]:
         """Topics that commands are taken from, with their classes."""
         return {topic: sub.type for c in self._components() for topic, sub in c.subscriptions.items()}
+
+    @property
+    def switches(self) -> dict[str, Switch]:
+        """Services that plugins offer."""
+        return {name: switch for c in self._components() for name, switch in c.switches.items()}
 
     # State
 

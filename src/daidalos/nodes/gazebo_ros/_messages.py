@@ -6,7 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from daidalos.nodes.gazebo_ros._conversion import Incoming, Outgoing, floats, header, quaternion, vector
+from daidalos.nodes.conversions import seconds
+from daidalos.nodes.gazebo_ros._conversion import Incoming, Outgoing, floats, header, named, quaternion, vector
 from daidalos.nodes.gazebo_ros._image_messages import IMAGES
 from daidalos.nodes.gazebo_ros._sensor_messages import SENSORS
 from daidalos.simulation import samples
@@ -108,15 +109,31 @@ def _joint_state(sample: samples.JointStateSample) -> Any:
     )
 
 
-def _twist_type() -> Any:
-    from geometry_msgs.msg import Twist
-
-    return Twist
-
-
 def _twist(message: Any) -> samples.TwistCommand:
     linear, angular = message.linear, message.angular
     return samples.TwistCommand(np.array([linear.x, linear.y, linear.z]), np.array([angular.x, angular.y, angular.z]))
+
+
+_trajectory_type = named("trajectory_msgs", "JointTrajectory")
+
+
+def _wrench(message: Any) -> samples.WrenchCommand:
+    force, torque = message.force, message.torque
+    return samples.WrenchCommand(np.array([force.x, force.y, force.z]), np.array([torque.x, torque.y, torque.z]))
+
+
+def _number(message: Any) -> samples.NumberCommand:
+    return samples.NumberCommand(float(message.data))
+
+
+def _trajectory(message: Any) -> samples.TrajectoryCommand:
+    count = len(message.joint_names)
+    points = [point for point in message.points if len(point.positions) == count]
+    return samples.TrajectoryCommand(
+        tuple(message.joint_names),
+        np.array([seconds(point.time_from_start) for point in points]),
+        np.array([list(point.positions) for point in points]).reshape(-1, count),
+    )
 
 
 OUTGOING: dict[type[samples.Sample], Outgoing] = {
@@ -129,5 +146,8 @@ OUTGOING: dict[type[samples.Sample], Outgoing] = {
     samples.JointStateSample: Outgoing(_joint_state_type, _joint_state),
 }
 INCOMING: dict[type, Incoming] = {
-    samples.TwistCommand: Incoming(_twist_type, _twist),
+    samples.TwistCommand: Incoming(named("geometry_msgs", "Twist"), _twist),
+    samples.WrenchCommand: Incoming(named("geometry_msgs", "Wrench"), _wrench),
+    samples.NumberCommand: Incoming(named("std_msgs", "Float64"), _number),
+    samples.TrajectoryCommand: Incoming(_trajectory_type, _trajectory),
 }

@@ -17,6 +17,8 @@ _altimeter_type = named("ros_gz_interfaces", "Altimeter")
 _wrench_type = named("geometry_msgs", "WrenchStamped")
 _contacts_type = named("ros_gz_interfaces", "Contacts")
 _bumper_type = named("gazebo_msgs", "ContactsState")
+_flag_type = named("std_msgs", "Bool")
+_wheel_slip_type = named("gazebo_msgs", "WheelSlip")
 
 
 def _range(sample: samples.RangeSample) -> Any:
@@ -120,6 +122,16 @@ def _bumper(sample: samples.BumperSample) -> Any:
     return _bumper_type()(header=header(sample), states=states)
 
 
+def _flag(sample: samples.FlagSample) -> Any:
+    return _flag_type()(data=sample.value)
+
+
+def _wheel_slip(sample: samples.WheelSlipSample) -> Any:
+    return _wheel_slip_type()(
+        name=list(sample.names), lateral_slip=sample.lateral.tolist(), longitudinal_slip=sample.longitudinal.tolist()
+    )
+
+
 SENSORS: dict[type[samples.Sample], Outgoing] = {
     samples.RangeSample: Outgoing(_range_type, _range),
     samples.NavSatSample: Outgoing(_navsat_type, _navsat),
@@ -129,4 +141,6 @@ SENSORS: dict[type[samples.Sample], Outgoing] = {
     samples.WrenchSample: Outgoing(_wrench_type, _wrench),
     samples.ContactsSample: Outgoing(_contacts_type, _contacts),
     samples.BumperSample: Outgoing(_bumper_type, _bumper),
+    samples.FlagSample: Outgoing(_flag_type, _flag),
+    samples.WheelSlipSample: Outgoing(_wheel_slip_type, _wheel_slip),
 }

@@ -112,6 +112,30 @@ class ModelBuild:
             actuator.forcerange = [-torque, torque]
         return str(actuator.name)
 
+    def add_position_servo(self, joint: str, stiffness: float, damping: float, effort: float) -> str:
+        """Add an actuator that holds a joint's position, and return its name.
+
+        Parameters
+        ----------
+        joint : str
+        stiffness, damping : float
+            Effort per error of position and of speed.
+        effort : float
+            The largest; infinite for no limit.
+        """
+        if not self.joints.get(joint):
+            raise UnknownNameError("movable joint", joint, [n for n, added in self.joints.items() if added])
+        actuator = self.spec.add_actuator(
+            name=f"{self.scoped(joint)}::position",
+            trntype=mujoco.mjtTrn.mjTRN_JOINT,
+            target=self.joints[joint][0],
+        )
+        actuator.set_to_position(kp=stiffness, kv=damping)
+        if effort != float("inf"):
+            actuator.forcelimited = mujoco.mjtLimited.mjLIMITED_TRUE
+            actuator.forcerange = [-effort, effort]
+        return str(actuator.name)
+
     def keep_awake(self) -> None:
         """Simulate the model even while it rests, since somebody measures it."""
         for body in self.trees:

@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daidalos.description.link import Plugin as Description
-from daidalos.description.pose import rotate
 from daidalos.simulation.component import Setting, Subscription
 from daidalos.simulation.conversion.build import ModelBuild
 from daidalos.simulation.instance import Instance, JointView, LinkView
@@ -21,6 +20,7 @@ from daidalos.simulation.odometry import (
 )
 from daidalos.simulation.plugins.base import Plugin
 from daidalos.simulation.plugins.diff_drive_settings import read_settings
+from daidalos.simulation.plugins.truth import true_odometry
 from daidalos.simulation.samples import (
     JointStateSample,
     OdometrySample,
@@ -64,9 +64,9 @@ class Motion:
 
 
 class DiffDrive(Plugin):
-    """``libgazebo_ros_diff_drive.so`` of ROS 1 and 2, and gz's DiffDrive system."""
+    """``libgazebo_ros_diff_drive.so`` of ROS 1 and 2, ROS 1's skid steer drive, and gz's DiffDrive system."""
 
-    names = ("gazebo_ros_diff_drive", "gz-sim-diff-drive-system")
+    names = ("gazebo_ros_diff_drive", "gazebo_ros_skid_steer_drive", "gz-sim-diff-drive-system")
     memory: Motion
 
     def __init__(self, description: Description, setting: Setting) -> None:
@@ -179,16 +179,8 @@ class DiffDrive(Plugin):
         )
 
     def _true_odometry(self, now_ns: int) -> OdometrySample:
-        pose = self._base.pose
-        linear, angular = self._base.velocity()
-        back = pose.inverse.orientation
-        return self._sample(
-            now_ns,
-            np.array(pose.position),
-            np.array(pose.orientation),
-            np.array(rotate(back, tuple(linear))),
-            np.array(rotate(back, tuple(angular))),
-        )
+        s = self.settings
+        return true_odometry(self._base, now_ns, s.odometry_topic, s.odometry_frame, s.base_frame, s.covariance)
 
     def _sample(
         self, now_ns: int, position: Array, orientation: Array, linear: Array, angular: Array

@@ -85,8 +85,11 @@ def read_settings(parameters: Parameters, setting: Setting) -> Settings:
     DescriptionError
         When one is missing or makes no sense.
     """
-    read = _read_gz if parameters.library.startswith("gz-sim-") else _read_classic
-    return read(parameters, setting)
+    if parameters.library.startswith("gz-sim-"):
+        return _read_gz(parameters, setting)
+    if parameters.library == "gazebo_ros_skid_steer_drive":
+        return _read_skid_steer(parameters)
+    return _read_classic(parameters, setting)
 
 
 def _read_classic(parameters: Parameters, setting: Setting) -> Settings:
@@ -136,6 +139,40 @@ def _read_classic(parameters: Parameters, setting: Setting) -> Settings:
             element.number_of("covariance_x", default=1e-5),
             element.number_of("covariance_y", default=1e-5),
             element.number_of("covariance_yaw", default=1e-3),
+        ),
+    )
+
+
+def _read_skid_steer(parameters: Parameters) -> Settings:
+    """Read the parameters of ROS 1's skid steer drive, whose odometry is the truth: its wheels have to slip."""
+    element = parameters.element
+    joints = {
+        place: element.text_of(f"{place}Joint", default=f"{words}_joint")
+        for place, words in (
+            *(("leftFront", "left_front"), ("leftRear", "left_rear")),
+            *(("rightFront", "right_front"), ("rightRear", "right_rear")),
+        )
+    }
+    rate = element.number_of("updateRate", default=100.0)
+    publishes_tf = element.flag_of("broadcastTF", default=True)
+    return Settings(
+        left=tuple(parameters.scoped(joints[place]) for place in ("leftFront", "leftRear")),
+        right=tuple(parameters.scoped(joints[place]) for place in ("rightFront", "rightRear")),
+        separation=_positive(parameters, 0.4, "wheelSeparation"),
+        diameter=_positive(parameters, 0.15, "wheelDiameter"),
+        torque=_positive(parameters, 5.0, "torque"),
+        period=1.0 / rate if rate > 0 else 0.0,
+        command_topic=parameters.topic(element.text_of("commandTopic", default="cmd_vel")),
+        odometry_topic=parameters.topic(element.text_of("odometryTopic", default="odom")),
+        tf_topic=parameters.topic("/tf") if publishes_tf else "",
+        joint_topic="",
+        odometry_frame=frame(element.text_of("odometryFrame", default="odom")),
+        base_frame=frame(element.text_of("robotBaseFrame", default="base_footprint")),
+        truth=True,
+        covariance=(
+            element.number_of("covariance_x", default=1e-4),
+            element.number_of("covariance_y", default=1e-4),
+            element.number_of("covariance_yaw", default=1e-2),
         ),
     )
 

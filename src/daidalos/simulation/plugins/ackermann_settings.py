@@ -1,0 +1,150 @@
+"""What an Ackermann drive's parameters say, in Gazebo classic's and gz's names."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+from daidalos.simulation.component import Setting
+from daidalos.simulation.plugins.base import Parameters
+from daidalos.simulation.plugins.diff_drive_settings import Limits
+from daidalos.simulation.topics import absolute_topic, frame
+
+
+@dataclass(frozen=True)
+class Settings:
+    """What the plugin's parameters say.
+
+    Parameters
+    ----------
+    left, right : tuple of str
+        Driven joints on each side.
+    left_steering, right_steering, steering_wheel : str
+        Joints that turn; the last may be empty.
+    wheel_radius : float
+        [m].
+    wheel_base, track : float
+        Between the axles, and between the points about which the front wheels are steered [m]; zero is
+        measured from the model.
+    rear_track : float
+        Between the driven wheels of an axle [m].
+    steering_limit, speed_limit : float
+        [rad], [m/s].
+    steers_by_angle : bool
+        The command's angular z is the steering angle, rather than the turn rate.
+    truth : bool
+        Odometry from the true pose instead of from the wheels.
+    """
+
+    left: tuple[str, ...]
+    right: tuple[str, ...]
+    left_steering: str
+    right_steering: str
+    wheel_radius: float
+    period: float
+    command_topic: str
+    odometry_topic: str
+    tf_topic: str
+    odometry_frame: str
+    base_frame: str
+    steering_wheel: str = ""
+    steering_wheel_ratio: float = 1.0
+    wheel_base: float = 0.0
+    track: float = 0.0
+    rear_track: float = 0.0
+    steering_limit: float = math.inf
+    linear: Limits = field(default_factory=Limits)
+    steers_by_angle: bool = False
+    truth: bool = False
+
+
+def read_settings(parameters: Parameters, setting: Setting) -> Settings:
+    """Read an Ackermann drive's parameters.
+
+    Raises
+    ------
+    DescriptionError
+        When a joint is missing.
+    """
+    read = _read_gz if parameters.library.startswith("gz-sim-") else _read_classic
+    settings = read(parameters, setting)
+    joints = (*settings.left, *settings.right, settings.left_steering, settings.right_steering)
+    for joint in (*joints, *filter(None, (settings.steering_wheel,))):
+        if joint not in setting.model.joints:
+            known = ", ".join(setting.model.joints) or "none"
+            raise parameters.element.error(f"there is no joint {joint!r}; known are {known}")
+    return settings
+
+
+def _read_classic(parameters: Parameters, setting: Setting) -> Settings:
+    element = parameters.element
+
+    def joint(tag: str) -> str:
+        return parameters.scoped(element.text_of(tag))
+
+    driven = {side: (joint(f"front_{side}_joint"), joint(f"rear_{side}_joint")) for side in ("left", "right")}
+    steering = element.number_of("max_steer", default=0.6)
+    top = element.number_of("max_speed", default=20.0)
+    rate = element.number_of("update_rate", default=100.0)
+    wheel = element.text_of("steering_wheel_joint")
+    tf = element.flag_of("publish_odom_tf", default=True)
+    return Settings(
+        left=driven["left"],
+        right=driven["right"],
+        left_steering=joint("left_steering_joint"),
+        right_steering=joint("right_steering_joint"),
+        steering_wheel=parameters.scoped(wheel) if wheel else "",
+        steering_wheel_ratio=element.number_of("max_steering_angle", default=7.85) / steering,
+        wheel_radius=0.0,
+        period=1.0 / rate if rate > 0 else 0.0,
+        command_topic=parameters.topic(element.text_of("command_topic", default="cmd_vel")),
+        odometry_topic=parameters.topic("odom") if element.flag_of("publish_odom", default=True) else "",
+        tf_topic=parameters.topic("/tf") if tf else "",
+        odometry_frame=frame(element.text_of("odometry_frame", default="odom")),
+        base_frame=frame(element.text_of("robot_base_frame", default="base_link")),
+        steering_limit=steering,
+        linear=Limits(-top, top),
+        steers_by_angle=True,
+        truth=True,
+    )
+
+
+def _read_gz(parameters: Parameters, setting: Setting) -> Settings:
+    element, name = parameters.element, setting.model_name
+
+    def joints(tag: str) -> tuple[str, ...]:
+        return tuple(parameters.scoped(e.text.strip()) for e in element.all(tag))
+
+    if not joints("left_joint") or not joints("right_joint"):
+        raise element.error("<left_joint> and <right_joint> are needed")
+    rate = element.number_of("odom_publish_frequency", default=50.0)
+    base = next(iter(setting.model.links), "base_link")
+    default = {"topic": "cmd_vel", "odom_topic": "odometry", "tf_topic": "tf"}
+    topics = {
+        tag: absolute_topic(element.text_of(tag, default=f"/model/{name}/{word}"), setting.namespace)
+        for tag, word in default.items()
+    }
+    track = element.number_of("kingpin_width", default=0.8)
+    return Settings(
+        left=joints("left_joint"),
+        right=joints("right_joint"),
+        left_steering=parameters.scoped(element.text_of("left_steering_joint")),
+        right_steering=parameters.scoped(element.text_of("right_steering_joint")),
+        wheel_radius=element.number_of("wheel_radius", default=0.2),
+        wheel_base=element.number_of("wheel_base", default=1.0),
+        track=track,
+        rear_track=element.number_of("wheel_separation", default=1.0),
+        period=1.0 / rate if rate > 0 else 0.0,
+        command_topic=topics["topic"],
+        odometry_topic=topics["odom_topic"],
+        tf_topic=topics["tf_topic"],
+        odometry_frame=frame(element.text_of("frame_id", default=f"{name}/odom")),
+        base_frame=frame(element.text_of("child_frame_id", default=f"{name}/{base}")),
+        steering_limit=element.number_of("steering_limit", default=0.5),
+        linear=Limits(
+            element.number_of("min_velocity", default=-math.inf),
+            element.number_of("max_velocity", default=math.inf),
+            element.number_of("min_acceleration", default=-math.inf),
+            element.number_of("max_acceleration", default=math.inf),
+        ),
+    )

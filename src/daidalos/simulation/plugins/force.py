@@ -1,0 +1,54 @@
+"""Force: a wrench on a link, from a topic, until the next one comes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+import numpy as np
+
+from daidalos.description.link import Plugin as Description
+from daidalos.description.pose import rotation_matrix
+from daidalos.simulation.component import Setting, Subscription
+from daidalos.simulation.instance import Instance
+from daidalos.simulation.plugins.base import Plugin
+from daidalos.simulation.samples import Sample, WrenchCommand
+
+
+class Force(Plugin):
+    """``libgazebo_ros_force.so`` of ROS 1 and 2."""
+
+    names = ("gazebo_ros_force",)
+    memory: WrenchCommand
+
+    def __init__(self, description: Description, setting: Setting) -> None:
+        super().__init__(description, setting)
+        element, links = description.element, setting.model.links
+        self.link = self.parameters.scoped(element.text_of("bodyName", "body_name", "link_name"))
+        if self.link not in links:
+            raise element.error(f"<link_name> is {self.link!r}, expected one of the links {', '.join(links)}")
+        self.topic = self.parameters.topic(element.text_of("topicName", "topic_name", default="gazebo_ros_force"))
+        self.follows = element.text_of("force_frame", default="world") in ("link", "body")
+        self._key = f"{setting.model_name}::{description.name}"
+
+    @property
+    def subscriptions(self) -> Mapping[str, Subscription]:
+        """The wanted wrench."""
+        return {self.topic: Subscription(WrenchCommand, self._command)}
+
+    def bind(self, instance: Instance) -> None:
+        """Find the link."""
+        self._forces = instance.physics.forces
+        self._link = instance.link(self.link)
+
+    def start(self) -> WrenchCommand:
+        """Do not push."""
+        return WrenchCommand()
+
+    def update(self, now_ns: int) -> Iterable[Sample]:
+        """Push at the centre of mass."""
+        turn = rotation_matrix(self._link.pose.orientation) if self.follows else np.eye(3)
+        self._forces.hold(self._key, self._link.body, turn @ self.memory.force, turn @ self.memory.torque)
+        return ()
+
+    def _command(self, command: WrenchCommand) -> None:
+        self.memory = command

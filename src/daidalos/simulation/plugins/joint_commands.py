@@ -1,0 +1,128 @@
+"""Joints that follow topics: poses along a trajectory, and gz's controllers of one joint."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from daidalos.description.link import Plugin as Description
+from daidalos.simulation.component import Setting, Subscription
+from daidalos.simulation.conversion.build import ModelBuild
+from daidalos.simulation.instance import Instance
+from daidalos.simulation.plugins.base import Plugin
+from daidalos.simulation.samples import NumberCommand, Sample, TrajectoryCommand
+from daidalos.simulation.topics import absolute_topic
+
+
+@dataclass
+class Course:
+    """A trajectory that is being followed since a time."""
+
+    command: TrajectoryCommand
+    start_ns: int
+
+
+class JointPoseTrajectory(Plugin):
+    """``libgazebo_ros_joint_pose_trajectory.so``: puts joints where a trajectory says, without any force."""
+
+    names = ("gazebo_ros_joint_pose_trajectory",)
+    memory: Course | None
+
+    def __init__(self, description: Description, setting: Setting) -> None:
+        super().__init__(description, setting)
+        element = description.element
+        name = element.text_of("topicName", "topic_name", default="set_joint_trajectory")
+        self.topic = self.parameters.topic(name)
+        rate = element.number_of("updateRate", "update_rate", default=0.0)
+        self.period = 1.0 / rate if rate > 0 else 0.0
+        self._now_ns = 0
+
+    @property
+    def subscriptions(self) -> Mapping[str, Subscription]:
+        """The trajectory."""
+        return {self.topic: Subscription(TrajectoryCommand, self._command)}
+
+    def bind(self, instance: Instance) -> None:
+        """Note which joints move."""
+        self._instance = instance
+        self._joints = {name for name, added in instance.build.joints.items() if added}
+
+    def update(self, now_ns: int) -> Iterable[Sample]:
+        """Put the joints where they should be now: between two points in proportion to time."""
+        self._now_ns = now_ns
+        course = self.memory
+        if course is None:
+            return ()
+        elapsed = (now_ns - course.start_ns) * 1e-9
+        times, positions = course.command.times, course.command.positions
+        data = self._instance.physics.data
+        for column, name in enumerate(course.command.joints):
+            joint = self._instance.joint(self.parameters.scoped(name))
+            data.qpos[joint.qpos] = np.interp(elapsed, times, positions[:, column])
+            data.qvel[joint.dof] = 0.0
+        self._instance.physics.changed()
+        if elapsed >= times[-1]:
+            self.memory = None
+        return ()
+
+    def _command(self, command: TrajectoryCommand) -> None:
+        unknown = [name for name in command.joints if self.parameters.scoped(name) not in self._joints]
+        if unknown or not len(command.times):
+            words = f"there is no movable joint {unknown[0]!r}" if unknown else "it has no points"
+            self.setting.warn(f"{self.topic}: the trajectory is ignored, {words}")
+            return
+        self.memory = Course(command, self._now_ns)
+
+
+class JointController(Plugin):
+    """gz's JointController (speeds) and JointPositionController (positions): one joint, one number."""
+
+    names = ("gz-sim-joint-controller-system", "gz-sim-joint-position-controller-system")
+
+    def __init__(self, description: Description, setting: Setting) -> None:
+        super().__init__(description, setting)
+        element, joints = description.element, setting.model.joints
+        self.joint = self.parameters.scoped(element.text_of("joint_name"))
+        if self.joint not in joints:
+            known = ", ".join(joints) or "none"
+            raise element.error(f"<joint_name> is {self.joint!r}, expected one of the joints {known}")
+        self.holds_position = "position" in self.parameters.library
+        words = f"0/cmd_{'pos' if self.holds_position else 'vel'}"
+        topic = element.text_of("topic", default=f"/model/{setting.model_name}/joint/{self.joint}/{words}")
+        self.topic = absolute_topic(topic, setting.namespace)
+        self.gain = element.number_of("p_gain", default=1.0)
+        self.damping = element.number_of("d_gain", default=0.1)
+        self.effort = element.number_of("cmd_max", default=float("inf"))
+        self.initial = element.number_of("initial_position", "initial_velocity", default=0.0)
+
+    @property
+    def subscriptions(self) -> Mapping[str, Subscription]:
+        """The wanted position or speed."""
+        return {self.topic: Subscription(NumberCommand, self._command)}
+
+    def prepare(self, build: ModelBuild) -> None:
+        """Add a servo."""
+        effort = self.effort if self.effort > 0 else float("inf")
+        if self.holds_position:
+            self._servo = build.add_position_servo(self.joint, self.gain, self.damping, effort)
+        else:
+            weight = sum(link.inertial.mass for link in build.model.links.values() if link.inertial)
+            self._servo = build.add_velocity_servo(self.joint, max(self.gain, 10 * weight), effort)
+
+    def bind(self, instance: Instance) -> None:
+        """Find the servo."""
+        self._data = instance.physics.data
+        self._control = instance.actuator(self._servo)
+
+    def start(self) -> None:
+        """Begin as the description says."""
+        self._data.ctrl[self._control] = self.initial
+
+    def update(self, now_ns: int) -> Iterable[Sample]:
+        """Leave the joint to its servo."""
+        return ()
+
+    def _command(self, command: NumberCommand) -> None:
+        self._data.ctrl[self._control] = command.value

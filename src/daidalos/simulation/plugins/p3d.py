@@ -1,0 +1,120 @@
+"""True odometry of one link: Gazebo classic's p3d, gz's odometry publisher."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from daidalos.description.link import Plugin as Description
+from daidalos.description.pose import Pose
+from daidalos.simulation.component import Setting
+from daidalos.simulation.instance import Instance
+from daidalos.simulation.odometry import transform_of
+from daidalos.simulation.plugins.base import Plugin
+from daidalos.simulation.plugins.truth import true_odometry
+from daidalos.simulation.samples import OdometrySample, Sample, TransformSample
+from daidalos.simulation.topics import absolute_topic, frame
+
+
+class P3d(Plugin):
+    """``libgazebo_ros_p3d.so`` of ROS 1 and 2: where a link is, in the world or in another link."""
+
+    names = ("gazebo_ros_p3d",)
+
+    def __init__(self, description: Description, setting: Setting) -> None:
+        super().__init__(description, setting)
+        element, parameters = description.element, self.parameters
+        links = setting.model.links
+        self.link = parameters.scoped(element.text_of("bodyName", "body_name", default=next(iter(links), "")))
+        if self.link not in links:
+            raise element.error(f"<body_name> is {self.link!r}, expected one of the links {', '.join(links)}")
+        self.frame_id = frame(element.text_of("frameName", "frame_name", default="world"))
+        self.topic = parameters.topic(element.text_of("topicName", "topic_name", default="odom"))
+        xyz = element.vector_of("xyzOffset", "xyzOffsets", "xyz_offset", "xyz_offsets", size=3, default=(0.0,) * 3)
+        rpy = element.vector_of("rpyOffset", "rpyOffsets", "rpy_offset", "rpy_offsets", size=3, default=(0.0,) * 3)
+        self.offset = Pose.from_xyz_rpy(xyz, rpy)
+        self.noise = element.number_of("gaussianNoise", "gaussian_noise", default=0.0)
+        rate = element.number_of("updateRate", "update_rate", default=0.0)
+        self.period = 1.0 / rate if rate > 0 else 0.0
+
+    @property
+    def publications(self) -> Mapping[str, type[Sample]]:
+        """One topic."""
+        return {self.topic: OdometrySample}
+
+    def bind(self, instance: Instance) -> None:
+        """Find the link and the one that it is measured from."""
+        self._instance = instance
+        self._link = instance.link(self.link)
+        scoped = self.parameters.scoped(self.frame_id)
+        self._from = instance.link(scoped) if scoped in instance.build.bodies else None
+
+    def update(self, now_ns: int) -> Iterable[Sample]:
+        """Say where the link is."""
+        if not self._instance.heard(self.topic):
+            return
+        origin = Pose() if self._from is None else self._from.pose
+        odometry = true_odometry(
+            self._link, now_ns, self.topic, self.frame_id, self.link.rpartition("::")[2], (1e-6,) * 3, origin
+        )
+        moved = self.offset @ Pose(_triple(odometry.position), _quadruple(odometry.orientation))
+        noise = self.random.normal(0.0, self.noise, (2, 3)) if self.noise else np.zeros((2, 3))
+        yield replace(
+            odometry,
+            position=np.array(moved.position),
+            orientation=np.array(moved.orientation),
+            linear=odometry.linear + noise[0],
+            angular=odometry.angular + noise[1],
+        )
+
+
+class OdometryPublisher(Plugin):
+    """gz's OdometryPublisher system: the model's odometry since it came, without wheels."""
+
+    names = ("gz-sim-odometry-publisher-system",)
+
+    def __init__(self, description: Description, setting: Setting) -> None:
+        super().__init__(description, setting)
+        element, name = description.element, setting.model_name
+        base = next(iter(setting.model.links), "base_footprint")
+        self.odometry_frame = frame(element.text_of("odom_frame", default=f"{name}/odom"))
+        self.base_frame = frame(element.text_of("robot_base_frame", default=f"{name}/base_footprint"))
+        self.link = base
+        topic = element.text_of("odom_topic", default=f"/model/{name}/odometry")
+        self.topic = absolute_topic(topic, setting.namespace)
+        self.tf_topic = absolute_topic(element.text_of("tf_topic", default=f"/model/{name}/pose"), setting.namespace)
+        rate = element.number_of("odom_publish_frequency", default=50.0)
+        self.period = 1.0 / rate if rate > 0 else 0.0
+
+    @property
+    def publications(self) -> Mapping[str, type[Sample]]:
+        """Odometry and its transform."""
+        return {self.topic: OdometrySample, self.tf_topic: TransformSample}
+
+    def bind(self, instance: Instance) -> None:
+        """Find the first link."""
+        self._link = instance.link(self.link)
+
+    def start(self) -> Pose:
+        """Take the place here as the origin."""
+        return self._link.pose
+
+    def update(self, now_ns: int) -> Iterable[Sample]:
+        """Say where the model is."""
+        odometry = true_odometry(
+            self._link, now_ns, self.topic, self.odometry_frame, self.base_frame, start=self.memory
+        )
+        yield odometry
+        yield transform_of(odometry, self.tf_topic)
+
+
+def _triple(values: np.ndarray) -> tuple[float, float, float]:
+    x, y, z = (float(value) for value in values)
+    return x, y, z
+
+
+def _quadruple(values: np.ndarray) -> tuple[float, float, float, float]:
+    x, y, z, w = (float(value) for value in values)
+    return x, y, z, w

@@ -1,0 +1,136 @@
+"""Planar move: a base that slides over the ground as commanded, whatever its wheels; gz's velocity control."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daidalos.description.link import Plugin as Description
+from daidalos.description.pose import Pose, rotation_matrix
+from daidalos.simulation.component import Setting, Subscription
+from daidalos.simulation.instance import Instance
+from daidalos.simulation.odometry import transform_of
+from daidalos.simulation.plugins.base import Plugin
+from daidalos.simulation.plugins.truth import true_odometry
+from daidalos.simulation.samples import OdometrySample, Sample, TransformSample, TwistCommand
+from daidalos.simulation.topics import absolute_topic, frame
+
+Array = NDArray[np.float64]
+
+
+@dataclass
+class Motion:
+    """The commanded velocity, where odometry began, and when it is next due."""
+
+    linear: Array
+    angular: Array
+    origin: Pose
+    due_ns: int = 0
+
+
+class PlanarMove(Plugin):
+    """``libgazebo_ros_planar_move.so`` of ROS 1 and 2."""
+
+    names = ("gazebo_ros_planar_move",)
+    memory: Motion
+
+    def __init__(self, description: Description, setting: Setting) -> None:
+        super().__init__(description, setting)
+        element, parameters = description.element, self.parameters
+        self.command_topic = parameters.topic(element.text_of("commandTopic", "command_topic", default="cmd_vel"))
+        self.odometry_topic = parameters.topic(element.text_of("odometryTopic", "odometry_topic", default="odom"))
+        self.odometry_frame = frame(element.text_of("odometryFrame", "odometry_frame", default="odom"))
+        self.base_frame = frame(element.text_of("robotBaseFrame", "robot_base_frame", default="base_footprint"))
+        self.publishes = element.flag_of("publish_odom", default=True)
+        self.publishes_tf = element.flag_of("publish_odom_tf", default=True)
+        rate = element.number_of("odometryRate", "publish_rate", default=20.0)
+        self._publish_ns = round(1e9 / rate) if rate > 0 else 0
+
+    @property
+    def publications(self) -> Mapping[str, type[Sample]]:
+        """Odometry and its transform, as far as they are wanted."""
+        topics: dict[str, type[Sample]] = {self.odometry_topic: OdometrySample} if self.publishes else {}
+        return topics | ({"/tf": TransformSample} if self.publishes_tf else {})
+
+    @property
+    def subscriptions(self) -> Mapping[str, Subscription]:
+        """The commanded velocity."""
+        return {self.command_topic: Subscription(TwistCommand, self._command)}
+
+    def bind(self, instance: Instance) -> None:
+        """Find the base."""
+        self._instance = instance
+        base = self.parameters.scoped(self.base_frame)
+        self._base = instance.link(base if base in instance.build.bodies else next(iter(instance.build.bodies)))
+
+    def start(self) -> Motion:
+        """Stand still."""
+        return Motion(np.zeros(3), np.zeros(3), self._base.pose)
+
+    def update(self, now_ns: int) -> Iterable[Sample]:
+        """Give the base its velocity in the plane; it may fall and tilt as it likes."""
+        motion = self.memory
+        self._move()
+        if now_ns < motion.due_ns:
+            return
+        motion.due_ns = now_ns + self._publish_ns
+        topic = self.odometry_topic
+        odometry = true_odometry(self._base, now_ns, topic, self.odometry_frame, self.base_frame, start=motion.origin)
+        if self.publishes:
+            yield odometry
+        if self.publishes_tf:
+            yield transform_of(odometry, "/tf")
+
+    def _command(self, command: TwistCommand) -> None:
+        self.memory.linear, self.memory.angular = np.array(command.linear), np.array(command.angular)
+
+    def _move(self) -> None:
+        motion = self.memory
+        linear, angular = self._base.velocity()
+        yaw = self._base.pose.yaw
+        ahead = np.array(((np.cos(yaw), -np.sin(yaw)), (np.sin(yaw), np.cos(yaw))))
+        wanted = np.array((*(ahead @ motion.linear[:2]), linear[2]))
+        self._instance.set_velocity(wanted, np.array((angular[0], angular[1], motion.angular[2])))
+        self._instance.physics.changed()
+
+
+class VelocityControl(Plugin):
+    """gz's VelocityControl system: the model flies as commanded, in its own axes."""
+
+    names = ("gz-sim-velocity-control-system",)
+    memory: Motion
+
+    def __init__(self, description: Description, setting: Setting) -> None:
+        super().__init__(description, setting)
+        element = description.element
+        topic = element.text_of("topic", default=f"/model/{setting.model_name}/cmd_vel")
+        self.topic = absolute_topic(topic, setting.namespace)
+        self._linear = element.vector_of("initial_linear", size=3, default=(0.0, 0.0, 0.0))
+        self._angular = element.vector_of("initial_angular", size=3, default=(0.0, 0.0, 0.0))
+
+    @property
+    def subscriptions(self) -> Mapping[str, Subscription]:
+        """The commanded velocity."""
+        return {self.topic: Subscription(TwistCommand, self._command)}
+
+    def bind(self, instance: Instance) -> None:
+        """Find the first link."""
+        self._instance = instance
+        self._base = instance.link(next(iter(instance.build.bodies)))
+
+    def start(self) -> Motion:
+        """Begin as the description says."""
+        return Motion(np.array(self._linear), np.array(self._angular), self._base.pose)
+
+    def update(self, now_ns: int) -> Iterable[Sample]:
+        """Give the model its velocity."""
+        turn = rotation_matrix(self._base.pose.orientation)
+        self._instance.set_velocity(turn @ self.memory.linear, turn @ self.memory.angular)
+        self._instance.physics.changed()
+        return ()
+
+    def _command(self, command: TwistCommand) -> None:
+        self.memory.linear, self.memory.angular = np.array(command.linear), np.array(command.angular)

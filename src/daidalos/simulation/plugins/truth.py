@@ -1,0 +1,53 @@
+"""Odometry that knows where a link really is: for bases that have no wheels to measure, and to compare with."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from daidalos.description.pose import Pose, Quaternion, rotate
+from daidalos.simulation.instance import LinkView
+from daidalos.simulation.odometry import Array, planar_covariance
+from daidalos.simulation.samples import OdometrySample
+
+
+def true_odometry(
+    link: LinkView,
+    now_ns: int,
+    topic: str,
+    frame_id: str,
+    child_frame_id: str,
+    covariance: tuple[float, float, float] = (1e-5, 1e-5, 1e-3),
+    start: Pose | None = None,
+) -> OdometrySample:
+    """Return where a link is and how it moves.
+
+    Parameters
+    ----------
+    link : LinkView
+    now_ns : int
+    topic, frame_id, child_frame_id : str
+    covariance : tuple of 3 floats
+        That the odometry claims, of x, y and yaw.
+    start : Pose or None
+        Of `frame_id` in the world; None is the world itself.
+    """
+    pose = link.pose if start is None else start.inverse @ link.pose
+    linear, angular = link.velocity()
+    spread = planar_covariance(*covariance)
+    return OdometrySample(
+        stamp_ns=now_ns,
+        topic=topic,
+        frame_id=frame_id,
+        child_frame_id=child_frame_id,
+        position=np.array(pose.position),
+        orientation=np.array(pose.orientation),
+        linear=_turned(link.pose.inverse.orientation, linear),
+        angular=_turned(link.pose.inverse.orientation, angular),
+        pose_covariance=spread,
+        twist_covariance=spread,
+    )
+
+
+def _turned(orientation: Quaternion, vector: Array) -> Array:
+    x, y, z = (float(value) for value in vector)
+    return np.array(rotate(orientation, (x, y, z)))

@@ -1,0 +1,167 @@
+"""True odometry, forces, grippers, joints that follow topics, and plugins that nobody knows."""
+
+import numpy as np
+import pytest
+
+from daidalos.description.errors import DescriptionError
+from daidalos.simulation import Simulation
+from daidalos.simulation.samples import (
+    FlagSample,
+    NumberCommand,
+    OdometrySample,
+    TrajectoryCommand,
+    WrenchCommand,
+)
+from simulation.models import box, world
+
+SECOND = 1_000_000_000
+
+
+def with_plugin(model, filename, parameters=""):
+    return model.replace("</model>", f"<plugin name='p' filename='{filename}'>{parameters}</plugin></model>")
+
+
+def last(samples, kind=OdometrySample):
+    return [s for s in samples if isinstance(s, kind)][-1]
+
+
+def test_p3d_tells_the_truth():
+    parameters = (
+        "<ros><remapping>odom:=truth</remapping></ros><body_name>link</body_name><frame_name>map</frame_name>"
+        "<update_rate>50</update_rate><xyz_offsets>10 0 0</xyz_offsets>"
+    )
+    simulation = Simulation(world(with_plugin(box("b", "1 2 5 0 0 0.5"), "libgazebo_ros_p3d.so", parameters)))
+    simulation.set_velocity("b", (1.0, 0, 0), (0, 0, 0))
+    odometry = last(simulation.advance(SECOND // 2))
+    assert (odometry.topic, odometry.frame_id, odometry.child_frame_id) == ("/truth", "map", "link")
+    assert odometry.position == pytest.approx((10 + 1.5, 2, 5 - 0.5 * 9.8 * 0.25), abs=0.01)
+    assert odometry.linear[:2] == pytest.approx((np.cos(0.5), -np.sin(0.5)), abs=1e-3)  # in the body's axes
+
+
+def test_ros1s_p3d_has_its_own_words():
+    parameters = "<bodyName>link</bodyName><topicName>truth</topicName><frameName>/world</frameName>"
+    simulation = Simulation(world(with_plugin(box("b"), "libgazebo_ros_p3d.so", parameters)))
+    assert last(simulation.advance(10_000_000)).frame_id == "world"
+
+
+def test_gzs_odometry_publisher_starts_at_zero():
+    simulation = Simulation(world(with_plugin(box("b", "4 5 0.5 0 0 1"), "gz-sim-odometry-publisher-system")))
+    odometry = last(simulation.advance(SECOND // 10))
+    assert odometry.position[:2] == pytest.approx((0, 0), abs=1e-6)
+    assert odometry.topic == "/model/b/odometry"
+
+
+def test_a_force_lasts_until_the_next_command():
+    simulation = Simulation(
+        world(with_plugin(box("b", "0 0 9 0 0 0"), "libgazebo_ros_force.so", "<link_name>link</link_name>"))
+    )
+    simulation.gravity = (0, 0, 0)
+    simulation.command("/gazebo_ros_force", WrenchCommand(np.array((2.0, 0, 0))))
+    simulation.advance(SECOND)
+    assert simulation.velocity("b")[0][0] == pytest.approx(2.0, rel=0.01)
+    simulation.command("/gazebo_ros_force", WrenchCommand())
+    simulation.advance(SECOND)
+    assert simulation.velocity("b")[0][0] == pytest.approx(2.0, rel=0.01)
+
+
+def test_a_force_may_turn_with_the_link():
+    parameters = "<link_name>link</link_name><force_frame>link</force_frame>"
+    simulation = Simulation(world(with_plugin(box("b", "0 0 9 0 0 1.5707963"), "libgazebo_ros_force.so", parameters)))
+    simulation.gravity = (0, 0, 0)
+    simulation.command("/gazebo_ros_force", WrenchCommand(np.array((2.0, 0, 0))))
+    simulation.advance(SECOND)
+    assert simulation.velocity("b")[0] == pytest.approx((0, 2, 0), abs=0.02)
+
+
+def gripper(extra=""):
+    """Return a gripper of 5 kg that floats over a block of 1 kg."""
+    model = box("hand", "0 0 1.06 0 0 0", "0.1 0.1 0.1", mass=5.0).replace(
+        "<link name='link'>", "<link name='link'><gravity>false</gravity>"
+    )
+    parameters = f"<link_name>link</link_name><max_distance>0.1</max_distance>{extra}"
+    return with_plugin(model, "libgazebo_ros_vacuum_gripper.so", parameters)
+
+
+def test_a_vacuum_gripper_lifts_and_lets_go():
+    table = box("table", "0 0 0.4 0 0 0", "1 1 0.8", static=True)
+    simulation = Simulation(world(table, gripper(), box("thing", "0 0 0.9 0 0 0", "0.2 0.2 0.2")))
+    simulation.advance(SECOND // 5)
+    (switch,) = simulation.switches.values()
+    switch.take(True)
+    assert last(simulation.advance(SECOND // 5), FlagSample).value
+    simulation.push("hand", force=(0, 0, 20.0), duration_ns=SECOND)
+    simulation.advance(SECOND)
+    lifted = simulation.pose("thing").position[2]
+    assert lifted > 1.2
+    assert simulation.pose("hand").position[2] - lifted == pytest.approx(0.16, abs=0.01)
+    switch.take(False)
+    simulation.advance(SECOND // 2)
+    assert simulation.pose("thing").position[2] < lifted - 0.3
+
+
+def test_a_gripper_holds_nothing_that_is_out_of_reach():
+    simulation = Simulation(world(gripper(), box("thing", "0 0 0.1 0 0 0", "0.2 0.2 0.2")))
+    simulation.switches["/switch"].take(True)
+    assert not last(simulation.advance(SECOND // 5), FlagSample).value
+
+
+def test_a_gripper_forgets_what_was_deleted():
+    simulation = Simulation(world(gripper(), box("thing", "0 0 0.9 0 0 0", "0.2 0.2 0.2")))
+    simulation.switches["/switch"].take(True)
+    simulation.advance(SECOND // 100)
+    simulation.delete("thing")
+    assert not last(simulation.advance(SECOND // 2), FlagSample).value
+
+
+ARM = (
+    "<model name='arm'><link name='base'/><link name='rod'><inertial><pose>0.2 0 0 0 0 0</pose><mass>1</mass>"
+    "<inertia><ixx>0.01</ixx><iyy>0.01</iyy><izz>0.01</izz></inertia></inertial></link>"
+    "<joint name='w' type='fixed'><parent>world</parent><child>base</child></joint>"
+    "<joint name='j' type='revolute'><parent>base</parent><child>rod</child><axis><xyz>0 0 1</xyz></axis></joint>"
+    "</model>"
+)
+
+
+def test_joints_follow_a_trajectory():
+    simulation = Simulation(world(with_plugin(ARM, "libgazebo_ros_joint_pose_trajectory.so")))
+    command = TrajectoryCommand(("j",), np.array((0.0, 1.0, 2.0)), np.array(((0.0,), (1.0,), (0.5,))))
+    simulation.command("/set_joint_trajectory", command)
+    simulation.advance(SECOND // 2)
+    assert simulation.joint("arm", "j").position == pytest.approx(0.5, abs=0.01)
+    simulation.advance(2 * SECOND)
+    assert simulation.joint("arm", "j").position == pytest.approx(0.5, abs=0.01)
+
+
+def test_a_trajectory_of_unknown_joints_is_ignored_with_a_warning():
+    said = []
+    simulation = Simulation(world(with_plugin(ARM, "libgazebo_ros_joint_pose_trajectory.so")), warn=said.append)
+    simulation.command("/set_joint_trajectory", TrajectoryCommand(("k",), np.zeros(1), np.zeros((1, 1))))
+    assert "no movable joint 'k'" in said[-1]
+
+
+@pytest.mark.parametrize("kind", ["joint-position-controller", "joint-controller"])
+def test_gzs_controllers_hold_a_joint(kind):
+    parameters = "<joint_name>j</joint_name><topic>wanted</topic><p_gain>50</p_gain><d_gain>5</d_gain>"
+    simulation = Simulation(world(with_plugin(ARM, f"gz-sim-{kind}-system", parameters)))
+    simulation.command("/wanted", NumberCommand(0.7))
+    simulation.advance(3 * SECOND)
+    joint = simulation.joint("arm", "j")
+    assert (joint.position if "position" in kind else joint.velocity) == pytest.approx(0.7, abs=0.01)
+
+
+@pytest.mark.parametrize("library", ["gazebo_ros_p3d", "gazebo_ros_force", "gazebo_ros_vacuum_gripper"])
+def test_an_unknown_link_is_named(library):
+    parameters = "<body_name>tail</body_name><link_name>tail</link_name><bodyName>tail</bodyName>"
+    with pytest.raises(DescriptionError, match="'tail', expected one of the links link"):
+        Simulation(world(with_plugin(box("b"), f"lib{library}.so", parameters)))
+
+
+def test_an_unknown_plugin_is_named_and_the_rest_runs():
+    said = []
+    plugin = "<plugin name='odd' filename='libnobody_knows.so'/>"
+    simulation = Simulation(world(plugin, with_plugin(box("b"), "libnor_this.so")), warn=said.append)
+    simulation.advance(SECOND // 10)
+    assert [line.split(": ", 1)[1] for line in said] == [
+        "plugin 'odd' (libnobody_knows.so) is not known, left out",
+        "plugin 'p' (libnor_this.so) is not known, left out",
+    ]
