@@ -18,7 +18,7 @@ TYPECODES = {
     "int32": "i", "uint32": "I", "int64": "q", "uint64": "Q",
 }  # fmt: skip
 _DTYPES = {code: name for name, code in TYPECODES.items() if name != "char"}
-_FLOAT32_MAX = 3.402823466e38
+_FLOAT32_MAX = 3.4028234663852886e38
 
 
 class MessageType(type):

@@ -22,6 +22,9 @@ class Decoder(Generator):
             self.emit("view = memoryview(buf)")
         result = self.message(self.root)
         self.flush()
+        stop = "p" if self.static is None else str(self.static)
+        # Middlewares pad what they send to a multiple of four.
+        self.emit(f"if end - {stop} > 3: raise ValueError(f'{{end - {stop}}} bytes are left over')")
         self.emit(f"return {result}")
         main = ["def decode(buf):", *self.lines]
         text: list[str] = []
@@ -76,7 +79,7 @@ class Decoder(Generator):
         self.emit(f"{name} = new({self.names.kind(kind)})")
         if not kind._FIELDS:
             self.value("uint8", "_")
-        for attribute, base, many, size, _ in kind._FIELDS:
+        for attribute, base, many, size, bound in kind._FIELDS:
             target = f"{name}._{attribute}"
             if many == "single":
                 self.single(base, target)
@@ -84,6 +87,10 @@ class Decoder(Generator):
                 self.primitives(base, many, size, target)
             else:
                 self.objects(base, many, size, target)
+            if bound is not None:
+                texts = f"({target},)" if many == "single" else target
+                self.emit(f"if any(len(text) > {bound} for text in {texts}):")
+                self.emit(f"    raise ValueError('a string is longer than its bound, {bound}')")
         return name
 
     def single(self, base: Any, target: str) -> None:
@@ -107,7 +114,7 @@ class Decoder(Generator):
         self.flush()
         start = str(self.static) if self.static is not None else "p"
         self.emit(f"q = {start} + {count}")
-        self.emit(f"if q > end: raise ValueError(f'a string of {{{count}}} bytes does not fit')")
+        self.emit(f"if q > end or buf[q - 1]: raise ValueError(f'a string of {{{count}}} bytes has no end')")
         self.emit(f"{target} = str(buf[{start}:q - 1], 'utf-8', 'replace') if {count} else ''")
         self.emit("p = q")
         self.static = None
@@ -226,7 +233,7 @@ class Decoder(Generator):
         self.emit(f"    n, = {unpack}(buf, p)")
         self.emit("    p += 4")
         self.emit("    q = p + n")
-        self.emit("    if q > end: raise ValueError(f'a string of {n} bytes does not fit')")
+        self.emit("    if q > end or buf[q - 1]: raise ValueError(f'a string of {n} bytes has no end')")
         self.emit(f"    {values}.append(str(buf[p:q - 1], 'utf-8', 'replace') if n else '')")
         self.emit("p = q")
         self.emit("if start & 3 == 0:  # elsewhere the padding differs")

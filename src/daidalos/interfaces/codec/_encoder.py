@@ -74,13 +74,16 @@ class Encoder(Generator):
             self.static = None
 
     def fields(self, kind: type[Message], owner: str) -> None:
-        for name, base, many, size, _ in kind._FIELDS:
+        for name, base, many, size, bound in kind._FIELDS:
             expression = f"{owner}._{name}"
             if many == "single":
                 self.single(base, expression)
             elif isinstance(base, str) and base not in ("string", "wstring"):
                 self.primitives(base, many, size, expression)
             else:
+                if bound is not None:  # what was appended to a list has not been checked
+                    self.emit(f"if any(len(text) > {bound} for text in {expression}):")
+                    self.emit(f"    raise ValueError('a string is longer than its bound, {bound}')")
                 self.objects(base, many, size, expression)
 
     def single(self, base: Any, expression: str) -> None:
