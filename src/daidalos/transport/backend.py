@@ -8,15 +8,13 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 from daidalos.transport.graph import EndpointInfo, EndpointKind, Graph, NodeInfo
 from daidalos.transport.qos import Qos
 
 
-@dataclass(frozen=True, slots=True)
-class SampleInfo:
+class SampleInfo(NamedTuple):
     """What is known of a sample beside its data; stamps are Unix time in nanoseconds."""
 
     source_ns: int
@@ -25,8 +23,7 @@ class SampleInfo:
     gid: bytes
 
 
-@dataclass(frozen=True, slots=True)
-class RequestId:
+class RequestId(NamedTuple):
     """Identifies a service request: the client's gid and its count of requests."""
 
     client: bytes

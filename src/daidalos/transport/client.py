@@ -73,15 +73,13 @@ class Client:
         """Return the oldest (response, its request's sequence number, source and reception stamp), or None."""
         while True:
             try:
-                response, *rest = self._queue.popleft()
+                response, item, received = self._queue.popleft()
             except IndexError:
                 return None
             if response is not None:
-                sequence, stamp = rest
-                return response, sequence, stamp, stamp
+                return response, item, received, received
             if self._wire is None:
                 return None
-            item, received = rest
             try:
                 data, sequence, stamp = self._wire.response(item)
                 return self._response.decode(data), sequence, stamp, received

@@ -48,15 +48,13 @@ class Service:
         """
         while True:
             try:
-                request, *rest = self._queue.popleft()
+                request, item, received = self._queue.popleft()
             except IndexError:
                 return None
             if request is not None:
-                identity, stamp = rest
-                return request, identity, stamp, stamp
+                return request, item, received, received
             if self._wire is None:
                 return None
-            item, received = rest
             try:
                 data, identity, stamp = self._wire.request(item)
                 return self._request.decode(data), identity, stamp, received

@@ -48,11 +48,16 @@ class Session:
         self._clients: dict[str, set[Client]] = {}
         self._watchers: dict[str, list[Watcher]] = {}
         self._own: set[bytes] = set()
+        self._closed = False
         self._stop_listening = self.graph.listen(self._on_graph_change)
         backend.start(self.graph)
 
     def close(self) -> None:
-        """Leave the graph with everything that was made here."""
+        """Leave the graph with everything that was made here; further calls do nothing."""
+        with self._lock:
+            closed, self._closed = self._closed, True
+        if closed:
+            return
         self._stop_listening()
         with self._lock:
             groups = (self._publishers, self._subscriptions, self._services, self._clients)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import atexit
 import os
+import signal
 import threading
 
 from daidalos.transport.backend import Backend
@@ -64,6 +65,8 @@ def _backend(environment: Environment) -> Backend:
 @atexit.register
 def _close_all() -> None:
     """Leave the graph in good order when the process ends without having done so."""
+    if threading.current_thread() is threading.main_thread():
+        signal.signal(signal.SIGINT, signal.SIG_IGN)  # a second Ctrl-C must not leave it half done
     with _lock:
         mine = [session for (process, _), (session, _) in _sessions.items() if process == os.getpid()]
         _sessions.clear()

@@ -1,15 +1,12 @@
 """Executors: they wait until something is ready and run its callback.
 
-Nothing is polled. Whatever becomes ready puts itself, once, into its executor's queue (`rclpy.impl.ready`),
-timers stand in a heap by deadline, and the waiting thread sleeps until the queue or the earliest deadline
-wakes it.
+Nothing is polled. Whatever becomes ready puts itself, once, into its executor's queue (`rclpy.impl.ready`), timers
+stand there by deadline, and the waiting thread sleeps until one or the other wakes it (`rclpy.impl.ready_queue`).
 """
 
 from __future__ import annotations
 
-import heapq
 import inspect
-import itertools
 import math
 import os
 import threading
@@ -18,15 +15,14 @@ import weakref
 from collections import deque
 from collections.abc import Callable, Coroutine, Iterable, Iterator
 from contextlib import AbstractContextManager, contextmanager
-from queue import Empty, SimpleQueue
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
 
 from rclpy.context import Context
 from rclpy.impl.ready import ReadyHook
+from rclpy.impl.ready_queue import ReadyQueue
 from rclpy.impl.running import THREAD, BlockedCalls
 from rclpy.impl.thread_pool import ThreadPool
-from rclpy.impl.timer import TimerHandle
 from rclpy.task import Future, Task
 from rclpy.utilities import get_default_context
 
@@ -96,16 +92,13 @@ class Executor(AbstractContextManager["Executor"]):
         self._context = context or get_default_context()
         self._nodes: dict[Node, None] = {}
         self._nodes_lock = threading.RLock()
-        self._ready: SimpleQueue[Any] = SimpleQueue()
+        self._ready = ReadyQueue()
         self._put = self._ready.put
-        self._timers: list[tuple[int, int, int, TimerHandle]] = []
-        self._timers_lock = threading.Lock()
-        self._timer_count = itertools.count().__next__
+        self._schedule = self._ready.schedule
         self._deferred: deque[ReadyHook] = deque()
         self._calls = BlockedCalls()
         self._is_shutdown = False
         self._spins = False  # within `spin`, where nobody counts the callbacks that run
-        self._waiting_thread: int | None = None
         self._active = 0
         self._idle = threading.Condition()
         self._context.on_shutdown(self.wake)
@@ -161,14 +154,6 @@ class Executor(AbstractContextManager["Executor"]):
     def wake(self) -> None:
         """Have the waiting thread look again at what it waits for."""
         self._put(None)
-
-    def schedule(self, deadline_ns: int, timer: TimerHandle) -> None:
-        """Have a timer told when ``time.monotonic_ns()`` reaches a deadline."""
-        with self._timers_lock:
-            heapq.heappush(self._timers, (deadline_ns, self._timer_count(), timer.version, timer))
-            earliest = self._timers[0][3] is timer
-        if earliest and self._waiting_thread != threading.get_ident():
-            self.wake()
 
     def shutdown(self, timeout_sec: float | None = None) -> bool:
         """Stop, after the callbacks that run have ended.
@@ -288,24 +273,12 @@ class Executor(AbstractContextManager["Executor"]):
 
     def _wait(self, deadline_ns: int | None, condition: Callable[[], bool] | None = None) -> Any:
         """Return the next hook, task or failure of the queue."""
-        self._waiting_thread = threading.get_ident()
-        get = self._ready.get
         self._check(condition)
         while True:
-            wait = None
-            if self._timers:
-                wait = self._next_timer_s()
-            if deadline_ns is not None:
-                left = max((deadline_ns - time.monotonic_ns()) / 1e9, 0.0)
-                wait = left if wait is None else min(wait, left)
             try:
-                item = get(True, wait) if wait is None or wait > 0 else get(False)
-            except Empty:
-                if deadline_ns is not None and time.monotonic_ns() >= deadline_ns:
-                    self._next_timer_s()
-                    if self._ready.empty():
-                        raise TimeoutException() from None
-                continue
+                item = self._ready.get(deadline_ns)
+            except TimeoutError:
+                raise TimeoutException() from None
             if item is not None:
                 return item
             self._check(condition)
@@ -317,26 +290,6 @@ class Executor(AbstractContextManager["Executor"]):
             raise ExternalShutdownException()
         if condition is not None and condition():
             raise ConditionReachedException()
-
-    def _next_timer_s(self) -> float | None:
-        """Queue the timers that are due; return how long until the next one, in seconds."""
-        timers = self._timers
-        while timers:
-            now = time.monotonic_ns()
-            with self._timers_lock:
-                if not timers:
-                    return None
-                deadline, _, version, timer = timers[0]
-                if timer.version != version:
-                    heapq.heappop(timers)
-                    continue
-                if deadline > now:
-                    return (deadline - now) / 1e9
-                heapq.heappop(timers)
-            timer.on_due()
-            if not self._ready.empty():
-                return 0.0
-        return None
 
     # Running one entity's callback.
 

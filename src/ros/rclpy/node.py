@@ -660,9 +660,9 @@ def _attach(entity: Any, executor: Executor) -> None:
         return  # publishers and rates run nothing
     hook.attach(executor._put)
     if isinstance(entity, Timer):
-        entity.handle.attach(executor.schedule)
+        entity.handle.attach(executor._schedule)
     elif hasattr(entity, "_rcl_adapter"):
-        entity._rcl_adapter.attach(executor.schedule)
+        entity._rcl_adapter.attach(executor._schedule)
 
 
 def _detach(entity: Any) -> None:

@@ -13,6 +13,7 @@ from typing import Any
 from rclpy.context import Context
 from rclpy.exceptions import ROSInterruptException
 from rclpy.guard_condition import GuardCondition
+from rclpy.impl.interrupts import is_uninterrupted
 
 
 class SignalHandlerOptions(IntFlag):
@@ -72,6 +73,8 @@ def watch_context(context: Context) -> None:
 
 
 def _on_signal(number: int, frame: FrameType | None) -> None:
+    if is_uninterrupted():
+        return
     for context in list(_contexts):
         context.shutdown_by_signal()
     for guard in list(_guards):

@@ -19,6 +19,10 @@ def _write_warning(error: BaseException) -> None:
     print(f"The following exception was never retrieved: {error}", file=sys.stderr)  # noqa: T201
 
 
+def _no_executor() -> None:
+    """Stand in for the reference to an executor."""
+
+
 class Future:
     """The result of something that is not yet done; a coroutine may ``await`` it."""
 
@@ -32,7 +36,7 @@ class Future:
         self._exception_fetched = False
         self._callbacks: list[Callable[[Future], None]] = []
         self._lock = threading.Lock()
-        self._executor: Callable[[], Executor | None] = lambda: None
+        self._executor: Callable[[], Executor | None] = _no_executor
         if executor is not None:
             self._set_executor(executor)
 
@@ -106,7 +110,7 @@ class Future:
 
     def _set_executor(self, executor: Executor | None) -> None:
         """Have callbacks called by an executor."""
-        self._executor = (lambda: None) if executor is None else weakref.ref(executor)
+        self._executor = _no_executor if executor is None else weakref.ref(executor)
 
     def add_done_callback(self, callback: Callable[[Future], None]) -> None:
         """Call ``callback(future)`` when it is done; at once if it is."""

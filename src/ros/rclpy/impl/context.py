@@ -14,6 +14,7 @@ from daidalos.transport.session import Session
 from rclpy.impl.arguments import RosArguments, parse
 from rclpy.impl.errors import RCLError
 from rclpy.impl.handle import Destroyable
+from rclpy.impl.interrupts import uninterrupted
 
 if TYPE_CHECKING:
     from rclpy.impl.entities import NodeHandle
@@ -93,9 +94,10 @@ class ContextHandle(Destroyable):
             if self._released:
                 return
             self._released = True
-        for node in list(self._nodes):
-            node.retire()
-        shared.release(self.environment)
+        with uninterrupted():
+            for node in list(self._nodes):
+                node.retire()
+            shared.release(self.environment)
 
     def _destroy(self) -> None:
         self.try_shutdown()

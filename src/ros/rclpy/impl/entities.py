@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import weakref
 from collections.abc import Callable
-from dataclasses import dataclass
 from types import MethodType
-from typing import Any
+from typing import Any, NamedTuple
 
 from daidalos.transport.backend import RequestId
 from daidalos.transport.graph import EndpointInfo, EndpointKind, Graph, NodeInfo, names_and_types
@@ -129,16 +128,14 @@ class NodeHandle(Destroyable):
             self.session.abandon(self._leave)
 
 
-@dataclass(frozen=True, slots=True)
-class RequestHeader:
+class RequestHeader(NamedTuple):
     """Identifies a request; `identity` is the transport's, None in a client."""
 
     sequence_number: int
     identity: RequestId | None
 
 
-@dataclass(frozen=True, slots=True)
-class ServiceInfo:
+class ServiceInfo(NamedTuple):
     """The header of a request or a response; stamps are Unix time in nanoseconds."""
 
     request_id: RequestHeader

@@ -1,0 +1,98 @@
+"""What an executor waits on: a queue of what is ready, and timers by deadline, behind one gate."""
+
+from __future__ import annotations
+
+import heapq
+import itertools
+import threading
+import time
+from collections import deque
+from typing import Any
+
+from rclpy.impl.timer import TimerHandle
+
+_TIDY = 64
+
+
+class ReadyQueue:
+    """A queue that any thread fills and one thread empties.
+
+    The thread that waits sleeps on a lock which who fills the queue releases. Python's own queues are no choice: a
+    timed ``SimpleQueue.get`` of CPython may sleep for ever when its time runs out while it wakes.
+    """
+
+    def __init__(self) -> None:
+        self._items: deque[Any] = deque()
+        self._gate = threading.Lock()
+        self._gate.acquire()
+        self._timers: list[tuple[int, int, int, TimerHandle]] = []
+        self._timers_lock = threading.Lock()
+        self._tidy_at = _TIDY
+        self._count = itertools.count().__next__
+        self._waiting_thread: int | None = None
+
+    def empty(self) -> bool:
+        """Tell whether nothing waits to be taken."""
+        return not self._items
+
+    def put(self, item: Any) -> None:
+        """Add an item, and wake who waits."""
+        self._items.append(item)
+        gate = self._gate
+        if gate.locked():
+            try:
+                gate.release()
+            except RuntimeError:  # somebody else released it just now
+                return
+
+    def schedule(self, deadline_ns: int, timer: TimerHandle) -> None:
+        """Have a timer told when ``time.monotonic_ns()`` reaches a deadline."""
+        with self._timers_lock:
+            timers = self._timers
+            if len(timers) >= self._tidy_at:
+                timers[:] = [entry for entry in timers if entry[3].version == entry[2]]
+                heapq.heapify(timers)
+                self._tidy_at = max(2 * len(timers), _TIDY)
+            heapq.heappush(timers, (deadline_ns, self._count(), timer.version, timer))
+            earliest = timers[0][3] is timer
+        if earliest and self._waiting_thread != threading.get_ident():
+            self.put(None)
+
+    def get(self, deadline_ns: int | None) -> Any:
+        """Return the next item, and wait for it until ``time.monotonic_ns()`` reaches a deadline.
+
+        Raises
+        ------
+        TimeoutError
+            When the deadline came first.
+        """
+        items, timers, now = self._items, self._timers, time.monotonic_ns
+        self._waiting_thread = threading.get_ident()
+        while True:
+            until = deadline_ns
+            if timers:
+                until = self._tell_timers(until)
+            if items:
+                return items.popleft()
+            if until is None:
+                self._gate.acquire()
+                continue
+            left = until - now()
+            if left > 0:
+                self._gate.acquire(True, left / 1e9)
+            elif until == deadline_ns:
+                raise TimeoutError
+
+    def _tell_timers(self, until: int | None) -> int | None:
+        """Tell the timers that are due; returns the earliest of `until` and the next timer's deadline."""
+        timers = self._timers
+        while True:
+            with self._timers_lock:
+                if not timers:
+                    return until
+                deadline, _, version, timer = timers[0]
+                if timer.version == version and deadline > time.monotonic_ns():
+                    return deadline if until is None or deadline < until else until
+                heapq.heappop(timers)
+            if timer.version == version:
+                timer.on_due()
