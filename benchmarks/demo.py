@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import os
 import signal
-import statistics
 import subprocess
 import sys
 import time
@@ -13,34 +12,11 @@ from collections.abc import Callable
 from typing import Any
 
 DOMAIN = "94"
-REPETITIONS = 5
 ENVIRONMENT = os.environ | {"ROS_DOMAIN_ID": DOMAIN}
-NODE = "import rclpy; rclpy.init(); rclpy.create_node('n')"
 
 
 def run() -> dict[str, float | str]:
-    return measure_commands() | measure_start() | measure_driving()
-
-
-def measure_commands() -> dict[str, float | str]:
-    """What a user waits for who types a command; nothing else runs in the domain."""
-    ros2 = [sys.executable, "-m", "daidalos.cli.ros2"]
-    return {
-        "command.python_s": seconds([sys.executable, "-c", "pass"]),
-        "command.import_and_node_s": seconds([sys.executable, "-c", NODE]),
-        "command.ros2_help_s": seconds([*ros2, "--help"]),
-        "command.ros2_topic_list_s": seconds([*ros2, "topic", "list", "--no-daemon"]),
-    }
-
-
-def seconds(command: list[str]) -> float:
-    """Return the median time of a command."""
-    times = []
-    for _ in range(REPETITIONS):
-        begun = time.perf_counter()
-        subprocess.run(command, env=ENVIRONMENT, stdout=subprocess.DEVNULL, check=True)
-        times.append(time.perf_counter() - begun)
-    return statistics.median(times)
+    return measure_start() | measure_driving()
 
 
 def measure_start() -> dict[str, float | str]:

@@ -34,6 +34,7 @@ GOALS = {
     "command.import_and_node_s": Goal(0.3),
     "command.ros2_help_s": Goal(0.15),
     "command.ros2_topic_list_s": Goal(0.5),
+    "command.ros2_topic_list_with_daemon_s": Goal(0.25),
     "mapping.intel_translation_m": Goal(0.37, theirs="0.023 Cartographer"),
     "simulation.real_time_factor_with_50_boxes": Goal(5.0, at_least=True),
     "simulation.scan_820_rays_ms": Goal(0.5),
