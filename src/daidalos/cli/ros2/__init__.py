@@ -1,107 +1,29 @@
-"""The command `ros2`."""
+"""The command `ros2`.
+
+Ctrl-C may come while its modules are still being imported. Until they are, it has its quiet default (through the
+built-in module, as ``signal`` itself takes a while to import).
+"""
 
 from __future__ import annotations
 
-import os
-import signal
+import _signal  # type: ignore[import-not-found]
 import sys
-import time
-from collections.abc import Sequence
-from types import FrameType
-
-_INTERRUPTED = 130
-_BROKEN_PIPE = 141
-_SAME_PRESS_S = 0.5
 
 
-def main(argv: Sequence[str] | None = None) -> int:
+def main(argv: list[str] | None = None) -> int:
     """Run the command line; returns the exit status.
 
     Parameters
     ----------
     argv
-        The arguments; those of the process where None.
+        The arguments. Those of the process where None: then Ctrl-C is handled, too.
     """
-    _handle_interrupts()
-    try:
-        try:
-            status = _run(sys.argv[1:] if argv is None else list(argv))
-        finally:
-            sys.stdout.flush()
-    except KeyboardInterrupt:
-        return _INTERRUPTED
-    except BrokenPipeError:
-        _discard_output()
-        return _BROKEN_PIPE
-    return status
+    if argv is not None:
+        from daidalos.cli.ros2.program import run
 
+        return run(argv)
+    if _signal.getsignal(_signal.SIGINT) is _signal.default_int_handler:
+        _signal.signal(_signal.SIGINT, _signal.SIG_DFL)
+    from daidalos.cli.ros2.program import run_interruptible
 
-def _run(argv: list[str]) -> int:
-    from argparse import RawDescriptionHelpFormatter
-
-    from daidalos.cli.ros2.commands import commands
-    from daidalos.cli.ros2.errors import CliError
-    from daidalos.cli.ros2.parser import Parser, make_command
-
-    parser = Parser(prog="ros2", description="ros2 is an extensible command-line tool for ROS 2.")
-    parser.formatter_class = RawDescriptionHelpFormatter
-    parser.add_argument(
-        "--use-python-default-buffering",
-        action="store_true",
-        help="Do not force line buffering in stdout and instead use the python default buffering, which might be "
-        "affected by PYTHONUNBUFFERED/-u and depends on whatever stdout is interactive or not",
-    )
-    parser.add_subcommands("Commands", "ros2", commands(), make_command)
-    if "_ARGCOMPLETE" in os.environ:
-        import argcomplete
-
-        argcomplete.autocomplete(parser, always_complete_options=False, exclude=["-h", "--help"])
-    args = parser.parse_args(argv)
-    if not args.use_python_default_buffering and hasattr(sys.stdout, "reconfigure"):
-        sys.stdout.reconfigure(line_buffering=True)
-    if not hasattr(args, "_main"):
-        parser.print_help()
-        return 0
-    try:
-        status = args._main(args)
-    except CliError as error:
-        return _fail(str(error), error.status)
-    except (RuntimeError, ValueError) as error:
-        if isinstance(error, RecursionError | NotImplementedError):
-            raise
-        return _fail(str(error), 1)
-    return _fail(status, 1) if isinstance(status, str) else status or 0
-
-
-def _handle_interrupts() -> None:
-    """Raise KeyboardInterrupt at Ctrl-C; while its consequences are tidied up, more of the same does no harm.
-
-    A terminal, a shell and a program that watches over us may each send the signal for one press of the keys. Who
-    presses them again after that means it: we die at once.
-    """
-    first: float | None = None
-
-    def on_interrupt(number: int, frame: FrameType | None) -> None:
-        nonlocal first
-        if first is None:
-            first = time.monotonic()
-            raise KeyboardInterrupt
-        if time.monotonic() - first > _SAME_PRESS_S:
-            signal.signal(number, signal.SIG_DFL)
-            signal.raise_signal(number)
-
-    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
-        signal.signal(signal.SIGINT, on_interrupt)
-
-
-def _fail(message: str, status: int) -> int:
-    sys.stdout.flush()
-    if message:
-        print(message, file=sys.stderr)
-    return status
-
-
-def _discard_output() -> None:
-    """Keep the interpreter from complaining at its end about output that nobody reads."""
-    nowhere = os.open(os.devnull, os.O_WRONLY)
-    os.dup2(nowhere, sys.stdout.fileno())
+    return run_interruptible(sys.argv[1:])

@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     from launch import LaunchDescription
     from launch.launch_description_source import LaunchDescriptionSource
 
-_FAULTY_FILE = 2
 _ENDINGS = (
     ".launch.py",
     "_launch.py",
@@ -136,7 +135,7 @@ def _file_and_arguments(args: Namespace) -> tuple[Path, list[str]]:
     if os.path.isfile(first) or second is None or ":=" in second:
         words = rest if second is None else [second, *rest]
         if not os.path.isfile(first):
-            raise CliError(_no_file(first), _FAULTY_FILE)
+            raise CliError(_no_file(first))
         return Path(first), words
     return find_launch_file(first, second), rest
 
@@ -165,7 +164,7 @@ def find_launch_file(package: str, name: str) -> Path:
     try:
         share = get_package_share_path(package)
     except (PackageNotFoundError, ValueError):
-        raise CliError(f"Package '{package}' not found{did_you_mean(package, package_names())}", _FAULTY_FILE) from None
+        raise CliError(f"Package '{package}' not found{did_you_mean(package, package_names())}") from None
     found = [
         path for path in sorted(share.rglob(Path(name).name)) if path.is_file() and path.as_posix().endswith(f"/{name}")
     ]
@@ -173,13 +172,11 @@ def find_launch_file(package: str, name: str) -> Path:
         hint = did_you_mean(name, (file.name for file in launch_files(package)))
         raise CliError(
             f"file '{name}' was not found in the share directory of package '{package}' which is at '{share}'{hint}",
-            _FAULTY_FILE,
         )
     if len(found) > 1:
         listed = "".join(f"\n- {path}" for path in found)
         raise CliError(
             f"file '{name}' was found more than once in the share directory of package '{package}':{listed}",
-            _FAULTY_FILE,
         )
     return found[0]
 
@@ -201,7 +198,7 @@ def parse_arguments(words: Iterable[str]) -> list[tuple[str, str]]:
     for word in words:
         name, separator, value = word.partition(":=")
         if not separator or not name:
-            raise CliError(f"malformed launch argument '{word}', expected format '<name>:=<value>'", _FAULTY_FILE)
+            raise CliError(f"malformed launch argument '{word}', expected format '<name>:=<value>'")
         arguments[name] = value
     return list(arguments.items())
 
@@ -217,7 +214,7 @@ def _load(path: Path) -> tuple[LaunchDescriptionSource, LaunchDescription]:
         return source, source.get_launch_description(LaunchContext())
     # A launch file is a program: it may raise anything.
     except Exception as error:
-        raise CliError(str(LaunchFileError.from_exception(error, str(path))), _FAULTY_FILE) from error
+        raise CliError(str(LaunchFileError.from_exception(error, str(path)))) from error
 
 
 def arguments_text(description: LaunchDescription) -> str:

@@ -1,0 +1,114 @@
+"""What the command `ros2` does: its parser is made, the command is chosen and run, and its fate becomes a status."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+import time
+from types import FrameType
+
+_INTERRUPTED = int(signal.SIGINT)
+"""What ROS 2's own command ends with."""
+
+_BROKEN_PIPE = 141
+_SAME_PRESS_S = 0.5
+
+
+def run(argv: list[str]) -> int:
+    """Run a command line; returns the exit status."""
+    try:
+        try:
+            status = _run(argv)
+        finally:
+            sys.stdout.flush()
+    except KeyboardInterrupt:
+        return _INTERRUPTED
+    except BrokenPipeError:
+        _discard_output()
+        return _BROKEN_PIPE
+    return status
+
+
+def run_interruptible(argv: list[str]) -> int:
+    """Run the command line of this process, to which Ctrl-C belongs from now on."""
+    try:
+        _handle_interrupts()
+        return run(argv)
+    except KeyboardInterrupt:
+        return _INTERRUPTED
+    finally:
+        if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:
+            # While the interpreter tidies up, nobody is there to catch an exception.
+            signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
+def _run(argv: list[str]) -> int:
+    from argparse import RawDescriptionHelpFormatter
+
+    from daidalos.cli.ros2.commands import commands
+    from daidalos.cli.ros2.errors import CliError
+    from daidalos.cli.ros2.parser import Parser, make_command
+
+    parser = Parser(prog="ros2", description="ros2 is an extensible command-line tool for ROS 2.")
+    parser.formatter_class = RawDescriptionHelpFormatter
+    parser.add_argument(
+        "--use-python-default-buffering",
+        action="store_true",
+        help="Do not force line buffering in stdout and instead use the python default buffering, which might be "
+        "affected by PYTHONUNBUFFERED/-u and depends on whatever stdout is interactive or not",
+    )
+    parser.add_subcommands("Commands", "ros2", commands(), make_command)
+    if "_ARGCOMPLETE" in os.environ:
+        import argcomplete
+
+        argcomplete.autocomplete(parser, always_complete_options=False, exclude=["-h", "--help"])
+    args = parser.parse_args(argv)
+    if not args.use_python_default_buffering and hasattr(sys.stdout, "reconfigure"):
+        sys.stdout.reconfigure(line_buffering=True)
+    if not hasattr(args, "_main"):
+        parser.print_help()
+        return 0
+    try:
+        status = args._main(args)
+    except CliError as error:
+        return _fail(str(error), error.status)
+    except (RuntimeError, ValueError) as error:
+        if isinstance(error, RecursionError | NotImplementedError):
+            raise
+        return _fail(str(error), 1)
+    return _fail(status, 1) if isinstance(status, str) else status or 0
+
+
+def _handle_interrupts() -> None:
+    """Raise KeyboardInterrupt at Ctrl-C; while its consequences are tidied up, more of the same does no harm.
+
+    A terminal, a shell and a program that watches over us may each send the signal for one press of the keys. Who
+    presses them again after that means it: we die at once.
+    """
+    first: float | None = None
+
+    def on_interrupt(number: int, frame: FrameType | None) -> None:
+        nonlocal first
+        if first is None:
+            first = time.monotonic()
+            raise KeyboardInterrupt
+        if time.monotonic() - first > _SAME_PRESS_S:
+            signal.signal(number, signal.SIG_DFL)
+            signal.raise_signal(number)
+
+    if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:
+        signal.signal(signal.SIGINT, on_interrupt)
+
+
+def _fail(message: str, status: int) -> int:
+    sys.stdout.flush()
+    if message:
+        print(message, file=sys.stderr)
+    return status
+
+
+def _discard_output() -> None:
+    """Keep the interpreter from complaining at its end about output that nobody reads."""
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, sys.stdout.fileno())
