@@ -116,27 +116,38 @@ class WriterThread:
             self._work_off(batch)
 
     def _work_off(self, batch: deque[BagMessage | Callable[[], None]]) -> None:
-        try:
-            for item in batch:
-                if isinstance(item, BagMessage):
-                    self._write(item)
-                else:
-                    item()
-            if self._dirty and time.monotonic() - self._last_flush >= _FLUSH_S:
-                self.writer.flush()
-                self._dirty = False
-                self._last_flush = time.monotonic()
-        except BagError as error:
-            self._failed = True
+        for item in batch:
+            if isinstance(item, BagMessage):
+                self._write(item)
+            else:
+                self._attempt(item)
+        if self._dirty and time.monotonic() - self._last_flush >= _FLUSH_S:
+            self._attempt(self.writer.flush)
             self._dirty = False
-            self._on_error(error)
+            self._last_flush = time.monotonic()
 
     def _write(self, message: BagMessage) -> None:
         if self._failed:
             self.lost[message.topic] += 1
             return
-        self.writer.write(message)
+        try:
+            self.writer.write(message)
+        except BagError as error:
+            self._fail(error)
+            return
         self._dirty = True
+
+    def _attempt(self, work: Callable[[], None]) -> None:
+        try:
+            work()
+        except BagError as error:
+            self._fail(error)
+
+    def _fail(self, error: BagError) -> None:
+        """Tell of what went wrong, once: from now on nothing is written."""
+        if not self._failed:
+            self._failed = True
+            self._on_error(error)
 
 
 class SnapshotBuffer:

@@ -12,8 +12,9 @@ from pathlib import Path
 
 from daidalos.bags.errors import BagError
 from daidalos.bags.message import BagMessage, Topic
-from daidalos.bags.reader import FOREVER_NS, BagReader
+from daidalos.bags.reader import BagReader
 from daidalos.bags.selection import Selection
+from daidalos.bags.storage import FOREVER_NS
 from daidalos.bags.writer import BagWriter, WriterOptions
 
 

@@ -13,7 +13,18 @@ from daidalos.bags.compression import FILE, FORMATS, MESSAGE, decompress_file
 from daidalos.bags.errors import BagError
 from daidalos.bags.message import BagMessage
 from daidalos.bags.metadata import BagFile, BagMetadata, TopicCount, parse_metadata, total, write_metadata
-from daidalos.bags.storage import SUFFIXES, ZSTD_MAGIC, ZSTD_SUFFIX, StorageReader, open_reader, storage_of
+from daidalos.bags.storage import (
+    FOREVER_NS,
+    SQLITE3,
+    SUFFIXES,
+    ZSTD_MAGIC,
+    ZSTD_SUFFIX,
+    StorageOptions,
+    StorageReader,
+    open_reader,
+    open_writer,
+    storage_of,
+)
 
 
 def describe(path: str | Path, storage_id: str = "") -> tuple[BagMetadata, list[str]]:
@@ -83,7 +94,9 @@ def describe(path: str | Path, storage_id: str = "") -> tuple[BagMetadata, list[
 
 
 def reindex(folder: str | Path, storage_id: str = "") -> tuple[BagMetadata, list[str]]:
-    """Write a bag's `metadata.yaml` anew from its files; returns what `describe` does.
+    """Write a bag's `metadata.yaml` anew from its files, and end files whose writer was killed.
+
+    Returns what `describe` does; what is lost of a file that was cut off is told there.
 
     Raises
     ------
@@ -91,8 +104,44 @@ def reindex(folder: str | Path, storage_id: str = "") -> tuple[BagMetadata, list
         As `describe` does, or when it can not be written.
     """
     metadata, faults = describe(folder, storage_id)
+    for file in metadata.files:
+        complete(Path(folder) / file.path, metadata.storage_id)
     write_metadata(folder, metadata)
     return metadata, faults
+
+
+def complete(path: Path, storage_id: str) -> None:
+    """End a file whose writer was killed, so that every program can read it; others stay as they are.
+
+    Raises
+    ------
+    BagError
+        When it can not be written; the file stays as it was then.
+    """
+    if path.name.endswith(ZSTD_SUFFIX):
+        return
+    if storage_id == SQLITE3:
+        from daidalos.bags.sqlite_writer import fold_journal
+
+        fold_journal(path)
+        return
+    with opened(path, storage_id) as reader:
+        if not reader.damage:
+            return
+        draft = path.with_name(f"{path.name}.new")
+        draft.unlink(missing_ok=True)
+        writer = open_writer(draft, storage_id, StorageOptions(), reader.ros_distro)
+        try:
+            for one in reader.topics.values():
+                writer.add_topic(one.topic)
+            for message in reader.messages(reader.topics, 0, FOREVER_NS, by_file=True):
+                writer.write(message)
+            writer.close()
+        except BaseException:
+            writer.close()
+            draft.unlink()
+            raise
+    draft.replace(path)
 
 
 def bag_files(folder: Path, storage_id: str = "") -> list[Path]:
@@ -113,7 +162,11 @@ def opened(path: Path, storage_id: str) -> Iterator[StorageReader]:
     """
     with tempfile.TemporaryDirectory(prefix="bag_") as folder:
         source = decompress_file(path, Path(folder)) if path.name.endswith(ZSTD_SUFFIX) else path
-        reader = open_reader(source, storage_id or storage_of(path))
+        try:
+            reader = open_reader(source, storage_id or storage_of(path))
+        except BagError as error:
+            raise BagError(path, error.reason) from None
+        reader.path = path
         try:
             yield reader
         finally:
@@ -135,6 +188,6 @@ def _has_packed_messages(reader: StorageReader) -> bool:
     first: BagMessage | None = None
     for name, one in reader.topics.items():
         if one.count:
-            first = next(reader.messages({name}, 0, 2**63 - 1), None)
+            first = next(reader.messages({name}, 0, FOREVER_NS), None)
             break
     return first is not None and first.data.startswith(ZSTD_MAGIC)

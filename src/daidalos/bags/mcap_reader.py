@@ -9,6 +9,7 @@ from __future__ import annotations
 import mmap
 import struct
 import zlib
+from bisect import bisect_left, bisect_right
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from io import BytesIO
@@ -23,7 +24,7 @@ from mcap.opcode import Opcode
 from mcap.stream_reader import StreamReader
 
 from daidalos.bags.errors import BagError
-from daidalos.bags.mcap_writer import MAGIC, MESSAGE_HEADER, METADATA_KEY, METADATA_NAME
+from daidalos.bags.mcap_writer import DISTRO_KEY, MAGIC, MESSAGE_HEADER, METADATA_KEY, METADATA_NAME
 from daidalos.bags.message import BagMessage, Definition, Topic
 from daidalos.bags.metadata import TopicCount
 from daidalos.bags.qos import parse_profiles
@@ -35,7 +36,7 @@ _CHUNK = struct.Struct("<QQQII")
 _TIMES = struct.Struct("<QQ")
 _LOOSE_SIZE = 1024 * 1024
 """Messages that stand in no chunk are read in pieces of about so many bytes."""
-_FAULTS = (McapError, struct.error, ValueError, IndexError, KeyError, UnicodeDecodeError, EOFError)
+_FAULTS = (McapError, struct.error, ValueError, LookupError, EOFError, OverflowError, MemoryError)
 
 Entry = tuple[int, int, int, bytes]
 """Time of reception, time of sending, channel, data."""
@@ -100,7 +101,7 @@ class McapReader(StorageReader):
             known = self.topics.get(topic.name)
             count = self._counts.get(number, 0) + (known.count if known else 0)
             self.topics[topic.name] = TopicCount(topic, count)
-        self.ros_distro = _distro(self.metadata)
+        self.ros_distro = self.ros_distro or _distro(self.metadata)
 
     def _topic(self, channel: Any) -> Topic:
         schema = self._schemas.get(channel.schema_id)
@@ -132,7 +133,7 @@ class McapReader(StorageReader):
         statistics = None
         indexes: list[Any] = []
         try:
-            for record in StreamReader(BytesIO(data[start : footer + _FOOTER_LENGTH]), skip_magic=True).records:
+            for record in StreamReader(BytesIO(data[start:]), skip_magic=True).records:
                 if isinstance(record, records.Schema):
                     self._schemas[record.id] = record
                 elif isinstance(record, records.Channel):
@@ -179,6 +180,7 @@ class McapReader(StorageReader):
         begin = offset + _RECORD.size
         record = records.Metadata.read(ReadDataStream(BytesIO(self._data[begin : begin + length])))
         self.metadata = record.metadata.get(METADATA_KEY, self.metadata)
+        self.ros_distro = record.metadata.get(DISTRO_KEY, self.ros_distro)
 
     # Walking through the records.
 
@@ -186,12 +188,13 @@ class McapReader(StorageReader):
         """Learn from the records themselves what the file holds, up to the first that is not whole."""
         data, position, size = self._data, len(MAGIC), len(self._data)
         loose: _Loose | None = None
+        ended = False
         try:
             while position + _RECORD.size <= size:
                 opcode, length = _RECORD.unpack_from(data, position)
                 begin = position + _RECORD.size
                 if opcode == Opcode.DATA_END:
-                    position = size
+                    ended = True
                     break
                 if not 0 < opcode <= Opcode.DATA_END or begin + length > size:
                     break
@@ -208,8 +211,9 @@ class McapReader(StorageReader):
             self.damage = f"a record at byte {position} is damaged: {error}"
         if loose:
             self._chunks.append(loose.chunk())
-        if position < size and not self.damage:
-            self.damage = f"it was not ended: {size - position} bytes from byte {position} on hold no whole record"
+        if not ended and not self.damage:
+            rest = f"; {size - position} bytes behind the last whole record are lost" if position < size else ""
+            self.damage = f"it was not ended{rest}"
 
     def _take_chunk(self, chunk: _Chunk) -> None:
         channels: set[int] = set()
@@ -278,7 +282,7 @@ class McapReader(StorageReader):
             waiting += self._entries(chunk, names, start, stop)
             waiting.sort(key=itemgetter(0))
             if k + 1 < len(chunks):
-                split = _count_before(waiting, chunks[k + 1].start_ns)
+                split = bisect_left(waiting, chunks[k + 1].start_ns, key=itemgetter(0))
                 yield waiting[:split]
                 waiting = waiting[split:]
         yield waiting
@@ -290,7 +294,7 @@ class McapReader(StorageReader):
         for k, chunk in enumerate(chunks):
             waiting = sorted(self._entries(chunk, names, start, stop) + waiting, key=itemgetter(0))
             if k + 1 < len(chunks):
-                split = _count_before(waiting, chunks[k + 1].end_ns + 1)
+                split = bisect_right(waiting, chunks[k + 1].end_ns, key=itemgetter(0))
                 yield waiting[split:][::-1]
                 waiting = waiting[:split]
         yield waiting[::-1]
@@ -374,18 +378,6 @@ def _records(content: bytes) -> Iterator[tuple[int, int, int]]:
         if position > len(content):
             raise ValueError("a record is cut off")
         yield opcode, begin, position
-
-
-def _count_before(entries: list[Entry], time_ns: int) -> int:
-    """Return how many of some ordered messages came before a time."""
-    low, high = 0, len(entries)
-    while low < high:
-        middle = (low + high) // 2
-        if entries[middle][0] < time_ns:
-            low = middle + 1
-        else:
-            high = middle
-    return low
 
 
 def _full_type(name: str) -> str:

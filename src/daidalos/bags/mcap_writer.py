@@ -28,6 +28,7 @@ from daidalos.bags.storage import StorageOptions, StorageWriter, settings
 MAGIC = b"\x89MCAP0\r\n"
 METADATA_NAME = "rosbag2"
 METADATA_KEY = "serialized_metadata"
+DISTRO_KEY = "ROS_DISTRO"
 MESSAGE_HEADER = struct.Struct("<BQHIQQ")
 """Opcode, length, channel, sequence number, log time, publish time."""
 _LENGTH_BEFORE_DATA = 22
@@ -153,7 +154,7 @@ class McapWriter(StorageWriter):
 
     smallest_split = 1024
 
-    def __init__(self, path: Path, options: McapOptions) -> None:
+    def __init__(self, path: Path, options: McapOptions, ros_distro: str) -> None:
         self.path = path
         self._options = options
         try:
@@ -178,6 +179,7 @@ class McapWriter(StorageWriter):
 
         self._put(MAGIC, in_data=False)
         self._put(_bytes(records.Header(profile="ros2", library=f"daidalos {__version__}")))
+        self._put_metadata({DISTRO_KEY: ros_distro})
 
     def add_topic(self, topic: Topic) -> None:
         """Declare a topic."""
@@ -311,15 +313,15 @@ class McapWriter(StorageWriter):
         try:
             self.flush()
             if metadata:
-                self._put_metadata(metadata)
+                self._put_metadata({METADATA_KEY: metadata})
             self._put(_bytes(records.DataEnd(self._data_crc)), in_data=False)
             self._put(self._summary(), in_data=False)
             self._put(MAGIC, in_data=False)
         finally:
             self._file.close()
 
-    def _put_metadata(self, text: str) -> None:
-        record = _bytes(records.Metadata(name=METADATA_NAME, metadata={METADATA_KEY: text}))
+    def _put_metadata(self, values: dict[str, str]) -> None:
+        record = _bytes(records.Metadata(name=METADATA_NAME, metadata=values))
         if self._options.metadata_index:
             self._metadata_indexes.append(
                 records.MetadataIndex(offset=self._position, length=len(record), name=METADATA_NAME)

@@ -15,9 +15,7 @@ from daidalos.bags.describe import describe, opened
 from daidalos.bags.errors import BagError
 from daidalos.bags.message import BagMessage, Topic
 from daidalos.bags.metadata import FILE_NAME, BagFile, read_metadata
-from daidalos.bags.storage import StorageReader
-
-FOREVER_NS = 2**63 - 1
+from daidalos.bags.storage import FOREVER_NS, StorageReader
 
 
 class BagReader:

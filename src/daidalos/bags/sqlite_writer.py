@@ -44,11 +44,31 @@ def pragmas(options: StorageOptions) -> list[str]:
     found = ["PRAGMA journal_mode=WAL", f"PRAGMA synchronous={'NORMAL' if options.profile == 'resilient' else 'OFF'}"]
     if options.config is None:
         return found
-    write = settings(options.config).get("write")
+    write = settings(options.config).get("write", {})
     extra = write.get("pragmas", []) if isinstance(write, dict) else None
     if not isinstance(extra, list) or not all(isinstance(one, str) for one in extra):
         raise BagError(options.config, 'expected "write" with a list "pragmas", such as ["cache_size = 2000"]')
     return [*found, *(f"PRAGMA {one.rstrip(';')}" for one in extra)]
+
+
+def fold_journal(path: Path) -> None:
+    """Take what a killed writer left in a file's journal into the file itself.
+
+    Raises
+    ------
+    BagError
+        When the file can not be written.
+    """
+    if not path.with_name(f"{path.name}-wal").exists():
+        return
+    try:
+        database = sqlite3.connect(path)
+        try:
+            database.execute("PRAGMA journal_mode=DELETE")
+        finally:
+            database.close()
+    except sqlite3.Error as error:
+        raise BagError(path, f"can not be written: {error}") from None
 
 
 class SqliteWriter(StorageWriter):

@@ -17,6 +17,8 @@ SUFFIXES = {MCAP: ".mcap", SQLITE3: ".db3"}
 DEFAULT = MCAP
 PROFILES = {MCAP: ("none", "fastwrite", "zstd_fast", "zstd_small"), SQLITE3: ("none", "resilient")}
 """Presets that each format's writer knows."""
+FOREVER_NS = 2**63 - 1
+"""A time after all others."""
 ZSTD_SUFFIX = ".zstd"
 ZSTD_MAGIC = b"\x28\xb5\x2f\xfd"
 _MAGIC = {b"\x89MCAP": MCAP, b"SQLite format 3\0": SQLITE3}
@@ -71,6 +73,8 @@ class StorageReader(ABC):
 
     Attributes
     ----------
+    path
+        What errors call the file.
     topics
         Its topics, with their numbers of messages, by name.
     start_ns, end_ns
@@ -83,6 +87,7 @@ class StorageReader(ABC):
         The text of the bag's description, as far as the file holds it.
     """
 
+    path: Path
     topics: dict[str, TopicCount]
     start_ns: int = 0
     end_ns: int = 0
@@ -187,7 +192,7 @@ def open_writer(path: Path, storage_id: str, options: StorageOptions, ros_distro
     if storage_id == MCAP:
         from daidalos.bags.mcap_writer import McapWriter, writer_options
 
-        return McapWriter(path, writer_options(options))
+        return McapWriter(path, writer_options(options), ros_distro)
     from daidalos.bags.sqlite_writer import SqliteWriter, pragmas
 
     return SqliteWriter(path, pragmas(options), ros_distro)

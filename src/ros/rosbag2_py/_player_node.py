@@ -19,7 +19,8 @@ from daidalos.bags.clock import PlaybackClock
 from daidalos.bags.errors import BagError
 from daidalos.bags.message import BagMessage
 from daidalos.bags.read_ahead import ReadAhead
-from daidalos.bags.reader import FOREVER_NS, BagReader
+from daidalos.bags.reader import BagReader
+from daidalos.bags.storage import FOREVER_NS
 from rosbag2_py._options import PlayOptions
 from rosbag2_py._outlets import Outlets
 from rosbag2_py._storage import StorageOptions

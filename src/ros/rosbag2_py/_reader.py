@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from daidalos.bags.message import BagMessage
-from daidalos.bags.reader import FOREVER_NS, BagReader
-from daidalos.bags.storage import SUFFIXES
+from daidalos.bags.reader import BagReader
+from daidalos.bags.storage import FOREVER_NS, SUFFIXES
 from rosbag2_py._metadata import BagMetadata, TopicMetadata, of_bag
 from rosbag2_py._storage import (
     ConverterOptions,

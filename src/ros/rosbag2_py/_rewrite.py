@@ -9,7 +9,7 @@ from typing import Any
 from daidalos.bags.compression import FORMATS
 from daidalos.bags.convert import Output, convert
 from daidalos.bags.errors import BagError
-from daidalos.bags.reader import FOREVER_NS
+from daidalos.bags.storage import FOREVER_NS
 from rosbag2_py._options import RecordOptions
 from rosbag2_py._storage import StorageOptions
 
