@@ -1,0 +1,1 @@
+"""Turtles that follow each other by transforms."""

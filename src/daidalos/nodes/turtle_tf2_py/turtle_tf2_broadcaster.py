@@ -1,0 +1,39 @@
+"""`turtle_tf2_broadcaster`: publishes where a turtle is as a transform from ``world``."""
+
+from __future__ import annotations
+
+import sys
+from typing import Any
+
+from rclpy.node import Node
+
+from daidalos.nodes.runner import run
+from daidalos.nodes.turtle_tf2_py._transforms import transform
+
+
+class TurtleTf2Broadcaster(Node):
+    """Follows the pose of the turtle that the parameter ``turtlename`` names."""
+
+    def __init__(self, **kwargs: Any) -> None:
+        super().__init__("turtle_tf2_frame_publisher", **kwargs)
+        from tf2_ros import TransformBroadcaster
+        from turtlesim.msg import Pose
+
+        self._name = str(self.declare_parameter("turtlename", "turtle").value)
+        self._broadcaster = TransformBroadcaster(self)
+        self.create_subscription(Pose, f"/{self._name}/pose", self._on_pose, 1)
+
+    def _on_pose(self, pose: Any) -> None:
+        stamp = self.get_clock().now().to_msg()
+        self._broadcaster.sendTransform(
+            transform(stamp, "world", self._name, (pose.x, pose.y, 0.0), (0.0, 0.0, pose.theta))
+        )
+
+
+def main() -> int:
+    """Run the node."""
+    return run(TurtleTf2Broadcaster)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,13 @@
+"""A talker and a listener."""
+
+from launch import LaunchDescription
+from launch_ros.actions import Node
+
+
+def generate_launch_description():
+    return LaunchDescription(
+        [
+            Node(package="demo_nodes_cpp", executable=executable, output="screen")
+            for executable in ("talker", "listener")
+        ]
+    )
