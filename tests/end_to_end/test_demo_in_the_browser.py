@@ -18,6 +18,7 @@ def page(domain: int) -> Iterator[Chromium]:
     require_chromium()
     with Command(*DAIDALOS, "demo", "--no-browser", domain=domain) as demo:
         address = demo.wait_for_line("studio: http://").split("studio: ")[1]
+        demo.wait_for_line("nav2_container.*Managed|Managed nodes are active")
         with Chromium(1440, 900) as chromium:
             chromium.open(address)
             yield chromium
@@ -37,10 +38,11 @@ def test_a_goal_set_with_the_mouse_is_reached(page: Chromium) -> None:
     assert math.hypot(start["x"] - GOAL[0], start["y"] - GOAL[1]) > 1.0
     drag_goal(page, GOAL, AHEAD)
     page.wait_for("daidalos.state().published['/goal_pose']")
+    page.wait_for("daidalos.state().displays.Plan?.level === 'ok'")
     page.wait_for(
-        f"Math.hypot(daidalos.state().robotPose.x - {GOAL[0]}, daidalos.state().robotPose.y - {GOAL[1]}) < 0.2"
-        " && Math.abs(daidalos.state().robotPose.yaw) < 0.3",
-        timeout=90,
+        f"(({{x, y, yaw}}) => Math.hypot(x - {GOAL[0]}, y - {GOAL[1]}) < 0.2 && Math.abs(yaw) < 0.3)"
+        "(daidalos.state().robotPose)",
+        timeout=120,
     )
     faults = {
         name: told for name, told in page.evaluate("daidalos.state().displays").items() if told["level"] == "error"

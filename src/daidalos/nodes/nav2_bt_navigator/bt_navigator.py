@@ -40,6 +40,7 @@ class BtNavigator(LifecycleNode):
         self._blackboard: Blackboard | None = None
         self._waiting: list[Any] = []
         self._last_result: Any = None
+        self._early_pose: Any = None
 
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Read the default tree and serve."""
@@ -59,6 +60,19 @@ class BtNavigator(LifecycleNode):
         self.create_subscription(PoseStamped, "goal_pose", self._on_goal_pose, 10)
         return super().on_configure(state)
 
+    def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Begin to navigate, first to where somebody clicked too early."""
+        answer = super().on_activate(state)
+        pose, self._early_pose = self._early_pose, None
+        if pose is not None:
+            self._when_active = self.create_timer(0.01, lambda: self._send_early(pose))
+        return answer
+
+    def _send_early(self, pose: Any) -> None:
+        if self.current_state.label == "active":
+            self.destroy_timer(self._when_active)
+            self._on_goal_pose(pose)
+
     def _on_goal(self, request: Any) -> GoalResponse:
         if self.current_state.label != "active":
             self.get_logger().warning("a goal was rejected: the navigator is not active")
@@ -72,6 +86,10 @@ class BtNavigator(LifecycleNode):
     def _on_goal_pose(self, pose: Any) -> None:
         from nav2_msgs.action import NavigateToPose
 
+        if self.current_state.label != "active":
+            self.get_logger().info("a goal came before the navigator is active; it is driven to then")
+            self._early_pose = pose
+            return
         self._self_client.send_goal_async(NavigateToPose.Goal(pose=pose))
 
     async def _navigate(self, goal_handle: Any) -> Any:
