@@ -222,10 +222,16 @@ class DofSample(Sample):
 
 @dataclass(frozen=True)
 class GripperRequest:
-    """A goal of a gripper: where to, and how hard and fast at most (0: as it can)."""
+    """A goal of a gripper: where to [m, rad], and how hard at most [N, N m] (0: as it can)."""
 
     position: float
     max_effort: float = 0.0
+
+
+@dataclass(frozen=True)
+class ParallelGripperRequest(GripperRequest):
+    """The same with a largest speed [m/s, rad/s] (0: as it can) and the joint that is meant, if one is named."""
+
     max_velocity: float = 0.0
     joint: str = ""
 
@@ -244,14 +250,6 @@ class GripperState:
 
 
 @dataclass(frozen=True, eq=False)
-class WrenchSample(Sample):
-    """Force [N] and torque [N m], each (3,)."""
-
-    force: Array
-    torque: Array
-
-
-@dataclass(frozen=True, eq=False)
 class WrenchCommand:
     """A wanted force [N] and torque [N m], each (3,), in a frame; empty for the sensor's."""
 
@@ -261,7 +259,7 @@ class WrenchCommand:
 
 
 @dataclass(frozen=True, eq=False)
-class RangeSample(Sample):
+class VariedRangeSample(Sample):
     """A distance [m] and what the sensor is; see ``sensor_msgs/msg/Range``."""
 
     radiation_type: int

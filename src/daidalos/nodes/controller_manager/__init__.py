@@ -1,0 +1,1 @@
+"""ros2_control's controller manager and what speaks to it."""

@@ -1,0 +1,342 @@
+"""The controller manager as a node: its services, and the nodes of its controllers."""
+
+from __future__ import annotations
+
+import threading
+import traceback
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import Any
+
+from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
+from rclpy.executors import Executor
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+
+from daidalos.control.component import INACTIVE, UNCONFIGURED
+from daidalos.control.controllers.base import ControllerSetting
+from daidalos.control.errors import ControlError
+from daidalos.control.hardware.base import Hardware
+from daidalos.control.manager import ControllerManager
+from daidalos.control.plugins import controllers
+from daidalos.control.switching import Strictness
+from daidalos.description.robot import Robot
+from daidalos.nodes.controller_manager._controller_node import ControllerNode
+from daidalos.nodes.controller_manager._reports import (
+    activity_message,
+    component_message,
+    controller_message,
+    interface_messages,
+)
+from daidalos.simulation.samples import Sample
+
+_LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL, reliability=ReliabilityPolicy.RELIABLE)
+_CHAINABLE = "controller_interface::ChainableControllerInterface"
+_PLAIN = "controller_interface::ControllerInterface"
+
+
+class ControllerManagerNode(Node):
+    """Offers a manager's services, under ROS's names.
+
+    Parameters of the node are ROS's: ``update_rate``, ``<controller>.type``, ``<controller>.params_file``,
+    ``<controller>.fallback_controllers``, ``hardware_components_initial_state``, ``enforce_command_limits``.
+
+    Parameters
+    ----------
+    node_name : str
+    controller_arguments : list of str
+        ROS arguments for all its controllers.
+    **kwargs
+        Of `Node`.
+    """
+
+    def __init__(
+        self, node_name: str = "controller_manager", controller_arguments: list[str] | None = None, **kwargs: Any
+    ) -> None:
+        super().__init__(
+            node_name,
+            allow_undeclared_parameters=True,
+            automatically_declare_parameters_from_overrides=True,
+            **kwargs,
+        )
+        self._controller_arguments = controller_arguments or []
+        self._use_global_arguments = bool(kwargs.get("use_global_arguments", True))
+        self.update_rate = float(self._parameter("update_rate", 100))
+        if self.update_rate <= 0.0:
+            raise ControlError(f"parameter 'update_rate' must be above 0, got {self.update_rate:g}")
+        self.lock = threading.RLock()
+        self.manager: ControllerManager | None = None
+        self._nodes: dict[str, ControllerNode] = {}
+        self._robot: Robot | None = None
+        self._activity: Any = None
+
+    def start(self, robot: Robot | None, hardware: Iterable[Hardware]) -> None:
+        """Take hardware into service, and offer the services."""
+        from controller_manager_msgs.msg import ControllerManagerActivity
+
+        self._robot = robot
+        self.manager = ControllerManager(
+            hardware,
+            self.update_rate,
+            self._initial_states(),
+            bool(self._parameter("enforce_command_limits", True)),
+            self.warn,
+        )
+        for component in self.manager.components.values():
+            self.get_logger().info(f"hardware '{component.name}' is {component.state}")
+        self._activity = self.create_publisher(ControllerManagerActivity, "~/activity", _LATCHED)
+        self._create_services()
+        self._publish_activity()
+
+    def warn(self, line: str) -> None:
+        """Log a line for the user."""
+        self.get_logger().warning(line)
+
+    def _parameter(self, name: str, default: Any) -> Any:
+        if not self.has_parameter(name):
+            return default
+        value = self.get_parameter(name).value
+        return default if value is None else value
+
+    def _initial_states(self) -> dict[str, str]:
+        prefix = "hardware_components_initial_state"
+        return {name: state for state in (UNCONFIGURED, INACTIVE) for name in self._parameter(f"{prefix}.{state}", [])}
+
+    # The loop: called by whoever has the clock.
+
+    def cycle(self, now_ns: int) -> list[tuple[str, Sample]]:
+        """Run all controllers once; return what there is to publish."""
+        if self.manager is None:
+            return []
+        with self.lock:
+            for node in self._nodes.values():
+                node.cancel_requested()
+            before = self._states()
+            said = self.manager.update(now_ns)
+            if self._states() != before:  # something failed
+                self._publish_activity()
+            return said
+
+    def publish(self, said: Iterable[tuple[str, Sample]]) -> None:
+        """Publish what controllers said."""
+        for name, sample in said:
+            node = self._nodes.get(name)
+            if node is not None:
+                node.publish(sample)
+
+    def _states(self) -> list[str]:
+        assert self.manager is not None
+        controllers = [one.state for one in self.manager.controllers.values()]
+        return [*controllers, *(one.state for one in self.manager.components.values())]
+
+    def destroy_node(self) -> None:
+        """Stop everything and leave the graph."""
+        with self.lock:
+            if self.manager is not None:
+                self.manager.shutdown()
+            nodes, self._nodes = self._nodes, {}
+        for node in nodes.values():
+            node.destroy_node()
+        super().destroy_node()
+
+    # Services
+
+    def _create_services(self) -> None:
+        from controller_manager_msgs import srv
+
+        group = MutuallyExclusiveCallbackGroup()
+        for kind, name, answer in (
+            (srv.ListControllers, "list_controllers", self._list_controllers),
+            (srv.ListControllerTypes, "list_controller_types", self._list_types),
+            (srv.ListHardwareComponents, "list_hardware_components", self._list_components),
+            (srv.ListHardwareInterfaces, "list_hardware_interfaces", self._list_interfaces),
+            (srv.LoadController, "load_controller", self._changing(self._load)),
+            (srv.ConfigureController, "configure_controller", self._changing(self._configure)),
+            (srv.CleanupController, "cleanup_controller", self._changing(self._cleanup)),
+            (srv.UnloadController, "unload_controller", self._changing(self._unload)),
+            (srv.SwitchController, "switch_controller", self._changing(self._switch)),
+            (srv.ReloadControllerLibraries, "reload_controller_libraries", self._changing(self._reload)),
+            (srv.SetHardwareComponentState, "set_hardware_component_state", self._changing(self._set_component)),
+        ):
+            self.create_service(kind, f"~/{name}", answer, callback_group=group)
+
+    def _changing(self, work: Callable[[Any, Any], None]) -> Callable[[Any, Any], Any]:
+        """Return a service's callback for something that may fail: the answer says whether it did."""
+
+        def callback(request: Any, response: Any) -> Any:
+            response.ok = True
+            try:
+                with self.lock:
+                    work(request, response)
+            except Exception as error:  # classes of the user's may raise anything
+                if not isinstance(error, ControlError):
+                    self.get_logger().error(traceback.format_exc())
+                response.ok = False
+                if hasattr(response, "message"):
+                    response.message = str(error)
+                self.get_logger().error(str(error))
+            self._publish_activity()
+            return response
+
+        return callback
+
+    @property
+    def _running(self) -> ControllerManager:
+        assert self.manager is not None, "services are there once the manager is"
+        return self.manager
+
+    @property
+    def _spinning(self) -> Executor:
+        """Who spins this node, and spins those of its controllers."""
+        executor = self.executor
+        assert executor is not None, "a service can only be called while somebody spins"
+        return executor
+
+    def _list_controllers(self, request: Any, response: Any) -> Any:
+        with self.lock:
+            response.controller = [controller_message(self._running, name) for name in self._running.controllers]
+        return response
+
+    def _list_types(self, request: Any, response: Any) -> Any:
+        known = sorted(controllers().items())
+        response.types = [name for name, _ in known]
+        response.base_classes = [_CHAINABLE if cls.chainable else _PLAIN for _, cls in known]
+        return response
+
+    def _list_components(self, request: Any, response: Any) -> Any:
+        with self.lock:
+            response.component = [component_message(self._running, name) for name in self._running.components]
+        return response
+
+    def _list_interfaces(self, request: Any, response: Any) -> Any:
+        with self.lock:
+            response.command_interfaces, response.state_interfaces = interface_messages(self._running)
+        return response
+
+    def _load(self, request: Any, response: Any) -> None:
+        name = request.name
+        type_name = self._parameter(f"{name}.type", "")
+        files = self._parameter(f"{name}.params_file", [])
+        files = [files] if isinstance(files, str) else list(files)
+        if name in self._running.controllers:
+            raise ControlError(f"a controller '{name}' is loaded already")
+        node = self._make_node(name, files)
+        try:
+            type_name = type_name or self._type_from(node)
+            if not type_name:
+                raise ControlError(
+                    f"the type of controller '{name}' is not known: "
+                    f"the parameter '{name}.type' of '{self.get_name()}' is not set"
+                )
+            setting = ControllerSetting(
+                name,
+                update_rate=self._rate_of(node, name),
+                robot=self._robot,
+                namespace=self.get_namespace(),
+                heard=node.is_heard,
+                warn=node.warn,
+            )
+            fallbacks = self._parameter(f"{name}.fallback_controllers", [])
+            self._running.load(name, type_name, node.read_parameters, setting, fallbacks)
+        except ControlError:
+            node.destroy_node()
+            raise
+        self._nodes[name] = node
+        self._spinning.add_node(node)
+        self.get_logger().info(f"loaded controller '{name}' ({type_name})")
+
+    def _make_node(self, name: str, files: list[str]) -> ControllerNode:
+        for file in files:
+            if not Path(file).is_file():
+                raise ControlError(f"there is no parameter file '{file}' for controller '{name}'")
+        arguments = [*self._controller_arguments]
+        for file in files:
+            arguments += ["--params-file", file]
+        arguments += self._parameter(f"{name}.node_options_args", [])
+        sim_time: Parameter[bool] = Parameter("use_sim_time", value=bool(self._parameter("use_sim_time", False)))
+        try:
+            return ControllerNode(
+                name,
+                self.get_namespace(),
+                arguments,
+                self.lock,
+                context=self.context,
+                use_global_arguments=self._use_global_arguments,
+                parameter_overrides=[sim_time],
+            )
+        except (ValueError, RuntimeError) as error:  # the name, or something in a file, breaks the rules
+            raise ControlError(f"controller '{name}' can not be loaded: {error}") from error
+
+    def _type_from(self, node: ControllerNode) -> str:
+        """Return a type that the controller's own parameters give."""
+        return str(node.declare_parameter("type", "").value)
+
+    def _rate_of(self, node: ControllerNode, name: str) -> float:
+        try:
+            return float(node.declare_parameter("update_rate", 0).value)
+        except RuntimeError as error:
+            raise ControlError(f"controller '{name}': {error}") from error
+
+    def _configure(self, request: Any, response: Any) -> None:
+        name = request.name
+        try:
+            self._running.configure(name)
+        except ControlError as error:
+            if name in self._nodes:
+                self._nodes[name].disconnect()
+            raise ControlError(f"controller '{name}' can not be configured: {error}") from error
+        loaded = self._running.controllers[name]
+        self._nodes[name].connect(loaded.running, lambda: loaded.state == "active")
+        self.get_logger().info(f"configured controller '{name}'")
+
+    def _cleanup(self, request: Any, response: Any) -> None:
+        self._running.cleanup(request.name)
+        self._nodes[request.name].disconnect()
+
+    def _unload(self, request: Any, response: Any) -> None:
+        self._running.unload(request.name)
+        self._forget(request.name)
+
+    def _forget(self, name: str) -> None:
+        node = self._nodes.pop(name)
+        self._spinning.remove_node(node)
+        node.destroy_node()
+        self.get_logger().info(f"unloaded controller '{name}'")
+
+    def _switch(self, request: Any, response: Any) -> None:
+        strictness = Strictness(request.strictness) if request.strictness in range(1, 5) else Strictness.BEST_EFFORT
+        done = self._running.switch(request.activate_controllers, request.deactivate_controllers, strictness)
+        response.message = "; ".join(done.left_out)
+        for what, names in (("deactivated", done.stop), ("activated", done.start)):
+            if names:
+                self.get_logger().info(f"{what} {', '.join(names)}")
+        if done.left_out:
+            self.get_logger().warning(f"left out: {response.message}")
+            response.ok = bool(done.start or done.stop)
+
+    def _reload(self, request: Any, response: Any) -> None:
+        self._running.unload_all(force=request.force_kill)
+        for name in list(self._nodes):
+            self._forget(name)
+
+    def _set_component(self, request: Any, response: Any) -> None:
+        from lifecycle_msgs.msg import State
+
+        target = request.target_state
+        names = {
+            State.PRIMARY_STATE_UNCONFIGURED: UNCONFIGURED,
+            State.PRIMARY_STATE_INACTIVE: INACTIVE,
+            State.PRIMARY_STATE_ACTIVE: "active",
+            State.PRIMARY_STATE_FINALIZED: "finalized",
+        }
+        wanted = target.label or names.get(target.id, "")
+        try:
+            self._running.set_component_state(request.name, wanted)
+        finally:
+            if request.name in self._running.components:
+                response.state = component_message(self._running, request.name).state
+
+    def _publish_activity(self) -> None:
+        if self._activity is not None and self.context.ok():
+            self._activity.publish(activity_message(self._running, self.get_clock().now().to_msg()))
