@@ -3,12 +3,15 @@
 import json
 import re
 import socket
+import sys
 
 import pytest
 
+from conftest import REPOSITORY
 from end_to_end.processes import DAIDALOS, ROS2, Command, finished
 
 DEMO = [*DAIDALOS, "demo"]
+EXAMPLES = REPOSITORY / "examples"
 UP = "Managed nodes are active"
 
 
@@ -75,11 +78,38 @@ def test_other_commands_see_the_running_demonstration(domain: int) -> None:
         assert scan.stdout.startswith("base_scan")
         info = finished(*ROS2, "topic", "info", "/map", domain=domain).stdout
         assert "nav_msgs/msg/OccupancyGrid" in info
+        info = finished(*ROS2, "node", "info", "/bt_navigator", domain=domain).stdout
+        assert "/navigate_to_pose: nav2_msgs/action/NavigateToPose" in info
+        pub = ["topic", "pub", "--times", "2", "/cmd_vel", "geometry_msgs/msg/Twist", "{angular: {z: 0.1}}"]
+        assert "publishing #2" in finished(*ROS2, *pub, domain=domain).stdout
         with Command(*ROS2, "topic", "hz", "/odom", domain=domain) as rate:
             line = rate.wait_for_line("average rate")
             assert 80.0 < float(line.split(":")[1]) < 120.0
             rate.interrupt()
         assert demo.interrupt() == 0
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(240)
+def test_the_examples_work_on_it(domain: int) -> None:
+    with Command(*DEMO, "--no-browser", domain=domain) as demo:
+        demo.wait_for_line("look_around.*finished")
+        with Command(sys.executable, str(EXAMPLES / "nearest_wall.py"), domain=domain) as example:
+            example.wait_for_line(r"\d\.\d\d m at [+-]\d+ deg")
+            example.interrupt()
+            example.assert_no_traceback()
+        with Command(sys.executable, str(EXAMPLES / "keep_distance.py"), domain=domain) as example:
+            velocity = [*ROS2, "topic", "echo", "/odom", "--field", "twist.twist.linear.x"]
+            with Command(*velocity, domain=domain) as echo:
+                echo.wait_for_line(r"^0\.1[89]|^0\.2")
+                echo.interrupt()
+            example.interrupt()
+            example.assert_no_traceback()
+        with Command(sys.executable, str(EXAMPLES / "patrol.py"), domain=domain) as example:
+            example.wait_for_line(r"\(1.2, -1.6\): reached")
+            example.interrupt()
+            example.assert_no_traceback()
+        demo.interrupt()
 
 
 @pytest.mark.slow
