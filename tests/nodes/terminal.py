@@ -68,12 +68,12 @@ class Terminal:
     def text(self) -> str:
         return "\n".join(self.lines)
 
-    def wait_for(self, pattern: str, count: int = 1) -> list[str]:
-        """Return the first lines that a pattern is found in."""
+    def wait_for(self, pattern: str, count: int = 1, after: int = 0) -> list[str]:
+        """Return the first lines that a pattern is found in, after as many as were there before."""
         deadline = time.monotonic() + PATIENCE_S
         with self._news:
             while True:
-                found = [line for line in self.lines if re.search(pattern, line)]
+                found = [line for line in self.lines[after:] if re.search(pattern, line)]
                 if len(found) >= count:
                     return found[:count]
                 left = deadline - time.monotonic()

@@ -79,6 +79,8 @@ class Keyboard:
         import select
 
         assert self._pipe is not None, "read within the with block"
+        if self._woken.is_set():
+            return None
         ready = select.select([sys.stdin, self._pipe[0]], [], [], timeout_s)[0]
         if self._woken.is_set():
             return None

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import signal
 import threading
 from collections.abc import Callable
 from contextlib import suppress
 from typing import TYPE_CHECKING, TypeVar
 
 from daidalos.nodes.keyboard import Keyboard
-from daidalos.nodes.runner import UserError, ignore_interrupts, run_program
+from daidalos.nodes.runner import UserError, run_program
 
 if TYPE_CHECKING:
     from rclpy.node import Node
@@ -18,6 +19,8 @@ if TYPE_CHECKING:
 
 def run_with_keyboard(make_node: Callable[[], NodeT], steer: Callable[[NodeT, Keyboard], None]) -> int:
     """Spin a node while keys steer it.
+
+    Ctrl-C and termination end the keys before they end the graph, so that the last word can be to stand still.
 
     Parameters
     ----------
@@ -33,10 +36,13 @@ def run_with_keyboard(make_node: Callable[[], NodeT], steer: Callable[[NodeT, Ke
     """
     import rclpy
     from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+    from rclpy.signals import SignalHandlerOptions
 
     def body() -> None:
         keyboard = Keyboard()
-        rclpy.init()
+        for number in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(number, lambda *_: keyboard.wake())
+        rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
         try:
             node = make_node()
         except RuntimeError as error:  # such as a parameter that is not valid
@@ -50,12 +56,10 @@ def run_with_keyboard(make_node: Callable[[], NodeT], steer: Callable[[NodeT, Ke
 
         spinner = threading.Thread(target=spin, name="spin")
         with keyboard:
-            rclpy.get_default_context().on_shutdown(keyboard.wake)
             spinner.start()
             try:
                 steer(node, keyboard)
             finally:
-                ignore_interrupts()
                 executor.shutdown()
                 spinner.join()
                 node.destroy_node()

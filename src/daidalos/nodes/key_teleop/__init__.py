@@ -1,0 +1,1 @@
+"""Driving a robot with the arrow keys."""
