@@ -113,13 +113,13 @@ def init(
 def get_global_executor() -> Executor:
     """Return the executor that `spin` uses where none is given."""
     global __executor
-    if __executor is None or __executor.context is not get_default_context():
+    executor = __executor
+    if executor is None or executor.context is not get_default_context():
         from rclpy.executors import SingleThreadedExecutor
 
-        __executor = SingleThreadedExecutor()
-        context = get_default_context()
-        context.on_shutdown(_reset_global_executor)
-    return __executor
+        executor = __executor = SingleThreadedExecutor()
+        get_default_context().on_shutdown(_reset_global_executor)
+    return executor
 
 
 def _reset_global_executor() -> None:

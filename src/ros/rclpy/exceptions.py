@@ -128,6 +128,13 @@ class ParameterUninitializedException(ParameterException):
         super().__init__("The parameter is not initialized", parameter_name)
 
 
+class ExternalShutdownException(Exception):
+    """The context was shut down, for instance by Ctrl-C."""
+
+    def __init__(self) -> None:
+        super().__init__("The context was shut down")
+
+
 class ROSInterruptException(Exception):
     """A wait was ended by a shutdown."""
 

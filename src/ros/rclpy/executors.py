@@ -19,6 +19,7 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
 
 from rclpy.context import Context
+from rclpy.exceptions import ExternalShutdownException
 from rclpy.impl.ready import ReadyHook
 from rclpy.impl.ready_queue import ReadyQueue
 from rclpy.impl.running import THREAD, BlockedCalls
@@ -43,13 +44,6 @@ class TimeoutException(Exception):
 
 class ShutdownException(Exception):
     """The executor was shut down."""
-
-
-class ExternalShutdownException(Exception):
-    """The context was shut down, for instance by Ctrl-C."""
-
-    def __init__(self) -> None:
-        super().__init__("The context was shut down")
 
 
 class ConditionReachedException(Exception):

@@ -5,13 +5,14 @@ from __future__ import annotations
 import signal
 import sys
 import threading
+import time
 import weakref
 from enum import IntFlag
 from types import FrameType, TracebackType
 from typing import Any
 
 from rclpy.context import Context
-from rclpy.exceptions import ROSInterruptException
+from rclpy.exceptions import ExternalShutdownException, ROSInterruptException
 from rclpy.guard_condition import GuardCondition
 from rclpy.impl.interrupts import is_uninterrupted
 
@@ -72,9 +73,15 @@ def watch_context(context: Context) -> None:
     _contexts.add(context)
 
 
+_SAME_WISH_S = 0.5
+_last_signal_s = 0.0
+
+
 def _on_signal(number: int, frame: FrameType | None) -> None:
-    if is_uninterrupted():
-        return
+    global _last_signal_s
+    before, _last_signal_s = _last_signal_s, time.monotonic()
+    if is_uninterrupted() or _last_signal_s - before < _SAME_WISH_S:
+        return  # the terminal and the launcher pass on the same Ctrl-C
     for context in list(_contexts):
         context.shutdown_by_signal()
     for guard in list(_guards):
@@ -101,8 +108,6 @@ def _quiet_thread_excepthook(arguments: threading.ExceptHookArgs) -> None:
 
 def _is_orderly(kind: type[BaseException]) -> bool:
     """Tell whether an exception only says that the program is to end."""
-    from rclpy.executors import ExternalShutdownException
-
     return issubclass(kind, (KeyboardInterrupt, ExternalShutdownException, ROSInterruptException))
 
 

@@ -1,0 +1,78 @@
+"""The queue that executors wait on."""
+
+import threading
+import time
+
+import pytest
+from rclpy.clock import Clock
+from rclpy.clock_type import ClockType
+from rclpy.impl.ready_queue import ReadyQueue
+from rclpy.impl.timer import TimerHandle
+
+MS = 1_000_000
+
+
+def test_items_come_out_in_their_order() -> None:
+    queue = ReadyQueue()
+    assert queue.empty()
+    for number in range(5):
+        queue.put(number)
+    assert [queue.get(None) for _ in range(5)] == list(range(5))
+    assert queue.empty()
+
+
+def test_a_wait_ends_with_its_deadline() -> None:
+    queue = ReadyQueue()
+    for span in (-MS, 0, 1, 10 * MS):
+        deadline = time.monotonic_ns() + span
+        with pytest.raises(TimeoutError):
+            queue.get(deadline)
+        assert time.monotonic_ns() >= deadline
+
+
+def test_nothing_is_lost_and_nobody_sleeps_for_ever() -> None:
+    """Many short waits while others fill the queue: what a timed wait of Python's own queue does not survive."""
+    queue = ReadyQueue()
+    count, writers = 5000, 4
+
+    def fill() -> None:
+        for number in range(count):
+            queue.put(number)
+
+    threads = [threading.Thread(target=fill) for _ in range(writers)]
+    for thread in threads:
+        thread.start()
+    received, late = 0, time.monotonic() + 30
+    while received < count * writers:
+        assert time.monotonic() < late
+        try:
+            queue.get(time.monotonic_ns() + 20_000)
+            received += 1
+        except TimeoutError:
+            continue
+    for thread in threads:
+        thread.join()
+
+
+def test_timers_are_told_in_the_order_of_their_deadlines() -> None:
+    queue, told = ReadyQueue(), []
+    clock = Clock(clock_type=ClockType.STEADY_TIME)
+    timers = [
+        TimerHandle(clock.handle, period * MS, lambda period=period: told.append(period)) for period in (3, 1, 2)
+    ]
+    for timer in timers:
+        timer.attach(queue.schedule)
+    timers[2].cancel_timer()
+    with pytest.raises(TimeoutError):
+        queue.get(time.monotonic_ns() + 20 * MS)
+    assert told == [1, 3]
+
+
+def test_timers_that_were_cancelled_are_not_hoarded() -> None:
+    queue = ReadyQueue()
+    clock = Clock(clock_type=ClockType.STEADY_TIME)
+    for _ in range(10_000):
+        timer = TimerHandle(clock.handle, 1000 * 1000 * MS, lambda: None)
+        timer.attach(queue.schedule)
+        timer.destroy_when_not_in_use()
+    assert len(queue._timers) < 200
