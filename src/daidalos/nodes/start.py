@@ -6,12 +6,28 @@ default (through the built-in module, as ``signal`` itself takes a while to impo
 ``site``, which ``-S`` keeps back. `rclpy.init` takes the signal over later.
 """
 
+from __future__ import annotations
+
 import _signal  # type: ignore[import-not-found]
 import sys
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from types import TracebackType
 
 _signal.signal(_signal.SIGINT, _signal.SIG_DFL)
 if hasattr(_signal, "pthread_sigmask"):
     _signal.pthread_sigmask(_signal.SIG_UNBLOCK, [_signal.SIGINT])
+
+
+MISTAKES = {
+    "EnvironmentVariableError",
+    "InvalidParameterTypeException",
+    "InvalidParameterValueException",
+    "RCLInvalidROSArgsError",
+    "UnknownROSArgsError",
+}
+"""What the user who wrote the command line or the environment can mend; their messages say how."""
 
 
 def main() -> None:
@@ -20,9 +36,17 @@ def main() -> None:
     import site
 
     site.main()
+    sys.excepthook = _show
     package, module, *arguments = sys.argv[1:]
     sys.argv = [sys.argv[0], *arguments]
     runpy.run_module(f"daidalos.nodes.{package}.{module}", run_name="__main__", alter_sys=True)
+
+
+def _show(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
+    if kind.__name__ in MISTAKES:
+        print(error, file=sys.stderr)
+    else:
+        sys.__excepthook__(kind, error, trace)
 
 
 if __name__ == "__main__":

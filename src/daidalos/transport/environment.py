@@ -10,7 +10,7 @@ from enum import Enum
 MAX_DOMAIN = 232
 
 
-class EnvironmentVariableError(ValueError):
+class EnvironmentVariableError(RuntimeError):
     """An environment variable holds what it may not."""
 
 
