@@ -60,17 +60,22 @@ def _help(kind: str, name: str) -> str:
 
 def parse_values(text: str) -> dict[str, Any]:
     """Return the dictionary that YAML on the command line means; CliError, with the position, when it means none."""
-    import yaml
-
-    try:
-        values = yaml.load(text, getattr(yaml, "CSafeLoader", yaml.SafeLoader))
-    except yaml.YAMLError as error:
-        raise CliError(f"The passed value is no YAML: {_yaml_fault(error)}") from None
+    values = parse_yaml(text)
     if values is None:
         return {}
     if not isinstance(values, dict):
         raise CliError("The passed value needs to be a dictionary in YAML format")
     return values
+
+
+def parse_yaml(text: str) -> Any:
+    """Return what YAML on the command line means; CliError, with the position, when it is malformed."""
+    import yaml
+
+    try:
+        return yaml.load(text, getattr(yaml, "CSafeLoader", yaml.SafeLoader))
+    except yaml.YAMLError as error:
+        raise CliError(f"The passed value is no YAML: {_yaml_fault(error)}") from None
 
 
 def _yaml_fault(error: Exception) -> str:

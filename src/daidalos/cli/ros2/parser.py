@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import argparse
+import re
 from collections.abc import Callable, Iterator, Mapping
-from typing import Any
+from typing import Any, NoReturn
 
 from daidalos.cli.ros2.extension import Command, Extensions, Verb
 
@@ -40,6 +41,15 @@ class Parser(argparse.ArgumentParser):
         action.choices = parsers  # type: ignore[assignment]
         action._name_parser_map = parsers  # type: ignore[assignment]
         self._group = self._action_groups[-1]
+
+    def error(self, message: str) -> NoReturn:
+        """Print the usage and what is wrong, with subcommands like an unknown one, and end with status 2."""
+        unknown = re.search(r"invalid choice: '([^']*)'", message)
+        if self.subcommands is not None and unknown is not None:
+            from daidalos.cli.ros2.suggestions import did_you_mean
+
+            message += did_you_mean(unknown[1], self.subcommands)
+        super().error(message)
 
     def format_help(self) -> str:
         """Return the help, with the list of subcommands."""

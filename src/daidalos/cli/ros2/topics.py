@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import sys
 from argparse import Namespace
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
@@ -11,7 +12,7 @@ from daidalos.cli.ros2.errors import CliError
 from daidalos.cli.ros2.graph import topics, types_of
 from daidalos.cli.ros2.interfaces import message_class
 from daidalos.cli.ros2.qos import qos_for_publishers, requested_qos
-from daidalos.cli.ros2.suggestions import did_you_mean
+from daidalos.cli.ros2.suggestions import did_you_mean, hint_line
 from daidalos.transport.graph import EndpointKind
 
 if TYPE_CHECKING:
@@ -45,9 +46,10 @@ def topic_class(node: Node, topic: str, message_type: str | None = None, *, wait
     types = types_of(topics(graph), name)
     if not types:
         print(f"WARNING: topic [{topic}] does not appear to be published yet", flush=True)
+        known = [other for other, _ in topics(graph)]
         if not wait:
-            hint = did_you_mean(name, (known for known, _ in topics(graph)))
-            raise CliError(f"Could not determine the type for the passed topic{hint}")
+            raise CliError(f"Could not determine the type for the passed topic{did_you_mean(name, known)}")
+        sys.stderr.write(hint_line(name, known))
         graph.wait_for(lambda: bool(types_of(topics(graph), name)))
         types = types_of(topics(graph), name)
     if len(types) > 1:

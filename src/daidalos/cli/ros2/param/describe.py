@@ -14,6 +14,7 @@ from daidalos.cli.ros2.parameters import (
     add_timeout_argument,
     describe_parameters,
     find_node,
+    suggest,
 )
 
 
@@ -30,8 +31,12 @@ class DescribeVerb(Verb):
     def main(self, *, args: Namespace) -> Status:
         """Print the descriptions."""
         with direct_node(args) as node:
-            for descriptor in describe_parameters(node, find_node(node, args), args.parameter_names):
+            name = find_node(node, args)
+            found = describe_parameters(node, name, args.parameter_names)
+            for descriptor in found:
                 print(description(descriptor))
+            for unknown in set(args.parameter_names) - {descriptor.name for descriptor in found}:
+                suggest(node, name, unknown)
         return 0
 
 

@@ -34,12 +34,12 @@ class GetVerb(Verb):
         with direct_node(args) as node:
             name = find_node(node, args)
             values = get_parameters(node, name, [args.parameter_name])
-            if not values:
-                raise CliError("Parameter not set")
-            value = parameter_value_to_python(values[0])
+            value = parameter_value_to_python(values[0]) if values else None
             if value is None:
-                print(_LABELS[0])
                 suggest(node, name, args.parameter_name)
+                if not values:
+                    raise CliError("Parameter not set")
+                print(_LABELS[0])
                 return 0
         print(value if args.hide_type else f"{_LABELS[values[0].type]} {value}")
         return 0

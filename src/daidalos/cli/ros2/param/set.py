@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import sys
 from argparse import ArgumentParser, Namespace
 
 from daidalos.cli.ros2.completion import complete_parameters
 from daidalos.cli.ros2.direct import add_graph_arguments, direct_node
+from daidalos.cli.ros2.errors import CliError
 from daidalos.cli.ros2.extension import Status, Verb
+from daidalos.cli.ros2.interfaces import parse_yaml
 from daidalos.cli.ros2.parameters import (
     add_node_arguments,
     add_timeout_argument,
@@ -39,4 +42,15 @@ class SetVerb(Verb):
             result = set_parameters(node, name, [parameter])[0]
             if not report(result, "Set parameter successful", "Setting parameter failed"):
                 suggest(node, name, args.parameter_name)
+                sys.stderr.write(_yaml_hint(args.value))
         return 0
+
+
+def _yaml_hint(value: str) -> str:
+    """Return a line that says where a value that begins like YAML is none; empty otherwise, as it is a text then."""
+    try:
+        if value.lstrip().startswith(("[", "{")):
+            parse_yaml(value)
+    except CliError as error:
+        return f"{error}\n"
+    return ""
