@@ -27,7 +27,7 @@ def acquire(environment: Environment) -> Session:
     """
     key = (os.getpid(), environment)
     with _lock:
-        session, users = _sessions.get(key) or (Session(_backend(environment)), 0)
+        session, users = _sessions.get(key) or (Session(make_backend(environment)), 0)
         _sessions[key] = (session, users + 1)
         return session
 
@@ -43,7 +43,14 @@ def release(environment: Environment) -> None:
     session.close()
 
 
-def _backend(environment: Environment) -> Backend:
+def make_backend(environment: Environment) -> Backend:
+    """Return a backend of the middleware that an environment names, for a session of one's own.
+
+    Raises
+    ------
+    EnvironmentVariableError
+        When there is none of that name, or what it needs is not installed.
+    """
     match environment.middleware:
         case "rmw_zenoh_cpp":
             from daidalos.transport.zenoh.backend import ZenohBackend

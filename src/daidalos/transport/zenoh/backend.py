@@ -28,7 +28,7 @@ from daidalos.transport.graph import EndpointInfo, EndpointKind, Graph, NodeInfo
 from daidalos.transport.qos import Qos
 from daidalos.transport.registry import Peer, Registry
 from daidalos.transport.zenoh import keys
-from daidalos.transport.zenoh.config import ROUTER_PORT, session_config
+from daidalos.transport.zenoh.config import ROUTER_PORT, meets_all, session_config
 from daidalos.transport.zenoh.wires import (
     ZenohClient,
     ZenohPublisher,
@@ -43,8 +43,13 @@ _MANY_TOKENS = 1_000_000
 """More tokens than ever wait to be read; a full channel would hold zenoh up."""
 
 _CLOSING_S = 1.0
-_LOOK_S = 0.002
 """How long the thread that reads tokens may take to end; it may be in a listener's hands."""
+
+_LOOK_S = 0.002
+"""How often we look whether all peers are connected, while settling."""
+
+_QUIET_S = 0.05
+"""Tokens of one process follow each other faster than this."""
 
 
 class ZenohBackend(Backend):
@@ -60,6 +65,7 @@ class ZenohBackend(Backend):
         self._registry = Registry(self._domain)
         self._peers: set[str] = set()
         self._own: set[bytes] = set()
+        self._known = 0
 
     def start(self, graph: Graph) -> None:
         """Open the session, known to and connected with every other on this machine."""
@@ -72,8 +78,9 @@ class ZenohBackend(Backend):
             config = session_config(self._environment, self._session_id, listen, endpoints)
             self._session: Any = zenoh.open(config)
             self._session_id = str(self._session.zid())
-            self._peers = {peer.session for peer in peers}
-            self._registry.register(Peer(self._session_id, tuple(listen)))
+            if meets_all(config, listen):
+                self._peers = {peer.session for peer in peers}
+                self._registry.register(Peer(self._session_id, tuple(listen)))
         # Tokens arrive on a thread of their own: zenoh's must never wait for Python's lock while a peer goes away,
         # because undeclaring an advanced publisher waits for them while it holds that lock.
         self._tokens = self._session.liveliness().declare_subscriber(
@@ -128,7 +135,15 @@ class ZenohBackend(Backend):
         for reply in self._session.liveliness().get(keys.tokens(self._domain), handler=channel, timeout=left):
             if reply.ok is not None:
                 self._add(str(reply.ok.key_expr))
+        self._wait_for_quiet(deadline)
         return complete
+
+    def _wait_for_quiet(self, deadline: float) -> None:
+        """Wait until no more tokens arrive: who has just been connected with may still be telling."""
+        news = True
+        while news and (left := deadline - time.monotonic()) > 0:
+            known = self._known
+            news = self._graph.wait_for(lambda seen=known: self._known != seen, min(_QUIET_S, left))  # type: ignore[misc]
 
     def _alive(self) -> set[str]:
         """Return which of the peers known at our start still live."""
@@ -147,6 +162,7 @@ class ZenohBackend(Backend):
         if keys.session_of(token) == self._session_id:
             return  # what is ours the session notes itself, at once
         what = keys.parse_token(token)
+        self._known += 1
         if isinstance(what, NodeInfo):
             self._graph.add_node(what)
         elif what is not None:

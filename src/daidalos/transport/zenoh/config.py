@@ -41,29 +41,71 @@ def session_config(environment: Environment, session: str, listen: Iterable[str]
         When ``ZENOH_SESSION_CONFIG_URI`` or ``ZENOH_CONFIG_OVERRIDE`` cannot be used.
     """
     file = os.environ.get("ZENOH_SESSION_CONFIG_URI")
-    config = _from_file(file) if file else zenoh.Config()
-    settings = _transport_settings()
-    settings["id"] = session
-    if not file:
-        settings |= _network_settings(environment, list(listen), list(peers))
+    if file:
+        config = _from_file("ZENOH_SESSION_CONFIG_URI", file)
+        # What the graph cannot do without; all else is the file's, as in ROS 2.
+        settings: dict[str, Any] = {"timestamping/enabled": True}
+        if config.get_json("id") == "null":
+            settings["id"] = session
+    else:
+        config = zenoh.Config()
+        settings = {"id": session, **_transport_settings(), **_network_settings(environment, list(listen), list(peers))}
     for key, value in settings.items():
         config.insert_json5(key, json.dumps(value))
     _override(config, os.environ.get("ZENOH_CONFIG_OVERRIDE", ""))
     return config
 
 
-def _from_file(uri: str) -> zenoh.Config:
+def router_config() -> zenoh.Config:
+    """Return the configuration of a router: it listens for sessions of this machine and of others.
+
+    Raises
+    ------
+    EnvironmentVariableError
+        When ``ZENOH_ROUTER_CONFIG_URI`` or ``ZENOH_CONFIG_OVERRIDE`` cannot be used.
+    """
+    file = os.environ.get("ZENOH_ROUTER_CONFIG_URI")
+    if file:
+        config = _from_file("ZENOH_ROUTER_CONFIG_URI", file)
+    else:
+        config = zenoh.Config()
+        settings = {
+            "mode": "router",
+            "listen/endpoints": [f"tcp/[::]:{ROUTER_PORT}"],
+            "scouting/multicast/enabled": False,
+            "scouting/gossip/enabled": True,
+            **_transport_settings(),
+        }
+        for key, value in settings.items():
+            config.insert_json5(key, json.dumps(value))
+    _override(config, os.environ.get("ZENOH_CONFIG_OVERRIDE", ""))
+    return config
+
+
+def meets_all(config: zenoh.Config, listen: Iterable[str]) -> bool:
+    """Tell whether a session listens where all others of this machine would look for it."""
+    return config.get_json("mode") == '"peer"' and all(
+        endpoint in config.get_json("listen/endpoints") for endpoint in listen
+    )
+
+
+def _from_file(variable: str, uri: str) -> zenoh.Config:
     try:
         return zenoh.Config.from_file(uri.removeprefix("file://"))
     except zenoh.ZError as error:
-        raise EnvironmentVariableError(f"ZENOH_SESSION_CONFIG_URI is '{uri}': {error}") from None
+        raise EnvironmentVariableError(f"{variable} is '{uri}': {reason_of(error)}") from None
+
+
+def reason_of(error: Exception) -> str:
+    """Return what zenoh complains of, as one line, without where in its own code it noticed."""
+    return " ".join(str(error).partition(" at /")[0].split())
 
 
 def _network_settings(environment: Environment, listen: list[str], peers: list[str]) -> dict[str, Any]:
     reach = environment.discovery
-    connect = [] if reach is DiscoveryRange.OFF else [*peers, f"tcp/localhost:{ROUTER_PORT}"]
-    connect += [_peer_endpoint(peer) for peer in environment.static_peers]
-    open_to_all = reach is DiscoveryRange.SUBNET or environment.static_peers
+    statics = [_peer_endpoint(peer) for peer in environment.static_peers]
+    connect = [] if reach is DiscoveryRange.OFF else [*peers, f"tcp/localhost:{ROUTER_PORT}", *statics]
+    open_to_all = reach is DiscoveryRange.SUBNET or (reach is DiscoveryRange.LOCALHOST and statics)
     return {
         "mode": "peer",
         "listen/endpoints": [*listen, "tcp/[::]:0" if open_to_all else "tcp/localhost:0"],
@@ -119,5 +161,5 @@ def _override(config: zenoh.Config, text: str) -> None:
             config.insert_json5(key.strip(), value.strip())
         except (ValueError, zenoh.ZError) as error:
             raise EnvironmentVariableError(
-                f"ZENOH_CONFIG_OVERRIDE: '{item}' cannot be applied ({error}), expected key=value"
+                f"ZENOH_CONFIG_OVERRIDE: '{item}' cannot be applied ({reason_of(error)}), expected key=value"
             ) from None

@@ -1,0 +1,42 @@
+"""A zenoh router: the meeting point of sessions that do not find each other by themselves."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import zenoh
+
+from daidalos.transport.environment import EnvironmentVariableError
+from daidalos.transport.zenoh.config import reason_of, router_config
+
+
+class Router:
+    """A router that runs from its construction until `close`.
+
+    Attributes
+    ----------
+    identity
+        Its zenoh id.
+    endpoints
+        Where it listens, such as ``tcp/[::]:7447``.
+
+    Raises
+    ------
+    EnvironmentVariableError
+        When the configuration cannot be used, such as a port that is taken.
+    """
+
+    def __init__(self) -> None:
+        config = router_config()
+        listen = json.loads(config.get_json("listen/endpoints"))
+        self.endpoints = tuple(listen["router"] if isinstance(listen, dict) else listen)
+        try:
+            self._session: Any = zenoh.open(config)
+        except zenoh.ZError as error:
+            raise EnvironmentVariableError(f"the router cannot start: {reason_of(error)}") from None
+        self.identity = str(self._session.zid())
+
+    def close(self) -> None:
+        """Stop; sessions that are connected with each other directly go on."""
+        self._session.close()
