@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 
-REPOSITORY = Path(__file__).resolve().parent.parent
+from places import REPOSITORY
+
 _numbers = itertools.count(os.getpid())
 
 

@@ -7,8 +7,8 @@ import sys
 
 import pytest
 
-from conftest import REPOSITORY
 from end_to_end.processes import DAIDALOS, ROS2, Command, finished
+from places import REPOSITORY
 
 DEMO = [*DAIDALOS, "demo"]
 EXAMPLES = REPOSITORY / "examples"
