@@ -93,3 +93,23 @@ def test_friction_changes_while_it_runs():
     simulation.advance(SECOND)
     # m a = F - mu m g, with 1 kg.
     assert simulation.velocity("b")[0][0] == pytest.approx(3.0 - 0.1 * 9.8, rel=0.02)
+
+
+def test_a_model_grows_where_it_stands():
+    simulation = Simulation(world(box("b", "1 2 0.5 0 0 0")))
+    simulation.scale("b", 2.0)
+    simulation.advance(SECOND)
+    low, high = simulation.bounds("b")
+    assert high - low == pytest.approx([2, 2, 2], abs=1e-3)
+    assert low[2] == pytest.approx(0, abs=1e-3)
+
+
+def test_a_step_can_be_longer():
+    simulation = drifting(box("b", "0 0 5 0 0 0"))
+    simulation.set_step(0.005)
+    simulation.set_velocity("b", (1, 0, 0), (0, 0, 0))
+    simulation.step(10)
+    assert simulation.time_ns == 50_000_000
+    assert simulation.pose("b").position[0] == pytest.approx(0.05)
+    with pytest.raises(ValueError, match="longer than 0"):
+        simulation.set_step(0.0)

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daidalos.description.pose import Pose
+from daidalos.description.world import Model
 from daidalos.simulation.conversion.build import ModelBuild
 from daidalos.simulation.errors import SimulationError, UnknownNameError
 from daidalos.simulation.physics import Physics
@@ -109,11 +110,15 @@ class Instance:
 
     def __init__(self, build: ModelBuild, namespace: str, components: list[Component]) -> None:
         self.build = build
-        self.model = build.model
         self.name = build.name
         self.namespace = namespace
         self.components = components
         self._physics: Physics | None = None
+
+    @property
+    def model(self) -> Model:
+        """Its description."""
+        return self.build.model
 
     @property
     def physics(self) -> Physics:

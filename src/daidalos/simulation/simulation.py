@@ -18,9 +18,10 @@ from numpy.typing import NDArray
 from daidalos.description.actors import actor_pose
 from daidalos.description.gazebo import model_from_robot
 from daidalos.description.joint import Joint
-from daidalos.description.link import Surface
+from daidalos.description.link import Inertial, Surface
 from daidalos.description.pose import Pose, Vector
 from daidalos.description.robot import Robot
+from daidalos.description.scaling import scaled
 from daidalos.description.world import Actor, Model, World
 from daidalos.simulation.actors import ActorMotion
 from daidalos.simulation.assembly import check_world_plugins, make_components
@@ -277,6 +278,84 @@ class Simulation:
         kept = [p for p in self.forces.pushes if (p.model, p.joint if isinstance(p, JointPush) else p.link) != mine]
         self.forces.clear(keep=kept)
 
+    def set_joint(self, model: str, joint: str, position: float, velocity: float = 0.0) -> None:
+        """Put a joint somewhere [rad, m], with a speed."""
+        view = self.joint(model, joint)
+        self._physics.data.qpos[view.qpos] = position
+        self._physics.data.qvel[view.dof] = velocity
+        self._physics.changed()
+
+    def set_joint_properties(
+        self, model: str, joint: str, damping: float | None, limits: tuple[float, float] | None
+    ) -> None:
+        """Change a joint's damping [N m s/rad] and limits [rad, m] while the world runs."""
+        view = self.joint(model, joint)
+        described = self._spec.joint(self.instance(model).build.joints[joint][0])
+        if damping is not None:
+            described.damping = [damping, 0.0, 0.0]
+            self._physics.model.dof_damping[view.dof] = damping
+        if limits is not None:
+            described.limited = mujoco.mjtLimited.mjLIMITED_TRUE
+            described.range = sorted(limits)
+        self._recompile()
+
+    def set_link_properties(self, model: str, link: str, inertial: Inertial, gravity: bool) -> None:
+        """Change what a link weighs, and whether gravity pulls at it, while the world runs.
+
+        Raises
+        ------
+        UnknownNameError
+        ValueError
+            When the mass is not positive.
+        """
+        instance = self.instance(model)
+        instance.link(link)
+        if not inertial.mass > 0:
+            raise ValueError(f"a mass should be positive, got {inertial.mass:g}")
+        instance.build.set_inertial(link, inertial, gravity)
+        self._recompile()
+
+    def bounds(self, model: str) -> tuple[Array, Array]:
+        """Return the least and the greatest corner (3,) in the world of what is solid of a model [m].
+
+        Infinite shapes do not count; without any other the corners are the model's origin.
+        """
+        instance = self.instance(model)
+        self._physics.refresh_positions()
+        compiled, data = self._physics.model, self._physics.data
+        origin = np.array(instance.pose.position)
+        corners = [origin, origin]
+        for name in instance.build.geoms:
+            geom = compiled.geom(name).id
+            half = compiled.geom_aabb[geom, 3:]
+            if compiled.geom_rbound[geom] > 0:
+                turn = data.geom_xmat[geom].reshape(3, 3)
+                centre, reach = data.geom_xpos[geom] + turn @ compiled.geom_aabb[geom, :3], np.abs(turn) @ half
+                if corners[0] is origin:
+                    corners = []
+                corners += [centre - reach, centre + reach]
+        return np.min(corners, axis=0), np.max(corners, axis=0)
+
+    def scale(self, model: str, factor: float) -> None:
+        """Make a model larger or smaller where it stands: its lowest point stays at its height.
+
+        Raises
+        ------
+        UnknownNameError, ValueError, SimulationError
+        """
+        instance = self.instance(model)
+        larger = scaled(instance.model, factor)
+        pose, namespace = instance.pose, instance.namespace
+        bottom = float(self.bounds(model)[0][2])
+        self.delete(model)
+        try:
+            self.spawn(larger, model, pose, namespace)
+            x, y, z = pose.position
+            self.set_pose(model, replace(pose, position=(x, y, z + bottom - float(self.bounds(model)[0][2]))))
+        except SimulationError:
+            self.spawn(instance.model, model, pose, namespace)
+            raise
+
     def joint(self, model: str, joint: str) -> JointView:
         """Return a view on a joint: its position, velocity and effort."""
         return self.instance(model).joint(joint)
@@ -295,6 +374,20 @@ class Simulation:
         self._spec.option.gravity = list(gravity)
         self._physics.wake()
         self._physics.changed()
+
+    def set_step(self, seconds: float) -> None:
+        """Change the length of a step.
+
+        Raises
+        ------
+        ValueError
+            When it is not positive.
+        """
+        if not seconds > 0:
+            raise ValueError(f"a step should be longer than 0 s, got {seconds:g}")
+        self.step_ns, self._substeps = physics_step(replace(self.world.physics, max_step_size=seconds))
+        timestep = self.step_ns / self._substeps * 1e-9
+        self._spec.option.timestep = self._physics.model.opt.timestep = timestep
 
     def set_friction(self, model: str, friction: float, link: str | None = None) -> None:
         """Change the friction of a model's collisions, or of those of one of its links.
@@ -412,13 +505,21 @@ class Simulation:
         self.forces.clear(keep=state.pushes)
         self._physics.changed()
 
-    def reset(self) -> None:
-        """Put every model back to where it came in, at time zero, with fresh sensors and plugins."""
+    def reset(self, keep_time: bool = False) -> None:
+        """Put every model back to where it came in, with fresh sensors and plugins.
+
+        Parameters
+        ----------
+        keep_time : bool
+            Go on from now instead of from zero.
+        """
+        now_ns = self.time_ns if keep_time else 0
         mujoco.mj_resetData(self._physics.model, self._physics.data)
-        self.time_ns = self._goal_ns = 0
+        self._physics.data.time = now_ns * 1e-9
+        self.time_ns = self._goal_ns = now_ns
         self.forces.clear()
         self._physics.changed()
-        self._schedule.restart(0)
+        self._schedule.restart(now_ns)
         for instance in self._instances.values():
             instance.place_joints()
             for component in instance.components:

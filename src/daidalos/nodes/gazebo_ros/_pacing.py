@@ -78,6 +78,19 @@ class PacedSimulation:
             self._paused = paused
             self._wake.notify_all()
 
+    def step(self, count: int) -> None:
+        """Make steps between two of its own and publish what was said; meant for a time that stands still."""
+
+        def work(simulation: Simulation) -> None:
+            samples = simulation.step(count)
+            self._publish(simulation.time_ns, samples)
+
+        self.call(work)
+
+    def replace(self, simulation: Simulation) -> None:
+        """Go on with another simulation; called by a request alone."""
+        self.simulation = simulation
+
     def post(self, request: Callable[[], Any]) -> None:
         """Have a function called between two steps; nobody waits for it."""
         with self._wake:
@@ -155,6 +168,8 @@ class PacedSimulation:
         """Update the measured speed once a second."""
         wall, simulated = mark
         now = time.monotonic_ns()
+        if self.simulation.time_ns < simulated:
+            return now, self.simulation.time_ns  # time was set back
         if now - wall < 1_000_000_000:
             return mark
         self.measured_factor = (self.simulation.time_ns - simulated) / (now - wall)

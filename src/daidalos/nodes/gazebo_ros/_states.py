@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
-from daidalos.description.pose import Pose
+from daidalos.description.link import Rgba
+from daidalos.description.pose import Pose, Vector
 from daidalos.nodes.conversions import time_message
 
 if TYPE_CHECKING:
@@ -39,6 +40,24 @@ def twist_message(linear: Any, angular: Any) -> Any:
 def _vector(kind: Any, values: Any) -> Any:
     x, y, z = (float(value) for value in values)
     return kind(x=x, y=y, z=z)
+
+
+def vector_of(message: Any) -> Vector:
+    """Return a ``geometry_msgs/msg/Vector3`` or ``Point``."""
+    return float(message.x), float(message.y), float(message.z)
+
+
+def color_message(color: Rgba) -> Any:
+    """Return red, green, blue, alpha as a ``std_msgs/msg/ColorRGBA``."""
+    from std_msgs.msg import ColorRGBA
+
+    r, g, b, a = color
+    return ColorRGBA(r=r, g=g, b=b, a=a)
+
+
+def color_of(message: Any) -> Rgba:
+    """Return a ``std_msgs/msg/ColorRGBA``."""
+    return float(message.r), float(message.g), float(message.b), float(message.a)
 
 
 def contacts_message(touches: Iterable[tuple[str, Touch]], now_ns: int) -> Any:

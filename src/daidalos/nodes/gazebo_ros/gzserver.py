@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import signal
 import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -15,7 +16,6 @@ from rclpy.utilities import remove_ros_args
 
 from daidalos.description.errors import DescriptionError
 from daidalos.nodes.conversions import time_message
-from daidalos.nodes.packages import package_share
 from daidalos.nodes.runner import UserError, run
 
 if TYPE_CHECKING:
@@ -47,6 +47,7 @@ class GzServer(Node):
 
     def __init__(self, world: Path | None = None, paused: bool = False, **kwargs: Any) -> None:
         super().__init__("gazebo", **kwargs)
+        from daidalos.nodes.gazebo_ros._host import Host, read_world
         from daidalos.nodes.gazebo_ros._pacing import PacedSimulation
         from daidalos.simulation import Simulation
 
@@ -56,12 +57,19 @@ class GzServer(Node):
         self._outgoing: dict[str, tuple[Any, Any]] = {}
         self._incoming: dict[str, Any] = {}
         self._contacts: dict[str, Any] = {}
-        description = _load_world(world)
-        simulation = Simulation(description, seed=seed, heard=self._is_heard, warn=self._warn)
+        self._offered: dict[str, Any] = {}
+
+        def make(description: World) -> Simulation:
+            return Simulation(description, seed=seed, heard=self._is_heard, warn=self._warn)
+
+        simulation = make(read_world(world))
         self._paced = PacedSimulation(simulation, self._publish, _CLOCK_PERIOD_NS, factor, self._on_failure)
+        self._host = Host(self._paced, make, self._topics_changed)
+        self._host.world_path = world
         self._create_topics()
-        self._connect(simulation)
+        self._topics_changed(simulation)
         self._create_services()
+        self.add_on_set_parameters_callback(self._on_set_parameters)
         self._performance = self.create_timer(1.0, self._publish_performance, clock=_steady_clock())
         self._paced.start(paused=paused)
         name = world.name if world else "an empty world"
@@ -71,29 +79,24 @@ class GzServer(Node):
         self.get_logger().warning(text)
 
     def _create_topics(self) -> None:
-        from gazebo_msgs.msg import ContactsState, ModelStates, PerformanceMetrics
+        from gazebo_msgs.msg import ContactsState, LinkStates, ModelStates, PerformanceMetrics
         from rosgraph_msgs.msg import Clock
 
         self._clock_publisher = self.create_publisher(Clock, "/clock", 10)
-        self._states = self.create_publisher(ModelStates, "/gazebo/model_states", 10)
+        self._states = [self.create_publisher(ModelStates, f"{place}/model_states", 10) for place in ("/gazebo", "")]
+        self._link_states = [self.create_publisher(LinkStates, f"{place}/link_states", 10) for place in ("/gazebo", "")]
         self._metrics = self.create_publisher(PerformanceMetrics, "/performance_metrics", 10)
         self._contacts_publisher = self.create_publisher(ContactsState, "/gazebo/contacts", _LATCHED)
 
     def _create_services(self) -> None:
-        from gazebo_msgs.srv import DeleteEntity, GetModelList, SpawnEntity
-        from std_srvs.srv import Empty
+        from daidalos.nodes.gazebo_ros._gazebo_services import GazeboServices
+        from daidalos.nodes.gazebo_ros._gz_services import GzServices
+        from daidalos.nodes.gazebo_ros._standard_services import StandardServices
 
         group = MutuallyExclusiveCallbackGroup()
-        for kind, name, callback in (
-            (SpawnEntity, "/spawn_entity", self._on_spawn),
-            (DeleteEntity, "/delete_entity", self._on_delete),
-            (GetModelList, "/get_model_list", self._on_list),
-            (Empty, "/pause_physics", self._on_pause),
-            (Empty, "/unpause_physics", self._on_unpause),
-            (Empty, "/reset_simulation", self._on_reset),
-            (Empty, "/reset_world", self._on_reset),
-        ):
-            self.create_service(kind, name, callback, callback_group=group)
+        GazeboServices(self, self._host, group)
+        GzServices(self, self._host, group)
+        StandardServices(self, self._host, group, lambda: signal.raise_signal(signal.SIGTERM))
 
     # The simulation's side: called on its thread.
 
@@ -114,7 +117,7 @@ class GzServer(Node):
                 publisher.publish(convert(sample))
         if transforms:
             self._publish_transforms(transforms)
-        if self._states.handle.impl.is_heard and now_ns % 20_000_000 < _CLOCK_PERIOD_NS:
+        if now_ns % 20_000_000 < _CLOCK_PERIOD_NS:
             self._publish_states()
         self._publish_contacts()
 
@@ -126,19 +129,17 @@ class GzServer(Node):
         self._outgoing["/tf"][0].publish(TFMessage(transforms=[transform(one) for one in transforms]))
 
     def _publish_states(self) -> None:
-        from gazebo_msgs.msg import ModelStates
-
-        from daidalos.nodes.gazebo_ros._states import pose_message, twist_message
+        """Tell where models and links are, to whom it may concern."""
+        from gazebo_msgs.msg import LinkStates, ModelStates
 
         simulation = self._paced.simulation
-        names = list(simulation.models)
-        self._states.publish(
-            ModelStates(
-                name=names,
-                pose=[pose_message(simulation.pose(name)) for name in names],
-                twist=[twist_message(*simulation.velocity(name)) for name in names],
-            )
-        )
+        models: list[tuple[str, str | None]] = [(name, None) for name in simulation.models]
+        _publish_motions(simulation, self._states, ModelStates, models)
+        if any(_is_heard(publisher) for publisher in self._link_states):
+            links: list[tuple[str, str | None]] = [
+                (name, link) for name in simulation.models for link in simulation.instance(name).model.links
+            ]
+            _publish_motions(simulation, self._link_states, LinkStates, links)
 
     def _publish_contacts(self) -> None:
         """Tell what the watched models have touched, whenever that changes."""
@@ -176,6 +177,33 @@ class GzServer(Node):
                 take = self._taker(topic, accepted.convert)
                 self._incoming[topic] = self.create_subscription(accepted.message(), topic, take, 10)
 
+        self._connect_switches(simulation)
+
+    def _connect_switches(self, simulation: Simulation) -> None:
+        """Offer the services of plugins."""
+        from std_srvs.srv import Empty, SetBool
+
+        wanted = simulation.switches
+        for name in [name for name in self._offered if name not in wanted]:
+            self.destroy_service(self._offered.pop(name))
+        for name, switch in wanted.items():
+            if name not in self._offered:
+                kind = SetBool if switch.fixed is None else Empty
+                self._offered[name] = self.create_service(kind, name, self._switcher(name))
+
+    def _switcher(self, name: str) -> Callable[[Any, Any], Any]:
+        def answer(request: Any, response: Any) -> Any:
+            def work(simulation: Simulation) -> None:
+                switch = simulation.switches[name]
+                switch.take(bool(request.data) if switch.fixed is None else switch.fixed)
+
+            self._paced.call(work)
+            if hasattr(response, "success"):
+                response.success = True
+            return response
+
+        return answer
+
     def _taker(self, topic: str, convert: Callable[[Any], Any]) -> Callable[[Any], None]:
         def take(message: Any) -> None:
             command = convert(message)
@@ -183,64 +211,21 @@ class GzServer(Node):
 
         return take
 
-    def _on_spawn(self, request: Any, response: Any) -> Any:
-        try:
-            name = self._paced.call(lambda simulation: self._spawn(simulation, request))
-        except Exception as error:  # the caller is told; the simulation goes on
-            response.success = False
-            response.status_message = str(error)
-            return response
-        response.success = True
-        response.status_message = f"SpawnEntity: Successfully spawned entity [{name}]"
-        self.get_logger().info(f"spawned '{name}'")
-        return response
-
-    def _spawn(self, simulation: Simulation, request: Any) -> str:
-        from daidalos.nodes.gazebo_ros._states import pose_of
-
-        pose = pose_of(request.initial_pose)
-        if request.reference_frame and request.reference_frame != "world":
-            pose = simulation.pose(*request.reference_frame.split("::")[:2]) @ pose
-        description = _parse_entity(request.xml)
-        name = simulation.spawn(description, request.name or None, pose, request.robot_namespace)
+    def _topics_changed(self, simulation: Simulation) -> None:
+        """Follow models that came or went."""
         self._connect(simulation)
-        if name == self._watched:
-            self._contacts[name] = simulation.monitor_contacts(name, ["ground_plane"])
-        return name
+        for name in [name for name in self._contacts if name not in simulation.models]:
+            del self._contacts[name]
+        if self._watched in simulation.models and self._watched not in self._contacts:
+            self._contacts[self._watched] = simulation.monitor_contacts(self._watched, ["ground_plane"])
 
-    def _on_delete(self, request: Any, response: Any) -> Any:
-        try:
-            self._paced.call(lambda simulation: self._delete(simulation, request.name))
-        except Exception as error:  # the caller is told; the simulation goes on
-            response.success = False
-            response.status_message = str(error)
-            return response
-        response.success = True
-        response.status_message = f"Successfully deleted entity [{request.name}]"
-        return response
+    def _on_set_parameters(self, parameters: list[Any]) -> Any:
+        from rcl_interfaces.msg import SetParametersResult
 
-    def _delete(self, simulation: Simulation, name: str) -> None:
-        simulation.delete(name)
-        self._contacts.pop(name, None)
-        self._connect(simulation)
-
-    def _on_list(self, request: Any, response: Any) -> Any:
-        response.model_names = self._paced.call(lambda simulation: list(simulation.models))
-        response.header.stamp = self.get_clock().now().to_msg()
-        response.success = True
-        return response
-
-    def _on_pause(self, request: Any, response: Any) -> Any:
-        self._paced.set_paused(True)
-        return response
-
-    def _on_unpause(self, request: Any, response: Any) -> Any:
-        self._paced.set_paused(False)
-        return response
-
-    def _on_reset(self, request: Any, response: Any) -> Any:
-        self._paced.call(lambda simulation: simulation.reset())
-        return response
+        for parameter in parameters:
+            if parameter.name == "real_time_factor":
+                self._paced.real_time_factor = float(parameter.value)
+        return SetParametersResult(successful=True)
 
     def _publish_performance(self) -> None:
         from gazebo_msgs.msg import PerformanceMetrics
@@ -255,35 +240,32 @@ class GzServer(Node):
         super().destroy_node()
 
 
+def _is_heard(publisher: Any) -> bool:
+    return bool(publisher.handle.impl.is_heard)
+
+
+def _publish_motions(
+    simulation: Simulation, publishers: list[Any], kind: Any, entities: list[tuple[str, str | None]]
+) -> None:
+    from daidalos.nodes.gazebo_ros._states import pose_message, twist_message
+
+    listening = [publisher for publisher in publishers if _is_heard(publisher)]
+    if not listening:
+        return
+    message = kind(
+        name=["::".join(filter(None, entity)) for entity in entities],
+        pose=[pose_message(simulation.pose(*entity)) for entity in entities],
+        twist=[twist_message(*simulation.velocity(*entity)) for entity in entities],
+    )
+    for publisher in listening:
+        publisher.publish(message)
+
+
 def _steady_clock() -> Any:
     from rclpy.clock import Clock
     from rclpy.clock_type import ClockType
 
     return Clock(clock_type=ClockType.STEADY_TIME)
-
-
-def _load_world(path: Path | None) -> World:
-    from daidalos.description import sdf
-    from daidalos.description.sdf import load
-
-    if path is None:
-        return sdf.parse(_EMPTY_WORLD, "empty world")
-    return load(path, resolve=package_share)
-
-
-def _parse_entity(xml: str) -> Any:
-    """Read a URDF or SDF document."""
-    from daidalos.description import sdf, urdf
-
-    head = xml.lstrip()[:2000]
-    if "<robot" in head:
-        return urdf.parse(xml, "the entity's description", package_share)
-    return sdf.parse_model(xml, "the entity's description", package_share)
-
-
-_EMPTY_WORLD = """<sdf version="1.6"><world name="default">
-<include><uri>model://ground_plane</uri></include><include><uri>model://sun</uri></include>
-</world></sdf>"""
 
 
 def _arguments(arguments: Sequence[str]) -> argparse.Namespace:

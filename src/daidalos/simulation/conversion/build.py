@@ -11,7 +11,7 @@ import mujoco
 
 from daidalos.description.errors import DescriptionError
 from daidalos.description.joint import Joint, JointType
-from daidalos.description.link import Collision, Link, Surface
+from daidalos.description.link import Collision, Inertial, Link, Surface
 from daidalos.description.pose import Pose
 from daidalos.description.world import Model
 from daidalos.simulation.conversion.assets import Assets
@@ -140,6 +140,15 @@ class ModelBuild:
         """Simulate the model even while it rests, since somebody measures it."""
         for body in self.trees:
             body.sleep = mujoco.mjtSleepPolicy.mjSLEEP_NEVER
+
+    def set_inertial(self, link: str, inertial: Inertial, gravity: bool) -> None:
+        """Change what a link weighs, for the next compilation."""
+        _apply(self.bodies[link], principal_inertia(inertial))
+        self.bodies[link].gravcomp = 0.0 if gravity else 1.0
+        self.model = replace(
+            self.model,
+            links={**self.model.links, link: replace(self.model.links[link], inertial=inertial, gravity=gravity)},
+        )
 
     def place_base(self, pose: Pose) -> None:
         """Put the part that does not move somewhere else, for the next compilation."""
@@ -280,7 +289,7 @@ class _Builder:
         for index, collision in enumerate(link.collisions):
             self._add_collision(body, link, collision, index)
         if link.name in self._solid_without_mass and not body.geoms:
-            self._apply(body, smallest_inertia())
+            _apply(body, smallest_inertia())
         return body
 
     def _body(self, parent: Any, name: str, pose: Pose) -> Any:
@@ -298,15 +307,7 @@ class _Builder:
             return
         if inertia.changed:
             self._warn(f"{link.where}: link {link.name!r}: {inertia.changed}")
-        self._apply(body, inertia)
-
-    def _apply(self, body: Any, inertia: PrincipalInertia) -> None:
-        x, y, z, w = inertia.orientation
-        body.explicitinertial = True
-        body.mass = inertia.mass
-        body.ipos = list(inertia.position)
-        body.iquat = [w, x, y, z]
-        body.inertia = list(inertia.moments)
+        _apply(body, inertia)
 
     def _find_weightless(self) -> None:
         """Find the links that move although neither they nor what is fixed to them has any mass."""
@@ -408,3 +409,12 @@ class _Builder:
         child = self._build.bodies[joint.child]
         name = self._build.scoped(joint.name)
         self._build.joints[joint.name] = close_loop(self._build.spec, parent, child, joint, name)
+
+
+def _apply(body: Any, inertia: PrincipalInertia) -> None:
+    x, y, z, w = inertia.orientation
+    body.explicitinertial = True
+    body.mass = inertia.mass
+    body.ipos = list(inertia.position)
+    body.iquat = [w, x, y, z]
+    body.inertia = list(inertia.moments)

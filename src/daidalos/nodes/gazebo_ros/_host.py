@@ -1,0 +1,180 @@
+"""The simulation as the graph's services see it: models come and go, worlds are exchanged, time is steered."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from daidalos.description.pose import Pose
+from daidalos.nodes.gazebo_ros._entities import find_entity
+from daidalos.nodes.gazebo_ros._pacing import PacedSimulation
+from daidalos.nodes.packages import package_share
+from daidalos.simulation import Simulation
+
+if TYPE_CHECKING:
+    from daidalos.description.robot import Robot
+    from daidalos.description.world import Model, World
+
+EMPTY_WORLD = """<sdf version="1.6"><world name="default">
+<include><uri>model://ground_plane</uri></include><include><uri>model://sun</uri></include>
+</world></sdf>"""
+
+
+class Host:
+    """What all services share.
+
+    Parameters
+    ----------
+    paced : PacedSimulation
+    make : callable
+        Makes a simulation of a world.
+    topics_changed : callable
+        Called with the simulation, between its steps, when models came or went.
+    """
+
+    def __init__(
+        self,
+        paced: PacedSimulation,
+        make: Callable[[World], Simulation],
+        topics_changed: Callable[[Simulation], None],
+    ) -> None:
+        self.paced = paced
+        self.world_path: Path | None = None
+        self._make = make
+        self._changed = topics_changed
+        self._saved: Any = None
+        self._stepping = threading.Lock()
+        self.spawned: set[str] = set()
+
+    def spawn(
+        self, text: str, name: str | None, pose: Pose, reference: str = "", namespace: str = "", rename: bool = False
+    ) -> str:
+        """Put a URDF or SDF document into the world; return the name that it got.
+
+        Raises
+        ------
+        DescriptionError, SimulationError
+        """
+        description = read_entity(text)
+
+        def work(simulation: Simulation) -> str:
+            goal = pose
+            if reference not in ("", "world", "map"):
+                entity = find_entity(simulation, reference)
+                goal = simulation.pose(entity.model, entity.link) @ pose
+            wanted = name or description.name
+            unique = _unused(wanted, simulation.models) if rename else wanted
+            spawned = simulation.spawn(description, unique, goal, namespace)
+            self.spawned.add(spawned)
+            self._changed(simulation)
+            return spawned
+
+        return self.paced.call(work)
+
+    def delete(self, name: str) -> None:
+        """Take a model out of the world.
+
+        Raises
+        ------
+        UnknownNameError
+        """
+
+        def work(simulation: Simulation) -> None:
+            simulation.delete(name)
+            self.spawned.discard(name)
+            self._changed(simulation)
+
+        self.paced.call(work)
+
+    def delete_spawned(self) -> None:
+        """Take out everything that came after the world."""
+        for name in sorted(self.spawned):
+            self.delete(name)
+
+    def load_world(self, world: World, path: Path | None = None) -> None:
+        """Exchange the world.
+
+        Raises
+        ------
+        SimulationError
+            When it can not be simulated; the world is then the old one.
+        """
+        simulation = self._make(world)
+
+        def work(_: Simulation) -> None:
+            self.paced.replace(simulation)
+            self.spawned.clear()
+            self._saved = None
+            self.world_path = path
+            self._changed(simulation)
+
+        self.paced.call(work)
+
+    def step(self, count: int, progress: Callable[[int], bool] = lambda done: True) -> int:
+        """Make steps while time stands still; return how many were made.
+
+        Parameters
+        ----------
+        count : int
+        progress : callable
+            Takes how many are done; False ends it.
+        """
+        done = 0
+        with self._stepping:
+            while done < count and progress(done):
+                part = min(count - done, 100)
+                self.paced.step(part)
+                done += part
+        return done
+
+    def save_state(self) -> None:
+        """Remember the state."""
+        self._saved = self.paced.call(lambda simulation: simulation.save())
+
+    def restore_state(self) -> None:
+        """Go back to the remembered state.
+
+        Raises
+        ------
+        SimulationError, LookupError
+        """
+        if self._saved is None:
+            raise LookupError("no state was saved")
+        self.paced.call(lambda simulation: simulation.restore(self._saved))
+
+
+def read_entity(text: str) -> Robot | Model:
+    """Read a URDF or SDF document.
+
+    Raises
+    ------
+    DescriptionError
+    """
+    from daidalos.description import sdf, urdf
+
+    if "<robot" in text.lstrip()[:2000]:
+        return urdf.parse(text, "the entity's description", package_share)
+    return sdf.parse_model(text, "the entity's description", package_share)
+
+
+def read_world(path: Path | None, text: str = "") -> World:
+    """Read a world from a file or a document; without either one with a ground and a sun.
+
+    Raises
+    ------
+    DescriptionError
+    """
+    from daidalos.description import sdf
+
+    if path is not None:
+        return sdf.load(path, resolve=package_share)
+    return sdf.parse(text or EMPTY_WORLD, "the world's description" if text else "empty world", package_share)
+
+
+def _unused(name: str, taken: tuple[str, ...]) -> str:
+    unique, number = name, 0
+    while unique in taken:
+        unique, number = f"{name}_{number}", number + 1
+    return unique

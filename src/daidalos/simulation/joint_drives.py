@@ -1,0 +1,233 @@
+"""Motors of joints that follow commanded positions, speeds or efforts, as controllers want them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from enum import IntEnum
+from typing import TYPE_CHECKING, Any
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from daidalos.simulation.conversion.wheels import is_wheel
+from daidalos.simulation.errors import UnknownNameError
+
+if TYPE_CHECKING:
+    from daidalos.description.geometry import Cylinder
+    from daidalos.simulation.conversion.build import ModelBuild
+    from daidalos.simulation.instance import Instance
+
+Array = NDArray[np.float64]
+Places = NDArray[np.intp]
+
+SPEED_TIME = 0.0025
+"""Time constant with which a driven wheel takes a speed [s]."""
+DAMPING_TIME, POSITION_TIME = 0.00125, 0.005
+"""Time constants with which a joint takes a speed and a position: critically damped [s]."""
+LEAD = 0.05
+"""How far a speed's reference may run ahead of a joint that is held up [rad, m]."""
+
+
+class Mode(IntEnum):
+    """What a joint's motor does."""
+
+    FREE = 0
+    HOLD = 1
+    POSITION = 2
+    VELOCITY = 3
+    EFFORT = 4
+
+
+@dataclass
+class DriveState:
+    """All that changes of n drives.
+
+    Parameters
+    ----------
+    modes : array (n,) of int
+        `Mode` of each.
+    """
+
+    modes: NDArray[np.int8] = field(default_factory=lambda: np.zeros(0, dtype=np.int8))
+
+
+class JointDrives:
+    """Motors on joints of one model.
+
+    Positions are followed by a stiff servo whose reference moves evenly from one command to the next, so that a
+    joint is where it was told one period later and moves without ripple. Speeds of wheels are held by a servo with
+    a rotor as heavy as what it drives, so that wheels roll true; speeds of other joints by a reference that
+    integrates the speed, which gravity does not bend.
+
+    Parameters
+    ----------
+    efforts : mapping
+        Joints with a motor: largest force or torque that it has [N, N m].
+    names : sequence of str
+        All joints whose state is asked for.
+    """
+
+    def __init__(self, efforts: Mapping[str, float], names: Sequence[str]) -> None:
+        self.efforts = dict(efforts)
+        self.names = tuple(names)
+        self.driven = tuple(efforts)
+        self._wheels = np.zeros(len(self.driven), dtype=bool)
+        self._applied: NDArray[np.int8] | None = None
+
+    def start(self, hold: bool) -> DriveState:
+        """Return the state in which nobody commands: hold the joints or leave them free."""
+        mode = Mode.HOLD if hold else Mode.FREE
+        self._applied = None
+        return DriveState(np.full(len(self.driven), mode, dtype=np.int8))
+
+    def prepare(self, build: ModelBuild) -> None:
+        """Add a servo for positions and one for speeds and efforts to each joint."""
+        wheels = {joint: radius for joint in self.driven if (radius := _wheel_radius(build, joint)) > 0.0}
+        mass = sum(link.inertial.mass for link in build.model.links.values() if link.inertial)
+        self._wheels = np.array([joint in wheels for joint in self.driven], dtype=bool)
+        self._actuators: list[tuple[str, str]] = []
+        for joint in self.driven:
+            if not build.joints.get(joint):
+                raise UnknownNameError("movable joint", joint, [n for n, added in build.joints.items() if added])
+            if joint in wheels:
+                build.spec.joint(build.joints[joint][0]).armature = mass * wheels[joint] ** 2 / len(wheels)
+            self._actuators.append(self._add(build, joint))
+
+    def _add(self, build: ModelBuild, joint: str) -> tuple[str, str]:
+        names = []
+        for kind in ("reference", "motor"):
+            actuator = build.spec.add_actuator(
+                name=f"{build.scoped(joint)}::{kind}",
+                trntype=mujoco.mjtTrn.mjTRN_JOINT,
+                target=build.joints[joint][0],
+            )
+            actuator.gaintype = mujoco.mjtGain.mjGAIN_FIXED
+            actuator.biastype = mujoco.mjtBias.mjBIAS_AFFINE
+            if kind == "reference":
+                actuator.dyntype = mujoco.mjtDyn.mjDYN_INTEGRATOR
+            actuator.gainprm[0] = 0.0
+            effort = self.efforts[joint]
+            if math.isfinite(effort):
+                actuator.forcelimited = mujoco.mjtLimited.mjLIMITED_TRUE
+                actuator.forcerange = [-effort, effort]
+            names.append(str(actuator.name))
+        return names[0], names[1]
+
+    def bind(self, instance: Instance) -> None:
+        """Find joints and servos in the compiled model."""
+        self._instance = instance
+        views = [instance.joint(name) for name in self.names]
+        self._qpos = np.array([view.qpos for view in views], dtype=np.intp)
+        self._dof = np.array([view.dof for view in views], dtype=np.intp)
+        own = [instance.joint(name) for name in self.driven]
+        self._own_qpos = np.array([view.qpos for view in own], dtype=np.intp)
+        self._own_dof = np.array([view.dof for view in own], dtype=np.intp)
+        model = instance.physics.model
+        self._reference = np.array([instance.actuator(name) for name, _ in self._actuators], dtype=np.intp)
+        self._motor = np.array([instance.actuator(name) for _, name in self._actuators], dtype=np.intp)
+        self._act = np.array([int(model.actuator_actadr[place]) for place in self._reference], dtype=np.intp)
+        inertia = np.array(model.dof_M0)[self._own_dof]
+        self._damping = inertia / DAMPING_TIME
+        self._stiffness = self._damping / POSITION_TIME
+        self._speed_gain = inertia / SPEED_TIME
+        self._applied = None
+
+    # What is measured.
+
+    @property
+    def positions(self) -> Array:
+        """Of all `names` [rad, m]."""
+        return np.array(self._instance.physics.data.qpos[self._qpos])
+
+    @property
+    def velocities(self) -> Array:
+        """Of all `names` [rad/s, m/s]."""
+        return np.array(self._instance.physics.data.qvel[self._dof])
+
+    @property
+    def efforts_now(self) -> Array:
+        """Of the motors of all `names`, in the last step [N m, N]."""
+        return np.array(self._instance.physics.data.qfrc_actuator[self._dof])
+
+    def place(self, positions: Mapping[str, float]) -> None:
+        """Put joints somewhere, at rest."""
+        data = self._instance.physics.data
+        for name, position in positions.items():
+            view = self._instance.joint(name)
+            data.qpos[view.qpos], data.qvel[view.dof] = position, 0.0
+        self._instance.physics.changed()
+
+    # What is commanded.
+
+    def command(self, state: DriveState, values: Array, period: float) -> None:
+        """Tell the motors what to do for a period.
+
+        Parameters
+        ----------
+        state : DriveState
+        values : array (n,)
+            Position, speed or effort of each driven joint, as its mode says; where it is NaN the joint is held.
+        period : float
+            Until the next command [s].
+        """
+        modes = np.where(np.isnan(values) & (state.modes >= Mode.POSITION), Mode.HOLD, state.modes).astype(np.int8)
+        values = np.nan_to_num(values)
+        data = self._instance.physics.data
+        at = data.qpos[self._own_qpos]
+        if self._applied is None or not np.array_equal(modes, self._applied):
+            self._apply(modes, at)
+        servo = self._uses_reference(modes)
+        reference = data.act[self._act]
+        speed = np.where(modes == Mode.POSITION, (values - reference) / period, 0.0)
+        turning = servo & (modes == Mode.VELOCITY)
+        if turning.any():
+            speed = np.where(turning, values, speed)
+            reference = np.where(turning, np.clip(reference, at - LEAD, at + LEAD), reference)
+            data.act[self._act] = reference
+        model = self._instance.physics.model
+        data.ctrl[self._reference] = speed
+        model.actuator_biasprm[self._reference, 0] = np.where(servo, self._damping * speed, 0.0)
+        data.ctrl[self._motor] = np.where(modes >= Mode.VELOCITY, values, 0.0)
+
+    def _uses_reference(self, modes: NDArray[np.int8]) -> NDArray[np.bool_]:
+        """Tell for which joints the servo with a reference works."""
+        result: NDArray[np.bool_] = (modes == Mode.POSITION) | (
+            ~self._wheels & ((modes == Mode.HOLD) | (modes == Mode.VELOCITY))
+        )
+        return result
+
+    def _apply(self, modes: NDArray[np.int8], at: Array) -> None:
+        """Set the gains for the modes; a reference that comes into use starts where the joint is."""
+        physics = self._instance.physics
+        model, data = physics.model, physics.data
+        servo = self._uses_reference(modes)
+        before = servo & False if self._applied is None else self._uses_reference(self._applied)
+        data.act[self._act] = np.where(servo & before, data.act[self._act], at)
+        model.actuator_gainprm[self._reference, 0] = np.where(servo, self._stiffness, 0.0)
+        model.actuator_biasprm[self._reference, 1] = np.where(servo, -self._stiffness, 0.0)
+        model.actuator_biasprm[self._reference, 2] = np.where(servo, -self._damping, 0.0)
+        rolls = self._wheels & ((modes == Mode.HOLD) | (modes == Mode.VELOCITY))
+        pushes = modes == Mode.EFFORT
+        model.actuator_gainprm[self._motor, 0] = np.where(rolls, self._speed_gain, np.where(pushes, 1.0, 0.0))
+        model.actuator_biasprm[self._motor, 2] = np.where(rolls, -self._speed_gain, 0.0)
+        self._applied = modes
+
+    def forget(self) -> None:
+        """Note that the state was changed from outside."""
+        self._applied = None
+
+
+def _wheel_radius(build: ModelBuild, name: str) -> float:
+    """Return the radius of the wheel that a joint turns, 0 where it turns none."""
+    joint = build.model.joints.get(name)
+    if joint is None:
+        return 0.0
+    collisions: Iterable[Any] = build.model.links[joint.child].collisions
+    for collision in collisions:
+        if is_wheel(joint, collision):
+            disc: Cylinder = collision.geometry
+            return disc.radius
+    return 0.0

@@ -1,0 +1,179 @@
+"""ros2_control in the simulation: motors and sensors for the hardware that a robot's description names."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daidalos.description.link import Plugin as Description
+from daidalos.description.markup import Element
+from daidalos.description.ros2_control import ComponentInfo, read_hardware
+from daidalos.simulation.component import Component, Setting
+from daidalos.simulation.conversion.build import ModelBuild
+from daidalos.simulation.instance import Instance
+from daidalos.simulation.joint_drives import DriveState, JointDrives
+from daidalos.simulation.plugins.base import Plugin
+from daidalos.simulation.samples import ImuSample, RangeSample, Sample, WrenchSample
+
+DEFAULT_RATE = 100.0
+_KINEMATIC = "gazebo_ros2_control/GazeboSystem"
+"""Hardware that moves joints to positions whatever their effort limit says."""
+
+
+class Ros2Control(Plugin):
+    """``libgazebo_ros2_control.so`` and gz's ``gz_ros2_control-system``.
+
+    Who runs controllers sets `cycle`, which is called once in each period of the controller manager.
+
+    Attributes
+    ----------
+    hardware : tuple of HardwareInfo
+    drives : JointDrives
+    files : tuple of Path
+        Parameter files.
+    manager_name : str
+    remappings : tuple of str
+        As on the command line, ``from:=to``.
+    rate : float
+        Of the controller manager [Hz].
+    cycle : callable or None
+        Takes the time [ns].
+    """
+
+    names = ("gazebo_ros2_control", "gz_ros2_control-system", "ign_ros2_control-system")
+    memory: DriveState
+
+    def __init__(self, description: Description, setting: Setting) -> None:
+        super().__init__(description, setting)
+        element = description.element
+        self.hardware = read_hardware(setting.model)
+        if not self.hardware:
+            raise element.error("the robot has no <ros2_control> element that says what to control")
+        self.files = tuple(_file(child) for child in element.all("parameters"))
+        self.manager_name = element.text_of(
+            "controller_manager_name", "controller_manager_node_name", default="controller_manager"
+        )
+        ros = element.first("ros") or Element("ros")
+        self.remappings = tuple(child.text.strip() for child in ros.all("remapping") if ":=" in child.text)
+        self.holds = element.flag_of("hold_joints", default=True)
+        self.rate = _update_rate(self.files, self.manager_name)
+        self.period = 1.0 / self.rate
+        self.cycle: Callable[[int], None] | None = None
+        joints = [(info.plugin, joint) for info in self.hardware for joint in info.joints if _moves(joint)]
+        efforts = {joint.name: _effort(plugin, joint) for plugin, joint in joints if _is_driven(joint)}
+        self.drives = JointDrives(efforts, [joint.name for _, joint in joints])
+        self._initial = {joint.name: position for _, joint in joints if not math.isnan(position := _start(joint))}
+
+    def prepare(self, build: ModelBuild) -> None:
+        """Add the motors."""
+        self.drives.prepare(build)
+
+    def bind(self, instance: Instance) -> None:
+        """Find joints, motors and sensors."""
+        self.drives.bind(instance)
+        self._components: dict[str, Component] = {
+            name: one for one in instance.components if (name := getattr(one, "name", ""))
+        }
+
+    def start(self) -> DriveState:
+        """Put the joints where their initial values are."""
+        self.drives.place(self._initial)
+        return self.drives.start(self.holds)
+
+    def update(self, now_ns: int) -> Iterable[Sample]:
+        """Let the controllers run; without any the joints hold."""
+        if self.cycle is not None:
+            self.cycle(now_ns)
+        else:
+            self.command(np.full(len(self.drives.driven), np.nan))
+        return ()
+
+    def command(self, values: NDArray[np.float64]) -> None:
+        """Tell the motors what to do until the next cycle; see `JointDrives.command`."""
+        self.drives.command(self.memory, values, self.period)
+
+    def measure(self, sensor: str, now_ns: int) -> dict[str, float] | None:
+        """Return what one of the model's sensors measures now, by interface; None when there is none of that name."""
+        component: Any = self._components.get(sensor)
+        if component is None:
+            return None
+        for sample in component.measure(now_ns):
+            return _values(sample)
+        return {}
+
+
+def _values(sample: Sample) -> dict[str, float]:
+    if isinstance(sample, ImuSample):
+        return {
+            **_axes("orientation", "xyzw", sample.orientation),
+            **_axes("angular_velocity", "xyz", sample.angular_velocity),
+            **_axes("linear_acceleration", "xyz", sample.linear_acceleration),
+        }
+    if isinstance(sample, WrenchSample):
+        return {**_axes("force", "xyz", sample.force), **_axes("torque", "xyz", sample.torque)}
+    if isinstance(sample, RangeSample):
+        return {"range": sample.range}
+    return {}
+
+
+def _axes(name: str, axes: str, values: NDArray[np.float64]) -> dict[str, float]:
+    return {f"{name}.{axis}": float(value) for axis, value in zip(axes, values, strict=True)}
+
+
+def _moves(joint: ComponentInfo) -> bool:
+    return joint.joint is not None and bool(joint.joint.axes)
+
+
+def _is_driven(joint: ComponentInfo) -> bool:
+    return bool(joint.commands) and joint.mimic is None
+
+
+def _effort(plugin: str, joint: ComponentInfo) -> float:
+    """Return what a motor can do; a limit of zero, which many descriptions have by mistake, is none."""
+    effort = joint.joint.axis.effort if joint.joint is not None else math.inf
+    positions = any(command.name == "position" for command in joint.commands)
+    return math.inf if effort <= 0.0 or (plugin == _KINEMATIC and positions) else effort
+
+
+def _start(joint: ComponentInfo) -> float:
+    return next((one.initial_value for one in joint.states if one.name == "position"), math.nan)
+
+
+def _file(element: Element) -> Path:
+    path = Path(element.text.strip())
+    if not path.is_file():
+        raise element.error(f"there is no parameter file '{path}'")
+    return path
+
+
+def _update_rate(files: Iterable[Path], manager: str) -> float:
+    """Return the manager's rate from its parameter files [Hz]."""
+    import yaml
+
+    rate = DEFAULT_RATE
+    for file in files:
+        try:
+            content = yaml.safe_load(file.read_text(encoding="utf-8"))
+        except (yaml.YAMLError, UnicodeDecodeError):
+            continue  # whoever reads all parameters says what is wrong
+        for name, section in _sections(content):
+            value = section.get("update_rate")
+            if name in (manager, "/**", "**", "*") and isinstance(value, int | float) and value > 0:
+                rate = float(value)
+    return rate
+
+
+def _sections(content: Any, name: str = "") -> Iterable[tuple[str, dict[str, Any]]]:
+    """Yield each node's name, without namespace, with its parameters."""
+    if not isinstance(content, dict):
+        return
+    for key, value in content.items():
+        if key == "ros__parameters" and isinstance(value, dict):
+            yield name, value
+        elif key != "ros__parameters":
+            yield from _sections(value, str(key).rstrip("/").rpartition("/")[2] if str(key) != "/**" else "/**")

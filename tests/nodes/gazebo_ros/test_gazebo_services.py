@@ -1,0 +1,187 @@
+"""The services of Gazebo classic, as a program would call them."""
+
+import pytest
+from builtin_interfaces.msg import Duration
+from gazebo_msgs import srv
+from gazebo_msgs.msg import EntityState, ODEJointProperties
+from geometry_msgs.msg import Point, Pose, Twist, Vector3, Wrench
+from std_msgs.msg import ColorRGBA
+from std_srvs.srv import Empty, Trigger
+
+from nodes.gazebo_ros.conftest import ARM, BOX
+
+
+def at(x, y=0.0, z=0.5):
+    return Pose(position=Point(x=x, y=y, z=z))
+
+
+def spawn(shop, name="crate", xml=BOX, pose=None, **fields):
+    return shop.call(srv.SpawnEntity, "/spawn_entity", name=name, xml=xml, initial_pose=pose or at(0.0), **fields)
+
+
+def step(shop, count):
+    shop.server._host.step(count)
+
+
+def state(shop, name, reference=""):
+    return shop.call(srv.GetEntityState, "/gazebo/get_entity_state", name=name, reference_frame=reference)
+
+
+def test_models_come_and_go(shop):
+    assert spawn(shop).success
+    assert shop.call(srv.GetModelList, "/get_model_list").model_names == ["ground_plane", "shelf", "crate"]
+    again = spawn(shop)
+    assert not again.success
+    assert "'crate' is in the simulation already" in again.status_message
+    assert shop.call(srv.DeleteEntity, "/delete_entity", name="crate").success
+    gone = shop.call(srv.DeleteEntity, "/delete_entity", name="crate")
+    assert not gone.success
+    assert "no model 'crate'; known are ground_plane, shelf" in gone.status_message
+
+
+def test_a_faulty_description_is_explained(shop):
+    answer = spawn(shop, xml="<robot name='r'><link/></robot>")
+    assert not answer.success
+    assert "<link>" in answer.status_message
+
+
+def test_ros1s_names_work_too(shop):
+    answer = shop.call(srv.SpawnModel, "/gazebo/spawn_sdf_model", model_name="c", model_xml=BOX)
+    assert answer.success
+    assert shop.call(srv.GetModelState, "/gazebo/get_model_state", model_name="c").success
+    assert shop.call(srv.DeleteModel, "/gazebo/delete_model", model_name="c").success
+
+
+def test_poses_may_be_relative(shop):
+    spawn(shop, pose=at(1.0, 0.0, 0.0), reference_frame="shelf")
+    assert state(shop, "crate").state.pose.position.x == pytest.approx(3.0)
+    assert state(shop, "crate::body", "shelf").state.pose.position.x == pytest.approx(1.0)
+    moved = EntityState(
+        name="crate", pose=at(0.0, 1.0, 0.0), twist=Twist(linear=Vector3(x=1.0)), reference_frame="shelf"
+    )
+    assert shop.call(srv.SetEntityState, "/set_entity_state", state=moved).success
+    answer = state(shop, "crate")
+    assert (answer.state.pose.position.x, answer.state.pose.position.y) == pytest.approx((2.0, 1.0))
+    assert answer.state.twist.linear.x == pytest.approx(1.0)
+    assert not state(shop, "nobody").success
+
+
+def test_states_can_be_saved_and_restored(shop):
+    spawn(shop, pose=at(0.0, 0.0, 5.0))
+    assert not shop.call(Trigger, "/gazebo/restore_state").success
+    step(shop, 100)
+    before = state(shop, "crate").state.pose.position.z
+    assert shop.call(Trigger, "/gazebo/save_state").success
+    step(shop, 300)
+    assert state(shop, "crate").state.pose.position.z < before
+    assert shop.call(Trigger, "/gazebo/restore_state").success
+    assert state(shop, "crate").state.pose.position.z == before
+
+
+def test_a_world_is_reset_without_its_time(shop):
+    spawn(shop, pose=at(0.0, 0.0, 5.0))
+    step(shop, 200)
+    shop.call(Empty, "/reset_world")
+    world = shop.call(srv.GetWorldProperties, "/gazebo/get_world_properties")
+    assert world.sim_time == pytest.approx(0.2)
+    assert state(shop, "crate").state.pose.position.z == pytest.approx(5.0)
+    shop.call(Empty, "/reset_simulation")
+    assert shop.call(srv.GetWorldProperties, "/gazebo/get_world_properties").sim_time == 0.0
+
+
+def test_physics_can_be_changed(shop):
+    spawn(shop, pose=at(0.0, 0.0, 5.0))
+    answer = shop.call(
+        srv.SetPhysicsProperties,
+        "/set_physics_properties",
+        time_step=0.002,
+        max_update_rate=1000.0,
+        gravity=Vector3(z=1.0),
+    )
+    assert answer.success
+    physics = shop.call(srv.GetPhysicsProperties, "/get_physics_properties")
+    assert (physics.time_step, physics.max_update_rate, physics.gravity.z, physics.pause) == (0.002, 1000.0, 1.0, True)
+    assert shop.server._paced.real_time_factor == pytest.approx(2.0)
+    step(shop, 500)
+    assert state(shop, "crate").state.twist.linear.z == pytest.approx(1.0, rel=1e-3)
+
+
+def test_links_are_pushed(shop):
+    spawn(shop, pose=at(0.0, 0.0, 5.0))
+    wrench = Wrench(force=Vector3(x=4.0, z=2 * 9.8))
+    fields = {"link_name": "crate::body", "wrench": wrench, "duration": Duration(sec=0, nanosec=500_000_000)}
+    assert shop.call(srv.ApplyLinkWrench, "/apply_link_wrench", **fields).success
+    step(shop, 500)
+    assert state(shop, "crate").state.twist.linear.x == pytest.approx(1.0, rel=1e-3)
+    fields["duration"] = Duration(sec=-1)
+    shop.call(srv.ApplyLinkWrench, "/apply_link_wrench", **fields)
+    shop.call(srv.LinkRequest, "/clear_link_wrenches", link_name="crate::body")
+    step(shop, 100)
+    assert state(shop, "crate").state.twist.linear.x == pytest.approx(1.0, rel=1e-3)
+    assert not shop.call(srv.ApplyLinkWrench, "/apply_link_wrench", link_name="crate::tail").success
+
+
+def test_joints_have_properties_and_take_efforts(shop):
+    spawn(shop, "arm", ARM)
+    joint = shop.call(srv.GetJointProperties, "/get_joint_properties", joint_name="arm::j")
+    assert (joint.type, list(joint.damping), list(joint.position)) == (0, [0.5], [0.0])
+    forever = Duration(sec=-1)
+    shop.call(srv.ApplyJointEffort, "/apply_joint_effort", joint_name="j", effort=0.5, duration=forever)
+    step(shop, 2000)
+    # At the terminal speed, damping carries the effort.
+    assert shop.call(srv.GetJointProperties, "/get_joint_properties", joint_name="j").rate[0] == pytest.approx(
+        1, rel=0.02
+    )
+    config = ODEJointProperties(damping=[1.0])
+    assert shop.call(srv.SetJointProperties, "/set_joint_properties", joint_name="j", ode_joint_config=config).success
+    shop.call(srv.JointRequest, "/clear_joint_efforts", joint_name="j")
+    assert shop.call(
+        srv.SetModelConfiguration,
+        "/set_model_configuration",
+        model_name="arm",
+        joint_names=["j"],
+        joint_positions=[0.7],
+    ).success
+    joint = shop.call(srv.GetJointProperties, "/get_joint_properties", joint_name="j")
+    assert (joint.damping[0], joint.position[0]) == (1.0, pytest.approx(0.7))
+
+
+def test_models_and_links_have_properties(shop):
+    spawn(shop)
+    model = shop.call(srv.GetModelProperties, "/get_model_properties", model_name="crate")
+    assert (model.canonical_body_name, list(model.body_names), model.is_static) == ("body", ["body"], False)
+    link = shop.call(srv.GetLinkProperties, "/get_link_properties", link_name="crate::body")
+    assert (link.mass, link.ixx, link.gravity_mode) == (2.0, 0.3, True)
+    fields = {"link_name": "crate::body", "mass": 4.0, "ixx": 0.5, "iyy": 0.5, "izz": 0.5, "gravity_mode": False}
+    fields["com"] = Pose()
+    assert shop.call(srv.SetLinkProperties, "/set_link_properties", **fields).success
+    link = shop.call(srv.GetLinkProperties, "/get_link_properties", link_name="crate::body")
+    assert (link.mass, link.gravity_mode) == (4.0, False)
+    before = state(shop, "crate").state.pose.position.z
+    shop.call(srv.SetEntityState, "/set_entity_state", state=EntityState(name="crate", pose=at(0.0, 0.0, 5.0)))
+    step(shop, 500)
+    assert state(shop, "crate").state.pose.position.z == pytest.approx(5.0, abs=1e-6)
+    assert before == pytest.approx(0.5)
+
+
+def test_lights_are_changed(shop):
+    light = shop.call(srv.GetLightProperties, "/get_light_properties", light_name="sun")
+    assert light.success
+    red = ColorRGBA(r=1.0, g=0.0, b=0.0, a=1.0)
+    assert shop.call(srv.SetLightProperties, "/set_light_properties", light_name="sun", diffuse=red).success
+    assert shop.call(srv.GetLightProperties, "/get_light_properties", light_name="sun").diffuse == red
+    assert shop.call(srv.DeleteLight, "/delete_light", light_name="sun").success
+    assert not shop.call(srv.GetLightProperties, "/get_light_properties", light_name="sun").success
+
+
+def test_a_grippers_switch_comes_and_goes_with_its_model(shop):
+    from std_srvs.srv import SetBool
+
+    plugin = (
+        "<plugin name='p' filename='libgazebo_ros_vacuum_gripper.so'><ros><namespace>hand</namespace></ros>"
+        "<link_name>body</link_name></plugin></model>"
+    )
+    spawn(shop, xml=BOX.replace("</model>", plugin))
+    assert shop.call(SetBool, "/hand/switch", data=True).success
+    shop.call(srv.DeleteEntity, "/delete_entity", name="crate")
+    assert not shop.server._offered

@@ -1,0 +1,155 @@
+"""The services and the action that every simulator may offer."""
+
+import pytest
+from geometry_msgs.msg import Point, Pose, PoseStamped, Twist, Vector3
+from rclpy.action import ActionClient
+from ros_gz_interfaces.msg import Entity, EntityFactory, WorldControl
+from ros_gz_interfaces.srv import ControlWorld, DeleteEntity, SetEntityPose, SpawnEntity
+from simulation_interfaces import srv
+from simulation_interfaces.action import SimulateSteps
+from simulation_interfaces.msg import (
+    EntityCategory,
+    EntityFilters,
+    EntityInfo,
+    EntityState,
+    Resource,
+    Result,
+    SimulationState,
+)
+
+from nodes.gazebo_ros.conftest import BOX, WORLD
+
+OK = Result.RESULT_OK
+
+
+def ask(shop, kind, name, /, **fields):
+    return shop.call(kind, f"/gazebo/{name}", **fields)
+
+
+def spawn(shop, name="crate", z=0.5, **fields):
+    pose = PoseStamped(pose=Pose(position=Point(z=z)))
+    resource = fields.pop("resource", Resource(resource_string=BOX))
+    kind = srv.SpawnEntity
+    return ask(shop, kind, "spawn_entity", name=name, entity_resource=resource, initial_pose=pose, **fields)
+
+
+def test_entities_are_spawned_by_text_or_file(shop, tmp_path):
+    assert spawn(shop).result.result == OK
+    assert spawn(shop).result.result == srv.SpawnEntity.Response.NAME_NOT_UNIQUE
+    renamed = spawn(shop, allow_renaming=True)
+    assert (renamed.result.result, renamed.entity_name) == (OK, "crate_0")
+    (tmp_path / "box.sdf").write_text(BOX)
+    assert spawn(shop, "filed", resource=Resource(uri=str(tmp_path / "box.sdf"))).result.result == OK
+    assert (
+        spawn(shop, "none", resource=Resource(uri="nowhere.sdf")).result.result == srv.SpawnEntity.Response.NO_RESOURCE
+    )
+    broken = spawn(shop, "broken", resource=Resource(resource_string="<sdf"))
+    assert broken.result.result == srv.SpawnEntity.Response.RESOURCE_PARSE_ERROR
+    assert broken.result.error_message
+
+
+def test_entities_are_filtered(shop):
+    spawn(shop)
+    names = ask(shop, srv.GetEntities, "get_entities").entities
+    assert list(names) == ["ground_plane", "shelf", "crate"]
+    filters = EntityFilters(filter="^s")
+    assert list(ask(shop, srv.GetEntities, "get_entities", filters=filters).entities) == ["shelf"]
+    static = [EntityCategory(category=EntityCategory.CATEGORY_STATIC_OBJECT)]
+    filters = EntityFilters(categories=static)
+    assert list(ask(shop, srv.GetEntities, "get_entities", filters=filters).entities) == ["ground_plane", "shelf"]
+    info = EntityInfo(tags=["wooden"])
+    ask(shop, srv.SetEntityInfo, "set_entity_info", entity="shelf", info=info)
+    filters = EntityFilters()
+    filters.tags.tags = ["wooden"]
+    assert list(ask(shop, srv.GetEntities, "get_entities", filters=filters).entities) == ["shelf"]
+    wrong = ask(shop, srv.GetEntities, "get_entities", filters=EntityFilters(filter="("))
+    assert wrong.result.result == Result.RESULT_OPERATION_FAILED
+
+
+def test_states_are_read_and_set(shop):
+    spawn(shop)
+    state = EntityState(pose=Pose(position=Point(x=1.0, y=2.0, z=0.5)), twist=Twist(linear=Vector3(x=3.0)))
+    done = ask(shop, srv.SetEntityState, "set_entity_state", entity="crate", state=state, set_pose=True, set_twist=True)
+    assert done.result.result == OK
+    seen = ask(shop, srv.GetEntityState, "get_entity_state", entity="crate").state
+    assert (seen.pose.position.x, seen.pose.position.y, seen.twist.linear.x) == pytest.approx((1, 2, 3))
+    missing = ask(shop, srv.GetEntityState, "get_entity_state", entity="ghost")
+    assert missing.result.result == Result.RESULT_NOT_FOUND
+    several = ask(shop, srv.GetEntitiesStates, "get_entities_states", filters=EntityFilters(filter="crate"))
+    assert several.states[0].pose.position.x == pytest.approx(1)
+
+
+def test_bounds_are_those_of_what_is_solid(shop):
+    bounds = ask(shop, srv.GetEntityBounds, "get_entity_bounds", entity="shelf").bounds
+    high, low = bounds.points
+    assert (low.x, low.y, low.z) == pytest.approx((1.5, -1, 0))
+    assert (high.x, high.y, high.z) == pytest.approx((2.5, 1, 1))
+
+
+def test_time_is_steered(shop):
+    state = SimulationState
+    assert ask(shop, srv.GetSimulationState, "get_simulation_state").state.state == state.STATE_PAUSED
+    spawn(shop, z=5.0)
+    assert ask(shop, srv.StepSimulation, "step_simulation", steps=500).result.result == OK
+    z = ask(shop, srv.GetEntityState, "get_entity_state", entity="crate").state.pose.position.z
+    assert z == pytest.approx(5.0 - 0.5 * 9.8 * 0.25, rel=1e-3)
+    again = ask(shop, srv.SetSimulationState, "set_simulation_state", state=state(state=state.STATE_PAUSED))
+    assert again.result.result == srv.SetSimulationState.Response.ALREADY_IN_TARGET_STATE
+    ask(shop, srv.SetSimulationState, "set_simulation_state", state=state(state=state.STATE_PLAYING))
+    running = ask(shop, srv.StepSimulation, "step_simulation", steps=1)
+    assert running.result.result == Result.RESULT_INCORRECT_STATE
+    ask(shop, srv.SetSimulationState, "set_simulation_state", state=state(state=state.STATE_STOPPED))
+    z = ask(shop, srv.GetEntityState, "get_entity_state", entity="crate").state.pose.position.z
+    assert z == pytest.approx(5.0)
+
+
+def test_a_reset_may_take_spawned_entities_away(shop):
+    spawn(shop)
+    scope = srv.ResetSimulation.Request.SCOPE_SPAWNED
+    assert ask(shop, srv.ResetSimulation, "reset_simulation", scope=scope).result.result == OK
+    assert "crate" not in ask(shop, srv.GetEntities, "get_entities").entities
+
+
+def test_steps_are_an_action(shop):
+    client = ActionClient(shop.client, SimulateSteps, "/gazebo/simulate_steps")
+    assert client.wait_for_server(5.0)
+    told = []
+    goal = SimulateSteps.Goal(steps=250)
+    result = client.send_goal(goal, feedback_callback=lambda message: told.append(message.feedback.completed_steps))
+    assert result.result.result.result == OK
+    assert told[-1] == 250
+    assert shop.server._paced.simulation.time_ns == 250_000_000
+
+
+def test_worlds_are_exchanged(shop):
+    other = WORLD.replace('name="shop"', 'name="hall"').replace("shelf", "rack")
+    done = ask(shop, srv.LoadWorld, "load_world", world_resource=Resource(resource_string=other))
+    assert (done.result.result, done.world.name) == (OK, "hall")
+    assert list(ask(shop, srv.GetEntities, "get_entities").entities) == ["ground_plane", "rack"]
+    broken = ask(shop, srv.LoadWorld, "load_world", world_resource=Resource(resource_string="<sdf/>"))
+    assert broken.result.result == srv.LoadWorld.Response.RESOURCE_PARSE_ERROR
+    assert ask(shop, srv.GetCurrentWorld, "get_current_world").world.name == "hall"
+    assert ask(shop, srv.UnloadWorld, "unload_world").result.result == OK
+    assert not ask(shop, srv.GetEntities, "get_entities").entities
+
+
+def test_worlds_and_places_are_listed(shop):
+    worlds = ask(shop, srv.GetAvailableWorlds, "get_available_worlds").worlds
+    assert "arena" in [world.name for world in worlds]
+    (pose,) = ask(shop, srv.GetNamedPoses, "get_named_poses").poses
+    assert (pose.name, pose.pose.position.y) == ("door", 4.0)
+    features = ask(shop, srv.GetSimulatorFeatures, "get_simulator_features").features
+    assert features.STEP_SIMULATION_ACTION in features.features
+    assert list(features.spawn_formats) == ["urdf", "sdf"]
+
+
+def test_gzs_services_do_the_same(shop):
+    factory = EntityFactory(name="crate", sdf=BOX, pose=Pose(position=Point(z=2.0)))
+    assert shop.call(SpawnEntity, "/world/shop/create", entity_factory=factory).success
+    moved = Pose(position=Point(x=1.0, z=2.0))
+    assert shop.call(SetEntityPose, "/world/shop/set_pose", entity=Entity(name="crate"), pose=moved).success
+    assert shop.call(ControlWorld, "/world/shop/control", world_control=WorldControl(pause=True, multi_step=10)).success
+    assert shop.server._paced.simulation.time_ns == 10_000_000
+    assert shop.server._paced.simulation.pose("crate").position[0] == pytest.approx(1.0)
+    assert shop.call(DeleteEntity, "/world/shop/remove", entity=Entity(name="crate")).success
+    assert not shop.call(DeleteEntity, "/world/shop/remove", entity=Entity(name="crate")).success
