@@ -1,10 +1,13 @@
 """Shells that tests type into as a user would, in one or several terminals."""
 
+import fcntl
 import os
+import pty
 import re
-import signal
+import struct
 import subprocess
 import sys
+import termios
 import threading
 import time
 from pathlib import Path
@@ -12,15 +15,18 @@ from pathlib import Path
 import psutil
 
 PATIENCE_S = 100.0
-_FORGOTTEN = ("AMENT_PREFIX_PATH", "COLCON_PREFIX_PATH", "CMAKE_PREFIX_PATH", "PYTHONPATH", "COLUMNS", "PYTHONWARNINGS")
+_ROWS, _COLUMNS = 60, 240
+_ESCAPES = re.compile(r"\x1b(?:\[[0-9;?]*[A-Za-z]|\][^\x07]*\x07|[=>])")
+_CTRL_C = "\x03"
+_FORGOTTEN = {
+    "AMENT_PREFIX_PATH", "COLCON_PREFIX_PATH", "CMAKE_PREFIX_PATH", "COLUMNS", "LINES", "PYTEST_ADDOPTS",
+    "PYTEST_CURRENT_TEST", "PYTHONDONTWRITEBYTECODE", "PYTHONPATH", "PYTHONWARNINGS",
+}  # fmt: skip
 
 
 def environment(domain: int, home: Path) -> dict[str, str]:
     """Return the environment of someone who has activated the virtual environment, alone in a domain."""
     kept = {name: value for name, value in os.environ.items() if name not in _FORGOTTEN}
-    # The tests' own configuration is none of the business of tests that are run by colcon.
-    kept.pop("PYTEST_ADDOPTS", None)
-    kept.pop("PYTEST_CURRENT_TEST", None)
     return {
         **kept,
         "PATH": os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", "")]),
@@ -33,7 +39,7 @@ def environment(domain: int, home: Path) -> dict[str, str]:
 
 
 class Terminal:
-    """One shell.
+    """One shell behind a terminal of its own.
 
     Parameters
     ----------
@@ -42,22 +48,33 @@ class Terminal:
     cwd
         Its folder at the start.
     shell
-        The shell.
+        The command that starts it.
     """
 
-    def __init__(self, env: dict[str, str], cwd: Path, shell: str = "bash") -> None:
+    def __init__(
+        self, env: dict[str, str], cwd: Path, shell: tuple[str, ...] = ("bash", "--norc", "--noprofile")
+    ) -> None:
+        self._master, slave = pty.openpty()
+        fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack("HHHH", _ROWS, _COLUMNS, 0, 0))
         self._process = subprocess.Popen(
-            [shell], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, env=env, cwd=cwd
+            [*shell, "-i"], stdin=slave, stdout=slave, stderr=slave, env=env, cwd=cwd, preexec_fn=_take_terminal
         )
-        self._lines: list[str] = []
+        os.close(slave)
+        self._text = ""
         self._changed = threading.Condition()
         self._closed = False
         self._count = 0
         self._begin = 0
         self.running = False
-        threading.Thread(target=self._read, daemon=True).start()
-        # Each command gets a process group of its own, which Ctrl-C can reach.
-        self._type("set -m")
+        self.status = 0
+        self._reader = threading.Thread(target=self._read, daemon=True)
+        self._reader.start()
+        # The shell says of each command that it has ended: nothing may be typed ahead, programs would read it.
+        self._type(
+            "stty -echo; bind 'set enable-bracketed-paste off' 2>/dev/null; PS1= PS2= _n=-1; "
+            """PROMPT_COMMAND='_status=$?; _n=$((_n + 1)); printf "\\n@@end %d %d\\n" $_n $_status'"""
+        )
+        self._await_end(PATIENCE_S)
 
     def run(self, command: str, patience_s: float = PATIENCE_S) -> str:
         """Type a command, wait for its end, and return what it printed; `status` has its exit status."""
@@ -69,72 +86,104 @@ class Terminal:
         assert not self.running, "something is running in this terminal"
         self._count += 1
         self.running = True
-        with self._changed:
-            self._begin = len(self._lines)
-        self._type(f"{command}\n_status=$?; echo; echo '@@end' {self._count} $_status")
+        self._type(command)
 
     def finish(self, patience_s: float = PATIENCE_S) -> str:
         """Wait for the end of the command that was started, and return what it printed."""
-        mark = re.compile(rf"@@end {self._count} (\d+)")
-        line = self._wait_for(mark, patience_s, "the command's end")
-        self.status = int(mark.search(line)[1])
+        begin = self._begin
+        match = self._await_end(patience_s)
+        self.status = int(match[1])
         self.running = False
-        text = self.output()
-        return text[: text.rindex("@@end")].removesuffix("\n")
+        with self._changed:
+            return self._text[begin : match.start()]
+
+    def _await_end(self, patience_s: float) -> re.Match[str]:
+        pattern = re.compile(rf"\n?@@end {self._count} (\d+)\n")
+        match = self._wait_for(pattern, patience_s, "the command's end")
+        self._begin = match.end()
+        return match
 
     def wait_for(self, pattern: str, patience_s: float = PATIENCE_S) -> str:
-        """Wait until the running command has printed a line with this pattern; returns the line."""
-        return self._wait_for(re.compile(pattern), patience_s, repr(pattern))
+        """Wait until the running command has printed this pattern; returns what has matched."""
+        return self._wait_for(re.compile(pattern), patience_s, repr(pattern)).group()
+
+    def ended(self) -> bool:
+        """Tell whether the command that was started has ended."""
+        with self._changed:
+            return re.search(rf"@@end {self._count} \d+\n", self._text[self._begin :]) is not None
 
     def output(self) -> str:
         """Return what the current command has printed so far."""
         with self._changed:
-            return "".join(self._lines[self._begin :])
+            return self._text[self._begin :].split("@@end")[0]
+
+    def wait(self, seconds: float) -> None:
+        """Wait until something is printed, but no longer than this."""
+        with self._changed:
+            self._changed.wait(seconds)
+
+    def press(self, keys: str) -> None:
+        """Press keys while a command is running."""
+        os.write(self._master, keys.encode())
 
     def interrupt(self, patience_s: float = PATIENCE_S) -> str:
-        """Press Ctrl-C until the running command ends; returns all that it has printed."""
-        self._signal(signal.SIGINT)
+        """Press Ctrl-C, wait for the end of the running command, and return all that it has printed."""
+        self.press(_CTRL_C)
         return self.finish(patience_s)
 
     def close(self) -> None:
         """End the shell and all that it has started."""
-        children = psutil.Process(self._process.pid).children(recursive=True) if self._process.poll() is None else []
-        for child in children:
-            _end(child)
+        if self._process.poll() is None:
+            for child in psutil.Process(self._process.pid).children(recursive=True):
+                _end(child)
         self._process.kill()
         self._process.wait()
-        self._process.stdin.close()
-
-    def _signal(self, number: int) -> None:
-        for child in psutil.Process(self._process.pid).children():
-            os.killpg(child.pid, number)
+        self._reader.join(PATIENCE_S)
+        os.close(self._master)
 
     def _type(self, text: str) -> None:
-        self._process.stdin.write(f"{text}\n".encode())
-        self._process.stdin.flush()
+        os.write(self._master, f"{text}\n".encode())
 
     def _read(self) -> None:
-        for line in self._process.stdout:
+        rest = b""
+        while True:
+            try:
+                new = os.read(self._master, 65536)
+            except OSError:  # nobody is at the other end any more
+                new = b""
+            # A line may be cut anywhere, also within a character.
+            whole, cut, after = (rest + new).rpartition(b"\n")
+            rest = after if new else b""
             with self._changed:
-                self._lines.append(line.decode(errors="replace"))
+                self._text += _plain(whole + cut if new else rest)
+                self._closed = not new
                 self._changed.notify_all()
-        with self._changed:
-            self._closed = True
-            self._changed.notify_all()
+            if not new:
+                return
 
-    def _wait_for(self, pattern: re.Pattern[str], patience_s: float, what: str) -> str:
+    def _wait_for(self, pattern: re.Pattern[str], patience_s: float, what: str) -> re.Match[str]:
         end = time.monotonic() + patience_s
         with self._changed:
-            seen = self._begin
             while True:
-                for line in self._lines[seen:]:
-                    if pattern.search(line):
-                        return line
-                seen = len(self._lines)
+                match = pattern.search(self._text, self._begin)
+                if match:
+                    return match
                 rest = end - time.monotonic()
                 if rest <= 0 or self._closed:
-                    raise AssertionError(f"waited for {what}; printed:\n{''.join(self._lines[self._begin :])}")
+                    raise AssertionError(f"waited for {what}; printed:\n{self._text[self._begin :]}")
                 self._changed.wait(rest)
+
+
+def _take_terminal() -> None:
+    """Make the terminal that the new process has at its input the one that controls it."""
+    os.setsid()
+    fcntl.ioctl(0, termios.TIOCSCTTY, 0)
+
+
+def _plain(data: bytes) -> str:
+    """Return text as it stays in the terminal: without escapes, and without what was written over."""
+    text = _ESCAPES.sub("", data.decode(errors="replace").replace("\r\n", "\n"))
+    return re.sub(r"[^\n]*\r", "", text)
 
 
 def _end(process: psutil.Process) -> None:

@@ -23,8 +23,8 @@ def terminal(workspace: Path) -> Iterator[Callable[[], Terminal]]:
     """Opens terminals in the workspace."""
     opened = []
 
-    def open_one(shell: str = "bash") -> Terminal:
-        opened.append(Terminal(environment(DOMAIN, workspace.parent), workspace, shell))
+    def open_one() -> Terminal:
+        opened.append(Terminal(environment(DOMAIN, workspace.parent), workspace))
         return opened[-1]
 
     yield open_one
