@@ -152,7 +152,8 @@ class Clock:
         """
         if not isinstance(clock_type, ClockType):
             raise TypeError("Clock type must be a ClockType enum")
-        self = super().__new__(ROSClock if clock_type is ClockType.ROS_TIME else cls)
+        is_ros = clock_type is ClockType.ROS_TIME
+        self = super().__new__(ROSClock if is_ros and not issubclass(cls, ROSClock) else cls)
         self._handle = ClockHandle(clock_type)
         self._type = clock_type
         return self
@@ -239,7 +240,7 @@ class ROSClock(Clock):
 
     def __new__(cls) -> Any:
         """Make a clock."""
-        return Clock.__new__(Clock, clock_type=ClockType.ROS_TIME)
+        return Clock.__new__(cls, clock_type=ClockType.ROS_TIME)
 
     @property
     def ros_time_is_active(self) -> bool:

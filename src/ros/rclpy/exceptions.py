@@ -135,6 +135,13 @@ class ExternalShutdownException(Exception):
         super().__init__("The context was shut down")
 
 
+class TimeSourceChangedError(RuntimeError):
+    """A simulator began or ceased to give the time while somebody slept."""
+
+    def __init__(self) -> None:
+        super().__init__("The source of time has changed")
+
+
 class ROSInterruptException(Exception):
     """A wait was ended by a shutdown."""
 

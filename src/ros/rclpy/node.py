@@ -87,6 +87,9 @@ class Node(NodeParameters, NodeGraph):
         When a name breaks the rules.
     """
 
+    _rcl_client_class: type[Client] = Client
+    _rcl_clock_class: type[ROSClock] = ROSClock
+
     def __init__(
         self,
         node_name: str,
@@ -120,7 +123,7 @@ class Node(NodeParameters, NodeGraph):
         self._rcl_init_parameters(self._rcl_overrides(parameter_overrides), allow_undeclared_parameters)
         self._parameter_event_publisher: Publisher | None = None
         self._rcl_create_parameter_event_publisher()
-        self._clock = ROSClock()
+        self._clock = self._rcl_clock_class()
         if automatically_declare_parameters_from_overrides:
             overrides = [(name, one.value) for name, one in self._parameter_overrides.items()]
             self.declare_parameters("", overrides, ignore_override=True)
@@ -468,7 +471,7 @@ class Node(NodeParameters, NodeGraph):
         with self.handle as handle:
             name = checked_name(handle, srv_name, is_service=True)
             client_handle = ClientHandle(handle, srv_type, name, qos_profile)
-        client = Client(self.context, client_handle, srv_type, srv_name, qos_profile, group)
+        client = self._rcl_client_class(self.context, client_handle, srv_type, srv_name, qos_profile, group)
         self._rcl_add("client", client, group)
         return client
 

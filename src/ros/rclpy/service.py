@@ -19,6 +19,9 @@ if TYPE_CHECKING:
 class Service:
     """Answers requests; made by `Node.create_service`."""
 
+    concurrent = False
+    """Whether callbacks may overlap, in nodes for asyncio."""
+
     __class_getitem__ = classmethod(GenericAlias)
 
     def __init__(

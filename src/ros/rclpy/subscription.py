@@ -31,6 +31,9 @@ class MessageInfo(TypedDict):
 class Subscription:
     """Receives a topic's messages; made by `Node.create_subscription`."""
 
+    concurrent = False
+    """Whether callbacks may overlap, in nodes for asyncio."""
+
     __class_getitem__ = classmethod(GenericAlias)
 
     class CallbackType(Enum):

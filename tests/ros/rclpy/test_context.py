@@ -240,7 +240,10 @@ print("ready", flush=True)
         ("", "try:\n    rclpy.spin(node)\nexcept KeyboardInterrupt:\n    pass\nnode.destroy_node()\nrclpy.shutdown()"),
         ("rate = node.create_rate(0.001)", "rate.sleep()"),
         ("from std_srvs.srv import Empty\nclient = node.create_client(Empty, 'nobody')", "client.wait_for_service()"),
-        ("from std_srvs.srv import Empty\nclient = node.create_client(Empty, 'nobody')", "client.call(Empty.Request())"),
+        (
+            "from std_srvs.srv import Empty\nclient = node.create_client(Empty, 'nobody')",
+            "client.call(Empty.Request())",
+        ),
         (
             "import threading\nfrom rclpy.executors import MultiThreadedExecutor\nexecutor = MultiThreadedExecutor()\n"
             "executor.add_node(node)\nthread = threading.Thread(target=executor.spin)\nthread.start()",

@@ -1,5 +1,6 @@
 """What ROS 2's newer distributions try out: an executor driven by events, and nodes for asyncio."""
 
+from rclpy.experimental.asyncio import AsyncClient, AsyncClock, AsyncNode, AsyncPublisher, AsyncTimer
 from rclpy.experimental.events_executor import EventsExecutor
 
-__all__ = ["EventsExecutor"]
+__all__ = ["AsyncClient", "AsyncClock", "AsyncNode", "AsyncPublisher", "AsyncTimer", "EventsExecutor"]

@@ -51,6 +51,28 @@ class NodeGraph:
         with self.handle as handle:
             return names_and_types(handle.graph.endpoints(EndpointKind.SERVICE, EndpointKind.CLIENT))
 
+    def get_action_names_and_types(self) -> list[tuple[str, list[str]]]:
+        """Return every action: [(name, [types])]."""
+        from rclpy.action.graph import get_action_names_and_types
+
+        return get_action_names_and_types(self)  # type: ignore[arg-type]
+
+    def get_action_client_names_and_types_by_node(
+        self, node_name: str, node_namespace: str
+    ) -> list[tuple[str, list[str]]]:
+        """Return the actions that a node calls: [(name, [types])]."""
+        from rclpy.action.graph import get_action_client_names_and_types_by_node
+
+        return get_action_client_names_and_types_by_node(self, node_name, node_namespace)  # type: ignore[arg-type]
+
+    def get_action_server_names_and_types_by_node(
+        self, node_name: str, node_namespace: str
+    ) -> list[tuple[str, list[str]]]:
+        """Return the actions that a node serves: [(name, [types])]."""
+        from rclpy.action.graph import get_action_server_names_and_types_by_node
+
+        return get_action_server_names_and_types_by_node(self, node_name, node_namespace)  # type: ignore[arg-type]
+
     def get_node_names(self) -> list[str]:
         """Return every node's name."""
         return [name for name, _ in self.get_node_names_and_namespaces()]

@@ -1,0 +1,26 @@
+"""The graph's changes, for coroutines."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import AsyncIterator
+
+from daidalos.transport.graph import EndpointInfo, Graph, NodeInfo
+from rclpy.experimental.asyncio.loops import post
+
+
+async def changes(graph: Graph) -> AsyncIterator[None]:
+    """Yield at once, and then whenever the graph has changed."""
+    loop, changed = asyncio.get_running_loop(), asyncio.Event()
+
+    def tell(added: bool, what: NodeInfo | EndpointInfo) -> None:
+        post(loop, changed.set)
+
+    stop = graph.listen(tell)
+    try:
+        while True:
+            yield
+            await changed.wait()
+            changed.clear()
+    finally:
+        stop()
