@@ -2,6 +2,7 @@
 
 import threading
 import time
+from contextlib import suppress
 
 import pytest
 from rclpy.clock import Clock
@@ -62,7 +63,7 @@ def test_timers_are_told_in_the_order_of_their_deadlines() -> None:
         timer.attach(queue.schedule)
     timers[2].cancel_timer()
     deadline = time.monotonic_ns() + 20 * MS
-    with pytest.raises(TimeoutError):
+    with suppress(TimeoutError):
         while True:
             assert queue.get(deadline) is None, "only what wakes a waiting thread comes out"
     assert told == [1, 3]
