@@ -46,7 +46,7 @@ def _lines(resource_type: str | None, resource_name: str | None) -> list[str]:
     return [prefix, *([content] if content else [])]
 
 
-def resource_type_completer(prefix: str | tuple[str, ...], **kwargs: Any) -> Generator[str, None, None]:
+def resource_type_completer(prefix: str | tuple[str, ...], **kwarg: Any) -> Generator[str, None, None]:
     """Yield the resource types that begin with some text, for the shell's completion."""
     return (name for name in get_resource_types() if name.startswith(prefix))
 

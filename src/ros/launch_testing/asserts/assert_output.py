@@ -59,14 +59,50 @@ def assertInStream(
     raise AssertionError(f"Did not find '{expected_output}' in the {stream} of any of the matching processes: {names}")
 
 
-def assertInStdout(proc_output: Any, expected_output: Any, process: Any, cmd_args: Any = None, **kwargs: Any) -> None:
+def assertInStdout(
+    proc_output: Any,
+    expected_output: Any,
+    process: Any,
+    cmd_args: Any = None,
+    *,
+    output_filter: Callable[[str], str] | None = None,
+    strict_proc_matching: bool = True,
+    strip_ansi_escape_sequences: bool = True,
+) -> None:
     """Assert that a process printed something to its standard output; see `assertInStream`."""
-    assertInStream(proc_output, expected_output, process, cmd_args, stream="stdout", **kwargs)
+    assertInStream(
+        proc_output,
+        expected_output,
+        process,
+        cmd_args,
+        output_filter=output_filter,
+        strict_proc_matching=strict_proc_matching,
+        strip_ansi_escape_sequences=strip_ansi_escape_sequences,
+        stream="stdout",
+    )
 
 
-def assertInStderr(proc_output: Any, expected_output: Any, process: Any, cmd_args: Any = None, **kwargs: Any) -> None:
+def assertInStderr(
+    proc_output: Any,
+    expected_output: Any,
+    process: Any,
+    cmd_args: Any = None,
+    *,
+    output_filter: Callable[[str], str] | None = None,
+    strict_proc_matching: bool = True,
+    strip_ansi_escape_sequences: bool = True,
+) -> None:
     """Assert that a process printed something to its standard error; see `assertInStream`."""
-    assertInStream(proc_output, expected_output, process, cmd_args, stream="stderr", **kwargs)
+    assertInStream(
+        proc_output,
+        expected_output,
+        process,
+        cmd_args,
+        output_filter=output_filter,
+        strict_proc_matching=strict_proc_matching,
+        strip_ansi_escape_sequences=strip_ansi_escape_sequences,
+        stream="stderr",
+    )
 
 
 def assertDefaultStream() -> str:

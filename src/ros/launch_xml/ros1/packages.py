@@ -168,6 +168,10 @@ NODES: dict[tuple[str, str], NodeMapping] = {
     ("robot_state_publisher", "state_publisher"): NodeMapping("robot_state_publisher", "robot_state_publisher"),
     ("rosbag", "play"): NodeMapping("rosbag2", "play"),
     ("rosbag", "record"): NodeMapping("rosbag2", "record"),
+    ("rospy_tutorials", "listener"): NodeMapping("demo_nodes_py", "listener"),
+    ("rospy_tutorials", "talker"): NodeMapping("demo_nodes_py", "talker"),
+    ("roscpp_tutorials", "listener"): NodeMapping("demo_nodes_cpp", "listener"),
+    ("roscpp_tutorials", "talker"): NodeMapping("demo_nodes_cpp", "talker"),
     ("rqt_graph", "rqt_graph"): NodeMapping("rqt_graph", "rqt_graph"),
     ("rviz", "rviz"): NodeMapping("rviz2", "rviz2"),
     ("teleop_twist_keyboard", "teleop_twist_keyboard.py"): NodeMapping(
