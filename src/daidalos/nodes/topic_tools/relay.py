@@ -1,0 +1,24 @@
+"""`relay`: publishes a topic under another name as well."""
+
+from __future__ import annotations
+
+import sys
+from typing import Any
+
+from daidalos.nodes.topic_tools._tool import Tool, run_tool, topics
+
+
+class Relay(Tool):
+    """Hands every message on."""
+
+    def __init__(self, **kwargs: Any) -> None:
+        super().__init__("relay", **kwargs)
+
+
+def main() -> int:
+    """Run the node."""
+    return run_tool(Relay, "relay <intopic> [outtopic]", lambda words: topics(*words))
+
+
+if __name__ == "__main__":
+    sys.exit(main())
