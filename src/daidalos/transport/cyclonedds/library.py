@@ -241,11 +241,12 @@ def load() -> Library:
     global _loaded
     if _loaded is None:
         package = find_spec("cyclonedds")
-        if package is None or not package.submodule_search_locations:
+        folders = package.submodule_search_locations if package is not None else None
+        locator = Path(next(iter(folders or ("",)))) / "__library__.py"
+        if not folders or not locator.is_file():
             raise EnvironmentVariableError(
                 "RMW_IMPLEMENTATION is 'rmw_cyclonedds_cpp', which needs the package cyclonedds: "
                 "pip install 'daidalos[dds]'"
             )
-        locator = Path(package.submodule_search_locations[0]) / "__library__.py"
         _loaded = Library(Path(runpy.run_path(str(locator))["library_path"]))
     return _loaded

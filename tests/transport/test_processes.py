@@ -1,0 +1,129 @@
+"""Processes that find each other whichever starts first, and go on whichever dies."""
+
+from __future__ import annotations
+
+import signal
+import time
+from collections.abc import Callable
+
+import pytest
+from example_interfaces.srv import AddTwoInts
+from sensor_msgs.msg import Image
+from std_msgs.msg import Int32
+
+from daidalos.transport.graph import EndpointKind
+from daidalos.transport.qos import Qos
+from daidalos.transport.session import Session
+from transport.peers import Peer
+from transport.test_sessions import Inbox, node_of, subscribe
+
+PATIENCE_S = 20.0
+SHORT_LEASE = "<CycloneDDS><Domain><Discovery><LeaseDuration>1s</LeaseDuration></Discovery></Domain></CycloneDDS>"
+
+
+@pytest.fixture(autouse=True)
+def _environment(middleware: str, domain: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let the peers join us; DDS learns of a death when a lease runs out, here soon."""
+    monkeypatch.setenv("ROS_DOMAIN_ID", str(domain))
+    monkeypatch.setenv("RMW_IMPLEMENTATION", middleware)
+    monkeypatch.setenv("CYCLONEDDS_URI", SHORT_LEASE)
+
+
+def names(session: Session) -> list[str]:
+    return [node.name for node in session.graph.nodes()]
+
+
+def test_whichever_starts_first(new_session: Callable[[], Session]):
+    with Peer("talk").ready() as first:
+        session = new_session()
+        inbox = subscribe(session, node_of(session, "me"), "/topic", Int32)
+        assert len(inbox.wait(3, PATIENCE_S)) >= 3
+        with Peer("listen").ready() as second:
+            second.wait_for("heard")
+            first.kill()
+            assert session.graph.wait_for(lambda: sorted(names(session)) == ["listener", "me"], PATIENCE_S)
+            publisher = session.create_publisher(node_of(session, "talker"), "/topic", Int32, Qos())
+            assert session.graph.wait_for(lambda: publisher.is_heard, PATIENCE_S)
+            deadline = time.monotonic() + PATIENCE_S
+            while not any("heard -5" in line for line in second.lines) and time.monotonic() < deadline:
+                publisher.publish(Int32(data=-5))
+                session.graph.wait_for(lambda: False, 0.05)
+            second.wait_for("heard -5")
+
+
+def test_the_first_of_three_dies():
+    with Peer("watch").ready() as first, Peer("listen").ready() as second, Peer("talk").ready() as third:
+        first.wait_for("came talker")
+        line = second.wait_for("heard")
+        first.kill()
+        second.wait_for("heard", len(second.lines))
+        assert third.process.poll() is None
+        assert line
+
+
+def test_who_is_killed_leaves_the_graph(new_session: Callable[[], Session]):
+    session = new_session()
+    with Peer("watch").ready() as watcher, Peer("talk").ready() as talker:
+        line = watcher.wait_for("came talker")
+        assert session.graph.wait_for(lambda: names(session) == ["talker"], PATIENCE_S)
+        talker.process.send_signal(signal.SIGKILL)
+        watcher.wait_for("went talker", line)
+        assert session.graph.wait_for(lambda: not names(session) and not session.graph.endpoints(), PATIENCE_S)
+        with Peer("talk").ready():
+            watcher.wait_for("came talker", line)
+            assert session.graph.wait_for(lambda: names(session) == ["talker"], PATIENCE_S)
+
+
+def test_a_death_in_mid_message_harms_nobody(new_session: Callable[[], Session]):
+    session = new_session()
+    inbox = subscribe(session, node_of(session, "me"), "/topic", Image)
+    with Peer("flood").ready() as flood:
+        assert len(inbox.wait(2, PATIENCE_S)) >= 2
+        flood.process.send_signal(signal.SIGKILL)
+        assert session.graph.wait_for(lambda: names(session) == ["me"], PATIENCE_S)
+    so_far = len(inbox.wait(10**6, 0.2))
+    with Peer("flood").ready():
+        assert len(inbox.wait(so_far + 2, PATIENCE_S)) >= so_far + 2
+    assert {len(message.data) for message, _ in inbox.taken} == {4_000_000}
+
+
+def test_a_service_that_dies_is_replaced(new_session: Callable[[], Session]):
+    session = new_session()
+    answers = Inbox()
+    client = answers.entity = session.create_client(
+        node_of(session, "me"), "/add", AddTwoInts, Qos(), lambda: answers.ready()
+    )
+    for round_number in (1, 2):
+        with Peer("serve").ready():
+            assert session.graph.wait_for(lambda: session.server_is_ready(client), PATIENCE_S)
+            client.send(AddTwoInts.Request(a=round_number, b=1))
+            assert answers.wait(round_number, PATIENCE_S)[-1][0].sum == round_number + 1
+        assert session.graph.wait_for(lambda: not session.server_is_ready(client), PATIENCE_S)
+
+
+def test_a_stopped_process_does_not_stop_others(new_session: Callable[[], Session], middleware: str):
+    session = new_session()
+    node = node_of(session, "me")
+    publisher = session.create_publisher(node, "/topic", Image, Qos())
+    inbox = subscribe(session, node, "/other", Int32)
+    with Peer("talk").ready(), Peer("listen").ready() as listener:
+        numbers = session.create_publisher(node, "/topic", Int32, Qos())
+        assert session.graph.wait_for(
+            lambda: len(session.graph.endpoints(EndpointKind.SUBSCRIPTION, name="/topic")) == 1, PATIENCE_S
+        )
+        listener.process.send_signal(signal.SIGSTOP)
+        begin = time.monotonic()
+        for number in range(200_000):
+            numbers.publish(Int32(data=number))
+            if time.monotonic() - begin > 8.0:
+                break
+        assert number > 1000, f"{middleware}: {number} messages in 8 s"
+        listener.process.send_signal(signal.SIGCONT)
+        line = len(listener.lines)
+        deadline = time.monotonic() + PATIENCE_S
+        while not any("heard -7" in text for text in listener.lines[line:]) and time.monotonic() < deadline:
+            numbers.publish(Int32(data=-7))
+            session.graph.wait_for(lambda: False, 0.05)
+        listener.wait_for("heard -7", line)
+    assert publisher.endpoint.name == "/topic"
+    assert inbox.wait(1, 0.0) == []
