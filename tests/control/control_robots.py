@@ -47,7 +47,7 @@ def alone(
 ) -> tuple[Controller, Interfaces, Interfaces]:
     """Return an active controller with interfaces of its own, commands and states, at zero."""
     cls = controller_class(type_name)
-    controller = cls(parameters_from(cls.parameters, values), ControllerSetting("it", robot=robot, **(setting or {})))
+    controller = cls(parameters_from(cls.parameters, values), ControllerSetting("it", 100.0, robot, **(setting or {})))
     commands, states = Interfaces(controller.command_names), Interfaces(controller.state_names)
     states.values[:] = 0.0
     controller.assign(Loan(commands.names, [commands]), Loan(states.names, [states]))

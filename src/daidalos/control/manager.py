@@ -438,7 +438,9 @@ class ControllerManager:
                 loaded.references.values[:] = float("nan")
 
     def _restart(self, now_ns: int) -> None:
+        """Let active controllers forget what was before time went back."""
         self.time_ns = now_ns
+        self._release(name for one in self._active() for name in one.running.command_names)
         for loaded in reversed(self._order):
             if loaded.state == ACTIVE:
                 loaded.running.deactivate()

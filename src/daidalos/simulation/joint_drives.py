@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from enum import IntEnum
 from typing import TYPE_CHECKING, Any
 
-import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
@@ -49,9 +48,12 @@ class DriveState:
     ----------
     modes : array (n,) of int
         `Mode` of each.
+    targets : array (n,)
+        Position, speed or effort, as its mode says; NaN where there is none, and the joint is held.
     """
 
-    modes: NDArray[np.int8] = field(default_factory=lambda: np.zeros(0, dtype=np.int8))
+    modes: NDArray[np.int8]
+    targets: Array
 
 
 class JointDrives:
@@ -80,8 +82,7 @@ class JointDrives:
     def start(self, hold: bool) -> DriveState:
         """Return the state in which nobody commands: hold the joints or leave them free."""
         mode = Mode.HOLD if hold else Mode.FREE
-        self._applied = None
-        return DriveState(np.full(len(self.driven), mode, dtype=np.int8))
+        return DriveState(np.full(len(self.driven), mode, dtype=np.int8), np.full(len(self.driven), np.nan))
 
     def prepare(self, build: ModelBuild) -> None:
         """Add a servo for positions and one for speeds and efforts to each joint."""
@@ -97,6 +98,8 @@ class JointDrives:
             self._actuators.append(self._add(build, joint))
 
     def _add(self, build: ModelBuild, joint: str) -> tuple[str, str]:
+        import mujoco
+
         names = []
         for kind in ("reference", "motor"):
             actuator = build.spec.add_actuator(
@@ -153,7 +156,8 @@ class JointDrives:
         return np.array(self._instance.physics.data.qfrc_actuator[self._dof])
 
     def place(self, positions: Mapping[str, float]) -> None:
-        """Put joints somewhere, at rest."""
+        """Put joints somewhere, at rest; the motors go on from there."""
+        self._applied = None
         data = self._instance.physics.data
         for name, position in positions.items():
             view = self._instance.joint(name)
@@ -162,19 +166,18 @@ class JointDrives:
 
     # What is commanded.
 
-    def command(self, state: DriveState, values: Array, period: float) -> None:
+    def command(self, state: DriveState, period: float) -> None:
         """Tell the motors what to do for a period.
 
         Parameters
         ----------
         state : DriveState
-        values : array (n,)
-            Position, speed or effort of each driven joint, as its mode says; where it is NaN the joint is held.
         period : float
             Until the next command [s].
         """
-        modes = np.where(np.isnan(values) & (state.modes >= Mode.POSITION), Mode.HOLD, state.modes).astype(np.int8)
-        values = np.nan_to_num(values)
+        idle = np.isnan(state.targets) & (state.modes >= Mode.POSITION)
+        modes = np.where(idle, Mode.HOLD, state.modes).astype(np.int8)
+        values = np.nan_to_num(state.targets)
         data = self._instance.physics.data
         at = data.qpos[self._own_qpos]
         if self._applied is None or not np.array_equal(modes, self._applied):
@@ -214,10 +217,6 @@ class JointDrives:
         model.actuator_gainprm[self._motor, 0] = np.where(rolls, self._speed_gain, np.where(pushes, 1.0, 0.0))
         model.actuator_biasprm[self._motor, 2] = np.where(rolls, -self._speed_gain, 0.0)
         self._applied = modes
-
-    def forget(self) -> None:
-        """Note that the state was changed from outside."""
-        self._applied = None
 
 
 def _wheel_radius(build: ModelBuild, name: str) -> float:

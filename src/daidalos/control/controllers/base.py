@@ -8,6 +8,7 @@ from typing import Any, ClassVar
 
 from daidalos.control.interfaces import Interfaces, Loan
 from daidalos.description.robot import Robot
+from daidalos.description.world import Model
 from daidalos.simulation.samples import Sample
 
 
@@ -28,8 +29,8 @@ class ControllerSetting:
     ----------
     name : str
     update_rate : float
-        Its own [Hz].
-    robot : Robot or None
+        Its own [Hz]; 0 for the manager's.
+    robot : Robot, Model or None
         Its description, once that is known.
     namespace : str
         Of the controller, such as ``/robot1``.
@@ -42,8 +43,8 @@ class ControllerSetting:
     """
 
     name: str
-    update_rate: float = 100.0
-    robot: Robot | None = None
+    update_rate: float = 0.0
+    robot: Robot | Model | None = None
     namespace: str = "/"
     state_names: tuple[str, ...] = ()
     heard: Callable[[str], bool] = _always

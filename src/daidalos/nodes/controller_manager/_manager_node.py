@@ -22,6 +22,7 @@ from daidalos.control.manager import ControllerManager
 from daidalos.control.plugins import controllers
 from daidalos.control.switching import Strictness
 from daidalos.description.robot import Robot
+from daidalos.description.world import Model
 from daidalos.nodes.controller_manager._controller_node import ControllerNode
 from daidalos.nodes.controller_manager._reports import (
     activity_message,
@@ -68,10 +69,10 @@ class ControllerManagerNode(Node):
         self.lock = threading.RLock()
         self.manager: ControllerManager | None = None
         self._nodes: dict[str, ControllerNode] = {}
-        self._robot: Robot | None = None
+        self._robot: Robot | Model | None = None
         self._activity: Any = None
 
-    def start(self, robot: Robot | None, hardware: Iterable[Hardware]) -> None:
+    def start(self, robot: Robot | Model | None, hardware: Iterable[Hardware]) -> None:
         """Take hardware into service, and offer the services."""
         from controller_manager_msgs.msg import ControllerManagerActivity
 

@@ -47,6 +47,7 @@ class GzServer(Node):
 
     def __init__(self, world: Path | None = None, paused: bool = False, **kwargs: Any) -> None:
         super().__init__("gazebo", **kwargs)
+        from daidalos.nodes.gazebo_ros._companions import Companions
         from daidalos.nodes.gazebo_ros._host import Host, read_world
         from daidalos.nodes.gazebo_ros._pacing import PacedSimulation
         from daidalos.simulation import Simulation
@@ -65,6 +66,7 @@ class GzServer(Node):
         simulation = make(read_world(world))
         self._paced = PacedSimulation(simulation, self._publish, _CLOCK_PERIOD_NS, factor, self._on_failure)
         self._host = Host(self._paced, make, self._topics_changed)
+        self._companions = Companions(self.context, self._warn)
         self._host.world_path = world
         self._create_topics()
         self._topics_changed(simulation)
@@ -120,6 +122,7 @@ class GzServer(Node):
         if now_ns % 20_000_000 < _CLOCK_PERIOD_NS:
             self._publish_states()
         self._publish_contacts()
+        self._companions.publish()
 
     def _publish_transforms(self, transforms: list[Any]) -> None:
         from tf2_msgs.msg import TFMessage
@@ -214,6 +217,7 @@ class GzServer(Node):
     def _topics_changed(self, simulation: Simulation) -> None:
         """Follow models that came or went."""
         self._connect(simulation)
+        self._companions.follow(simulation)
         for name in [name for name in self._contacts if name not in simulation.models]:
             del self._contacts[name]
         if self._watched in simulation.models and self._watched not in self._contacts:
@@ -237,6 +241,7 @@ class GzServer(Node):
     def destroy_node(self) -> None:
         """End the simulation and leave the graph."""
         self._paced.stop()
+        self._companions.close()
         super().destroy_node()
 
 

@@ -83,19 +83,18 @@ class Ros2Control(Plugin):
     def start(self) -> DriveState:
         """Put the joints where their initial values are."""
         self.drives.place(self._initial)
-        return self.drives.start(self.holds)
+        state = self.drives.start(self.holds)
+        if self.memory is not None:  # a reset; whoever commands the joints goes on
+            state.modes = self.memory.modes
+        self.drives.command(state, self.period)
+        return state
 
     def update(self, now_ns: int) -> Iterable[Sample]:
         """Let the controllers run; without any the joints hold."""
         if self.cycle is not None:
             self.cycle(now_ns)
-        else:
-            self.command(np.full(len(self.drives.driven), np.nan))
+        self.drives.command(self.memory, self.period)
         return ()
-
-    def command(self, values: NDArray[np.float64]) -> None:
-        """Tell the motors what to do until the next cycle; see `JointDrives.command`."""
-        self.drives.command(self.memory, values, self.period)
 
     def measure(self, sensor: str, now_ns: int) -> dict[str, float] | None:
         """Return what one of the model's sensors measures now, by interface; None when there is none of that name."""

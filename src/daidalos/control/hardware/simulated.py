@@ -1,0 +1,130 @@
+"""Hardware that is in the simulation: joints with motors, and sensors."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from daidalos.control.errors import HardwareError
+from daidalos.control.hardware.base import Hardware, HardwareSetting
+from daidalos.description.ros2_control import HardwareInfo
+from daidalos.simulation.joint_drives import Mode
+
+if TYPE_CHECKING:
+    from daidalos.simulation.plugins.ros2_control import Ros2Control
+
+_STATES = ("position", "velocity", "effort")
+_MODES = {"position": Mode.POSITION, "velocity": Mode.VELOCITY, "effort": Mode.EFFORT}
+
+
+class SimulatedSystem(Hardware):
+    """A robot in the simulation, by the names that Gazebo's packages give it.
+
+    Parameters
+    ----------
+    info, setting
+        See `Hardware`.
+    plugin : Ros2Control or None
+        The simulation's side; without it there is no simulation to control.
+    """
+
+    names = (
+        "gazebo_ros2_control/GazeboSystem",
+        "gz_ros2_control/GazeboSimSystem",
+        "ign_ros2_control/IgnitionSystem",
+    )
+
+    def __init__(
+        self, info: HardwareInfo, setting: HardwareSetting | None = None, plugin: Ros2Control | None = None
+    ) -> None:
+        super().__init__(info, setting)
+        if plugin is None:
+            raise HardwareError(
+                f"{info.where}: '{info.plugin}' is the simulator's; it runs where the robot's <gazebo> element "
+                "has the plugin gazebo_ros2_control or gz_ros2_control"
+            )
+        self._plugin = plugin
+        drives = plugin.drives
+        self._driven = {name: row for row, name in enumerate(drives.driven)}
+        self._check()
+        pairs = [
+            (self.states.index[f"{joint.name}/{state.name}"], _STATES.index(state.name), drives.names.index(joint.name))
+            for joint in info.joints
+            for state in joint.states
+            if state.name in _STATES and joint.name in drives.names
+        ]
+        self._states, self._kinds, self._rows = np.array(pairs, dtype=np.intp).reshape(-1, 3).T
+        self._used = np.zeros(3, dtype=bool)
+        self._used[self._kinds] = True
+        self._idle = Mode.HOLD if plugin.holds else Mode.FREE
+        # Which command goes to which drive, for those that are claimed.
+        self._commands: dict[int, int] = {}
+
+    def _check(self) -> None:
+        for joint in self.info.joints:
+            for command in joint.commands:
+                if command.name not in _MODES:
+                    known = ", ".join(_MODES)
+                    raise HardwareError(
+                        f"{self.info.where}: joint '{joint.name}' has the command interface '{command.name}'; "
+                        f"the simulation has {known}"
+                    )
+
+    def configure(self) -> None:
+        """Take the state that the simulation is in."""
+        for sensor in self.info.sensors:
+            if self._plugin.measure(sensor.name, 0) is None:
+                self.setting.warn(f"hardware '{self.info.name}': the robot has no sensor '{sensor.name}'")
+        self.read(0, 0.0)
+
+    def prepare_switch(self, start: Sequence[str], stop: Sequence[str]) -> None:
+        """Refuse a joint that is to be commanded in two ways."""
+        wanted: dict[str, str] = {}
+        going_on = [self.commands.names[place] for place in self._commands if self.commands.names[place] not in stop]
+        for name in (*going_on, *start):
+            joint, _, kind = name.rpartition("/")
+            if joint in self._driven and wanted.setdefault(joint, kind) != kind:
+                raise HardwareError(f"joint '{joint}' can not take {wanted[joint]} and {kind} at once")
+
+    def switch(self, start: Sequence[str], stop: Sequence[str]) -> None:
+        """Set what the motors do; those that nobody commands hold or are free."""
+        state = self._plugin.memory
+        for name in stop:
+            row = self._commands.pop(self.commands.index[name], None)
+            if row is not None:
+                state.modes[row], state.targets[row] = self._idle, np.nan
+        for name in start:
+            joint, _, kind = name.rpartition("/")
+            if joint in self._driven:
+                row = self._driven[joint]
+                self._commands[self.commands.index[name]] = row
+                state.modes[row] = _MODES[kind]
+
+    def read(self, now_ns: int, period: float) -> None:
+        """Read joints and sensors."""
+        drives = self._plugin.drives
+        table = np.zeros((3, len(drives.names)))
+        if self._used[0]:
+            table[0] = drives.positions
+        if self._used[1]:
+            table[1] = drives.velocities
+        if self._used[2]:
+            table[2] = drives.efforts_now
+        self.states.values[self._states] = table[self._kinds, self._rows]
+        for sensor in self.info.sensors:
+            measured = self._plugin.measure(sensor.name, now_ns) or {}
+            for name, value in measured.items():
+                if f"{sensor.name}/{name}" in self.states:
+                    self.states[f"{sensor.name}/{name}"] = value
+
+    def write(self, now_ns: int, period: float) -> None:
+        """Pass the commands on."""
+        targets = self._plugin.memory.targets
+        for place, row in self._commands.items():
+            targets[row] = self.commands.values[place]
+
+    def deactivate(self) -> None:
+        """Hold, or leave the joints free."""
+        self._plugin.memory.targets[list(self._driven.values())] = np.nan

@@ -1,0 +1,75 @@
+"""A controller manager inside the simulator, stepped with it."""
+
+from __future__ import annotations
+
+from rclpy.context import Context
+from rclpy.parameter import Parameter
+
+from daidalos.control.hardware.base import Hardware, HardwareSetting
+from daidalos.control.hardware.simulated import SimulatedSystem
+from daidalos.control.plugins import hardware_class
+from daidalos.description.ros2_control import HardwareInfo
+from daidalos.nodes.controller_manager._manager_node import ControllerManagerNode
+from daidalos.nodes.node_thread import NodeThread
+from daidalos.simulation.plugins.ros2_control import Ros2Control
+from daidalos.simulation.samples import Sample
+
+
+class SimulatedManager:
+    """Controllers of a model: each cycle falls on its instant of simulated time, however fast that goes.
+
+    Parameters
+    ----------
+    plugin : Ros2Control
+        The simulation's side.
+    context : Context
+        Of the nodes.
+
+    Raises
+    ------
+    ControlError
+        When the hardware can not be used.
+    """
+
+    def __init__(self, plugin: Ros2Control, context: Context) -> None:
+        self._plugin = plugin
+        arguments = [word for file in plugin.files for word in ("--params-file", str(file))]
+        arguments += [word for remapping in plugin.remappings for word in ("-r", remapping)]
+        self._node = ControllerManagerNode(
+            plugin.manager_name,
+            controller_arguments=arguments,
+            context=context,
+            namespace=plugin.parameters.namespace or "/",
+            cli_args=["--ros-args", *arguments],
+            use_global_arguments=False,
+            parameter_overrides=[Parameter("use_sim_time", value=True)],
+        )
+        self._said: list[tuple[str, Sample]] = []
+        try:
+            self._node.update_rate = plugin.rate
+            setting = HardwareSetting(plugin.rate, self._node.warn)
+            model = plugin.setting.model
+            self._node.start(model, [self._hardware(info, setting) for info in plugin.hardware])
+        except Exception:
+            self._node.destroy_node()
+            raise
+        self._thread = NodeThread(self._node)
+        plugin.cycle = self._cycle
+
+    def _hardware(self, info: HardwareInfo, setting: HardwareSetting) -> Hardware:
+        cls = hardware_class(info.plugin)
+        return cls(info, setting, self._plugin) if issubclass(cls, SimulatedSystem) else cls(info, setting)
+
+    def _cycle(self, now_ns: int) -> None:
+        self._said += self._node.cycle(now_ns)
+
+    def publish(self) -> None:
+        """Publish what controllers said; the clock has told the time before."""
+        said, self._said = self._said, []
+        self._node.publish(said)
+
+    def close(self) -> None:
+        """Stop the controllers and leave the graph."""
+        self._plugin.cycle = None
+        self._thread.stop()
+        self._node.destroy_node()

@@ -1,0 +1,89 @@
+"""Nodes that live beside plugins of the simulation, such as controller managers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, Protocol
+
+from rclpy.context import Context
+
+from daidalos.simulation.plugins.ros2_control import Ros2Control
+
+if TYPE_CHECKING:
+    from daidalos.simulation import Simulation
+    from daidalos.simulation.component import Component
+
+
+class Companion(Protocol):
+    """What lives beside a plugin."""
+
+    def publish(self) -> None:
+        """Publish what there is to say since the last time; called on the simulation's thread."""
+
+    def close(self) -> None:
+        """End."""
+
+
+class Companions:
+    """Starts and ends companions as models come and go.
+
+    Parameters
+    ----------
+    context : Context
+        Of their nodes.
+    warn : callable
+        Takes a line for the user where one can not be started.
+    """
+
+    def __init__(self, context: Context, warn: Callable[[str], None]) -> None:
+        self._context = context
+        self._warn = warn
+        self._known: dict[int, tuple[Component, Companion | None]] = {}
+
+    def follow(self, simulation: Simulation) -> None:
+        """Look who is there now; called on the simulation's thread."""
+        present = {
+            id(component): component
+            for name in simulation.models
+            for component in simulation.instance(name).components
+            if type(component) in _MAKERS
+        }
+        for key in [key for key in self._known if key not in present]:
+            self._end(key)
+        for key, component in present.items():
+            if key not in self._known:
+                self._known[key] = (component, self._make(component))
+
+    def publish(self) -> None:
+        """Let all say what they have to say; called after the time was told."""
+        for _, companion in self._known.values():
+            if companion is not None:
+                companion.publish()
+
+    def close(self) -> None:
+        """End all."""
+        for key in list(self._known):
+            self._end(key)
+
+    def _make(self, component: Component) -> Companion | None:
+        from daidalos.control.errors import ControlError
+
+        try:
+            return _MAKERS[type(component)](component, self._context)
+        except (ControlError, ValueError, RuntimeError) as error:  # a parameter file that is not valid
+            self._warn(f"the controllers of '{component.setting.model_name}' can not be started: {error}")
+            return None
+
+    def _end(self, key: int) -> None:
+        _, companion = self._known.pop(key)
+        if companion is not None:
+            companion.close()
+
+
+def _controller_manager(component: Any, context: Context) -> Companion:
+    from daidalos.nodes.controller_manager._simulated import SimulatedManager
+
+    return SimulatedManager(component, context)
+
+
+_MAKERS: dict[type, Callable[[Any, Context], Companion]] = {Ros2Control: _controller_manager}
