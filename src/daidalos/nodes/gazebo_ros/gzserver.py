@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.node import Node
+from rclpy.parameter import Parameter
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.utilities import remove_ros_args
 
@@ -289,22 +290,28 @@ def _arguments(arguments: Sequence[str]) -> argparse.Namespace:
     return parser.parse_args(list(arguments))
 
 
+def serve(world: Path | None, paused: bool, seed: int | None = None) -> int:
+    """Run the node until the process is asked to end; return its exit status."""
+
+    def make() -> Node:
+        from daidalos.simulation.errors import SimulationError
+
+        overrides: list[Parameter[int]] = [] if seed is None else [Parameter("seed", value=seed)]
+        try:
+            return GzServer(world, paused, parameter_overrides=overrides)
+        except (DescriptionError, SimulationError) as error:
+            raise UserError(str(error)) from None
+
+    return run(make, threads=2)
+
+
 def main() -> int:
     """Run the node."""
     arguments = _arguments(remove_ros_args(sys.argv)[1:])
     if arguments.world and not arguments.world.is_file():
         print(f"error: there is no world file '{arguments.world}'", file=sys.stderr)
         return 2
-
-    def make() -> Node:
-        from daidalos.simulation.errors import SimulationError
-
-        try:
-            return GzServer(arguments.world, arguments.pause)
-        except (DescriptionError, SimulationError) as error:
-            raise UserError(str(error)) from None
-
-    return run(make, threads=2)
+    return serve(arguments.world, arguments.pause)
 
 
 if __name__ == "__main__":

@@ -4,17 +4,20 @@ from __future__ import annotations
 
 import argparse
 import sys
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from rclpy.clock import Clock
+from rclpy.clock_type import ClockType
 from rclpy.utilities import remove_ros_args
 
 from daidalos.nodes.description_files import read_description
 from daidalos.nodes.runner import UserError, run_program
 
 
-def _arguments() -> argparse.Namespace:
-    parser = argparse.ArgumentParser(prog="spawn_entity.py", description="Spawn an entity in the simulation.")
+def _arguments(arguments: Sequence[str], prog: str) -> argparse.Namespace:
+    parser = argparse.ArgumentParser(prog=prog, description="Spawn an entity in the simulation.")
     source = parser.add_mutually_exclusive_group(required=True)
     source.add_argument("-file", metavar="FILE", help="a URDF, xacro or SDF file")
     source.add_argument("-topic", metavar="TOPIC", help="a topic with the description, such as robot_description")
@@ -35,7 +38,7 @@ def _arguments() -> argparse.Namespace:
     parser.add_argument("-b", dest="bond", action="store_true", help="delete the entity when this program ends")
     for name in ("x", "y", "z", "R", "P", "Y"):
         parser.add_argument(f"-{name}", type=float, default=0.0, help="pose [m, rad]")
-    return parser.parse_args(remove_ros_args(sys.argv)[1:])
+    return parser.parse_args(arguments)
 
 
 def _description(arguments: argparse.Namespace, node: Any) -> str:
@@ -93,6 +96,8 @@ def _spawn(arguments: argparse.Namespace, node: Any) -> None:
     base = arguments.gazebo_namespace
     timeout = arguments.spawn_service_timeout or arguments.timeout
     text = _description(arguments, node)
+    if arguments.wait:
+        _wait_for(arguments.wait, node, base, timeout)
     client = node.create_client(SpawnEntity, f"{base}/spawn_entity")
     node.get_logger().info(f"Waiting for service {base}/spawn_entity, timeout = {timeout:g}")
     if not client.wait_for_service(timeout):
@@ -107,6 +112,33 @@ def _spawn(arguments: argparse.Namespace, node: Any) -> None:
         unpause = node.create_client(Empty, f"{base}/unpause_physics")
         if unpause.wait_for_service(timeout):
             unpause.call(Empty.Request(), timeout)
+
+
+def _wait_for(entity: str, node: Any, base: str, timeout: float) -> None:
+    """Wait until the simulation tells of an entity."""
+    from gazebo_msgs.msg import ModelStates
+    from rclpy.wait_for_message import wait_for_message
+
+    node.get_logger().info(f"Waiting for entity {entity}")
+    clock = Clock(clock_type=ClockType.STEADY_TIME)
+    end = clock.now().nanoseconds + round(timeout * 1e9)
+    while clock.now().nanoseconds < end:
+        found, message = wait_for_message(ModelStates, node, f"{base}/model_states", time_to_wait=timeout)
+        if found and entity in message.name:
+            return
+    raise UserError(f"there was no entity '{entity}' within {timeout:g} s")
+
+
+def _place_joints(joints: Mapping[str, float], arguments: argparse.Namespace, node: Any) -> None:
+    from gazebo_msgs.srv import SetModelConfiguration
+
+    client = node.create_client(SetModelConfiguration, f"{arguments.gazebo_namespace}/set_model_configuration")
+    request = SetModelConfiguration.Request(
+        model_name=arguments.entity, joint_names=list(joints), joint_positions=list(joints.values())
+    )
+    response = client.call(request, arguments.timeout) if client.wait_for_service(arguments.timeout) else None
+    if response is None or not response.success:
+        raise UserError(f"joints could not be placed: {'no answer' if response is None else response.status_message}")
 
 
 def _delete_at_end(arguments: argparse.Namespace, node: Any) -> None:
@@ -129,21 +161,38 @@ def _delete_at_end(arguments: argparse.Namespace, node: Any) -> None:
         rclpy.shutdown(context=context)
 
 
+def spawn(words: Sequence[str], joints: Mapping[str, float], prog: str) -> None:
+    """Do what the command line says.
+
+    Parameters
+    ----------
+    words : sequence of str
+        The arguments.
+    joints : mapping
+        Where joints begin [rad, m].
+    prog : str
+        Name of the program.
+
+    Raises
+    ------
+    UserError
+    """
+    import rclpy
+
+    arguments = _arguments(words, prog)
+    rclpy.init()
+    node = rclpy.create_node("spawn_entity")
+    _spawn(arguments, node)
+    if joints:
+        _place_joints(joints, arguments, node)
+    if arguments.bond:
+        _delete_at_end(arguments, node)
+    node.destroy_node()
+
+
 def main() -> int:
     """Run the program."""
-    arguments = _arguments()
-
-    def body() -> None:
-        import rclpy
-
-        rclpy.init()
-        node = rclpy.create_node("spawn_entity")
-        _spawn(arguments, node)
-        if arguments.bond:
-            _delete_at_end(arguments, node)
-        node.destroy_node()
-
-    return run_program(body, interrupted=130)
+    return run_program(lambda: spawn(remove_ros_args(sys.argv)[1:], {}, "spawn_entity.py"), interrupted=130)
 
 
 if __name__ == "__main__":

@@ -1,0 +1,1 @@
+"""The bridge to gz, which here has both ends in one graph."""

@@ -1,0 +1,139 @@
+"""What a bridge is asked to connect: topics and services, with their types on both sides."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+_NAMES = {
+    "std_msgs": "Bool:Boolean ColorRGBA:Color Empty Float32:Float Float64:Double Header Int32 String:StringMsg UInt32",
+    "geometry_msgs": "Pose PoseArray:Pose_V PoseStamped:Pose Point:Vector3d Quaternion Transform:Pose "
+    "TransformStamped:Pose Twist TwistStamped:Twist TwistWithCovariance TwistWithCovarianceStamped:TwistWithCovariance "
+    "PoseWithCovariance Vector3:Vector3d Wrench WrenchStamped:Wrench",
+    "nav_msgs": "Odometry Odometry:OdometryWithCovariance",
+    "rosgraph_msgs": "Clock",
+    "sensor_msgs": "BatteryState CameraInfo FluidPressure Image Imu:IMU JointState:Model Joy LaserScan "
+    "MagneticField:Magnetometer NavSatFix:NavSat PointCloud2:PointCloudPacked Range:LaserScan",
+    "tf2_msgs": "TFMessage:Pose_V",
+    "trajectory_msgs": "JointTrajectory",
+    "vision_msgs": "Detection2D:AnnotatedAxisAligned2DBox Detection2DArray:AnnotatedAxisAligned2DBox_V "
+    "Detection3D:AnnotatedOriented3DBox Detection3DArray:AnnotatedOriented3DBox_V",
+    "actuator_msgs": "Actuators",
+    "rcl_interfaces": "ParameterValue:Any",
+    "ros_gz_interfaces": "Altimeter Contact Contacts Dataframe Entity EntityFactory EntityWrench Float32Array:Float_V "
+    "GuiCamera:GUICamera JointWrench Light LogicalCameraImage ParamVec:Param StringVec:StringMsg_V TrackVisual "
+    "VideoRecord WorldControl WorldStatistics",
+}
+TYPES: dict[str, set[str]] = {}
+"""Of each ROS type the types of gz that it may stand for, without their package."""
+for _package, _words in _NAMES.items():
+    for _word in _words.split():
+        _ros, _, _gz = _word.partition(":")
+        TYPES.setdefault(f"{_package}/msg/{_ros}", set()).add(_gz or _ros)
+
+_ARGUMENT = re.compile(r"(?P<topic>[^@]+)@(?P<ros>[^@\[\]]+)(?P<direction>[@\[\]])(?P<gz>.+)")
+_DIRECTIONS = {"@": "BIDIRECTIONAL", "[": "GZ_TO_ROS", "]": "ROS_TO_GZ"}
+
+
+class MappingError(ValueError):
+    """A bridge that can not be; the message says which and why."""
+
+
+@dataclass(frozen=True)
+class Bridge:
+    """One connection.
+
+    Parameters
+    ----------
+    ros_topic, gz_topic : str
+    ros_type, gz_type : str
+    direction : str
+        ``BIDIRECTIONAL``, ``GZ_TO_ROS`` or ``ROS_TO_GZ``.
+    """
+
+    ros_topic: str
+    gz_topic: str
+    ros_type: str
+    gz_type: str
+    direction: str = "BIDIRECTIONAL"
+
+
+def parse_arguments(words: Sequence[str]) -> tuple[list[Bridge], list[str]]:
+    """Return the bridges of a command line, and the services that it names.
+
+    Raises
+    ------
+    MappingError
+    """
+    bridges, services = [], []
+    for word in words:
+        if word.count("@") == 3 or "/srv/" in word:
+            services.append(word.partition("@")[0])
+            continue
+        match = _ARGUMENT.fullmatch(word)
+        if match is None:
+            raise MappingError(f"'{word}' is no bridge; write topic@ros_type@gz_type, with [ or ] for one direction")
+        topic, direction = match["topic"], _DIRECTIONS[match["direction"]]
+        bridges.append(_checked(Bridge(topic, topic, match["ros"], match["gz"], direction), word))
+    return bridges, services
+
+
+def read_file(path: Path) -> list[Bridge]:
+    """Return the bridges of a YAML file.
+
+    Raises
+    ------
+    MappingError
+    """
+    import yaml
+
+    try:
+        entries = yaml.safe_load(path.read_text(encoding="utf-8")) or []
+    except OSError as error:
+        raise MappingError(f"cannot read '{path}': {error.strerror}") from None
+    except (yaml.YAMLError, UnicodeDecodeError) as error:
+        mark = getattr(error, "problem_mark", None)
+        line = f":{mark.line + 1}" if mark is not None else ""
+        raise MappingError(f"{path}{line}: {getattr(error, 'problem', None) or error}") from None
+    if not isinstance(entries, list):
+        raise MappingError(f"{path}: expected a list of bridges")
+    return [_entry(entry, f"{path}: entry {number}") for number, entry in enumerate(entries, 1)]
+
+
+def _entry(entry: Any, where: str) -> Bridge:
+    if not isinstance(entry, dict):
+        raise MappingError(f"{where}: expected names and values, got {entry!r}")
+    common = entry.get("topic_name")
+    ros = entry.get("ros_topic_name") or common or entry.get("gz_topic_name")
+    gz = entry.get("gz_topic_name") or common or ros
+    direction = str(entry.get("direction", "BIDIRECTIONAL"))
+    for key, value in (
+        ("ros_topic_name", ros),
+        ("ros_type_name", entry.get("ros_type_name")),
+        ("gz_type_name", entry.get("gz_type_name")),
+    ):
+        if not value:
+            raise MappingError(f"{where}: <{key}> is missing")
+    if direction not in _DIRECTIONS.values():
+        raise MappingError(f"{where}: direction is {direction!r}, expected one of {', '.join(_DIRECTIONS.values())}")
+    return _checked(Bridge(str(ros), str(gz), entry["ros_type_name"], entry["gz_type_name"], direction), where)
+
+
+def _checked(bridge: Bridge, where: str) -> Bridge:
+    known = TYPES.get(bridge.ros_type)
+    bare = bridge.gz_type.removeprefix("gz.msgs.").removeprefix("ignition.msgs.")
+    if known is None:
+        raise MappingError(f"{where}: {bridge.ros_type} can not be bridged; known are {_near(bridge.ros_type, TYPES)}")
+    if bare not in known:
+        wanted = " or ".join(f"gz.msgs.{name}" for name in sorted(known))
+        raise MappingError(f"{where}: {bridge.ros_type} stands for {wanted}, not for {bridge.gz_type}")
+    return bridge
+
+
+def _near(name: str, known: Iterable[str]) -> str:
+    from difflib import get_close_matches
+
+    return ", ".join(get_close_matches(name, list(known), 3) or sorted(known))

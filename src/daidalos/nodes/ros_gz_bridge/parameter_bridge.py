@@ -1,0 +1,82 @@
+"""`parameter_bridge`: checks that what is to be bridged can be, and renames topics where the sides differ."""
+
+from __future__ import annotations
+
+import sys
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+import rclpy
+from rclpy.node import Node
+from rclpy.utilities import remove_ros_args
+
+from daidalos.nodes.node_thread import NodeThread
+from daidalos.nodes.ros_gz_bridge._mapping import Bridge, MappingError, parse_arguments, read_file
+from daidalos.nodes.runner import UserError, run
+
+
+class ParameterBridge(Node):
+    """A bridge whose two sides are the same graph.
+
+    Topics of the simulator are topics of ROS already: where both sides have one name there is nothing to
+    do but to check types. Where a remapping or a file gives the ROS side another name, messages are passed on.
+
+    Parameters
+    ----------
+    words : list of str
+        ``topic@ros_type@gz_type``; the parameter ``config_file`` may name more.
+
+    Raises
+    ------
+    UserError
+    """
+
+    def __init__(self, words: list[str], **kwargs: Any) -> None:
+        super().__init__("ros_gz_bridge", **kwargs)
+        path = str(self.declare_parameter("config_file", "").value)
+        try:
+            bridges, services = parse_arguments(words)
+            bridges += read_file(Path(path)) if path else []
+        except MappingError as error:
+            raise UserError(str(error)) from None
+        # Names of the simulator's side are not to be remapped.
+        self._gz_side = rclpy.create_node(
+            "ros_gz_bridge_gz", use_global_arguments=False, start_parameter_services=False
+        )
+        for bridge in bridges:
+            self._connect(bridge)
+        for service in services:
+            self.get_logger().info(f"service {service} is in the graph already")
+        self._gz_thread = NodeThread(self._gz_side)
+
+    def _connect(self, bridge: Bridge) -> None:
+        ros = self.resolve_topic_name(bridge.ros_topic)
+        gz = bridge.gz_topic if bridge.gz_topic.startswith("/") else f"/{bridge.gz_topic}"
+        if ros == gz:
+            self.get_logger().info(f"{gz} ({bridge.ros_type}) needs no bridge")
+            return
+        package, _, name = bridge.ros_type.partition("/msg/")
+        kind = getattr(import_module(f"{package}.msg"), name)
+        if bridge.direction in ("GZ_TO_ROS", "BIDIRECTIONAL"):
+            outward = self.create_publisher(kind, bridge.ros_topic, 10)
+            self._gz_side.create_subscription(kind, gz, outward.publish, 10)
+        if bridge.direction == "ROS_TO_GZ":
+            inward = self._gz_side.create_publisher(kind, gz, 10)
+            self.create_subscription(kind, bridge.ros_topic, inward.publish, 10)
+        self.get_logger().info(f"{gz} is {ros} ({bridge.ros_type}, {bridge.direction})")
+
+    def destroy_node(self) -> None:
+        """Leave the graph on both sides."""
+        self._gz_thread.stop()
+        self._gz_side.destroy_node()
+        super().destroy_node()
+
+
+def main() -> int:
+    """Run the node."""
+    return run(lambda: ParameterBridge(remove_ros_args(sys.argv)[1:]))
+
+
+if __name__ == "__main__":
+    sys.exit(main())

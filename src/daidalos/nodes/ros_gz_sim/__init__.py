@@ -1,0 +1,1 @@
+"""The simulator as ros_gz_sim offers it."""

@@ -1,0 +1,130 @@
+"""`create`: puts a robot or model into the running simulation, gz's way."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from rclpy.utilities import remove_ros_args
+
+from daidalos.nodes.runner import UserError, run_program
+
+_TIMEOUT = 30.0
+_NUMBERS = ("x", "y", "z", "R", "P", "Y")
+_TEXTS = ("world", "file", "topic", "param", "string", "name")
+
+
+def parse(words: Sequence[str]) -> argparse.Namespace:
+    """Read the command line; one dash or two, a value after a space or an equals sign."""
+    parser = argparse.ArgumentParser(prog="create", description="Spawn an entity in the simulation.")
+    source = "the description: a file, a topic, a parameter of this node, or the text itself"
+    for name in _TEXTS:
+        text = {"world": "the world to spawn in", "name": "of the entity"}.get(name, source)
+        parser.add_argument(f"-{name}", f"--{name}", default="", help=text)
+    for name in _NUMBERS:
+        parser.add_argument(f"-{name}", f"--{name}", type=float, default=0.0, help="pose [m, rad]")
+    parser.add_argument(
+        "-allow_renaming", "--allow_renaming", nargs="?", const="true", default="false", help="if taken"
+    )
+    return parser.parse_args(list(words))
+
+
+def find_service(node: Any, world: str, name: str, kind: str, timeout: float = _TIMEOUT) -> str:
+    """Return a service of a world; without a world that of the first one that there is.
+
+    Raises
+    ------
+    UserError
+    """
+    from rclpy.clock import Clock
+    from rclpy.clock_type import ClockType
+    from rclpy.duration import Duration
+
+    clock = Clock(clock_type=ClockType.STEADY_TIME)
+    end = clock.now() + Duration(seconds=timeout)
+    while clock.now() < end:
+        for service, kinds in node.get_service_names_and_types():
+            parts = service.split("/")
+            if kind in kinds and len(parts) == 4 and parts[3] == name and world in ("", parts[2]):
+                return str(service)
+        clock.sleep_for(Duration(seconds=0.1))
+    raise UserError(f"no simulator offers /world/{world or '<name>'}/{name}; was it started?")
+
+
+def _description(arguments: argparse.Namespace, node: Any) -> str:
+    if arguments.string:
+        return str(arguments.string)
+    if arguments.topic:
+        return _from_topic(node, arguments.topic)
+    if arguments.param:
+        node.declare_parameter(arguments.param, "")
+        return str(node.get_parameter(arguments.param).value)
+    if arguments.file:
+        return _from_file(arguments.file)
+    raise UserError("say what to spawn: -file, -topic, -param or -string")
+
+
+def _from_topic(node: Any, topic: str) -> str:
+    from rclpy.qos import DurabilityPolicy, QoSProfile
+    from rclpy.wait_for_message import wait_for_message
+    from std_msgs.msg import String
+
+    latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    found, message = wait_for_message(String, node, topic, qos_profile=latched, time_to_wait=_TIMEOUT)
+    if not found:
+        raise UserError(f"nothing came on '{topic}' within {_TIMEOUT:g} s")
+    return str(message.data)
+
+
+def _from_file(name: str) -> str:
+    from daidalos.description.resolve import default_model_path, resolve_uri
+    from daidalos.nodes.packages import package_share
+
+    path = resolve_uri(name, Path.cwd(), package_share, default_model_path())
+    if path is None:
+        raise UserError(f"there is no file or model '{name}'")
+    if path.is_dir():
+        path = path / "model.sdf"
+    try:
+        return path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise UserError(f"cannot read '{path}': {error}") from None
+
+
+def _create(arguments: argparse.Namespace) -> None:
+    import rclpy
+    from ros_gz_interfaces.msg import EntityFactory
+    from ros_gz_interfaces.srv import SpawnEntity
+
+    from daidalos.description.pose import Pose
+    from daidalos.nodes.gazebo_ros._states import pose_message
+
+    rclpy.init()
+    node = rclpy.create_node("ros_gz_sim")
+    factory = EntityFactory(
+        name=arguments.name,
+        allow_renaming=arguments.allow_renaming.lower() in ("true", "1"),
+        sdf=_description(arguments, node),
+        pose=pose_message(
+            Pose.from_xyz_rpy((arguments.x, arguments.y, arguments.z), (arguments.R, arguments.P, arguments.Y))
+        ),
+    )
+    service = find_service(node, arguments.world, "create", "ros_gz_interfaces/srv/SpawnEntity")
+    response = node.create_client(SpawnEntity, service).call(SpawnEntity.Request(entity_factory=factory), _TIMEOUT)
+    if response is None or not response.success:
+        raise UserError(f"the entity '{arguments.name}' was not created; the simulator says why")
+    node.get_logger().info("Entity creation successful.")
+    node.destroy_node()
+
+
+def main() -> int:
+    """Run the program."""
+    arguments = parse(remove_ros_args(sys.argv)[1:])
+    return run_program(lambda: _create(arguments), interrupted=130)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,44 @@
+"""`remove`: takes an entity out of the running simulation, gz's way."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+
+from rclpy.utilities import remove_ros_args
+
+from daidalos.nodes.ros_gz_sim.create import find_service
+from daidalos.nodes.runner import UserError, run_program
+
+
+def _remove(world: str, name: str) -> None:
+    import rclpy
+    from ros_gz_interfaces.msg import Entity
+    from ros_gz_interfaces.srv import DeleteEntity
+
+    rclpy.init()
+    node = rclpy.create_node("entity_remover")
+    name = name or str(node.declare_parameter("entity_name", "").value)
+    world = world or str(node.declare_parameter("world", "").value)
+    if not name:
+        raise UserError("say what to remove: -name, or the parameter entity_name")
+    service = find_service(node, world, "remove", "ros_gz_interfaces/srv/DeleteEntity")
+    request = DeleteEntity.Request(entity=Entity(name=name, type=Entity.MODEL))
+    response = node.create_client(DeleteEntity, service).call(request, 30.0)
+    if response is None or not response.success:
+        raise UserError(f"the entity '{name}' was not removed; the simulator says why")
+    node.get_logger().info("Entity removal successful.")
+    node.destroy_node()
+
+
+def main() -> int:
+    """Run the program."""
+    parser = argparse.ArgumentParser(prog="remove", description="Take an entity out of the simulation.")
+    parser.add_argument("-world", "--world", default="", help="that it is in")
+    parser.add_argument("-name", "--name", default="", help="of the entity")
+    arguments = parser.parse_args(remove_ros_args(sys.argv)[1:])
+    return run_program(lambda: _remove(arguments.world, arguments.name), interrupted=130)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,41 @@
+"""The simulator with gz's arguments, and the view on it unless they say ``-s``."""
+
+import shlex
+
+from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument, IncludeLaunchDescription, OpaqueFunction, Shutdown
+from launch.substitutions import LaunchConfiguration, PathJoinSubstitution
+from launch_ros.actions import Node
+from launch_ros.substitutions import FindPackageShare
+
+
+def simulator(context):
+    """Make the nodes from arguments that are known by now."""
+    words = shlex.split(LaunchConfiguration("gz_args").perform(context))
+    ends = LaunchConfiguration("on_exit_shutdown").perform(context).lower() in ("true", "1")
+    server = Node(
+        package="ros_gz_sim",
+        executable="gz_sim",
+        arguments=words,
+        output="screen",
+        on_exit=[Shutdown()] if ends else [],
+    )
+    view = IncludeLaunchDescription(
+        PathJoinSubstitution([FindPackageShare("gazebo_ros"), "launch", "gzclient.launch.py"])
+    )
+    return [server] if "-s" in words else [server, view]
+
+
+def generate_launch_description():
+    accepted = ("gz_version", "ign_args", "ign_version", "debugger", "debug_env")
+    return LaunchDescription(
+        [
+            DeclareLaunchArgument("gz_args", default_value="", description="world, -r to run at once, -s without view"),
+            DeclareLaunchArgument("on_exit_shutdown", default_value="false", description="end when it ends"),
+            *(
+                DeclareLaunchArgument(name, default_value="", description="accepted, without effect")
+                for name in accepted
+            ),
+            OpaqueFunction(function=simulator),
+        ]
+    )

@@ -1,0 +1,26 @@
+import threading
+
+import rclpy
+from std_msgs.msg import String
+
+from daidalos.nodes.ros_gz_bridge.parameter_bridge import ParameterBridge
+from ros.graph import graph, node, spinning  # noqa: F401
+
+
+def test_a_topic_of_another_name_is_passed_on(node):  # noqa: F811
+    bridge = ParameterBridge(
+        ["/model/m/word@std_msgs/msg/String[gz.msgs.StringMsg"], cli_args=["--ros-args", "-r", "/model/m/word:=/word"]
+    )
+    heard = threading.Event()
+    node.create_subscription(String, "/word", lambda message: heard.set(), 10)
+    publisher = node.create_publisher(String, "/model/m/word", 10)
+    with spinning(node, bridge):
+        publisher.publish(String(data="hello"))
+        assert heard.wait(5.0)
+    bridge.destroy_node()
+
+
+def test_a_topic_of_the_same_name_needs_no_bridge(graph):  # noqa: F811
+    bridge = ParameterBridge(["/word@std_msgs/msg/String@gz.msgs.StringMsg"])
+    assert not rclpy.create_node("looker").get_publishers_info_by_topic("/word")
+    bridge.destroy_node()

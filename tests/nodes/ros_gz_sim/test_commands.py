@@ -1,0 +1,36 @@
+"""gz's command lines."""
+
+import pytest
+
+from daidalos.nodes.gazebo_ros.spawn_model import translate
+from daidalos.nodes.ros_gz_sim import create, gz_sim
+from daidalos.nodes.runner import UserError
+
+
+def test_gzs_arguments_may_come_in_one_word():
+    arguments = gz_sim.parse(["-r -v4 shop.sdf"])
+    assert (arguments.run, arguments.verbose, arguments.world) == (True, 4, "shop.sdf")
+    assert gz_sim.parse(["-v", "2", "-s"]).server
+
+
+def test_worlds_are_found_where_packages_keep_them(tmp_path, monkeypatch):
+    assert gz_sim.find_world("empty.sdf") is None
+    assert gz_sim.find_world("arena.world").name == "arena.world"
+    (tmp_path / "shop.sdf").write_text("")
+    monkeypatch.setenv("GZ_SIM_RESOURCE_PATH", str(tmp_path))
+    assert gz_sim.find_world("shop.sdf") == tmp_path / "shop.sdf"
+    with pytest.raises(FileNotFoundError, match=r"no world file 'none\.sdf'"):
+        gz_sim.find_world("none.sdf")
+
+
+def test_create_takes_one_dash_or_two():
+    arguments = create.parse(["-name", "bot", "--file", "a.sdf", "-x", "1.5", "-Y", "-2", "-allow_renaming", "true"])
+    assert (arguments.name, arguments.file, arguments.x, arguments.Y) == ("bot", "a.sdf", 1.5, -2.0)
+    assert arguments.allow_renaming == "true"
+
+
+def test_ros1s_spawner_has_its_own_words():
+    words = ["-urdf", "-param", "robot_description", "-model", "bot", "-J", "elbow", "0.5", "-z", "1"]
+    assert translate(words) == (["-topic", "robot_description", "-entity", "bot", "-z", "1"], {"elbow": 0.5})
+    with pytest.raises(UserError, match="-J takes"):
+        translate(["-J", "elbow"])
