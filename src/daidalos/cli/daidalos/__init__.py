@@ -11,6 +11,8 @@ from typing import Any
 
 VERBS = {
     "demo": ("daidalos.cli.daidalos.demo", "a robot that maps an arena and drives where it is sent"),
+    "sim": ("daidalos.cli.daidalos.sim", "simulate a world"),
+    "urdf": ("daidalos.cli.daidalos.urdf", "look at a robot description"),
     "map": ("daidalos.cli.daidalos.map", "build a map from the log of a robot"),
 }
 ENTRY_POINTS = "daidalos.command"

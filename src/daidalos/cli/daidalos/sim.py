@@ -1,0 +1,131 @@
+"""`daidalos sim`: a world in the simulator, with robots, and a view on it in the browser."""
+
+import argparse
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from daidalos.description.robot import Robot
+    from daidalos.description.world import Model
+
+HELP = "simulate a world"
+
+EPILOG = """The world is an SDF file, or the name of one in a package (arena, hexagon); without one it is empty.
+With --headless nothing but the simulation runs; with --duration it runs as fast as it can, for so long in simulated
+time, and says how fast that was."""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare what `daidalos sim` takes."""
+    parser.epilog = EPILOG
+    parser.add_argument("world", nargs="?", default="", help="an SDF file, or the name of a world")
+    parser.add_argument("-m", "--model", action="append", default=[], metavar="FILE", help="a robot or model to spawn")
+    parser.add_argument("--pause", action="store_true", help="begin with time standing still")
+    parser.add_argument("--headless", action="store_true", help="without the studio")
+    parser.add_argument("--speed", type=float, default=1.0, metavar="FACTOR", help="0: as fast as possible")
+    parser.add_argument("--seed", type=int, default=0, help="of all random numbers")
+    parser.add_argument("--port", type=int, default=8765, help="of the studio")
+    parser.add_argument("--duration", type=float, metavar="S", help="simulate so long, then end; no graph, no studio")
+
+
+def main(args: argparse.Namespace) -> int:
+    """Simulate; returns the exit status."""
+    from daidalos.description.errors import DescriptionError
+    from daidalos.simulation.errors import SimulationError
+
+    try:
+        world = _find_world(args.world)
+        if args.duration is not None:
+            return _run_offline(world, args)
+        return _launch(world, args)
+    except (DescriptionError, SimulationError, OSError) as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 2
+
+
+def _find_world(name: str) -> Path | None:
+    """Return the file of a world; None is the empty one."""
+    from daidalos.nodes.packages import package_share
+
+    if not name:
+        return None
+    path = Path(name)
+    if path.is_file():
+        return path
+    folder = Path(package_share("turtlebot3_gazebo") or "") / "worlds"
+    for candidate in (folder / name, folder / f"{name}.world"):
+        if candidate.is_file():
+            return candidate
+    known = ", ".join(sorted(file.stem for file in folder.glob("*.world")))
+    raise FileNotFoundError(f"there is no world file '{name}'; known by name are {known}")
+
+
+def _run_offline(path: Path | None, args: argparse.Namespace) -> int:
+    """Simulate without a graph, as fast as possible."""
+    import time
+
+    from daidalos.nodes.gazebo_ros._host import read_world
+    from daidalos.simulation import Simulation
+
+    simulation = Simulation(read_world(path), args.seed, heard=lambda topic: False, warn=_warn)
+    for file in args.model:
+        simulation.spawn(_read_model(Path(file)))
+    begun = time.perf_counter()
+    simulation.advance(round(args.duration * 1e9))
+    elapsed = time.perf_counter() - begun
+    simulated = simulation.time_ns * 1e-9
+    print(f"simulated {simulated:g} s in {elapsed:.2f} s, real-time factor {simulated / max(elapsed, 1e-9):.1f}")
+    for name in simulation.models:
+        x, y, z = simulation.pose(name).position
+        print(f"  {name}: {x:.3f} {y:.3f} {z:.3f}")
+    return 0
+
+
+def _read_model(path: Path) -> "Robot | Model":
+    from daidalos.description import sdf, urdf
+    from daidalos.nodes.packages import package_share
+
+    return sdf.load_model(path, package_share) if path.suffix == ".sdf" else urdf.load(path, resolve=package_share)
+
+
+def _warn(line: str) -> None:
+    print(f"warning: {line}", file=sys.stderr)
+
+
+def _launch(path: Path | None, args: argparse.Namespace) -> int:
+    """Start the simulator, what spawns the models, and the studio; end them together."""
+    from launch import LaunchDescription, LaunchService
+    from launch.actions import Shutdown
+    from launch_ros.actions import Node
+
+    for file in args.model:
+        _read_model(Path(file))  # a fault is better told before anything runs
+    words = [*([str(path.resolve())] if path else []), *(["--pause"] if args.pause else [])]
+    parameters = {"seed": args.seed, "real_time_factor": float(args.speed)}
+    server = Node(
+        package="gazebo_ros",
+        executable="gzserver",
+        arguments=words,
+        parameters=[parameters],
+        output="screen",
+        on_exit=[Shutdown()],
+    )
+    spawners = [
+        Node(
+            package="gazebo_ros",
+            executable="spawn_entity.py",
+            arguments=["-file", str(Path(file).resolve()), "-entity", Path(file).name.partition(".")[0]],
+            output="screen",
+        )
+        for file in args.model
+    ]
+    studio = Node(
+        package="foxglove_bridge",
+        executable="foxglove_bridge",
+        parameters=[{"port": args.port, "open_browser": True}],
+        output="screen",
+    )
+    service = LaunchService()
+    service.include_launch_description(LaunchDescription([server, *spawners, *([] if args.headless else [studio])]))
+    return int(service.run())

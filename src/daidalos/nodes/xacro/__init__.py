@@ -1,0 +1,1 @@
+"""The xacro command, for `ros2 run`."""
