@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import argparse
 import os
 import sys
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, TypeVar
 
-from daidalos.nodes.runner import UserError, ignore_interrupts, run_program
+from daidalos.nodes.runner import UserError, ignore_interrupts, run, run_program
 from daidalos.studio.ports import PortError
 
 if TYPE_CHECKING:
@@ -73,9 +74,68 @@ def run_with_window(make_node: Callable[[], NodeT], panel: str, details: Callabl
     return run_program(body)
 
 
-def show(url: str) -> None:
+def show(url: str, *, open_it: bool = True) -> None:
     """Open a page in the browser, and say where it is for those who have it elsewhere."""
     from daidalos.nodes.studio import open_in_browser
 
     print(f"window: {url}", file=sys.stderr, flush=True)
-    open_in_browser(url)
+    if open_it:
+        open_in_browser(url)
+
+
+def run_studio(name: str, panel: str, arguments: argparse.Namespace, **details: str) -> int:
+    """Serve the studio until the process is asked to end, and open it at a panel.
+
+    Parameters
+    ----------
+    name
+        The node's name.
+    panel
+        The panel, empty for the whole studio.
+    arguments
+        What a parser of `studio_parser` read.
+    **details
+        What else the address says.
+
+    Returns
+    -------
+    int
+        The exit status.
+    """
+    from rclpy.node import Node
+
+    from daidalos.nodes.studio import Studio
+
+    class Window(Node):
+        """Serves the studio."""
+
+        def __init__(self) -> None:
+            super().__init__(name)
+            try:
+                self._studio = Studio(self, arguments.port)
+            except PortError as error:
+                super().destroy_node()
+                raise UserError(str(error)) from None
+            show(self._studio.url(panel, **details), open_it=not arguments.headless)
+
+        def destroy_node(self) -> None:
+            """Close the page's connections and leave the graph."""
+            self._studio.close()
+            super().destroy_node()
+
+    return run(Window)
+
+
+def studio_parser(program: str, description: str) -> argparse.ArgumentParser:
+    """Return a parser of what every command that opens the studio takes."""
+    parser = argparse.ArgumentParser(prog=program, description=description)
+    parser.add_argument("--headless", action="store_true", help="serve the page, but open no browser")
+    parser.add_argument("--port", type=int, default=8765, metavar="N", help="the page's, or the next free one above")
+    return parser
+
+
+def parse(parser: argparse.ArgumentParser) -> argparse.Namespace:
+    """Read the command line of a command that opens the studio, without what is ROS's."""
+    from rclpy.utilities import remove_ros_args
+
+    return parser.parse_args(remove_ros_args(sys.argv)[1:])

@@ -15,13 +15,15 @@ import { listenToKeys } from "./app/shortcuts";
 import { Studio } from "./app/studio";
 import { attachedWorld, installTestHooks } from "./app/test_hooks";
 import { TopBar } from "./app/top_bar";
+import { PANELS } from "./panels/registry";
 
 let layout: Layout;
+const opening = readOpening(location.search, PANELS);
 
 function App({ studio }: { studio: Studio }) {
   const dock = useRef<HTMLDivElement>(null);
   useEffect(() => {
-    layout = new Layout(dock.current as HTMLDivElement, studio, readOpening(location.search));
+    layout = new Layout(dock.current as HTMLDivElement, studio, opening);
     studio.openPanel = (id) => layout.openById(id);
   }, []);
   return (
@@ -39,9 +41,17 @@ function serverUrl(): string {
   return named ?? `${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/`;
 }
 
+function sayWhatIsMissing(): void {
+  const panel = new URLSearchParams(location.search).get("panel");
+  if (panel && !opening) {
+    studio.session.addStatus({ level: 1, text: `There is no panel “${panel}” yet; this is all that there is` });
+  }
+}
+
 const worker = new Worker(new URL("./connection/worker.ts", import.meta.url), { type: "module" });
-const studio = new Studio(worker);
+const studio = new Studio(worker, opening?.details.fixed_frame);
 installTestHooks(studio);
 listenToKeys(attachedWorld);
+sayWhatIsMissing();
 render(<App studio={studio} />, document.getElementById("app") as HTMLElement);
 studio.start(serverUrl());

@@ -1,6 +1,5 @@
 // What the page's address asks for: ?panel=turtlesim&window=/turtlesim/_window shows one panel as a window of its own.
 import type { PanelType } from "../panels/panel";
-import { PANELS } from "../panels/registry";
 
 export interface Opening {
   panel: PanelType;
@@ -11,7 +10,7 @@ export interface Opening {
 const NOT_DETAILS = ["panel", "connect"];
 
 /** The panel that an address names; undefined where it names none, or one that does not exist. */
-export function readOpening(search: string, panels: readonly PanelType[] = PANELS): Opening | undefined {
+export function readOpening(search: string, panels: readonly PanelType[]): Opening | undefined {
   const query = new URLSearchParams(search);
   const panel = panels.find(({ id }) => id === query.get("panel"));
   const details = Object.fromEntries([...query].filter(([name]) => !NOT_DETAILS.includes(name)));

@@ -23,7 +23,7 @@ export class Studio {
   readonly session: Session;
   readonly tf = new TransformBuffer();
   readonly clock = new RobotClock();
-  readonly fixedFrame = new FixedFrame(this.tf);
+  readonly fixedFrame: FixedFrame;
   readonly displays = new DisplayList();
   readonly assets: Assets;
   readonly reading = signal<TimeReading>({ time: undefined, factor: undefined });
@@ -37,7 +37,8 @@ export class Studio {
   private readonly frames = new Set<(page: number) => void>();
   private readAt = 0;
 
-  constructor(worker: Worker) {
+  constructor(worker: Worker, fixedFrame?: string) {
+    this.fixedFrame = new FixedFrame(this.tf, fixedFrame);
     this.session = new Session(worker);
     this.assets = new Assets(this.session);
     this.session.onClock = ({ robot, at, announced }) =>

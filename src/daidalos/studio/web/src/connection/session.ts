@@ -162,9 +162,9 @@ export class Session {
         if (this.server !== message.session) {
           if (this.server) {
             this.onNewServer();
+            this.statuses.value = [];
           }
           this.server = message.session;
-          this.statuses.value = [];
         }
         break;
       case "topics":
@@ -203,7 +203,8 @@ export class Session {
     }
   }
 
-  private addStatus(status: StatusInfo): void {
+  /** Show the user something to heed. */
+  addStatus(status: StatusInfo): void {
     const others = this.statuses.value.filter((each) => status.id === undefined || each.id !== status.id);
     this.statuses.value = [...others.slice(-49), { ...status, key: ++this.numbers }];
   }

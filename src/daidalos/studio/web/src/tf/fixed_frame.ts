@@ -1,5 +1,5 @@
 // The frame that everything is drawn in: the one that was chosen, or the best there is.
-import { computed, signal, type ReadonlySignal } from "@preact/signals";
+import { computed, signal, type ReadonlySignal, type Signal } from "@preact/signals";
 import { isString, stored } from "../app/stored";
 import type { TransformBuffer } from "./buffer";
 
@@ -8,14 +8,19 @@ export const AUTOMATIC = "";
 const PREFERRED = ["map", "odom"];
 
 export class FixedFrame {
-  readonly chosen = stored("fixedFrame", AUTOMATIC, isString);
+  readonly chosen: Signal<string>;
   readonly frames = signal<string[]>([]);
   readonly current: ReadonlySignal<string>;
   /** What the user should know about the choice; empty when all is well. */
   readonly remark: ReadonlySignal<string>;
   private structure = -1;
 
-  constructor(private readonly buffer: TransformBuffer) {
+  /** A frame that the page's address asks for holds for this window only; what the user chooses is kept. */
+  constructor(
+    private readonly buffer: TransformBuffer,
+    asked = AUTOMATIC,
+  ) {
+    this.chosen = asked === AUTOMATIC ? stored("fixedFrame", AUTOMATIC, isString) : signal(asked);
     this.current = computed(() => this.resolve());
     this.remark = computed(() => this.comment());
   }

@@ -1,0 +1,1 @@
+"""What nodes log, in the studio."""

@@ -1,0 +1,14 @@
+"""`rqt_console`: the studio, opened at its panel."""
+
+import sys
+
+from daidalos.nodes.studio_window import parse, run_studio, studio_parser
+
+
+def main() -> int:
+    """Serve the studio and open it."""
+    return run_studio("rqt_console", "log", parse(studio_parser("rqt_console", "What nodes log, in the studio.")))
+
+
+if __name__ == "__main__":
+    sys.exit(main())

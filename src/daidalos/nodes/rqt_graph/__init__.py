@@ -1,0 +1,1 @@
+"""Nodes and topics, and who talks to whom, in the studio."""

@@ -1,0 +1,18 @@
+"""`rqt_graph`: the studio, opened at its panel."""
+
+import sys
+
+from daidalos.nodes.studio_window import parse, run_studio, studio_parser
+
+
+def main() -> int:
+    """Serve the studio and open it."""
+    return run_studio(
+        "rqt_graph",
+        "graph",
+        parse(studio_parser("rqt_graph", "Nodes and topics, and who talks to whom, in the studio.")),
+    )
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,16 @@
+"""`rqt_image_view`: the studio, opened at its panel."""
+
+import sys
+
+from daidalos.nodes.studio_window import parse, run_studio, studio_parser
+
+
+def main() -> int:
+    """Serve the studio and open it."""
+    return run_studio(
+        "rqt_image_view", "image", parse(studio_parser("rqt_image_view", "What cameras see, in the studio."))
+    )
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,14 @@
+"""`rqt_plot`: the studio, opened at its panel."""
+
+import sys
+
+from daidalos.nodes.studio_window import parse, run_studio, studio_parser
+
+
+def main() -> int:
+    """Serve the studio and open it."""
+    return run_studio("rqt_plot", "plot", parse(studio_parser("rqt_plot", "Values over time, in the studio.")))
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,1 @@
+"""Topics and their messages, in the studio."""

@@ -1,0 +1,16 @@
+"""`rqt_topic`: the studio, opened at its panel."""
+
+import sys
+
+from daidalos.nodes.studio_window import parse, run_studio, studio_parser
+
+
+def main() -> int:
+    """Serve the studio and open it."""
+    return run_studio(
+        "rqt_topic", "topics", parse(studio_parser("rqt_topic", "Topics and their messages, in the studio."))
+    )
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,100 @@
+"""Commands that open the studio: what they print, and that they end."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import aiohttp
+import pytest
+
+from nodes.terminal import Terminal
+
+pytestmark = pytest.mark.slow
+
+
+@pytest.mark.parametrize(
+    ("words", "query", "node"),
+    [
+        (("rqt_graph", "rqt_graph"), "?panel=graph", "/rqt_graph"),
+        (("rqt_console", "rqt_console"), "?panel=log", "/rqt_console"),
+        (("rqt_plot", "rqt_plot"), "?panel=plot", "/rqt_plot"),
+        (("rqt_image_view", "rqt_image_view"), "?panel=image", "/rqt_image_view"),
+        (("rqt_topic", "rqt_topic"), "?panel=topics", "/rqt_topic"),
+        (("rqt_gui", "rqt_gui"), "", "/rqt_gui_py_node"),
+        (("rqt", "rqt", "-s", "rqt_graph.ros_graph.RosGraph"), "?panel=graph", "/rqt_gui_py_node"),
+        (("rviz2", "rviz2", "-f", "world"), "?panel=scene&fixed_frame=world", "/rviz"),
+        (("plotjuggler", "plotjuggler", "-n"), "?panel=plot", "/plotjuggler"),
+    ],
+)
+def test_command(words: tuple[str, ...], query: str, node: str, domain: int) -> None:
+    with Terminal("run", *words, domain=domain) as program:
+        address = program.wait_for("^window: http://localhost:")[0].split()[1]
+        assert address.partition("/?")[2] == query.removeprefix("?")
+        with Terminal("node", "list", domain=domain) as command:
+            assert command.wait(30) == 0
+            assert command.lines == [node]
+        assert program.interrupt() == 0
+
+
+async def _status(address: str) -> int:
+    async with aiohttp.ClientSession() as session, session.get(address) as response:
+        return response.status
+
+
+def test_the_page_is_served_at_the_address(domain: int) -> None:
+    import asyncio
+
+    with Terminal("run", "rqt_graph", "rqt_graph", "--port", "0", domain=domain) as program:
+        address = program.wait_for("^window: ")[0].split()[1]
+        assert asyncio.run(_status(address)) == 200
+        assert program.terminate() == 0
+
+
+def test_a_browser_is_opened_where_there_is_one(domain: int, tmp_path: Path) -> None:
+    opened, browser = tmp_path / "opened", tmp_path / "browser"
+    browser.write_text(f'#!/bin/sh\necho "$1" > {opened}.part && mv {opened}.part {opened}\n')
+    browser.chmod(0o755)
+    environment = os.environ | {"ROS_DOMAIN_ID": str(domain), "BROWSER": f"{browser} %s"}
+    command = [sys.executable, "-m", "daidalos.cli.ros2", "run", "rqt_console", "rqt_console"]
+    with subprocess.Popen(command, env=environment, stderr=subprocess.PIPE, text=True) as program:
+        try:
+            address = next(line for line in program.stderr if line.startswith("window: ")).split()[1]
+            with Terminal("topic", "list", domain=domain) as other:  # time for the browser
+                assert other.wait(30) == 0
+            assert opened.read_text().strip() == address
+        finally:
+            program.terminate()
+
+
+@pytest.mark.parametrize(
+    ("words", "complaint"),
+    [
+        (("rviz2", "rviz2", "-d", "missing.rviz"), "there is no file 'missing.rviz'"),
+        (("rqt", "rqt", "-s", "rqt_coffee"), "there is no plugin 'rqt_coffee'; there are: rqt_console, rqt_graph"),
+    ],
+)
+def test_mistakes_are_named(words: tuple[str, ...], complaint: str, domain: int) -> None:
+    with Terminal("run", *words, domain=domain) as program:
+        assert program.wait(30) == 2
+        assert complaint in program.text
+
+
+def test_a_window_leaves_no_traces_in_the_graph(domain: int) -> None:
+    with Terminal("run", "turtlesim", "turtlesim_node", domain=domain) as simulator:
+        simulator.wait_for("^window: ")
+        with Terminal("node", "list", domain=domain) as command:
+            assert command.wait(30) == 0
+            assert command.lines == ["/turtlesim"]
+        with Terminal("topic", "list", domain=domain) as command:
+            assert command.wait(30) == 0
+            assert command.lines == [
+                "/parameter_events",
+                "/rosout",
+                "/turtle1/cmd_vel",
+                "/turtle1/color_sensor",
+                "/turtle1/pose",
+            ]
+        assert simulator.interrupt() == 0
