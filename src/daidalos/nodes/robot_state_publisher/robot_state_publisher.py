@@ -18,6 +18,7 @@ from daidalos.description.kinematics import KinematicTree
 from daidalos.nodes.conversions import nanoseconds
 from daidalos.nodes.description_files import read_description
 from daidalos.nodes.packages import package_share
+from daidalos.nodes.robot_state_publisher._transform_bytes import TransformBytes
 from daidalos.nodes.runner import UserError, run
 
 _LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
@@ -46,14 +47,15 @@ class RobotStatePublisher(Node):
         super().__init__("robot_state_publisher", **kwargs)
         from sensor_msgs.msg import JointState
         from std_msgs.msg import String
-        from tf2_ros import StaticTransformBroadcaster, TransformBroadcaster
+        from tf2_msgs.msg import TFMessage
+        from tf2_ros import StaticTransformBroadcaster
 
         self.declare_parameter("robot_description", "")
         self.declare_parameter("publish_frequency", 20.0)
         self.declare_parameter("ignore_timestamp", False)
         self.declare_parameter("frame_prefix", "")
         self._description_publisher = self.create_publisher(String, "robot_description", _LATCHED)
-        self._broadcaster = TransformBroadcaster(self)
+        self._tf_publisher = self.create_publisher(TFMessage, "/tf", 100)
         self._static_broadcaster = StaticTransformBroadcaster(self)
         self._read(self.get_parameter("robot_description").value, source)
         self.create_subscription(JointState, "joint_states", self._on_joint_states, 10)
@@ -73,7 +75,14 @@ class RobotStatePublisher(Node):
         self._positions = np.zeros(len(self._tree.joint_names))
         self._index = {name: i for i, name in enumerate(self._tree.joint_names)}
         self._moving = np.flatnonzero(self._tree.moving)
+        self._names: list[str] = []
+        self._rows = self._columns = np.zeros(0, dtype=np.intp)
         self._last_ns = -1
+        self._prefix = self.get_parameter("frame_prefix").value
+        self._bytes = TransformBytes(
+            [self._prefix + self._tree.parents[row] for row in self._moving],
+            [self._prefix + self._tree.children[row] for row in self._moving],
+        )
         self._static_broadcaster.sendTransform(
             self._transforms(np.flatnonzero(~self._tree.moving), self.get_clock().now().to_msg())
         )
@@ -83,7 +92,6 @@ class RobotStatePublisher(Node):
         from geometry_msgs.msg import Quaternion, Transform, TransformStamped, Vector3
         from std_msgs.msg import Header
 
-        prefix = self.get_parameter("frame_prefix").value
         translations, rotations = self._tree.joint_transforms(self._positions)
         result = []
         for row in rows.tolist():
@@ -91,8 +99,8 @@ class RobotStatePublisher(Node):
             qx, qy, qz, qw = rotations[row].tolist()
             result.append(
                 TransformStamped(
-                    header=Header(stamp=stamp, frame_id=prefix + self._tree.parents[row]),
-                    child_frame_id=prefix + self._tree.children[row],
+                    header=Header(stamp=stamp, frame_id=self._prefix + self._tree.parents[row]),
+                    child_frame_id=self._prefix + self._tree.children[row],
                     transform=Transform(
                         translation=Vector3(x=x, y=y, z=z), rotation=Quaternion(x=qx, y=qy, z=qz, w=qw)
                     ),
@@ -107,16 +115,27 @@ class RobotStatePublisher(Node):
                 throttle_duration_sec=5.0,
             )
             return
-        index, positions = self._index, self._positions
-        for name, position in zip(message.name, message.position, strict=False):
-            row = index.get(name)
-            if row is not None:
-                positions[row] = position
+        self._take(message.name, message.position)
         if self._is_due(nanoseconds(message.header.stamp)):
             stamp = message.header.stamp
             if self.get_parameter("ignore_timestamp").value:
                 stamp = self.get_clock().now().to_msg()
-            self._broadcaster.sendTransform(self._transforms(self._moving, stamp))
+            self._publish(stamp)
+
+    def _take(self, names: list[str], positions: Any) -> None:
+        """Take the positions of joints; where each goes is looked up once for as long as the names stay."""
+        if names != self._names:
+            self._names = list(names)
+            rows = [(self._index[name], i) for i, name in enumerate(names) if name in self._index]
+            self._rows, self._columns = np.array(rows, dtype=np.intp).reshape(-1, 2).T
+        self._positions[self._rows] = np.asarray(positions, dtype=np.float64)[self._columns]
+
+    def _publish(self, stamp: Any) -> None:
+        if len(self._moving):
+            translations, rotations = self._tree.joint_transforms(self._positions)
+            rows = self._moving
+            message = self._bytes.write(stamp.sec, stamp.nanosec, translations[rows], rotations[rows])
+            self._tf_publisher.publish(message)
 
     def _is_due(self, stamp_ns: int) -> bool:
         """Tell whether the last transforms are old enough, by the stamps of joint states."""

@@ -1,0 +1,98 @@
+"""Values for all joints of a robot, gathered from several sources: defaults, messages, sliders, and whom they follow."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+from daidalos.description.joint import Joint, JointType, Mimic
+from daidalos.description.robot import Robot
+
+_VALUED = (JointType.REVOLUTE, JointType.CONTINUOUS, JointType.PRISMATIC)
+
+
+@dataclass(frozen=True)
+class JointRange:
+    """What a joint may do [rad, m]; `zero` is where it begins."""
+
+    name: str
+    lower: float
+    upper: float
+    zero: float
+
+
+class JointValues:
+    """Positions, velocities and efforts of a robot's joints.
+
+    Parameters
+    ----------
+    robot : Robot
+    zeros : mapping
+        Where joints begin, instead of at zero or, if that is out of reach, in the middle.
+    mimics : bool
+        Joints that mimic others follow them.
+    dependents : mapping
+        Further joints that follow others, as ``<mimic>`` would say it.
+
+    Attributes
+    ----------
+    ranges : tuple of JointRange
+        Of the joints that can be set, in the order of the description.
+    names : tuple of str
+        Of all joints, those that follow too.
+    """
+
+    def __init__(
+        self,
+        robot: Robot,
+        zeros: Mapping[str, float] | None = None,
+        mimics: bool = True,
+        dependents: Mapping[str, Mimic] | None = None,
+    ) -> None:
+        joints = [joint for joint in robot.joints.values() if joint.type in _VALUED and joint.axes]
+        self.names = tuple(joint.name for joint in joints)
+        self._leaders = {joint.name: joint.mimic for joint in joints if mimics and joint.mimic is not None}
+        self._leaders |= {name: mimic for name, mimic in (dependents or {}).items() if name in self.names}
+        self.ranges = tuple(_range(joint, zeros or {}) for joint in joints if joint.name not in self._leaders)
+        self.positions = {each.name: each.zero for each in self.ranges}
+        self.velocities: dict[str, float] = {}
+        self.efforts: dict[str, float] = {}
+
+    def take(
+        self,
+        names: Iterable[str],
+        positions: Iterable[float] = (),
+        velocities: Iterable[float] = (),
+        efforts: Iterable[float] = (),
+    ) -> None:
+        """Set the joints that are known among the named ones; a series that is too short sets the first ones."""
+        known = set(self.names)
+        names = list(names)
+        pairs = ((self.positions, positions), (self.velocities, velocities), (self.efforts, efforts))
+        for target, values in pairs:
+            target.update((name, value) for name, value in zip(names, values, strict=False) if name in known)
+
+    def position(self, name: str) -> float:
+        """Return where a joint is, or should be by whom it follows."""
+        seen: set[str] = set()
+        factor, offset = 1.0, 0.0
+        while name in self._leaders and name not in seen:
+            seen.add(name)
+            mimic = self._leaders[name]
+            factor, offset, name = factor * mimic.multiplier, offset + factor * mimic.offset, mimic.joint
+        return factor * self.positions.get(name, 0.0) + offset
+
+    def all_positions(self) -> list[float]:
+        """Return the positions of all joints in the order of `names`."""
+        return [self.position(name) for name in self.names]
+
+
+def _range(joint: Joint, zeros: Mapping[str, float]) -> JointRange:
+    axis = joint.axis
+    lower, upper = (-math.pi, math.pi) if joint.type is JointType.CONTINUOUS else (axis.lower, axis.upper)
+    if joint.safety is not None and math.isfinite(joint.safety.soft_lower_limit + joint.safety.soft_upper_limit):
+        lower, upper = max(lower, joint.safety.soft_lower_limit), min(upper, joint.safety.soft_upper_limit)
+    middle = (lower + upper) / 2 if math.isfinite(lower + upper) else 0.0
+    zero = zeros.get(joint.name, 0.0 if lower <= 0.0 <= upper else middle)
+    return JointRange(joint.name, lower, upper, zero)

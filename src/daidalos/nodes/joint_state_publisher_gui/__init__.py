@@ -1,0 +1,1 @@
+"""States of the joints of a described robot, set by hand."""

@@ -1,0 +1,70 @@
+"""`joint_state_publisher_gui`: joints set by hand; each is a parameter with its limits, a slider in the studio."""
+
+from __future__ import annotations
+
+import random
+import sys
+from typing import Any
+
+from daidalos.nodes.joint_state_publisher.joint_state_publisher import JointStatePublisher, description_from_arguments
+from daidalos.nodes.runner import run
+
+_PREFIX = "joints."
+
+
+class JointStatePublisherGui(JointStatePublisher):
+    """A joint state publisher whose joints are parameters ``joints.<name>`` within the joints' limits.
+
+    ``~/center`` puts them back to where they began, ``~/randomize`` anywhere.
+    """
+
+    def __init__(self, description: str = "", **kwargs: Any) -> None:
+        super().__init__(description, "joint_state_publisher_gui", **kwargs)
+        from std_srvs.srv import Empty
+
+        self._random = random.Random(0)
+        self.create_service(Empty, "~/center", self._on_center)
+        self.create_service(Empty, "~/randomize", self._on_randomize)
+        self.add_post_set_parameters_callback(self._on_set)
+
+    def read(self, text: str) -> None:
+        """Take a description, and offer its joints."""
+        from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor
+
+        super().read(text)
+        values = self.values
+        for each in values.ranges if values is not None else ():
+            limits = [FloatingPointRange(from_value=each.lower, to_value=each.upper)]
+            descriptor = ParameterDescriptor(description=f"position of {each.name}", floating_point_range=limits)
+            name = _PREFIX + each.name
+            if self.has_parameter(name):
+                self.undeclare_parameter(name)
+            self.declare_parameter(name, min(max(each.zero, each.lower), each.upper), descriptor)
+
+    def _on_set(self, parameters: list[Any]) -> None:
+        for parameter in parameters:
+            if parameter.name.startswith(_PREFIX) and self.values is not None:
+                self.values.take([parameter.name.removeprefix(_PREFIX)], [float(parameter.value)])
+
+    def _on_center(self, request: Any, response: Any) -> Any:
+        self._move({each.name: each.zero for each in self.values.ranges} if self.values is not None else {})
+        return response
+
+    def _on_randomize(self, request: Any, response: Any) -> Any:
+        ranges = self.values.ranges if self.values is not None else ()
+        self._move({each.name: self._random.uniform(each.lower, each.upper) for each in ranges})
+        return response
+
+    def _move(self, positions: dict[str, float]) -> None:
+        from rclpy.parameter import Parameter
+
+        self.set_parameters([Parameter(_PREFIX + name, value=value) for name, value in positions.items()])
+
+
+def main() -> int:
+    """Run the node."""
+    return run(lambda: JointStatePublisherGui(description_from_arguments()))
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,42 @@
+import math
+
+from daidalos.description import urdf
+from daidalos.description.joint import Mimic
+from daidalos.description.joint_values import JointValues
+
+TEXT = """<robot name="r"><link name="a"/><link name="b"/><link name="c"/><link name="d"/><link name="e"/>
+<joint name="turn" type="continuous"><parent link="a"/><child link="b"/></joint>
+<joint name="slide" type="prismatic"><parent link="b"/><child link="c"/><limit lower="0.2" upper="0.6" effort="1"
+velocity="1"/></joint>
+<joint name="echo" type="revolute"><parent link="c"/><child link="d"/><limit lower="-1" upper="1" effort="1"
+velocity="1"/><mimic joint="slide" multiplier="2" offset="0.1"/></joint>
+<joint name="stiff" type="fixed"><parent link="d"/><child link="e"/></joint></robot>"""
+
+
+def test_joints_begin_at_zero_or_in_the_middle_of_their_reach():
+    values = JointValues(urdf.parse(TEXT))
+    assert values.names == ("turn", "slide", "echo")
+    assert [(r.name, r.lower, r.upper, r.zero) for r in values.ranges] == [
+        ("turn", -math.pi, math.pi, 0.0),
+        ("slide", 0.2, 0.6, 0.4),
+    ]
+    assert values.all_positions() == [0.0, 0.4, 2 * 0.4 + 0.1]
+
+
+def test_mimics_follow():
+    values = JointValues(urdf.parse(TEXT))
+    values.take(["slide", "unknown"], [0.5, 9.0])
+    assert values.position("echo") == 1.1
+
+
+def test_mimics_may_be_let_alone_and_others_may_follow():
+    values = JointValues(urdf.parse(TEXT), {"slide": 0.3}, mimics=False, dependents={"turn": Mimic("slide", 3.0, 0.0)})
+    values.take(["echo"], [0.7])
+    assert values.all_positions() == [3 * 0.3, 0.3, 0.7]
+
+
+def test_those_who_follow_each_other_do_not_hang():
+    values = JointValues(
+        urdf.parse(TEXT), mimics=False, dependents={"turn": Mimic("slide", 1, 0), "slide": Mimic("turn", 1, 0)}
+    )
+    assert values.position("turn") == 0.0
