@@ -31,6 +31,9 @@ METADATA_KEY = "serialized_metadata"
 DISTRO_KEY = "ROS_DISTRO"
 MESSAGE_HEADER = struct.Struct("<BQHIQQ")
 """Opcode, length, channel, sequence number, log time, publish time."""
+_RECORD_HEADER = struct.Struct("<BQ")
+_CHUNK_HEADER = struct.Struct("<QQQII")
+"""First and last time, size and checksum before compression, length of the compression's name."""
 _LENGTH_BEFORE_DATA = 22
 _ZSTD_LEVELS = {"Fastest": 1, "Fast": 2, "Default": 3, "Slow": 10, "Slowest": 19}
 _LZ4_LEVELS = {"Fastest": -9, "Fast": -3, "Default": 0, "Slow": 6, "Slowest": 12}
@@ -263,26 +266,23 @@ class McapWriter(StorageWriter):
             packed = self._compress(data)
             if len(packed) >= length and not self._options.force_compression:
                 compression, packed = "", data
-        record = _bytes(
-            records.Chunk(
-                compression=compression,
-                data=packed,
-                message_end_time=end,
-                message_start_time=start,
-                uncompressed_crc=crc,
-                uncompressed_size=length,
-            )
-        )
+        # Put together here: the library's record would copy the data four times.
+        name = compression.encode()
+        length_of_record = _CHUNK_HEADER.size + len(name) + 8 + len(packed)
+        record = _RECORD_HEADER.pack(Opcode.CHUNK, length_of_record)
+        record += _CHUNK_HEADER.pack(start, end, length, crc, len(name)) + name + struct.pack("<Q", len(packed))
+        indexes_at = offset + len(record) + len(packed)
         offsets: dict[int, int] = {}
         indexes = bytearray()
         if self._options.message_index:
             for channel, entries in index.items():
-                offsets[channel] = offset + len(record) + len(indexes)
+                offsets[channel] = indexes_at + len(indexes)
                 indexes += _message_index(channel, entries)
-        self._put(record + bytes(indexes))
+        for part in (record, packed, indexes):
+            self._put(part)
         self._chunk_indexes.append(
             records.ChunkIndex(
-                chunk_length=len(record),
+                chunk_length=len(record) + len(packed),
                 chunk_start_offset=offset,
                 compression=compression,
                 compressed_size=len(packed),
@@ -294,7 +294,7 @@ class McapWriter(StorageWriter):
             )
         )
 
-    def _put(self, data: bytes, *, in_data: bool = True) -> None:
+    def _put(self, data: bytes | bytearray, *, in_data: bool = True) -> None:
         """Hand bytes to the operating system."""
         if in_data and self._options.data_crc:
             self._data_crc = zlib.crc32(data, self._data_crc)

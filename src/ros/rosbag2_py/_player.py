@@ -59,6 +59,7 @@ class Player:
         self._thread: threading.Thread | None = None
         self._keyboard: Keyboard | None = None
         self._status: StatusLine | None = None
+        self._cancelled = threading.Event()
         if storage_options is not None and not isinstance(storage_options, str) and play_options is not None:
             self._prepare(_only(storage_options), play_options, node_name)
 
@@ -149,6 +150,8 @@ class Player:
 
     def _begin(self) -> None:
         node = self._configured()
+        self._cancelled.clear()
+        Player._running.append(self)
         if self._keyboard is not None:
             for line in (
                 "Adding keyboard callbacks.",
@@ -160,7 +163,8 @@ class Player:
                 node.get_logger().info(line)
             self._keyboard.start()
         node.play()
-        Player._running.append(self)
+        if self._cancelled.is_set():
+            node.stop()
         if self._status is not None:
             self._status.start("", "====== Playback Progress ======")
 
@@ -264,6 +268,7 @@ class Player:
     def cancel() -> None:
         """End every playing of this process."""
         for player in list(Player._running):
+            player._cancelled.set()
             if player._node is not None:
                 player._node.stop()
 

@@ -145,6 +145,7 @@ class Recorder:
     def _begin(self) -> None:
         node = self._configured()
         self._cancelled.clear()
+        Recorder._running.append(self)
         if self._keyboard is not None:
             node.get_logger().info("Press SPACE for pausing/resuming")
             self._keyboard.start()
@@ -152,8 +153,8 @@ class Recorder:
             node.record()
         except BaseException:
             self._end_keyboard()
+            Recorder._running.remove(self)
             raise
-        Recorder._running.append(self)
 
     def record_sync(self) -> None:
         """Record until `cancel` or Ctrl-C, and complete the bag."""

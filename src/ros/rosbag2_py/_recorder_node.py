@@ -137,10 +137,8 @@ class RecorderNode(Node):
                 return
             self.get_logger().info("Pausing recording.")
             self.stop_discovery()
+            self._take_what_waits()
             for subscription in self._subscribed.values():
-                while (waiting := subscription._rcl_take()) is not None:
-                    callback, arguments = waiting
-                    callback(*arguments)
                 self.destroy_subscription(subscription)
             self._subscribed.clear()
             get_logger("rosbag2_cpp").info("Writing remaining messages from cache to the bag. It may take a while")
@@ -153,6 +151,13 @@ class RecorderNode(Node):
             self._bag = self._sink = None
             self._stopped.set()
             self.get_logger().info("Recording stopped")
+
+    def _take_what_waits(self) -> None:
+        """Take the messages that have come but were not taken yet."""
+        for subscription in self._subscribed.values():
+            while (waiting := subscription._rcl_take()) is not None:
+                callback, arguments = waiting
+                callback(*arguments)
 
     def _tell_losses(self, sink: WriterThread | SnapshotBuffer) -> None:
         if sink.lost:
@@ -197,6 +202,7 @@ class RecorderNode(Node):
 
     def take_snapshot(self) -> bool:
         """Write what was kept in snapshot mode."""
+        self._take_what_waits()
         sink = self._sink
         return isinstance(sink, SnapshotBuffer) and sink.take()
 

@@ -1,0 +1,50 @@
+import os
+import pty
+import sys
+import threading
+
+import pytest
+from rosbag2_py._keyboard import DOWN, RIGHT, SPACE, UP, Keyboard, split_keys
+
+
+def test_keys_that_a_terminal_sends():
+    assert split_keys(b" x\x1b[A\x1b[B\x1b[C\x1bOA") == [SPACE, UP, DOWN, RIGHT, UP]
+    assert split_keys(b"\x1b") == []
+    assert split_keys(b"") == []
+
+
+def test_keys_are_heard_and_the_terminal_is_as_before(monkeypatch):
+    import termios
+
+    ours, theirs = pty.openpty()
+    heard, told = [], threading.Event()
+
+    def on_key(key):
+        heard.append(key)
+        if len(heard) == 3:
+            told.set()
+
+    before = termios.tcgetattr(theirs)
+    with os.fdopen(theirs, "r") as terminal:
+        monkeypatch.setattr(sys, "stdin", terminal)
+        keyboard = Keyboard(on_key)
+        keyboard.start()
+        while termios.tcgetattr(theirs)[3] & termios.ICANON:
+            told.wait(0.01)
+        os.write(ours, b" q\x1b[C ")
+        assert told.wait(20)
+        keyboard.stop()
+        keyboard.stop()
+        assert termios.tcgetattr(theirs) == before
+    os.close(ours)
+    assert heard == [SPACE, RIGHT, SPACE]
+
+
+@pytest.mark.parametrize("stdin", [None, "file"])
+def test_nothing_is_done_without_a_terminal(monkeypatch, tmp_path, stdin):
+    (tmp_path / "file").touch()
+    with (tmp_path / "file").open() as file:
+        monkeypatch.setattr(sys, "stdin", file if stdin else None)
+        keyboard = Keyboard(lambda key: None)
+        keyboard.start()
+        keyboard.stop()
