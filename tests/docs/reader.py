@@ -11,6 +11,7 @@ from . import pages
 _KEYS = {"Up": "\x1b[A", "Down": "\x1b[B", "Right": "\x1b[C", "Left": "\x1b[D", "Space": " "}
 _BETWEEN_LOOKS_S = 0.2
 _BETWEEN_KEYS_S = 0.3
+_SHOWN_LINES = 40
 
 
 class Reader:
@@ -86,6 +87,7 @@ class Reader:
     def _compare(self, page: pages.Page, command: pages.Command, match: object, printed: str) -> None:
         if match is None:
             expected = "\n".join(command.expected)
+            printed = "".join(printed.splitlines(keepends=True)[:_SHOWN_LINES])
             self.mismatches.append(
                 f"{page.path.name}:{command.line}: $ {command.text}\n--- the page says\n{expected}\n"
                 f"--- it printed\n{printed}"
