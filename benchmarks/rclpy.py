@@ -6,6 +6,7 @@ Set-ups are those by which the figures of ROS 2's own rclpy were taken: two proc
 from __future__ import annotations
 
 import array
+import itertools
 import json
 import os
 import resource
@@ -86,7 +87,7 @@ def measure_latencies(prefix: str) -> dict[str, float]:
 
 def measure_timer() -> dict[str, float]:
     result = _result(_start("tick"))
-    jitter = sorted(abs(after - before - 0.001) for before, after in zip(result["ticks"], result["ticks"][1:]))
+    jitter = sorted(abs(after - before - 0.001) for before, after in itertools.pairwise(result["ticks"]))
     return {
         "timer_1khz_cpu_percent": 100 * result["cpu"] / result["seconds"],
         "timer_1khz_jitter_p99_us": jitter[len(jitter) * 99 // 100] * 1e6,

@@ -62,6 +62,10 @@ class TimeoutObject:
         return max(self._deadline - time.monotonic(), 0.0)
 
 
+_AT_ONCE = 20
+"""How many messages a subscription may take in a row while nothing else is ready."""
+
+
 class _Failure:
     """An exception on its way from a worker to the thread that spins."""
 
@@ -263,6 +267,8 @@ class Executor(AbstractContextManager["Executor"]):
         """Note that the callback of `entity` waits for `services`."""
         with self._calls.waiting(services, entity.callback_group if entity is not None else None):
             self._retry_deferred()
+            if entity is not None and entity._rcl_has_more():
+                entity._rcl_hook()
             yield
 
     def _wait(self, deadline_ns: int | None, condition: Callable[[], bool] | None = None) -> Any:
@@ -328,20 +334,30 @@ class Executor(AbstractContextManager["Executor"]):
         thread = THREAD
         outer = thread.executor, thread.entity
         thread.executor, thread.entity = self, entity
+        in_a_row = self._spins and self._helps
         try:
-            work = entity._rcl_take()
-            if work is None:
-                return
-            if entity._rcl_has_more():
-                hook()
-            callback, arguments = work
-            result = callback(*arguments)
-            if result is not None and inspect.iscoroutine(result):
-                suspended = self._run_coroutine(result, entity)
+            for _ in range(_AT_ONCE):
+                work = entity._rcl_take()
+                if work is None:
+                    return
+                if not in_a_row and entity._rcl_has_more():
+                    hook()
+                callback, arguments = work
+                result = callback(*arguments)
+                if result is not None and inspect.iscoroutine(result):
+                    suspended = self._run_coroutine(result, entity)
+                if not in_a_row or suspended or not self._may_go_on(hook):
+                    return
         finally:
             thread.executor, thread.entity = outer
+            if in_a_row and entity._rcl_has_more():
+                hook()
             if not suspended:
                 self._end(entity)
+
+    def _may_go_on(self, hook: ReadyHook) -> bool:
+        """Tell whether the entity that just ran may run again before all others."""
+        return self._ready.empty() and hook.sink is self._put and not self._is_shutdown and self._context.ok()
 
     def _run_coroutine(self, coroutine: Coroutine[Any, Any, Any], entity: Any) -> bool:
         """Run a callback that is a coroutine; True when it waits for something and so holds its group."""

@@ -8,8 +8,9 @@ import sys
 import threading
 import weakref
 from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
 
-import psutil
 import pytest
 import rclpy
 from rclpy.context import Context
@@ -198,10 +199,10 @@ def test_entities_that_come_and_go_leave_nothing(kind: str) -> None:
         assert len(gc.get_objects()) - before < 60
 
 
+@pytest.mark.skipif(not Path("/proc/self/fd").is_dir(), reason="counts files as Linux lists them")
 def test_contexts_that_come_and_go_leave_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("RMW_IMPLEMENTATION", "rmw_zenoh_cpp")
     monkeypatch.setenv("ROS_DOMAIN_ID", "149")
-    process = psutil.Process()
 
     def once() -> None:
         with Context() as context:
@@ -210,11 +211,20 @@ def test_contexts_that_come_and_go_leave_nothing(monkeypatch: pytest.MonkeyPatch
     for _ in range(3):
         once()
     gc.collect()
-    files, threads = process.num_fds(), threading.active_count()
+    files, threads = open_files(), threading.active_count()
     for _ in range(10):
         once()
     assert threading.active_count() == threads
-    assert process.num_fds() <= files + 7  # zenoh sometimes keeps a segment of shared memory
+    assert open_files() <= files + 2
+
+
+def open_files() -> int:
+    """Return how many files this process has open; zenoh keeps segments of shared memory as it likes."""
+    found = 0
+    for file in Path("/proc/self/fd").iterdir():
+        with suppress(OSError):
+            found += not str(file.readlink()).startswith("/dev/shm")
+    return found
 
 
 CLIENT = "from std_srvs.srv import Empty\nclient = node.create_client(Empty, 'nobody')"
