@@ -378,6 +378,7 @@ def test_a_package_of_ros_1_shares_what_it_holds(workspace, terminal):
             "msg/Num.msg": "int64 num\n",
             "launch/all.launch": "<launch/>\n",
             "scripts/say.py": "#!/usr/bin/env python3\nprint('said')\n",
+            "src/hello.py": "#! /usr/bin/env python3\nprint('Hello world')\n",
         },
     )
     one = terminal()
@@ -387,4 +388,5 @@ def test_a_package_of_ros_1_shares_what_it_holds(workspace, terminal):
     one.run("source install/setup.bash")
     assert one.run("ros2 interface show beginner_tutorials/msg/Num").strip() == "int64 num"
     assert one.run("ros2 run beginner_tutorials say.py").strip() == "said"
+    assert one.run("ros2 run beginner_tutorials hello.py").strip() == "Hello world"
     assert (folder.parents[1] / "install/beginner_tutorials/share/beginner_tutorials/launch/all.launch").is_file()

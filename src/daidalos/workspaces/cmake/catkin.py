@@ -11,22 +11,23 @@ from daidalos.workspaces.cmake.installs import files_below
 from daidalos.workspaces.cmake.interpreter import Call, Handler, Interpreter, keywords
 from daidalos.workspaces.errors import WorkspaceError
 
-_NOT_SHARED = {"src", "include", "msg", "srv", "action", "build", "devel", "install", "log", ".git"}
+_NOT_SHARED = {"src", "include", "msg", "srv", "action"}
+_NOT_LOOKED_AT = {"build", "devel", "install", "log", ".git"}
 
 
 def share_everything(folder: Path, contents: Contents) -> None:
     """Install what nothing else installs: a catkin package was used from its own folder before it was installed.
 
-    Launch files, descriptions and the like go to the package's share folder, scripts to its executables as well.
+    Launch files, descriptions and the like go to the package's share folder, scripts to its executables.
     """
     placed = {file.destination for file in contents.files}
     for path in files_below(folder):
         inside = path.relative_to(folder)
-        if inside.parts[0] in _NOT_SHARED or inside.name in ("CMakeLists.txt", "package.xml"):
+        if inside.parts[0] in _NOT_LOOKED_AT or inside.name in ("CMakeLists.txt", "package.xml"):
             continue
-        wanted = [f"share/{contents.project}/{inside.as_posix()}"]
-        if path.suffix == ".py" and inside.parts[0] in ("scripts", "nodes", "bin"):
-            wanted.append(f"lib/{contents.project}/{path.name}")
+        wanted = [] if inside.parts[0] in _NOT_SHARED else [f"share/{contents.project}/{inside.as_posix()}"]
+        with path.open("rb") as file:
+            wanted += [f"lib/{contents.project}/{path.name}"] if file.read(2) == b"#!" else []
         for destination in wanted:
             if destination not in placed:
                 contents.files.append(InstalledFile(path, destination, destination.startswith("lib/")))
