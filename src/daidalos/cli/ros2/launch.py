@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from launch import LaunchDescription
     from launch.launch_description_source import LaunchDescriptionSource
 
+# Where ROS 2 ends with 1: what starts a launch can tell a mistake in the file from a launch that failed.
+_FAULTY_FILE = 2
 _ENDINGS = (
     ".launch.py",
     "_launch.py",
@@ -135,7 +137,7 @@ def _file_and_arguments(args: Namespace) -> tuple[Path, list[str]]:
     if os.path.isfile(first) or second is None or ":=" in second:
         words = rest if second is None else [second, *rest]
         if not os.path.isfile(first):
-            raise CliError(_no_file(first))
+            raise CliError(_no_file(first), _FAULTY_FILE)
         return Path(first), words
     return find_launch_file(first, second), rest
 
@@ -172,11 +174,13 @@ def find_launch_file(package: str, name: str) -> Path:
         hint = did_you_mean(name, (file.name for file in launch_files(package)))
         raise CliError(
             f"file '{name}' was not found in the share directory of package '{package}' which is at '{share}'{hint}",
+            _FAULTY_FILE,
         )
     if len(found) > 1:
         listed = "".join(f"\n- {path}" for path in found)
         raise CliError(
             f"file '{name}' was found more than once in the share directory of package '{package}':{listed}",
+            _FAULTY_FILE,
         )
     return found[0]
 
@@ -214,7 +218,7 @@ def _load(path: Path) -> tuple[LaunchDescriptionSource, LaunchDescription]:
         return source, source.get_launch_description(LaunchContext())
     # A launch file is a program: it may raise anything.
     except Exception as error:
-        raise CliError(str(LaunchFileError.from_exception(error, str(path)))) from error
+        raise CliError(str(LaunchFileError.from_exception(error, str(path))), _FAULTY_FILE) from error
 
 
 def arguments_text(description: LaunchDescription) -> str:
