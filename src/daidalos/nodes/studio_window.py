@@ -128,7 +128,7 @@ def run_studio(name: str, panel: str, arguments: argparse.Namespace, **details: 
 
 def studio_parser(program: str, description: str) -> argparse.ArgumentParser:
     """Return a parser of what every command that opens the studio takes."""
-    parser = argparse.ArgumentParser(prog=program, description=description)
+    parser = argparse.ArgumentParser(prog=program, description=description, allow_abbrev=False)
     parser.add_argument("--headless", action="store_true", help="serve the page, but open no browser")
     parser.add_argument("--port", type=int, default=8765, metavar="N", help="the page's, or the next free one above")
     return parser

@@ -77,7 +77,7 @@ class Drawing:
         from PIL import Image
 
         content = io.BytesIO()
-        Image.fromarray(self._ink, "RGBA").save(content, "PNG")
+        Image.fromarray(self._ink).save(content, "PNG")
         return content.getvalue()
 
     def _newest(self, count: int) -> tuple[NDArray[np.float32], NDArray[np.uint8]]:

@@ -136,7 +136,7 @@ class TurtleSim(Node):
         try:
             validate_topic_name(f"{name}/pose")
         except InvalidTopicNameException as error:
-            self.get_logger().error(f"A turtle can not be named [{name}]: {error}")
+            self.get_logger().error(f"A turtle can not be named [{name}]: {str(error).splitlines()[0]}")
             return ""
         turtle = Turtle(name, x, y, theta, kind=self._free_kind())
         self._turtles[name] = TurtleInterface(self, turtle, self._draw)
@@ -203,7 +203,9 @@ def _channel_descriptor(name: str) -> Any:
 
 def main() -> int:
     """Run the node."""
-    parser = argparse.ArgumentParser(prog="turtlesim_node", description="Simulate turtles that draw.")
+    parser = argparse.ArgumentParser(
+        prog="turtlesim_node", description="Simulate turtles that draw.", allow_abbrev=False
+    )
     parser.add_argument("--headless", action="store_true", help="open no window and serve none")
     arguments = parser.parse_args(remove_ros_args(sys.argv)[1:])
     if arguments.headless:
