@@ -14,7 +14,7 @@ from daidalos.transport.backend import SampleInfo, WireSubscription
 from daidalos.transport.graph import EndpointInfo
 
 _LOGGER = logging.getLogger(__name__)
-_PATIENCE_S = 0.005
+_PATIENCE_S = 0.05
 _FAST_NS = 1_000_000
 
 

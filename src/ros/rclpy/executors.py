@@ -19,7 +19,7 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
 
 from rclpy.context import Context
-from rclpy.exceptions import ExternalShutdownException
+from rclpy.exceptions import ExternalShutdownException as ExternalShutdownException
 from rclpy.impl.ready import ReadyHook
 from rclpy.impl.ready_queue import ReadyQueue
 from rclpy.impl.running import THREAD, BlockedCalls
