@@ -166,7 +166,8 @@ class Trial(Node):
         walls = plan.visible_walls(0.0, 0.0)
         truth = OccupancyGrid(np.where(walls, 100, 0).astype(np.int8), plan.resolution, (*plan.origin, 0.0))
         agreement = compare_with_truth(grid, truth, within=2)
-        return MapReport(round(info.resolution, 6), info.width, info.height, agreement.walls_found, agreement.walls_true)
+        resolution = round(info.resolution, 6)
+        return MapReport(resolution, info.width, info.height, agreement.walls_found, agreement.walls_true)
 
 
 def _plan_of(world: str) -> Footprint:
