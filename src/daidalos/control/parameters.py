@@ -47,7 +47,7 @@ def parameter(default: Any, *checks: Check, read_only: bool = False) -> Any:
 
 
 def per_name(kind: type, by: str, at: str | None = None) -> dict[str, Any]:
-    """Return the metadata of a field, a mapping, that has a group for each name in the parameter `by`.
+    """Return the metadata of a field, a mapping, that has a group for each name in the parameter `by` (one or a list).
 
     Its parameters are called ``<at>.<name>.<parameter>``; `at` is the field where None.
     """
@@ -113,7 +113,8 @@ def _read(kind: type[T], get: Callable[[Leaf], Any], prefix: str) -> T:
         if "by" in entry.metadata:
             group_kind, by, at = (entry.metadata[key] for key in ("kind", "by", "at"))
             place = f"{prefix}{at or entry.name}"
-            values[entry.name] = {one: _read(group_kind, get, f"{place}.{one}.") for one in dict.fromkeys(values[by])}
+            names = (values[by],) if isinstance(values[by], str) else values[by]
+            values[entry.name] = {one: _read(group_kind, get, f"{place}.{one}.") for one in dict.fromkeys(names)}
     return kind(**values)
 
 

@@ -1,0 +1,216 @@
+"""Gripper controllers: close or open until the goal is reached or something is in between."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import ClassVar
+
+import numpy as np
+
+from daidalos.control.controllers.base import Action, Controller, Goal, Pulse
+from daidalos.control.parameters import at_least, not_empty, parameter, per_name
+from daidalos.control.pid import Gains, Pid
+from daidalos.control.samples import GripperRequest, GripperState, ParallelGripperRequest
+from daidalos.simulation.samples import Sample
+
+_ACTION = "~/gripper_cmd"
+
+
+@dataclass(frozen=True)
+class GripperParameters:
+    """Parameters, as ROS names them.
+
+    Parameters
+    ----------
+    joint : str
+    action_monitor_rate : float
+        Of feedback [Hz].
+    goal_tolerance : float
+        How near counts as there [m, rad].
+    max_effort : float
+        Largest effort where a goal names none; 0 for no limit [N, N m].
+    allow_stalling : bool
+        Whether something in between is a success.
+    stall_velocity_threshold, stall_timeout : float
+        Slower than this for so long counts as stalled [m/s or rad/s, s].
+    gains : mapping
+        Of the loop that an effort interface needs, by joint.
+    """
+
+    joint: str = parameter("", not_empty, read_only=True)
+    action_monitor_rate: float = parameter(20.0, at_least(0.1), read_only=True)
+    goal_tolerance: float = parameter(0.01, at_least(0.0))
+    max_effort: float = parameter(0.0, at_least(0.0))
+    allow_stalling: bool = parameter(default=False)
+    stall_velocity_threshold: float = parameter(0.001, at_least(0.0))
+    stall_timeout: float = parameter(1.0, at_least(0.0))
+    gains: dict[str, Gains] = field(default_factory=dict, metadata=per_name(Gains, by="joint"))
+
+
+@dataclass(frozen=True)
+class ParallelGripperParameters(GripperParameters):
+    """The same, with interfaces that take the largest effort and speed.
+
+    Parameters
+    ----------
+    max_effort_interface, max_velocity_interface : str
+        Full names; empty where the hardware has none.
+    max_velocity : float
+        Where a goal names none [m/s, rad/s].
+    state_interfaces : tuple of str
+    """
+
+    max_effort: float = parameter(10.0, at_least(0.0))
+    max_effort_interface: str = parameter("", read_only=True)
+    max_velocity_interface: str = parameter("", read_only=True)
+    max_velocity: float = parameter(0.1, at_least(0.0))
+    state_interfaces: tuple[str, ...] = parameter(("position", "velocity"), read_only=True)
+
+
+class PositionGripperController(Controller):
+    """Moves a finger by its position."""
+
+    types = ("position_controllers/GripperActionController",)
+    parameters = GripperParameters
+    command_kind = "position"
+    request: ClassVar[type[GripperRequest]] = GripperRequest
+    p: GripperParameters
+
+    def configure(self) -> None:
+        """Name interfaces."""
+        self.command_names = (f"{self.p.joint}/{self.command_kind}",)
+        self.state_names = (f"{self.p.joint}/position", f"{self.p.joint}/velocity")
+        self._monitor = Pulse(self.p.action_monitor_rate)
+        self._goal: Goal | None = None
+
+    @property
+    def actions(self) -> Mapping[str, Action]:
+        """Opening and closing."""
+        return {_ACTION: Action(self.request, self._refuse, self._start, self._cancel)}
+
+    def _refuse(self, request: GripperRequest) -> str:
+        if not math.isfinite(request.position):
+            return f"the position is no number: {request.position}"
+        named = request.joint if isinstance(request, ParallelGripperRequest) else ""
+        return f"'{named}' is not the gripper's joint, '{self.p.joint}' is" if named not in ("", self.p.joint) else ""
+
+    def _start(self, goal: Goal) -> None:
+        self._end("aborted")
+        self._goal = goal
+        self._target = goal.request.position
+        self._effort = goal.request.max_effort or self.p.max_effort or math.inf
+        self._moved_ns = self.now_ns
+        self._monitor.restart()
+
+    def _cancel(self, goal: Goal) -> None:
+        if goal is self._goal:
+            self._hold()
+            self._end("canceled")
+
+    def activate(self, now_ns: int) -> None:
+        """Hold the finger where it is."""
+        self.now_ns = now_ns
+        self._effort, self._output = self.p.max_effort or math.inf, 0.0
+        self._hold()
+
+    def deactivate(self) -> None:
+        """End the goal."""
+        self._end("aborted")
+
+    def _hold(self) -> None:
+        self._target = float(self.states.read()[0])
+
+    def _end(self, status: str, stalled: bool = False, reached: bool = False) -> None:
+        goal, self._goal = self._goal, None
+        if goal is not None:
+            goal.finish(status, self._state(stalled, reached))
+
+    def _state(self, stalled: bool, reached: bool) -> GripperState:
+        position, velocity = self.states.read()
+        return GripperState(self.now_ns, self.p.joint, float(position), float(velocity), self._output, stalled, reached)
+
+    def update(self, now_ns: int, period: float) -> Iterable[Sample]:
+        """Command the finger and see how the goal is going."""
+        position, velocity = self.states.read()
+        self._watch(now_ns, self._target - float(position), abs(float(velocity)))
+        self._command(self._target - float(position), -float(velocity), period)
+        return ()
+
+    def _watch(self, now_ns: int, error: float, speed: float) -> None:
+        if speed > self.p.stall_velocity_threshold:
+            self._moved_ns = now_ns
+        if self._goal is None:
+            return
+        if abs(error) < self.p.goal_tolerance:
+            self._end("succeeded", reached=True)
+        elif (now_ns - self._moved_ns) * 1e-9 > self.p.stall_timeout:
+            self._end("succeeded" if self.p.allow_stalling else "aborted", stalled=True)
+        elif self._monitor.due(now_ns):
+            self._goal.feedback(self._state(stalled=False, reached=False))
+
+    _moved_ns = 0
+
+    def _command(self, error: float, error_rate: float, period: float) -> None:
+        self.commands.write(np.array([self._target]))
+
+
+class EffortGripperController(PositionGripperController):
+    """Moves a finger by its effort, from its position error."""
+
+    types = ("effort_controllers/GripperActionController",)
+    command_kind = "effort"
+
+    def configure(self) -> None:
+        """Make the loop."""
+        super().configure()
+        self._pid = Pid([self.p.gains.get(self.p.joint, Gains())])
+
+    def activate(self, now_ns: int) -> None:
+        """Hold."""
+        self._pid.reset()
+        super().activate(now_ns)
+
+    def deactivate(self) -> None:
+        """Let go."""
+        super().deactivate()
+        self.commands.write(np.zeros(1))
+
+    def _command(self, error: float, error_rate: float, period: float) -> None:
+        wanted = self._pid.update(np.array([error]), period, np.array([error_rate]))
+        limited = np.clip(wanted, -self._effort, self._effort)
+        self._output = float(limited[0])
+        self.commands.write(limited)
+
+
+class ParallelGripperController(PositionGripperController):
+    """Moves a finger by its position, and tells the hardware how hard and fast at most."""
+
+    types = ("parallel_gripper_action_controller/GripperActionController",)
+    parameters = ParallelGripperParameters
+    request = ParallelGripperRequest
+    p: ParallelGripperParameters
+
+    def configure(self) -> None:
+        """Name the interfaces for effort and speed as well."""
+        super().configure()
+        extra = (self.p.max_effort_interface, self.p.max_velocity_interface)
+        self.command_names = (*self.command_names, *(name for name in extra if name))
+
+    def activate(self, now_ns: int) -> None:
+        """Hold."""
+        self._speed = self.p.max_velocity
+        super().activate(now_ns)
+
+    def _start(self, goal: Goal) -> None:
+        super()._start(goal)
+        self._speed = goal.request.max_velocity or self.p.max_velocity
+
+    def _command(self, error: float, error_rate: float, period: float) -> None:
+        values = [self._target]
+        if self.p.max_effort_interface:
+            values.append(self._effort)
+        if self.p.max_velocity_interface:
+            values.append(self._speed)
+        self.commands.write(np.array(values))

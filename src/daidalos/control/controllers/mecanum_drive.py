@@ -1,0 +1,154 @@
+"""Mecanum drive: four wheels with rollers, a base that moves any way."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from daidalos.control.base_odometry import BaseOdometry, prefixed_frame
+from daidalos.control.controllers.base import Controller, Subscription
+from daidalos.control.interfaces import Interfaces
+from daidalos.control.parameters import above, not_empty, parameter, size
+from daidalos.control.samples import MecanumSample
+from daidalos.control.velocity_input import VelocityInput
+from daidalos.simulation.samples import OdometrySample, Sample, TransformSample
+
+_ZEROS = (0.0,) * 6
+_WHEELS = ("front_left", "rear_left", "rear_right", "front_right")
+_SIDE = np.array([-1.0, 1.0, -1.0, 1.0])
+"""How much of the speed to the left each wheel has."""
+_TURN = np.array([-1.0, -1.0, 1.0, 1.0])
+"""How much of the turn rate, times the base's size, each wheel has."""
+
+
+@dataclass(frozen=True)
+class BaseOffset:
+    """The base's frame in the frame of the wheels' centre [m, m, rad]."""
+
+    x: float = parameter(0.0)
+    y: float = parameter(0.0)
+    theta: float = parameter(0.0)
+
+
+@dataclass(frozen=True)
+class MecanumKinematics:
+    """Sizes: radius of the wheels, and half the wheelbase plus half the track [m]."""
+
+    base_frame_offset: BaseOffset = field(default_factory=BaseOffset)
+    wheels_radius: float = parameter(0.0, above(0.0))
+    sum_of_robot_center_projection_on_X_Y_axis: float = parameter(0.0, above(0.0))
+
+
+@dataclass(frozen=True)
+class MecanumParameters:
+    """Parameters, as ROS names them; state names are those of the commands where they are empty."""
+
+    reference_timeout: float = parameter(0.0)
+    front_left_wheel_command_joint_name: str = parameter("", not_empty, read_only=True)
+    front_right_wheel_command_joint_name: str = parameter("", not_empty, read_only=True)
+    rear_right_wheel_command_joint_name: str = parameter("", not_empty, read_only=True)
+    rear_left_wheel_command_joint_name: str = parameter("", not_empty, read_only=True)
+    front_left_wheel_state_joint_name: str = parameter("", read_only=True)
+    front_right_wheel_state_joint_name: str = parameter("", read_only=True)
+    rear_right_wheel_state_joint_name: str = parameter("", read_only=True)
+    rear_left_wheel_state_joint_name: str = parameter("", read_only=True)
+    kinematics: MecanumKinematics = field(default_factory=MecanumKinematics)
+    base_frame_id: str = parameter("base_link", read_only=True)
+    odom_frame_id: str = parameter("odom", read_only=True)
+    tf_frame_prefix_enable: bool = parameter(default=False, read_only=True)
+    tf_frame_prefix: str = parameter("", read_only=True)
+    enable_odom_tf: bool = parameter(default=True, read_only=True)
+    use_stamped_vel: bool = parameter(default=True, read_only=True)
+    twist_covariance_diagonal: tuple[float, ...] = parameter(_ZEROS, size(6), read_only=True)
+    pose_covariance_diagonal: tuple[float, ...] = parameter(_ZEROS, size(6), read_only=True)
+
+
+class MecanumDriveController(Controller):
+    """Drives a base on four mecanum wheels."""
+
+    types = ("mecanum_drive_controller/MecanumDriveController",)
+    parameters = MecanumParameters
+    chainable = True
+    p: MecanumParameters
+
+    def configure(self) -> None:
+        """Name interfaces."""
+        p = self.p
+        commands = [getattr(p, f"{wheel}_wheel_command_joint_name") for wheel in _WHEELS]
+        states = [
+            getattr(p, f"{wheel}_wheel_state_joint_name") or command
+            for wheel, command in zip(_WHEELS, commands, strict=True)
+        ]
+        self.command_names = tuple(f"{name}/velocity" for name in commands)
+        self.state_names = tuple(f"{name}/velocity" for name in states)
+        self.references = Interfaces(("linear/x/velocity", "linear/y/velocity", "angular/z/velocity"))
+        prefix = (self.setting.namespace, p.tf_frame_prefix, p.tf_frame_prefix_enable)
+        self._odometry = BaseOdometry(
+            prefixed_frame(p.odom_frame_id, *prefix),
+            prefixed_frame(p.base_frame_id, *prefix),
+            p.pose_covariance_diagonal,
+            p.twist_covariance_diagonal,
+        )
+        self._input = VelocityInput(self)
+        self._take_parameters()
+
+    def reconfigure(self, parameters: MecanumParameters) -> None:
+        """Take sizes and the timeout."""
+        super().reconfigure(parameters)
+        self._take_parameters()
+
+    def _take_parameters(self) -> None:
+        self._input.timeout = self.p.reference_timeout
+        offset, kinematics = self.p.kinematics.base_frame_offset, self.p.kinematics
+        cosine, sine = math.cos(offset.theta), math.sin(offset.theta)
+        # From the base's velocity to that of the wheels' centre.
+        self._to_centre = np.array([[cosine, -sine, offset.y], [sine, cosine, -offset.x], [0.0, 0.0, 1.0]])
+        size_of_base = kinematics.sum_of_robot_center_projection_on_X_Y_axis
+        self._to_wheels = np.column_stack((np.ones(4), _SIDE, _TURN * size_of_base)) / kinematics.wheels_radius
+
+    @property
+    def publications(self) -> Mapping[str, type[Sample]]:
+        """Odometry, its transform, and the wheels."""
+        topics: dict[str, type[Sample]] = {"~/odometry": OdometrySample, "~/controller_state": MecanumSample}
+        if self.p.enable_odom_tf:
+            topics["~/tf_odometry"] = TransformSample
+        return topics
+
+    @property
+    def subscriptions(self) -> Mapping[str, Subscription]:
+        """The wanted velocity."""
+        return self._input.subscription("~/reference", self.p.use_stamped_vel)
+
+    def activate(self, now_ns: int) -> None:
+        """Stand at the origin of the odometry."""
+        self._input.reset()
+        self._odometry.reset()
+        self.references.values[:] = np.nan
+
+    def deactivate(self) -> None:
+        """Stand."""
+        self.commands.write(np.zeros(4))
+
+    def take_references(self, now_ns: int, period: float) -> None:
+        """Take the last velocity that is fresh."""
+        latest = self._input.latest(now_ns)
+        if latest is not None:
+            self.references.values[:] = latest
+
+    def update(self, now_ns: int, period: float) -> Iterable[Sample]:
+        """Measure the wheels, then tell them their speeds."""
+        wheels = self.states.read()
+        if not np.isnan(wheels).any():
+            centre = np.linalg.lstsq(self._to_wheels, wheels, rcond=None)[0]
+            ahead, sideways, turn = np.linalg.solve(self._to_centre, centre) * period
+            self._odometry.move(float(ahead), float(turn), period, float(sideways))
+        wanted = np.nan_to_num(self.references.values)
+        self.commands.write(self._to_wheels @ self._to_centre @ wanted)
+        yield self._odometry.sample(now_ns, "~/odometry")
+        if self.p.enable_odom_tf:
+            yield self._odometry.transform(now_ns, "~/tf_odometry")
+        if self.setting.heard("~/controller_state"):
+            yield MecanumSample(now_ns, "~/controller_state", self._odometry.base_frame, wheels, wanted)

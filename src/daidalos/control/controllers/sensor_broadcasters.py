@@ -1,0 +1,284 @@
+"""Broadcasters of sensors: IMU, force-torque, range and pose."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from daidalos.control.controllers.base import Controller, Pulse
+from daidalos.control.errors import ParameterError
+from daidalos.control.interfaces import Interfaces
+from daidalos.control.parameters import not_empty, parameter, size
+from daidalos.control.samples import PoseSample, VariedRangeSample
+from daidalos.description.pose import Pose, multiply
+from daidalos.simulation.samples import ImuSample, Sample, TransformSample, WrenchSample
+
+_NINE = (0.0,) * 9
+_POSE = ("position.x", "position.y", "position.z", "orientation.x", "orientation.y", "orientation.z", "orientation.w")
+_IMU = (
+    *(f"orientation.{axis}" for axis in "xyzw"),
+    *(f"angular_velocity.{axis}" for axis in "xyz"),
+    *(f"linear_acceleration.{axis}" for axis in "xyz"),
+)
+
+
+@dataclass(frozen=True)
+class RotationOffset:
+    """Roll, pitch and yaw [rad]."""
+
+    roll: float = parameter(0.0)
+    pitch: float = parameter(0.0)
+    yaw: float = parameter(0.0)
+
+
+@dataclass(frozen=True)
+class ImuParameters:
+    """Parameters: the sensor, its frame, covariances (9,), and a rotation that its orientation is off by."""
+
+    sensor_name: str = parameter("", not_empty, read_only=True)
+    frame_id: str = parameter("", not_empty, read_only=True)
+    static_covariance_orientation: tuple[float, ...] = parameter(_NINE, size(9), read_only=True)
+    static_covariance_angular_velocity: tuple[float, ...] = parameter(_NINE, size(9), read_only=True)
+    static_covariance_linear_acceleration: tuple[float, ...] = parameter(_NINE, size(9), read_only=True)
+    rotation_offset: RotationOffset = field(default_factory=RotationOffset)
+
+
+class ImuSensorBroadcaster(Controller):
+    """Publishes ``~/imu``."""
+
+    types = ("imu_sensor_broadcaster/IMUSensorBroadcaster",)
+    parameters = ImuParameters
+    p: ImuParameters
+
+    def configure(self) -> None:
+        """Name the sensor's interfaces."""
+        self.state_names = tuple(f"{self.p.sensor_name}/{name}" for name in _IMU)
+        turn = self.p.rotation_offset
+        self._turn = Pose.from_xyz_rpy((0.0, 0.0, 0.0), (turn.roll, turn.pitch, turn.yaw)).orientation
+
+    @property
+    def publications(self) -> Mapping[str, type[Sample]]:
+        """One topic."""
+        return {"~/imu": ImuSample}
+
+    def update(self, now_ns: int, period: float) -> Iterable[Sample]:
+        """Say what it measures."""
+        values = self.states.read()
+        x, y, z, w = (float(value) for value in values[:4])
+        yield ImuSample(
+            stamp_ns=now_ns,
+            topic="~/imu",
+            frame_id=self.p.frame_id,
+            orientation=np.array(multiply(self._turn, (x, y, z, w))),
+            angular_velocity=values[4:7],
+            linear_acceleration=values[7:10],
+            orientation_covariance=np.array(self.p.static_covariance_orientation),
+            angular_velocity_covariance=np.array(self.p.static_covariance_angular_velocity),
+            linear_acceleration_covariance=np.array(self.p.static_covariance_linear_acceleration),
+        )
+
+
+@dataclass(frozen=True)
+class AxisNames:
+    """Interfaces of three axes; empty where there is none."""
+
+    x: str = parameter("", read_only=True)
+    y: str = parameter("", read_only=True)
+    z: str = parameter("", read_only=True)
+
+
+@dataclass(frozen=True)
+class WrenchNames:
+    """Interfaces of a force-torque sensor, full names."""
+
+    force: AxisNames = field(default_factory=AxisNames)
+    torque: AxisNames = field(default_factory=AxisNames)
+
+
+@dataclass(frozen=True)
+class AxisOffsets:
+    """What is added to three axes."""
+
+    x: float = parameter(0.0)
+    y: float = parameter(0.0)
+    z: float = parameter(0.0)
+
+
+@dataclass(frozen=True)
+class WrenchOffsets:
+    """What is added to force [N] and torque [N m]."""
+
+    force: AxisOffsets = field(default_factory=AxisOffsets)
+    torque: AxisOffsets = field(default_factory=AxisOffsets)
+
+
+@dataclass(frozen=True)
+class AxisFactors:
+    """What three axes are multiplied with."""
+
+    x: float = parameter(1.0)
+    y: float = parameter(1.0)
+    z: float = parameter(1.0)
+
+
+@dataclass(frozen=True)
+class WrenchFactors:
+    """What force and torque are multiplied with, after the offsets."""
+
+    force: AxisFactors = field(default_factory=AxisFactors)
+    torque: AxisFactors = field(default_factory=AxisFactors)
+
+
+@dataclass(frozen=True)
+class ForceTorqueParameters:
+    """Parameters: a sensor with all six interfaces, or the interfaces that there are; frame and corrections."""
+
+    sensor_name: str = parameter("", read_only=True)
+    interface_names: WrenchNames = field(default_factory=WrenchNames)
+    frame_id: str = parameter("", not_empty, read_only=True)
+    offset: WrenchOffsets = field(default_factory=WrenchOffsets)
+    multiplier: WrenchFactors = field(default_factory=WrenchFactors)
+
+    @property
+    def given(self) -> tuple[str, ...]:
+        """The six interfaces by name; empty where none is given."""
+        names = self.interface_names
+        return (names.force.x, names.force.y, names.force.z, names.torque.x, names.torque.y, names.torque.z)
+
+    def check(self) -> None:
+        """Refuse a sensor that is named in both ways, or in none."""
+        if bool(self.sensor_name) == any(self.given):
+            raise ParameterError("sensor_name", "or interface_names must be given, and not both")
+
+
+class ForceTorqueSensorBroadcaster(Controller):
+    """Publishes ``~/wrench``; other controllers may use what it exports."""
+
+    types = ("force_torque_sensor_broadcaster/ForceTorqueSensorBroadcaster",)
+    parameters = ForceTorqueParameters
+    p: ForceTorqueParameters
+
+    def configure(self) -> None:
+        """Name the interfaces."""
+        axes = tuple(f"{kind}.{axis}" for kind in ("force", "torque") for axis in "xyz")
+        given = tuple(f"{self.p.sensor_name}/{axis}" for axis in axes) if self.p.sensor_name else self.p.given
+        self._places = np.array([place for place, name in enumerate(given) if name], dtype=np.intp)
+        self.state_names = tuple(name for name in given if name)
+        self.exported = Interfaces(axes)
+
+    @property
+    def publications(self) -> Mapping[str, type[Sample]]:
+        """One topic."""
+        return {"~/wrench": WrenchSample}
+
+    def update(self, now_ns: int, period: float) -> Iterable[Sample]:
+        """Correct and say what it measures; axes that there are not are NaN."""
+        values = np.full(6, np.nan)
+        values[self._places] = self.states.read()
+        values = (values + _six(self.p.offset)) * _six(self.p.multiplier)
+        self.exported.values[:] = values
+        yield WrenchSample(now_ns, "~/wrench", self.p.frame_id, values[:3], values[3:])
+
+
+def _six(given: WrenchOffsets | WrenchFactors) -> np.ndarray:
+    return np.array([one for part in (given.force, given.torque) for one in (part.x, part.y, part.z)])
+
+
+@dataclass(frozen=True)
+class RangeParameters:
+    """Parameters, as in ``sensor_msgs/msg/Range``."""
+
+    sensor_name: str = parameter("", not_empty, read_only=True)
+    frame_id: str = parameter("", not_empty, read_only=True)
+    radiation_type: int = parameter(1, read_only=True)
+    field_of_view: float = parameter(0.1, read_only=True)
+    min_range: float = parameter(0.1, read_only=True)
+    max_range: float = parameter(7.0, read_only=True)
+    variance: float = parameter(0.0, read_only=True)
+
+
+class RangeSensorBroadcaster(Controller):
+    """Publishes ``~/range``."""
+
+    types = ("range_sensor_broadcaster/RangeSensorBroadcaster",)
+    parameters = RangeParameters
+    p: RangeParameters
+
+    def configure(self) -> None:
+        """Name the interface."""
+        self.state_names = (f"{self.p.sensor_name}/range",)
+
+    @property
+    def publications(self) -> Mapping[str, type[Sample]]:
+        """One topic."""
+        return {"~/range": VariedRangeSample}
+
+    def update(self, now_ns: int, period: float) -> Iterable[Sample]:
+        """Say what it measures."""
+        p = self.p
+        yield VariedRangeSample(
+            stamp_ns=now_ns,
+            topic="~/range",
+            frame_id=p.frame_id,
+            radiation_type=p.radiation_type,
+            field_of_view=p.field_of_view,
+            min_range=p.min_range,
+            max_range=p.max_range,
+            range=float(self.states.read()[0]),
+            variance=p.variance,
+        )
+
+
+@dataclass(frozen=True)
+class TransformParameters:
+    """Whether and how a pose is published as a transform; the child's name is the pose's where it is empty."""
+
+    enable: bool = parameter(default=True, read_only=True)
+    child_frame_id: str = parameter("", read_only=True)
+    publish_rate: float = parameter(0.0, read_only=True)
+
+
+@dataclass(frozen=True)
+class PoseParameters:
+    """Parameters: the name before the interfaces, and the frame that the pose is in."""
+
+    pose_name: str = parameter("", not_empty, read_only=True)
+    frame_id: str = parameter("", not_empty, read_only=True)
+    tf: TransformParameters = field(default_factory=TransformParameters)
+
+
+class PoseBroadcaster(Controller):
+    """Publishes ``~/pose`` and its transform."""
+
+    types = ("pose_broadcaster/PoseBroadcaster",)
+    parameters = PoseParameters
+    p: PoseParameters
+
+    def configure(self) -> None:
+        """Name the interfaces."""
+        self.state_names = tuple(f"{self.p.pose_name}/{name}" for name in _POSE)
+        self._transforming = Pulse(self.p.tf.publish_rate)
+
+    @property
+    def publications(self) -> Mapping[str, type[Sample]]:
+        """The pose, and its transform where that is wanted."""
+        topics: dict[str, type[Sample]] = {"~/pose": PoseSample}
+        if self.p.tf.enable:
+            topics["/tf"] = TransformSample
+        return topics
+
+    def activate(self, now_ns: int) -> None:
+        """Begin with a transform."""
+        self._transforming.restart()
+
+    def update(self, now_ns: int, period: float) -> Iterable[Sample]:
+        """Say where it is; a transform only of a pose that is one."""
+        values = self.states.read()
+        position, orientation = values[:3], values[3:]
+        yield PoseSample(now_ns, "~/pose", self.p.frame_id, position, orientation)
+        sound = bool(np.all(np.isfinite(values)) and abs(np.linalg.norm(orientation) - 1.0) < 1e-3)
+        if self.p.tf.enable and sound and self._transforming.due(now_ns):
+            child = self.p.tf.child_frame_id or self.p.pose_name
+            yield TransformSample(now_ns, "/tf", self.p.frame_id, child, position, orientation)

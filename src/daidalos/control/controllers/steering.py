@@ -1,0 +1,316 @@
+"""Steering controllers: bicycle, tricycle and Ackermann bases."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from daidalos.control.base_odometry import BaseOdometry
+from daidalos.control.controllers.base import Controller, Subscription
+from daidalos.control.errors import ParameterError
+from daidalos.control.interfaces import Interfaces
+from daidalos.control.parameters import above, parameter, size, unique
+from daidalos.control.samples import SteeringSample
+from daidalos.control.steering import SteeredBase
+from daidalos.control.velocity_input import VelocityInput
+from daidalos.simulation.samples import OdometrySample, Sample, TransformSample
+
+_ZEROS = (0.0,) * 6
+_FREE_ANGLE = math.pi / 6
+"""Error of the steering up to which the wheels run at full speed, where they wait for it [rad]."""
+
+
+@dataclass(frozen=True)
+class SteeringParameters:
+    """Parameters that all have, as ROS names them in Humble, Jazzy and later.
+
+    Parameters
+    ----------
+    reference_timeout : float
+        Age at which a command counts no more [s]; 0 for never.
+    rear_wheels_names, front_wheels_names : tuple of str
+        Joints, right before left; with `front_steering` the rear ones are driven and the front ones steer.
+    traction_joints_names, steering_joints_names : tuple of str
+        The same by what they do.
+    rear_wheels_state_names, front_wheels_state_names, traction_joints_state_names, steering_joints_state_names
+        Where measurements have other names.
+    open_loop : bool
+        Odometry from commands.
+    reduce_wheel_speed_until_steering_reached : bool
+        Drive slowly while the wheels are still turning.
+    velocity_rolling_window_size : int
+    base_frame_id, odom_frame_id : str
+    enable_odom_tf : bool
+    twist_covariance_diagonal, pose_covariance_diagonal : tuple of 6 floats
+    position_feedback : bool
+        Driven wheels tell angles, and not speeds.
+    use_stamped_vel : bool
+        ``~/reference`` with stamps, or ``~/reference_unstamped``.
+    wheelbase : float
+        [m].
+    """
+
+    reference_timeout: float = parameter(1.0)
+    front_steering: bool = parameter(default=True, read_only=True)
+    rear_wheels_names: tuple[str, ...] = parameter((), unique, read_only=True)
+    front_wheels_names: tuple[str, ...] = parameter((), unique, read_only=True)
+    rear_wheels_state_names: tuple[str, ...] = parameter((), unique, read_only=True)
+    front_wheels_state_names: tuple[str, ...] = parameter((), unique, read_only=True)
+    traction_joints_names: tuple[str, ...] = parameter((), unique, read_only=True)
+    steering_joints_names: tuple[str, ...] = parameter((), unique, read_only=True)
+    traction_joints_state_names: tuple[str, ...] = parameter((), unique, read_only=True)
+    steering_joints_state_names: tuple[str, ...] = parameter((), unique, read_only=True)
+    open_loop: bool = parameter(default=False, read_only=True)
+    reduce_wheel_speed_until_steering_reached: bool = parameter(default=False, read_only=True)
+    velocity_rolling_window_size: int = parameter(10, above(0), read_only=True)
+    base_frame_id: str = parameter("base_link", read_only=True)
+    odom_frame_id: str = parameter("odom", read_only=True)
+    enable_odom_tf: bool = parameter(default=True, read_only=True)
+    twist_covariance_diagonal: tuple[float, ...] = parameter(_ZEROS, size(6), read_only=True)
+    pose_covariance_diagonal: tuple[float, ...] = parameter(_ZEROS, size(6), read_only=True)
+    position_feedback: bool = parameter(default=False, read_only=True)
+    use_stamped_vel: bool = parameter(default=True, read_only=True)
+    wheelbase: float = parameter(0.0, above(0.0), read_only=True)
+
+    @property
+    def base(self) -> SteeredBase:
+        """The base's sizes."""
+        raise NotImplementedError
+
+    @property
+    def traction(self) -> tuple[str, ...]:
+        """Joints of the driven wheels."""
+        return self.traction_joints_names or (
+            self.rear_wheels_names if self.front_steering else self.front_wheels_names
+        )
+
+    @property
+    def steering(self) -> tuple[str, ...]:
+        """Joints that steer."""
+        return self.steering_joints_names or (
+            self.front_wheels_names if self.front_steering else self.rear_wheels_names
+        )
+
+    @property
+    def traction_states(self) -> tuple[str, ...]:
+        """Where the driven wheels are measured."""
+        old = self.rear_wheels_state_names if self.front_steering else self.front_wheels_state_names
+        return self.traction_joints_state_names or old or self.traction
+
+    @property
+    def steering_states(self) -> tuple[str, ...]:
+        """Where the steered wheels are measured."""
+        old = self.front_wheels_state_names if self.front_steering else self.rear_wheels_state_names
+        return self.steering_joints_state_names or old or self.steering
+
+    def radius(self, front: float, rear: float, either: float) -> float:
+        """Return the radius of the driven wheels; see the parameters of the bases."""
+        return either or (rear if self.front_steering else front)
+
+    def check(self) -> None:
+        """Refuse missing sizes, and lists that are longer or shorter than the base has wheels."""
+        base = self.base
+        if base.wheel_radius <= 0.0:
+            raise ParameterError("traction_wheels_radius", "or the radius of the driven wheels must be above 0")
+        for what, given, count in (
+            ("traction_joints_names", self.traction, base.traction_count),
+            ("traction_joints_state_names", self.traction_states, base.traction_count),
+            ("steering_joints_names", self.steering, base.steering_count),
+            ("steering_joints_state_names", self.steering_states, base.steering_count),
+        ):
+            if len(given) != count:
+                raise ParameterError(what, f"must have {count} elements, got {len(given)}")
+
+
+@dataclass(frozen=True)
+class BicycleParameters(SteeringParameters):
+    """A driven wheel and a steered one; radii [m]."""
+
+    front_wheel_radius: float = parameter(0.0, read_only=True)
+    rear_wheel_radius: float = parameter(0.0, read_only=True)
+    traction_wheel_radius: float = parameter(0.0, read_only=True)
+
+    @property
+    def base(self) -> SteeredBase:
+        """The base's sizes."""
+        radius = self.radius(self.front_wheel_radius, self.rear_wheel_radius, self.traction_wheel_radius)
+        return SteeredBase(self.wheelbase, radius)
+
+
+@dataclass(frozen=True)
+class TricycleParameters(SteeringParameters):
+    """Two driven wheels and a steered one; track and radii [m]."""
+
+    wheel_track: float = parameter(0.0, read_only=True)
+    traction_track_width: float = parameter(0.0, read_only=True)
+    front_wheels_radius: float = parameter(0.0, read_only=True)
+    rear_wheels_radius: float = parameter(0.0, read_only=True)
+    traction_wheels_radius: float = parameter(0.0, read_only=True)
+
+    @property
+    def base(self) -> SteeredBase:
+        """The base's sizes."""
+        radius = self.radius(self.front_wheels_radius, self.rear_wheels_radius, self.traction_wheels_radius)
+        track = self.traction_track_width or self.wheel_track
+        if track <= 0.0:
+            raise ParameterError("traction_track_width", "must be above 0")
+        return SteeredBase(self.wheelbase, radius, track)
+
+
+@dataclass(frozen=True)
+class AckermannParameters(SteeringParameters):
+    """Two driven wheels and two steered ones; tracks and radii [m]."""
+
+    front_wheel_track: float = parameter(0.0, read_only=True)
+    rear_wheel_track: float = parameter(0.0, read_only=True)
+    traction_track_width: float = parameter(0.0, read_only=True)
+    steering_track_width: float = parameter(0.0, read_only=True)
+    front_wheels_radius: float = parameter(0.0, read_only=True)
+    rear_wheels_radius: float = parameter(0.0, read_only=True)
+    traction_wheels_radius: float = parameter(0.0, read_only=True)
+
+    @property
+    def base(self) -> SteeredBase:
+        """The base's sizes."""
+        radius = self.radius(self.front_wheels_radius, self.rear_wheels_radius, self.traction_wheels_radius)
+        rear, front = self.rear_wheel_track, self.front_wheel_track
+        traction = self.traction_track_width or (rear if self.front_steering else front)
+        steering = self.steering_track_width or (front if self.front_steering else rear)
+        for name, track in (("traction_track_width", traction), ("steering_track_width", steering)):
+            if track <= 0.0:
+                raise ParameterError(name, "must be above 0")
+        return SteeredBase(self.wheelbase, radius, traction, steering)
+
+
+class BicycleSteeringController(Controller):
+    """Drives a base with one driven wheel and a steered one."""
+
+    types = ("bicycle_steering_controller/BicycleSteeringController",)
+    parameters: ClassVar[type] = BicycleParameters
+    chainable = True
+    p: SteeringParameters
+
+    def configure(self) -> None:
+        """Name interfaces."""
+        p = self.p
+        self._base = p.base
+        feedback = "position" if p.position_feedback else "velocity"
+        self.command_names = (
+            *(f"{name}/velocity" for name in p.traction),
+            *(f"{name}/position" for name in p.steering),
+        )
+        self.state_names = (
+            *(f"{name}/{feedback}" for name in p.traction_states),
+            *(f"{name}/position" for name in p.steering_states),
+        )
+        self.references = Interfaces(("linear/velocity", "angular/velocity"))
+        self._count = self._base.traction_count
+        self._odometry = BaseOdometry(
+            p.odom_frame_id,
+            p.base_frame_id,
+            p.pose_covariance_diagonal,
+            p.twist_covariance_diagonal,
+            p.velocity_rolling_window_size,
+        )
+        self._input = VelocityInput(self)
+        self._input.timeout = p.reference_timeout
+
+    def reconfigure(self, parameters: SteeringParameters) -> None:
+        """Take the timeout."""
+        super().reconfigure(parameters)
+        self._input.timeout = parameters.reference_timeout
+
+    @property
+    def publications(self) -> Mapping[str, type[Sample]]:
+        """Odometry, its transform, and the wheels."""
+        topics: dict[str, type[Sample]] = {"~/odometry": OdometrySample, "~/controller_state": SteeringSample}
+        if self.p.enable_odom_tf:
+            topics["~/tf_odometry"] = TransformSample
+        return topics
+
+    @property
+    def subscriptions(self) -> Mapping[str, Subscription]:
+        """The wanted velocity."""
+        return self._input.subscription("~/reference", self.p.use_stamped_vel)
+
+    def activate(self, now_ns: int) -> None:
+        """Stand, with the wheels as they are."""
+        self._input.reset()
+        self._odometry.reset()
+        self.references.values[:] = np.nan
+        self._turned: np.ndarray | None = None
+        measured = self.states.read()[self._count :]
+        self._angle = float(np.mean(np.nan_to_num(measured)))
+        self._last = (0.0, 0.0)
+
+    def deactivate(self) -> None:
+        """Stand."""
+        commands = self.commands.read()
+        commands[: self._count] = 0.0
+        self.commands.write(commands)
+
+    def take_references(self, now_ns: int, period: float) -> None:
+        """Take the last velocity that is fresh."""
+        latest = self._input.latest(now_ns)
+        if latest is not None:
+            self.references.values[:] = latest[0], latest[2]
+
+    def update(self, now_ns: int, period: float) -> Iterable[Sample]:
+        """Measure the wheels, then tell them speeds and angles."""
+        values = self.states.read()
+        self._measure(values, period)
+        speed, turn = (float(one) for one in np.nan_to_num(self.references.values))
+        angle = self._base.steering_angle(speed, turn)
+        self._angle = self._angle if angle is None else angle
+        if self.p.reduce_wheel_speed_until_steering_reached:
+            speed *= _share(abs(self._angle - float(np.mean(values[self._count :]))))
+        self._last = (speed, speed * math.tan(self._angle) / self._base.wheelbase)
+        speeds, angles = self._base.wheel_speeds(speed, self._angle), self._base.wheel_angles(self._angle)
+        self.commands.write(np.concatenate((speeds, angles)))
+        yield self._odometry.sample(now_ns, "~/odometry")
+        if self.p.enable_odom_tf:
+            yield self._odometry.transform(now_ns, "~/tf_odometry")
+        if self.setting.heard("~/controller_state"):
+            measured, nothing = values[: self._count], np.zeros(0)
+            positions, velocities = (measured, nothing) if self.p.position_feedback else (nothing, measured)
+            yield SteeringSample(
+                now_ns, "~/controller_state", "", positions, velocities, values[self._count :], speeds, angles
+            )
+
+    def _measure(self, values: np.ndarray, period: float) -> None:
+        if self.p.open_loop:
+            speed, turn = self._last
+        else:
+            wheels = values[: self._count]
+            if self.p.position_feedback:
+                before, self._turned = self._turned, wheels
+                wheels = np.zeros_like(wheels) if before is None else (wheels - before) / period
+            if np.isnan(wheels).any() or np.isnan(values).any():
+                return
+            speed, turn = self._base.motion(wheels, values[self._count :])
+        self._odometry.move(speed * period, turn * period, period)
+
+
+class TricycleSteeringController(BicycleSteeringController):
+    """Drives a base with two driven wheels and a steered one."""
+
+    types = ("tricycle_steering_controller/TricycleSteeringController",)
+    parameters: ClassVar[type] = TricycleParameters
+
+
+class AckermannSteeringController(BicycleSteeringController):
+    """Drives a base with two driven wheels and two steered ones."""
+
+    types = ("ackermann_steering_controller/AckermannSteeringController",)
+    parameters: ClassVar[type] = AckermannParameters
+
+
+def _share(error: float) -> float:
+    """Return how much of its speed a base may have while its steering is off by `error` [rad]."""
+    if error < _FREE_ANGLE:
+        return 1.0
+    return max(math.cos(error), 0.01) / math.cos(_FREE_ANGLE)
