@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import pytest
+from ros2cli.plugin_system import satisfies_version
 
 from .commands import ros2
 
@@ -35,9 +36,45 @@ class LoudVerb:
         print(args.topic.upper())
 '''
 
+UPSTREAM = '''
+from ros2cli.command import CommandExtension, add_subparsers_on_demand
+from ros2cli.node.strategy import NodeStrategy, add_arguments
+from ros2cli.verb import VerbExtension
+
+
+class CensusCommand(CommandExtension):
+    """Count what there is."""
+
+    def add_arguments(self, parser, cli_name):
+        self._subparser = parser
+        add_subparsers_on_demand(parser, cli_name, "_verb", "ros2census.verb", required=False)
+
+    def main(self, *, parser, args):
+        if not hasattr(args, "_verb"):
+            self._subparser.print_help()
+            return 0
+        return args._verb.main(args=args)
+
+
+class NodesVerb(VerbExtension):
+    """Count the nodes."""
+
+    def add_arguments(self, parser, cli_name):
+        add_arguments(parser)
+        parser.add_argument("--and-one", action="store_true")
+
+    def main(self, *, args):
+        with NodeStrategy(args) as node:
+            print(len(node.get_node_names()) + args.and_one)
+'''
+
 ENTRY_POINTS = """
 [ros2cli.command]
 greet = greeting:GreetCommand
+census = census:CensusCommand
+
+[ros2census.verb]
+nodes = census:NodesVerb
 
 [ros2topic.verb]
 loud = greeting:LoudVerb
@@ -48,6 +85,7 @@ loud = greeting:LoudVerb
 def with_package(env, tmp_path: Path):
     """An environment in which a package adds a command and a verb."""
     (tmp_path / "greeting.py").write_text(MODULE)
+    (tmp_path / "census.py").write_text(UPSTREAM)
     info = tmp_path / "greeting-1.0.dist-info"
     info.mkdir()
     (info / "METADATA").write_text("Metadata-Version: 2.1\nName: greeting\nVersion: 1.0\n")
@@ -78,3 +116,28 @@ def test_groups_are_listed(env):
     shown = ros2("extension_points", env=env).out.splitlines()
     assert "ros2topic.verb" in shown
     assert "ros2cli.command" in shown
+
+
+def test_an_extension_written_for_ros2_runs_as_it_is(with_package):
+    assert ros2("census", "nodes", "--no-daemon", "--and-one", env=with_package).out == "2\n"
+    assert "Commands:\n  nodes  Count the nodes\n" in ros2("census", env=with_package).out
+    result = ros2("census", "nods", env=with_package)
+    assert result.status == 2
+    assert "Did you mean 'nodes'?" in result.err
+
+
+@pytest.mark.parametrize("fits", [("0.1", "^0.1"), ("0.1.3", "^0.1.2"), ("1.4", "^1.2")])
+def test_versions_that_fit(fits):
+    satisfies_version(*fits)
+
+
+@pytest.mark.parametrize("misfit", [("0.1", "^0.2"), ("0.2", "^0.1"), ("2.0", "^1.2"), ("1.1", "^1.2")])
+def test_versions_that_do_not_fit(misfit):
+    with pytest.raises(RuntimeError, match="does not satisfy"):
+        satisfies_version(*misfit)
+
+
+@pytest.mark.parametrize("nonsense", [("0.1", "0.1"), ("x", "^0.1"), ("0.1", "^")])
+def test_what_is_no_version(nonsense):
+    with pytest.raises(ValueError, match="is no "):
+        satisfies_version(*nonsense)

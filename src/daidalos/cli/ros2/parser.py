@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from typing import Any, NoReturn
 
 from daidalos.cli.ros2.extension import Command, Extensions, Verb
@@ -15,9 +15,17 @@ class Parser(argparse.ArgumentParser):
 
     subcommands: Extensions | None = None
     _group: Any = None
+    _hidden: Collection[str] = ()
 
     def add_subcommands(
-        self, title: str, name: str, extensions: Extensions, make: Callable[[Any, Parser, str], None]
+        self,
+        title: str,
+        name: str,
+        extensions: Extensions,
+        make: Callable[[Any, Parser, str], None],
+        *,
+        hidden: Collection[str] = (),
+        required: bool = False,
     ) -> None:
         """Take a subcommand.
 
@@ -31,11 +39,17 @@ class Parser(argparse.ArgumentParser):
             The subcommands.
         make
             Completes the parser of a chosen subcommand: ``make(extension, parser, name)``.
+        hidden
+            Subcommands that the help leaves out.
+        required
+            Whether one must be given.
         """
+        self.formatter_class = argparse.RawDescriptionHelpFormatter  # the list of subcommands has its own lines
         self.subcommands = extensions
+        self._hidden = hidden
         hint = f"Call `{name} <command> -h` for more detailed usage."
         action = self.add_subparsers(title=title, description="", metavar=hint, parser_class=Parser)
-        action.required = False
+        action.required = required
         parsers = _Subparsers(name, extensions, make)
         # `choices` and this map are what argparse chooses the parser from.
         action.choices = parsers  # type: ignore[assignment]
@@ -54,8 +68,9 @@ class Parser(argparse.ArgumentParser):
     def format_help(self) -> str:
         """Return the help, with the list of subcommands."""
         if self.subcommands is not None:
-            width = max(map(len, self.subcommands))
-            lines = (f"{name:<{width}}  {self.subcommands.describe(name)}" for name in self.subcommands)
+            shown = [name for name in self.subcommands if name not in self._hidden]
+            width = max(map(len, shown), default=0)
+            lines = (f"{name:<{width}}  {self.subcommands.describe(name)}" for name in shown)
             self._group.description = "\n".join(lines)
         return super().format_help()
 

@@ -44,14 +44,11 @@ def run_interruptible(argv: list[str]) -> int:
 
 
 def _run(argv: list[str]) -> int:
-    from argparse import RawDescriptionHelpFormatter
-
     from daidalos.cli.ros2.commands import commands
     from daidalos.cli.ros2.errors import CliError
     from daidalos.cli.ros2.parser import Parser, make_command
 
     parser = Parser(prog="ros2", description="ros2 is an extensible command-line tool for ROS 2.")
-    parser.formatter_class = RawDescriptionHelpFormatter
     parser.add_argument(
         "--use-python-default-buffering",
         action="store_true",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from argparse import ArgumentParser, Namespace, RawDescriptionHelpFormatter
+from argparse import ArgumentParser, Namespace
 from collections.abc import Mapping
 from importlib import import_module
 from typing import ClassVar, cast
@@ -23,7 +23,6 @@ class VerbCommand(Command):
 
     def add_arguments(self, parser: ArgumentParser, cli_name: str) -> None:
         """Declare the command's options and its verbs."""
-        parser.formatter_class = RawDescriptionHelpFormatter
         self.add_options(parser)
         cast(Parser, parser).add_subcommands("Commands", cli_name, self.extensions(), make_verb)
 
