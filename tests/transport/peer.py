@@ -78,7 +78,19 @@ def watch(session: Session) -> None:
     stop()
 
 
-ROLES = {"talk": talk, "flood": flood, "listen": listen, "serve": serve, "watch": watch}
+def crowd(session: Session) -> None:
+    """Be many nodes with many topics."""
+    nodes = [session.create_node(f"node{number}", "/crowd") for number in range(200)]
+    publishers = [
+        session.create_publisher(nodes[number % 200][0], "/topic" if number == 7 else f"/topic{number}", Int32, Qos())
+        for number in range(3000)
+    ]
+    say("ready")
+    threading.Event().wait()
+    assert publishers
+
+
+ROLES = {"crowd": crowd, "talk": talk, "flood": flood, "listen": listen, "serve": serve, "watch": watch}
 
 if __name__ == "__main__":
     ROLES[sys.argv[1]](Session(make_backend(read_environment())))

@@ -51,6 +51,20 @@ def test_whichever_starts_first(new_session: Callable[[], Session]):
             second.wait_for("heard -5")
 
 
+@pytest.mark.slow
+def test_a_large_graph_is_right_within_seconds(new_session: Callable[[], Session]):
+    with Peer("crowd").ready():
+        session = new_session()
+        begin = time.monotonic()
+        assert session.backend.settle(5.0)
+        assert len(session.graph.nodes()) == 200
+        assert len(session.graph.endpoints(EndpointKind.PUBLISHER)) == 3000
+        assert time.monotonic() - begin < 5.0
+        with Peer("watch").ready() as watcher:
+            watcher.wait_for("came node7")
+    assert session.graph.wait_for(lambda: not session.graph.nodes() and not session.graph.endpoints(), PATIENCE_S)
+
+
 def test_the_first_of_three_dies():
     with Peer("watch").ready() as first, Peer("listen").ready() as second, Peer("talk").ready() as third:
         first.wait_for("came talker")

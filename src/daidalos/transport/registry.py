@@ -17,6 +17,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import IO
 
+_SOCKET_NAME_LENGTH = 16
+
 
 @dataclass(frozen=True)
 class Peer:
@@ -75,13 +77,22 @@ class Registry:
                 if _is_free(lock):
                     data.unlink(missing_ok=True)
                     lock.unlink(missing_ok=True)
-                    lock.with_suffix(".sock").unlink(missing_ok=True)
-                    lock.with_suffix(".sock.lock").unlink(missing_ok=True)
+                    self.remove_socket(lock.stem)
                     continue
                 found.append(Peer(lock.stem, tuple(json.loads(data.read_text(encoding="utf-8")))))
             except (OSError, ValueError):
                 continue  # it went away, or is not yet written, while we looked
         return found
+
+    def socket_of(self, session: str) -> Path:
+        """Return the path of a session's socket, short because sockets' paths may not be long."""
+        return self.folder / f"{session[:_SOCKET_NAME_LENGTH]}.sock"
+
+    def remove_socket(self, session: str) -> None:
+        """Remove a session's socket, and the lock that zenoh puts beside it."""
+        path = self.socket_of(session)
+        for leftover in (path, path.with_suffix(".sock.lock")):
+            leftover.unlink(missing_ok=True)
 
     def register(self, peer: Peer) -> None:
         """Enter our session; the entry lives as long as this process or until `unregister`."""

@@ -23,12 +23,12 @@ from daidalos.transport.backend import (
     WireService,
     WireSubscription,
 )
-from daidalos.transport.environment import DiscoveryRange, Environment
+from daidalos.transport.environment import DiscoveryRange, Environment, EnvironmentVariableError
 from daidalos.transport.graph import EndpointInfo, EndpointKind, Graph, NodeInfo
 from daidalos.transport.qos import Qos
 from daidalos.transport.registry import Peer, Registry
 from daidalos.transport.zenoh import keys
-from daidalos.transport.zenoh.config import ROUTER_PORT, meets_all, session_config
+from daidalos.transport.zenoh.config import ROUTER_PORT, meets_all, reason_of, session_config
 from daidalos.transport.zenoh.wires import (
     ZenohClient,
     ZenohPublisher,
@@ -46,10 +46,7 @@ _CLOSING_S = 1.0
 """How long the thread that reads tokens may take to end; it may be in a listener's hands."""
 
 _LOOK_S = 0.002
-"""How often we look whether all peers are connected, while settling."""
-
-_QUIET_S = 0.05
-"""Tokens of one process follow each other faster than this."""
+"""How often we look, while settling."""
 
 
 class ZenohBackend(Backend):
@@ -65,7 +62,6 @@ class ZenohBackend(Backend):
         self._registry = Registry(self._domain)
         self._peers: set[str] = set()
         self._own: set[bytes] = set()
-        self._known = 0
 
     def start(self, graph: Graph) -> None:
         """Open the session, known to and connected with every other on this machine."""
@@ -76,7 +72,7 @@ class ZenohBackend(Backend):
             listen = self._listen_endpoints()
             endpoints = [endpoint for peer in peers for endpoint in peer.endpoints]
             config = session_config(self._environment, self._session_id, listen, endpoints)
-            self._session: Any = zenoh.open(config)
+            self._session: Any = _open(config)
             self._session_id = str(self._session.zid())
             if meets_all(config, listen):
                 self._peers = {peer.session for peer in peers}
@@ -96,24 +92,23 @@ class ZenohBackend(Backend):
             self._on_token(sample)
 
     def _listen_endpoints(self) -> list[str]:
-        """Return where peers of this machine find us: a socket file that no other process will ever have."""
-        if sys.platform == "win32":
-            with socket.socket() as probe:
-                probe.bind(("127.0.0.1", 0))
-                return [f"tcp/127.0.0.1:{probe.getsockname()[1]}"]
-        path = self._registry.folder / f"{self._session_id}.sock"
-        if len(os.fsencode(path)) > _SOCKET_PATH_LIMIT:
-            raise OSError(f"the path {path.parent} is too long for a socket; set XDG_RUNTIME_DIR to a shorter one")
-        return [f"unixsock-stream/{path}"]
+        """Return where peers of this machine find us: a socket file that no other process will ever have.
+
+        Where there are none, or its path would be too long, it is a port that is free now.
+        """
+        path = self._registry.socket_of(self._session_id)
+        if sys.platform != "win32" and len(os.fsencode(path)) <= _SOCKET_PATH_LIMIT:
+            return [f"unixsock-stream/{path}"]
+        with socket.socket() as probe:
+            probe.bind(("127.0.0.1", 0))
+            return [f"tcp/127.0.0.1:{probe.getsockname()[1]}"]
 
     def close(self) -> None:
         """Close the session; its tokens go with it."""
         self._registry.unregister()
         self._session.close()
         self._reader.join(_CLOSING_S)
-        socket_file = self._registry.folder / f"{self._session_id}.sock"
-        for leftover in (socket_file, socket_file.with_suffix(".sock.lock")):
-            leftover.unlink(missing_ok=True)
+        self._registry.remove_socket(self._session_id)
         del self._session, self._tokens  # zenoh keeps files open as long as these live
 
     def settle(self, timeout_s: float) -> bool:
@@ -129,21 +124,26 @@ class ZenohBackend(Backend):
         # We look ourselves: a listener would need Python's lock within zenoh's.
         while not (complete := connected()) and time.monotonic() < deadline:
             time.sleep(_LOOK_S)
+        self._wait_for_answers(deadline)
         left = max(deadline - time.monotonic(), 0.05)
         # The tokens that are known already are handed out before anybody can read: all must fit into the channel.
         channel: Any = FifoChannel(_MANY_TOKENS)
         for reply in self._session.liveliness().get(keys.tokens(self._domain), handler=channel, timeout=left):
             if reply.ok is not None:
                 self._add(str(reply.ok.key_expr))
-        self._wait_for_quiet(deadline)
         return complete
 
-    def _wait_for_quiet(self, deadline: float) -> None:
-        """Wait until no more tokens arrive: who has just been connected with may still be telling."""
-        news = True
-        while news and (left := deadline - time.monotonic()) > 0:
-            known = self._known
-            news = self._graph.wait_for(lambda seen=known: self._known != seen, min(_QUIET_S, left))  # type: ignore[misc]
+    def _wait_for_answers(self, deadline: float) -> None:
+        """Wait until every peer that we knew of has answered: its answer comes after its tokens."""
+        silent = self._alive()
+        while silent and (left := deadline - time.monotonic()) > 0:
+            for peer in list(silent):
+                replies = list(self._session.get(f"@/{peer}/peer", timeout=left))
+                if any(reply.ok is not None for reply in replies):
+                    silent.discard(peer)
+            if silent:
+                time.sleep(_LOOK_S)
+                silent &= self._alive()
 
     def _alive(self) -> set[str]:
         """Return which of the peers known at our start still live."""
@@ -162,7 +162,6 @@ class ZenohBackend(Backend):
         if keys.session_of(token) == self._session_id:
             return  # what is ours the session notes itself, at once
         what = keys.parse_token(token)
-        self._known += 1
         if isinstance(what, NodeInfo):
             self._graph.add_node(what)
         elif what is not None:
@@ -228,6 +227,16 @@ class ZenohBackend(Backend):
             undeclare()
 
         return close
+
+
+def _open(config: zenoh.Config) -> zenoh.Session:
+    try:
+        return zenoh.open(config)
+    except zenoh.ZError as error:
+        raise EnvironmentVariableError(
+            f"zenoh cannot open a session: {reason_of(error)}; look at ZENOH_SESSION_CONFIG_URI, ZENOH_CONFIG_OVERRIDE "
+            "and ROS_STATIC_PEERS"
+        ) from None
 
 
 def _new_session_id() -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import shutil
+import socket
 import sys
 from collections.abc import Iterable
 from pathlib import Path
@@ -71,7 +72,7 @@ def router_config() -> zenoh.Config:
         config = zenoh.Config()
         settings = {
             "mode": "router",
-            "listen/endpoints": [f"tcp/[::]:{ROUTER_PORT}"],
+            "listen/endpoints": [f"tcp/{_any_address()}:{ROUTER_PORT}"],
             "scouting/multicast/enabled": False,
             "scouting/gossip/enabled": True,
             **_transport_settings(),
@@ -108,7 +109,7 @@ def _network_settings(environment: Environment, listen: list[str], peers: list[s
     open_to_all = reach is DiscoveryRange.SUBNET or (reach is DiscoveryRange.LOCALHOST and statics)
     return {
         "mode": "peer",
-        "listen/endpoints": [*listen, "tcp/[::]:0" if open_to_all else "tcp/localhost:0"],
+        "listen/endpoints": [*listen, f"tcp/{_any_address()}:0" if open_to_all else "tcp/localhost:0"],
         "listen/exit_on_failure": False,
         "connect/endpoints": connect,
         "connect/exit_on_failure": False,
@@ -119,6 +120,16 @@ def _network_settings(environment: Environment, listen: list[str], peers: list[s
         "scouting/multicast/enabled": reach is DiscoveryRange.SUBNET,
         "scouting/gossip/enabled": reach is not DiscoveryRange.OFF,
     }
+
+
+def _any_address() -> str:
+    """Return what stands for every address of this machine: IPv6's word for it covers both, where there is IPv6."""
+    try:
+        with socket.socket(socket.AF_INET6, socket.SOCK_STREAM) as probe:
+            probe.bind(("::", 0))
+    except OSError:
+        return "0.0.0.0"
+    return "[::]"
 
 
 def _peer_endpoint(peer: str) -> str:
@@ -138,7 +149,12 @@ def _transport_settings() -> dict[str, Any]:
         # A peer that is stopped (Ctrl-Z, a debugger) must not stop those who publish to it for long: its link
         # is closed, and made again when it goes on.
         "transport/link/tx/queue/congestion_control/block/wait_before_close": 1_000_000,
+        # A new peer is told of all our endpoints at once. What does not fit into the queue makes zenoh give the
+        # peer up; this much, the most it takes, holds some six thousand.
+        "transport/link/tx/queue/size/control": 16,
         "transport/shared_memory/enabled": shared_memory_usable(),
+        # Peers answer for themselves: who has been answered has been told of everything before.
+        "adminspace/enabled": True,
     }
 
 

@@ -77,6 +77,8 @@ def parse_token(token: str) -> NodeInfo | EndpointInfo | None:
     if len(parts) < 9 or parts[0] != _ADMIN:
         return None
     _, domain, session, node_number, _, kind_text, enclave, namespace, name, *rest = parts
+    if not (domain.isdecimal() and node_number.isdecimal()):
+        return None
     enclave, namespace = _unmangle(enclave), _unmangle(namespace)
     node = NodeInfo(
         token if kind_text == _NODE else node_token(int(domain), session, int(node_number), name, namespace, enclave),
@@ -103,7 +105,7 @@ def parse_token(token: str) -> NodeInfo | EndpointInfo | None:
 
 def session_of(token: str) -> str:
     """Return the zenoh id of the session that declared a token."""
-    return token.split("/", 3)[2]
+    return "".join(token.split("/", 3)[2:3])
 
 
 def gid_of(token: str) -> bytes:
@@ -162,7 +164,7 @@ def _parse_duration(text: str) -> int:
 
 
 def _number(text: str, default: int) -> int:
-    return int(text) if text.isdigit() else default
+    return int(text) if text.isdecimal() else default
 
 
 def _member(default: _Policy, text: str) -> _Policy:
