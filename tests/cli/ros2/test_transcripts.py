@@ -23,7 +23,7 @@ PARAMETERS = "/talker:\n  ros__parameters:\n    speed: 2.0\n    names: [c, d]\n 
 WILDCARD_PARAMETERS = "/**:\n  ros__parameters:\n    speed: 1.0\n"
 
 DIFFERENT = {
-    # ROS 2 prints nonsense or nothing, or crashes; these have tests of their own below.
+    # ROS 2 prints nonsense or nothing, or crashes; the modules beside this one test what we do.
     "topic echo --once --qos-durability transient_local /tf_static": "best effort gets what was latched, too",
     "topic pub --once /new std_msgs/msg/Int8 data: 300": "fails at once",
     "topic pub --once /cmd_vel geometry_msgs/msg/Twist {linear: [}": "says where the YAML is wrong",
