@@ -1,3 +1,3 @@
 """Transforms: publish them, look at them, serve them."""
 
-COMPONENTS = {"StaticTransformBroadcasterNode": "static_transform_publisher:StaticTransformPublisher"}
+COMPONENTS = {"StaticTransformBroadcasterNode": "static_transform_publisher:StaticTransformBroadcasterNode"}

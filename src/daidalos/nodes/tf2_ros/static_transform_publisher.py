@@ -27,7 +27,7 @@ _OLD_ORDERS = {
 }
 
 
-class StaticTransformPublisher(Node):
+class StaticTransformBroadcasterNode(Node):
     """Publishes on ``/tf_static`` what its parameters say.
 
     Parameters of the node: ``translation.x`` and so on [m], ``rotation.x`` and so on (a quaternion), ``frame_id``,
@@ -139,12 +139,12 @@ def main() -> int:
     def read() -> None:
         parameters.update(parse(remove_ros_args(sys.argv)[1:]))
 
-    def make() -> StaticTransformPublisher:
+    def make() -> StaticTransformBroadcasterNode:
         from rclpy.parameter import Parameter
 
         overrides: list[Any] = [Parameter(name, value=value) for name, value in parameters.items()]
         ending = "".join(random.choices(string.ascii_letters + string.digits, k=16))
-        return StaticTransformPublisher(f"static_transform_publisher_{ending}", parameter_overrides=overrides)
+        return StaticTransformBroadcasterNode(f"static_transform_publisher_{ending}", parameter_overrides=overrides)
 
     return run_program(read) or run(make)
 

@@ -1,10 +1,10 @@
 """Relaying, thinning out, choosing and transforming topics of any type."""
 
 COMPONENTS = {
-    "RelayNode": "relay:Relay",
-    "ThrottleNode": "throttle:Throttle",
-    "DropNode": "drop:Drop",
-    "MuxNode": "mux:Mux",
-    "DemuxNode": "demux:Demux",
-    "DelayNode": "delay:Delay",
+    "RelayNode": "relay:RelayNode",
+    "ThrottleNode": "throttle:ThrottleNode",
+    "DropNode": "drop:DropNode",
+    "MuxNode": "mux:MuxNode",
+    "DemuxNode": "demux:DemuxNode",
+    "DelayNode": "delay:DelayNode",
 }

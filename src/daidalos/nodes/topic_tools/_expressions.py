@@ -96,8 +96,10 @@ def _wait_for_input(node: Node, executor: Executor, arguments: argparse.Namespac
     guard = node.create_guard_condition(look)
     stop = node.handle.graph.listen(lambda added, what: guard.trigger())
     guard.trigger()
-    executor.spin_until_future_complete(found, None if arguments.wait_for_start else _PATIENCE_S)
-    stop()
+    try:
+        executor.spin_until_future_complete(found, None if arguments.wait_for_start else _PATIENCE_S)
+    finally:
+        stop()
     infos = node.get_publishers_info_by_topic(source)
     if not infos:
         if not node.context.ok():

@@ -13,7 +13,7 @@ from rclpy.clock_type import ClockType
 from daidalos.nodes.topic_tools._tool import Tool, run_tool, topics
 
 
-class Delay(Tool):
+class DelayNode(Tool):
     """Hands every message on ``delay`` seconds after it came (parameter of the node, as ``use_wall_clock``)."""
 
     def __init__(self, **kwargs: Any) -> None:
@@ -45,7 +45,7 @@ def _read(words: Sequence[str]) -> dict[str, Any]:
 
 def main() -> int:
     """Run the node."""
-    return run_tool(Delay, "delay <intopic> <delay> [outtopic]", _read)
+    return run_tool(DelayNode, "delay <intopic> <delay> [outtopic]", _read)
 
 
 if __name__ == "__main__":

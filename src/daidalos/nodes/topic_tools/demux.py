@@ -11,8 +11,8 @@ from daidalos.nodes.topic_tools._switch import NONE, Switch
 from daidalos.nodes.topic_tools._tool import run_tool
 
 
-class Demux(Switch):
-    """Publishes ``input_topic`` on the chosen one of ``output_topics``; see `Mux` for the rest."""
+class DemuxNode(Switch):
+    """Publishes ``input_topic`` on the chosen one of ``output_topics``; see `MuxNode` for the rest."""
 
     def __init__(self, **kwargs: Any) -> None:
         from topic_tools_interfaces.srv import DemuxAdd, DemuxDelete, DemuxList, DemuxSelect
@@ -48,7 +48,7 @@ def _read(words: Sequence[str]) -> dict[str, Any]:
 
 def main() -> int:
     """Run the node."""
-    return run_tool(Demux, "demux <intopic> <outtopic1> [outtopic2 ...]", _read)
+    return run_tool(DemuxNode, "demux <intopic> <outtopic1> [outtopic2 ...]", _read)
 
 
 if __name__ == "__main__":

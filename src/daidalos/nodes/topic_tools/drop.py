@@ -9,7 +9,7 @@ from typing import Any
 from daidalos.nodes.topic_tools._tool import Tool, run_tool, topics
 
 
-class Drop(Tool):
+class DropNode(Tool):
     """Leaves out the first ``x`` of every ``y`` messages (parameters of the node)."""
 
     def __init__(self, **kwargs: Any) -> None:
@@ -33,7 +33,7 @@ def _read(words: Sequence[str]) -> dict[str, Any]:
 
 def main() -> int:
     """Run the node."""
-    return run_tool(Drop, "drop <intopic> <X> <Y> [outtopic]", _read)
+    return run_tool(DropNode, "drop <intopic> <X> <Y> [outtopic]", _read)
 
 
 if __name__ == "__main__":

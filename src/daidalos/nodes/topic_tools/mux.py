@@ -11,7 +11,7 @@ from daidalos.nodes.topic_tools._switch import NONE, Switch
 from daidalos.nodes.topic_tools._tool import run_tool
 
 
-class Mux(Switch):
+class MuxNode(Switch):
     """Publishes the chosen one of ``input_topics`` on ``output_topic``.
 
     Parameters of the node besides: ``initial_topic`` (the first of them unless given, ``__none`` for none), ``lazy``.
@@ -43,7 +43,7 @@ def _read(words: Sequence[str]) -> dict[str, Any]:
 
 def main() -> int:
     """Run the node."""
-    return run_tool(Mux, "mux <outtopic> <intopic1> [intopic2 ...]", _read)
+    return run_tool(MuxNode, "mux <outtopic> <intopic1> [intopic2 ...]", _read)
 
 
 if __name__ == "__main__":

@@ -8,7 +8,7 @@ from typing import Any
 from daidalos.nodes.topic_tools._tool import Tool, run_tool, topics
 
 
-class Relay(Tool):
+class RelayNode(Tool):
     """Hands every message on."""
 
     def __init__(self, **kwargs: Any) -> None:
@@ -17,7 +17,7 @@ class Relay(Tool):
 
 def main() -> int:
     """Run the node."""
-    return run_tool(Relay, "relay <intopic> [outtopic]", lambda words: topics(*words))
+    return run_tool(RelayNode, "relay <intopic> [outtopic]", lambda words: topics(*words))
 
 
 if __name__ == "__main__":

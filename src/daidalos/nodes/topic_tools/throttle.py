@@ -13,7 +13,7 @@ from rclpy.clock_type import ClockType
 from daidalos.nodes.topic_tools._tool import Tool, run_tool, topics
 
 
-class Throttle(Tool):
+class ThrottleNode(Tool):
     """Limits a topic.
 
     Parameters of the node: ``throttle_type`` (``messages`` or ``bytes``), ``msgs_per_sec``, ``bytes_per_sec``,
@@ -79,7 +79,7 @@ def main() -> int:
         "throttle messages <intopic> <msgs_per_sec> [outtopic]\n"
         "       throttle bytes <intopic> <bytes_per_sec> <window> [outtopic]"
     )
-    return run_tool(Throttle, usage, _read)
+    return run_tool(ThrottleNode, usage, _read)
 
 
 if __name__ == "__main__":
