@@ -1,0 +1,76 @@
+"""The studio's source listens only to what is there, and hears of the rest when it comes."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Sequence
+
+from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy, QoSProfile
+from rosgraph_msgs.msg import Clock
+from std_msgs.msg import String
+
+from daidalos.nodes.foxglove_bridge._graph_source import RosGraphSource
+from daidalos.nodes.studio import Studio
+from daidalos.studio.source import Parameter
+from ros.graph import graph, node, spinning  # noqa: F401
+
+
+class Watcher:
+    """An observer that waits."""
+
+    def __init__(self) -> None:
+        self.times: list[int] = []
+        self.told = threading.Event()
+
+    def graph_changed(self) -> None:
+        pass
+
+    def time_advanced(self, nanoseconds: int) -> None:
+        self.times.append(nanoseconds)
+        self.told.set()
+
+    def parameters_changed(self, parameters: Sequence[Parameter]) -> None:
+        pass
+
+
+def names(node: Node) -> set[str]:  # noqa: F811
+    return {name for name, _ in node.get_topic_names_and_types()}
+
+
+def test_a_clock_is_heard_once_there_is_one(node: Node) -> None:  # noqa: F811
+    source, watcher = RosGraphSource(node), Watcher()
+    with spinning(node):
+        watching = source.attach(watcher)
+        assert "/clock" not in names(node)
+        publisher = node.create_publisher(Clock, "/clock", 1)
+        clock = Clock()
+        clock.clock.sec = 7
+        while not watcher.told.wait(0.05):
+            publisher.publish(clock)
+        assert source.time() == watcher.times[0] == 7_000_000_000
+        watching.close()
+    source.close()
+
+
+def test_a_clock_that_is_there_already_is_heard(node: Node) -> None:  # noqa: F811
+    publisher = node.create_publisher(Clock, "/clock", 1)
+    source, watcher = RosGraphSource(node), Watcher()
+    with spinning(node):
+        watching = source.attach(watcher)
+        while not watcher.told.wait(0.05):
+            publisher.publish(Clock())
+        watching.close()
+    source.close()
+
+
+def test_descriptions_are_read_when_they_come(node: Node) -> None:  # noqa: F811
+    with spinning(node):
+        studio = Studio(node, port=0)
+        assert "/robot_description" not in names(node)
+        latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        publisher = node.create_publisher(String, "arm/robot_description", latched)
+        reached = node.handle.graph.wait_for(lambda: publisher.get_subscription_count() == 1, 10.0)
+        assert reached, "nobody reads the description"
+        assert studio.url("plot", topic="/a b").endswith("/?panel=plot&topic=/a+b")
+        studio.close()
