@@ -22,6 +22,13 @@ from daidalos.simulation.samples import LaserScanSample, OdometrySample, TwistCo
 SHARE = Path(daidalos.__file__).parent / "share"
 SECOND = 1_000_000_000
 GROUND = "<sdf version='1.9'><world name='w'><include><uri>model://ground_plane</uri></include></world></sdf>"
+RGBD = """<sdf version="1.9"><model name="eye"><static>true</static><link name="l"><pose>0 0 0 0 0.3 0.5</pose>
+<sensor name="s" type="rgbd_camera"><update_rate>30</update_rate><camera><horizontal_fov>1.047</horizontal_fov><image>
+<width>640</width><height>480</height></image></camera></sensor></link></model></sdf>"""
+SCANNER = """<sdf version="1.9"><model name="scanner"><static>true</static><link name="l"><sensor name="s" type="ray">
+<update_rate>10</update_rate><ray><scan><horizontal><samples>720</samples><min_angle>-3.14159</min_angle>
+<max_angle>3.14159</max_angle></horizontal></scan><range><min>0.1</min><max>30</max></range></ray></sensor></link></model>
+</sdf>"""
 FIRST_SCAN = """
 import time
 start = time.perf_counter()
@@ -41,6 +48,9 @@ def run() -> dict[str, float | str]:
         "simulation.real_time_factor_waffle_in_arena": real_time_factor(arena()),
         "simulation.real_time_factor_with_50_boxes": real_time_factor(with_boxes(arena(), 50)),
         "simulation.scan_820_rays_ms": 1e3 * median_time(lambda: list(lidar.measure(simulation.time_ns)), 200),
+        "simulation.scan_720_rays_ms": 1e3 * median_time(scan_720_rays(), 200),
+        "simulation.rgbd_frame_ms": 1e3 * median_time(rgbd_frame(), 60),
+        "simulation.real_time_factor_workshop": real_time_factor(workshop(), 3),
         "simulation.spawn_and_delete_ms": 1e3 * median_time(lambda: spawn_and_delete(simulation), 20),
         "simulation.first_scan_s": first_scan_seconds(),
         "simulation.straight_10_m_error_mm": 1e3 * straight,
@@ -52,7 +62,7 @@ def run() -> dict[str, float | str]:
 def waffle() -> Robot:
     """Return the waffle without noise."""
     path = SHARE / "turtlebot3_description/urdf/turtlebot3_waffle.urdf.xacro"
-    return urdf.load(path, {"laser_noise": "0", "odometry_noise": "0"}, lambda name: SHARE / name)
+    return urdf.load(path, {"laser_noise": "0", "odometry_noise": "0", "camera": "false"}, lambda name: SHARE / name)
 
 
 def arena() -> Simulation:
@@ -82,9 +92,40 @@ def steps_per_second(simulation: Simulation) -> float:
     return 5000 / median_time(lambda: mujoco.mj_step(model, data, 5000), 7)
 
 
-def real_time_factor(simulation: Simulation) -> float:
+def real_time_factor(simulation: Simulation, times: int = 7) -> float:
     """Return simulated over wall time, unthrottled, with all sensors heard."""
-    return 1 / median_time(lambda: simulation.advance(SECOND), 7)
+
+    def second() -> None:
+        for _ in range(100):  # as the simulator's node does it
+            simulation.advance(SECOND // 100)
+
+    second()
+    return 1 / median_time(second, times)
+
+
+def workshop() -> Simulation:
+    """Return the whole scene: robot, 50 obstacles, lidar at 15 Hz, RGB-D camera 640x480 at 30 Hz."""
+    simulation = with_boxes(arena(), 50)
+    simulation.spawn(sdf.parse_model(RGBD), "eye", Pose((-1.5, -1.0, 0.8)))
+    return simulation
+
+
+def rgbd_frame() -> Callable[[], object]:
+    """Return what takes one RGB-D frame, with its depth image, as images alone."""
+    simulation = workshop()
+    simulation.heard = lambda topic: topic.endswith(("image", "depth_image"))
+    camera = next(c for c in simulation.instance("eye").components if type(c).__name__ == "Camera")
+    simulation.advance(SECOND // 10)
+    return lambda: list(camera.update(simulation.time_ns))
+
+
+def scan_720_rays() -> Callable[[], object]:
+    """Return what takes one scan of 720 rays in the arena."""
+    simulation = arena()
+    simulation.spawn(sdf.parse_model(SCANNER), "scanner", Pose((-1.0, -1.0, 0.3)))
+    lidar = next(c for c in simulation.instance("scanner").components if type(c).__name__ == "Lidar")
+    simulation.advance(SECOND // 10)
+    return lambda: list(lidar.measure(simulation.time_ns))
 
 
 def spawn_and_delete(simulation: Simulation) -> None:

@@ -27,7 +27,8 @@ def box(name, pose="0 0 0.5 0 0 0", size="1 1 1", static=False, mass=1.0, surfac
 def turtlebot(name="waffle", noise=False):
     """Return a TurtleBot3, silent unless told otherwise."""
     path = SHARE / f"turtlebot3_description/urdf/turtlebot3_{name}.urdf.xacro"
-    return urdf.load(path, {} if noise else {"laser_noise": "0", "odometry_noise": "0"}, share_of)
+    silent = {"laser_noise": "0", "odometry_noise": "0", "camera": "false"}
+    return urdf.load(path, {} if noise else silent, share_of)
 
 
 def arena(name="arena"):

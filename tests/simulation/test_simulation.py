@@ -314,3 +314,30 @@ def test_an_empty_world_runs():
     simulation = Simulation()
     assert simulation.advance(SECOND) == []
     assert simulation.time_ns == SECOND
+
+
+@pytest.mark.slow
+def test_two_hundred_models_leave_nothing_behind():
+    """Meshes, geoms, excludes and memory are as before once everything that came has gone."""
+    import gc
+    import resource
+
+    simulation = Simulation(world())
+    robot = turtlebot()
+
+    def come_and_go(count):
+        for number in range(count):
+            simulation.spawn(robot, f"r{number}", Pose((0.0, 0.0, 1.0 + number)))
+            simulation.step()
+            simulation.delete(f"r{number}")
+        gc.collect()
+
+    come_and_go(20)
+    model = simulation.physics.model
+    before = (model.nbody, model.ngeom, model.nmesh, model.nexclude, model.nu, len(simulation._schedule._entries))
+    memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    come_and_go(200)
+    model = simulation.physics.model
+    after = (model.nbody, model.ngeom, model.nmesh, model.nexclude, model.nu, len(simulation._schedule._entries))
+    assert after == before
+    assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - memory < 20_000  # [KiB]

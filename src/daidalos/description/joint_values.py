@@ -1,4 +1,4 @@
-"""Values for all joints of a robot, gathered from several sources: defaults, messages, sliders, and whom they follow."""
+"""Values for all joints of a robot from several sources: defaults, messages, sliders, and whom they follow."""
 
 from __future__ import annotations
 

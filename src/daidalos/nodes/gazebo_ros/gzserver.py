@@ -18,6 +18,7 @@ from rclpy.utilities import remove_ros_args
 from daidalos.description.errors import DescriptionError
 from daidalos.nodes.conversions import time_message
 from daidalos.nodes.runner import UserError, run
+from daidalos.nodes.warming import warm_up_in_background
 
 if TYPE_CHECKING:
     from daidalos.description.world import World
@@ -164,6 +165,7 @@ class GzServer(Node):
     def _connect(self, simulation: Simulation) -> None:
         """Make a publisher or subscription for every topic of the simulation, and remove those it lost."""
         from daidalos.nodes.gazebo_ros._messages import INCOMING, OUTGOING
+        from daidalos.simulation.samples import ImageSample
 
         wanted = simulation.publications
         for topic in [topic for topic in self._outgoing if topic not in wanted]:
@@ -182,6 +184,9 @@ class GzServer(Node):
                 self._incoming[topic] = self.create_subscription(accepted.message(), topic, take, 10)
 
         self._connect_switches(simulation)
+        if ImageSample in wanted.values():
+            # The first picture should not stop the world for seconds.
+            warm_up_in_background(_warm_up_cameras, self.get_logger())
 
     def _connect_switches(self, simulation: Simulation) -> None:
         """Offer the services of plugins."""
@@ -244,6 +249,12 @@ class GzServer(Node):
         self._paced.stop()
         self._companions.close()
         super().destroy_node()
+
+
+def _warm_up_cameras(progress: Callable[[float, str], None]) -> None:
+    from daidalos.simulation.rendering.warming import warm_up
+
+    warm_up(progress)
 
 
 def _is_heard(publisher: Any) -> bool:

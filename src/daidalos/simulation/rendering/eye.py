@@ -97,9 +97,9 @@ class Eye:
             add_noise(picture.reshape(-1), self._noise, start % _NOISE_TABLE)
         return picture
 
-    def depth(self) -> NDArray[np.float32]:
-        """Return the depths (height, width) along the optical axis [m], infinite where nothing is."""
-        return self._bent(self.view.depth())
+    def depth(self, near: float = 0.0, far: float = np.inf) -> NDArray[np.float32]:
+        """Return the depths (height, width) along the optical axis [m], with REP 118's infinities out of reach."""
+        return self._bent(self.view.depth(near, far))
 
     def of_parts(self, values: NDArray[Any], nothing: int = 0) -> NDArray[Any]:
         """Return for each pixel the value of the part of the scene that it sees."""

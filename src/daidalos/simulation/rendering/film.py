@@ -65,3 +65,29 @@ def mosaic(picture: Any, pattern: Any, raw: Any) -> None:
     for row in range(raw.shape[0]):
         for column in range(raw.shape[1]):
             raw[row, column] = picture[row, column, pattern[row & 1, column & 1]]
+
+
+@compiled
+def depths_of(inverse: Any, triangles: Any, near: Any, far: Any, depths: Any) -> None:
+    """Turn inverse depths into depths [m]: infinite where nothing is or it is too far, minus that where too near."""
+    rows, columns = inverse.shape
+    infinite = np.float32(np.inf)
+    for row in range(rows):
+        for column in range(columns):
+            depth = np.float32(1.0) / inverse[row, column]
+            depth = infinite if triangles[row, column] < 0 or depth > far else depth
+            depths[row, column] = -infinite if depth < near else depth
+
+
+@compiled
+def points_of(depths: Any, rays: Any, points: Any) -> None:
+    """Place each pixel's depth along its ray (rows, columns, 3); what is out of reach is no number."""
+    rows, columns = depths.shape
+    none = np.float32(np.nan)
+    for row in range(rows):
+        for column in range(columns):
+            depth = depths[row, column]
+            depth = depth if np.isfinite(depth) else none
+            points[row, column, 0] = depth * rays[row, column, 0]
+            points[row, column, 1] = depth * rays[row, column, 1]
+            points[row, column, 2] = depth * rays[row, column, 2]

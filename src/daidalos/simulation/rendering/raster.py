@@ -208,6 +208,7 @@ def draw_flat(
     placed: Any,
     face_ranges: Any,
     vertex_ranges: Any,
+    two_sided: Any,
     vertices: Any,
     faces: Any,
     transformed: Any,
@@ -251,7 +252,8 @@ def draw_flat(
             a1, b1, c1 = y2 - y0, x0 - x2, x2 * y0 - y2 * x0
             a2, b2, c2 = y0 - y1, x1 - x0, x0 * y1 - y0 * x1
             det = c0 + c1 + c2
-            if det == 0.0:
+            # What a closed shape turns away from the light lies behind what it turns towards it.
+            if det == 0.0 or (det > 0.0 and not two_sided[part]):
                 continue
             slope_x = (a0 * z0 + a1 * z1 + a2 * z2) / det
             slope_y = (b0 * z0 + b1 * z1 + b2 * z2) / det

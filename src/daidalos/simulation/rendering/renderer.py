@@ -10,8 +10,10 @@ from numpy.typing import NDArray
 
 from daidalos.description.link import Light, Rgba
 from daidalos.description.pose import Pose, rotate
+from daidalos.simulation.rendering.film import depths_of
 from daidalos.simulation.rendering.lighting import Lighting
 from daidalos.simulation.rendering.optics import OPTICAL, Pinhole
+from daidalos.simulation.rendering.pool import Pool
 from daidalos.simulation.rendering.raster import EDGES, NOTHING, draw, place_parts
 from daidalos.simulation.rendering.scene import Scene
 from daidalos.simulation.rendering.shading import DIRECTIONAL, LAMP, POINT, SPOT, shade
@@ -35,16 +37,20 @@ class View:
     triangles : array (rows, columns) of int32
         Rows of the scene's faces; negative for nothing.
     scene : Scene
+    pool : Pool
+        Where arrays for others come from.
     """
 
     inverse: NDArray[np.float32]
     triangles: NDArray[np.int32]
     scene: Scene
+    pool: Pool
 
-    def depth(self) -> NDArray[np.float32]:
-        """Return depths along the optical axis [m], infinite where nothing is."""
-        with np.errstate(divide="ignore"):
-            return np.where(self.triangles < 0, np.float32(np.inf), np.float32(1.0) / self.inverse)
+    def depth(self, near: float = 0.0, far: float = np.inf) -> NDArray[np.float32]:
+        """Return depths along the optical axis [m], infinite beyond `far`, minus infinite before `near`."""
+        depths = self.pool.take(self.inverse.shape, np.float32)
+        depths_of(self.inverse, self.triangles, np.float32(near), np.float32(far), depths)
+        return depths
 
     def of_parts(self, values: NDArray[Any], nothing: int = 0) -> NDArray[Any]:
         """Return for each pixel the value of the part that it sees."""
@@ -89,6 +95,7 @@ class Renderer:
         shape = (pinhole.height, pinhole.width)
         self._inverse = np.empty(shape, dtype=np.float32)
         self._triangles = np.empty(shape, dtype=np.int32)
+        self._pool = Pool()
         self._glass: tuple[NDArray[np.float32], NDArray[np.int32]] | None = None
         self._buffers: _Buffers | None = None
         self._shadow_map: ShadowMap | None = None
@@ -114,7 +121,7 @@ class Renderer:
         seen = scene.visible & ((scene.flags & self._mask) != 0)
         self._draw(seen & scene.opaque, self._inverse, self._triangles)
         self._transparent = seen & ~scene.opaque
-        return View(self._inverse, self._triangles, scene)
+        return View(self._inverse, self._triangles, scene, self._pool)
 
     def paint(self, positions: Array, rotations: Array, lighting: Lighting) -> NDArray[np.uint8]:
         """Return the colours (rows, columns, 3) of what the last `render` saw; glass in front of it included."""
@@ -123,7 +130,7 @@ class Renderer:
         sun, lamps = _sorted(lighting)
         direction = np.array((0.0, 0.0, -1.0)) if sun is None else _shines(*sun)
         shadow = self._shadow(scene, positions, rotations, direction, lighting, sun)
-        picture = np.empty((*self._triangles.shape, 3), dtype=np.uint8)
+        picture = self._pool.take((*self._triangles.shape, 3), np.uint8)
         self._shade(self._triangles, self._inverse, lighting, sun, direction, lamps, shadow, picture, blend=False)
         if self._transparent.any():
             if self._glass is None:

@@ -134,8 +134,7 @@ def make_scene(items: Iterable[Item], warn: Callable[[str], None]) -> Scene:
         spheres=np.array([_ball(part.vertices) for _, part in pairs]).reshape(-1, 4),
         face_ranges=np.stack((face_starts, face_ends), axis=1),
         vertex_ranges=np.stack((vertex_starts, vertex_ends), axis=1),
-        # Whoever made a mesh may have turned its triangles either way.
-        two_sided=np.array([isinstance(item.visual.geometry, Mesh) for item, _ in pairs], dtype=np.bool_),
+        two_sided=np.array([_open(item, part) for item, part in pairs], dtype=np.bool_),
         opaque=alphas >= 1.0,
         visible=alphas > 0.0,
         fixed=np.array([item.fixed for item, _ in pairs], dtype=np.bool_),
@@ -169,6 +168,25 @@ def _merged(part: Part) -> Part:
         uv=None if part.uv is None else part.uv[first],
         faces=place.ravel()[part.faces].astype(np.int32),
     )
+
+
+def _open(item: Item, part: Part) -> bool:
+    """Tell whether a part may be seen from behind: whoever made a mesh may have turned its triangles either way."""
+    return isinstance(item.visual.geometry, Mesh) and not _is_closed(part)
+
+
+@lru_cache(maxsize=1024)
+def _is_closed(part: Part) -> bool:
+    """Tell whether every edge joins two triangles that run along it in opposite ways, with the inside inside."""
+    _, place = np.unique(np.round(part.vertices, 6), axis=0, return_inverse=True)
+    faces = place.ravel()[part.faces].astype(np.int64)
+    faces = faces[(faces[:, 0] != faces[:, 1]) & (faces[:, 1] != faces[:, 2]) & (faces[:, 2] != faces[:, 0])]
+    edges = np.concatenate((faces[:, (0, 1)], faces[:, (1, 2)], faces[:, (2, 0)]))
+    size = int(faces.max(initial=0)) + 1
+    forward, backward = np.sort(edges[:, 0] * size + edges[:, 1]), np.sort(edges[:, 1] * size + edges[:, 0])
+    corners = part.vertices[part.faces].astype(np.float64)
+    volume = np.einsum("ij,ij->i", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])).sum()
+    return bool(np.array_equal(forward, backward) and volume > 0)
 
 
 def _ball(vertices: NDArray[np.float32]) -> tuple[float, float, float, float]:

@@ -127,5 +127,14 @@ class ShadowMap:
     ) -> None:
         scratch = np.empty_like(scene.vertices)
         draw_flat(
-            wanted, placed, scene.face_ranges, scene.vertex_ranges, scene.vertices, scene.faces, scratch, depths, box
+            wanted,
+            placed,
+            scene.face_ranges,
+            scene.vertex_ranges,
+            scene.two_sided,
+            scene.vertices,
+            scene.faces,
+            scratch,
+            depths,
+            box,
         )

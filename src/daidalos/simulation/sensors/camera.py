@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from daidalos.description.link import Sensor as Description
 from daidalos.description.markup import Element
 from daidalos.simulation.component import Setting
+from daidalos.simulation.rendering.pool import Pool
 from daidalos.simulation.samples import CameraInfoSample, ImageSample, PointCloudSample, Sample
 from daidalos.simulation.sensors.base import Sensor
 from daidalos.simulation.sensors.camera_settings import CameraSettings, read_camera
@@ -97,6 +98,7 @@ class Camera(Sensor):
     def start(self) -> None:
         """Make the eyes anew, so that a plugin may have changed their settings."""
         self._eyes = []
+        self._pool = Pool()
         self._rays: dict[int, NDArray[np.float32]] = {}
 
     def update(self, now_ns: int) -> Iterable[Sample]:
@@ -155,7 +157,7 @@ class Camera(Sensor):
         if lens.image in wanted and picture is not None:
             yield self._image(lens.image, lens, encode(picture, settings.encoding), settings.encoding, now_ns)
         if lens.depth in wanted or lens.points in wanted:
-            depth = self._depth(eye.depth(), settings)
+            depth = self._depth(eye, settings)
             if lens.depth in wanted:
                 yield self._depth_image(lens, depth, now_ns)
             if lens.points in wanted:
@@ -163,12 +165,14 @@ class Camera(Sensor):
         if lens.labels in wanted or lens.colored_labels in wanted:
             yield from self._segments(eye, lens, wanted, now_ns)
 
-    def _depth(self, depth: NDArray[np.float32], settings: CameraSettings) -> NDArray[np.float32]:
-        """Add noise and mark what is too near or too far (REP 118)."""
+    def _depth(self, eye: Eye, settings: CameraSettings) -> NDArray[np.float32]:
+        """Return depths with noise; what is too near or too far is marked (REP 118)."""
         noise = settings.depth_noise
-        if noise.stddev or noise.mean:
-            depth = depth + self.random.standard_normal(depth.shape, dtype=np.float32) * np.float32(noise.stddev)
-            depth += np.float32(noise.mean)
+        if not (noise.stddev or noise.mean):
+            return eye.depth(settings.depth_near, settings.depth_far)
+        depth = eye.depth()
+        depth += self.random.standard_normal(depth.shape, dtype=np.float32) * np.float32(noise.stddev)
+        depth += np.float32(noise.mean)
         depth[depth > settings.depth_far] = np.inf
         depth[depth < settings.depth_near] = -np.inf
         return depth
@@ -183,14 +187,17 @@ class Camera(Sensor):
     def _points(
         self, number: int, lens: Lens, depth: NDArray[np.float32], colors: NDArray[np.uint8] | None, now_ns: int
     ) -> PointCloudSample:
+        from daidalos.simulation.rendering.film import points_of
+
         rays = self._rays.get(number)
         if rays is None:
             x, y, z = np.moveaxis(lens.settings.pinhole.rays, -1, 0)
             axes = (z, -x, -y) if lens.points_ahead_x else (x, y, z)
-            rays = self._rays[number] = np.stack(axes, axis=-1)
-        reachable = np.where(np.isfinite(depth), depth, np.float32(np.nan))
+            rays = self._rays[number] = np.ascontiguousarray(np.stack(axes, axis=-1))
+        points = self._pool.take(rays.shape, np.float32)
+        points_of(depth, rays, points)
         frame_id = (lens.points_frame_id or lens.frame_id) if lens.points_ahead_x else lens.frame_id
-        return PointCloudSample(now_ns, lens.points, frame_id, rays * reachable[:, :, None], colors=colors)
+        return PointCloudSample(now_ns, lens.points, frame_id, points, colors=colors)
 
     def _segments(self, eye: Eye, lens: Lens, wanted: set[str], now_ns: int) -> Iterable[ImageSample]:
         """Label pixels: the class in all bands, or (panoptic) the instance in the first two and the class in the third.
