@@ -3,10 +3,12 @@ import time
 from itertools import pairwise
 
 import pytest
+from example_interfaces.srv import AddTwoInts
 from rclpy.qos import QoSProfile
+from rclpy.serialization import serialize_message
 from rosbag2_interfaces import srv
 from rosbag2_interfaces.msg import ReadSplitEvent
-from rosbag2_py import Player, PlayOptions, StorageOptions
+from rosbag2_py import Player, PlayOptions, ServiceRequestsSource, StorageOptions
 from rosgraph_msgs.msg import Clock
 from std_msgs.msg import String
 
@@ -293,3 +295,55 @@ def test_options_that_make_no_sense(graph, tmp_path):
         player.burst(1)
     with pytest.raises(RuntimeError, match="Expected one bag to play, found 2"):
         Player([StorageOptions(uri), StorageOptions(uri)], PlayOptions(**QUIET))
+
+
+def call_events(folder):
+    """Write a bag with the events of two calls, as a client (0, 3) and its service (1, 2) tell of them."""
+    topic = Topic(
+        "/add/_service_event", "example_interfaces/srv/AddTwoInts_Event", type_hash=AddTwoInts.Event._TYPE_HASH
+    )
+    with BagWriter(folder) as bag:
+        bag.add_topic(topic)
+        for number in (1, 2):
+            for kind in (0, 1, 2, 3):
+                event = kind()
+                event.info.event_type = kind
+                event.info.sequence_number = number
+                if kind in (0, 1):
+                    event.request = [AddTwoInts.Request(a=number, b=10 * kind)]
+                time_ns = SECOND + number * 10_000_000 + kind
+                bag.write(BagMessage(topic.name, serialize_message(event), time_ns, time_ns))
+    return str(folder)
+
+
+@pytest.mark.parametrize(
+    ("source", "sums"),
+    [(ServiceRequestsSource.SERVICE_INTROSPECTION, [11, 12]), (ServiceRequestsSource.CLIENT_INTROSPECTION, [1, 2])],
+)
+def test_requests_are_sent_again(node, tmp_path, source, sums):
+    uri = call_events(tmp_path / "bag")
+    served, done = [], threading.Event()
+
+    def serve(request, response):
+        served.append(request.a + request.b)
+        if len(served) == 2:
+            done.set()
+        return response
+
+    node.create_service(AddTwoInts, "/add", serve)
+    with spinning(node):
+        play(uri, publish_service_requests=True, service_requests_source=source)
+        assert done.wait(PATIENCE_S)
+    assert served == sums
+
+
+def test_events_of_services_are_published_as_they_were(node, tmp_path):
+    uri = call_events(tmp_path / "bag")
+    kinds = Heard(node, "/add/_service_event", AddTwoInts.Event, lambda event: event.info.event_type)
+    with spinning(node):
+        play(uri)
+        assert kinds.wait_for(8) == [0, 1, 2, 3] * 2
+        play(uri, services_to_filter=["/other"])
+        play(uri, exclude_service_events_to_filter=["/add"])
+        play(uri, services_to_filter=["add"])
+        assert kinds.wait_for(16) == [0, 1, 2, 3] * 4

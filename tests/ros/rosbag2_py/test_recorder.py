@@ -3,10 +3,13 @@ from datetime import timedelta
 
 import pytest
 import rosbag2_py
+from example_interfaces.srv import AddTwoInts
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from rclpy.serialization import deserialize_message
 from rosbag2_interfaces import srv
 from rosbag2_interfaces.msg import WriteSplitEvent
 from rosbag2_py import Recorder, RecordOptions, SequentialReader, StorageOptions
+from rosgraph_msgs.msg import Clock
 from std_msgs.msg import Int32, String
 
 from ros.graph import spinning
@@ -204,3 +207,49 @@ def test_options_that_make_no_sense(graph, tmp_path):
     recorder.stop_spin()
     options.all = False
     assert options.all is False
+
+
+def test_simulated_time(node, tmp_path):
+    publisher = node.create_publisher(String, "/chatter", 10)
+    clock = node.create_publisher(Clock, "/clock", 10)
+    with Recording(tmp_path / "bag", topics=["/chatter"], use_sim_time=True) as recording:
+        recording.wait_for(node, "/chatter", "/clock")
+        publisher.publish(String(data="too early"))
+        recorder = recording.recorder.node
+        waiting = recorder._subscribed["/chatter"].handle.impl
+        while len(waiting):
+            threading.Event().wait(0.01)
+        message = Clock()
+        message.clock.sec = 42
+        for _ in range(PATIENCE_S * 100):
+            clock.publish(message)
+            if recorder.get_clock().now().nanoseconds:
+                break
+            threading.Event().wait(0.01)
+        publisher.publish(String(data="in time"))
+        assert wait_for_count(recording, 1)
+    reader = SequentialReader()
+    reader.open_uri(str(tmp_path / "bag"))
+    _, data, time = reader.read_next()
+    assert (deserialize_message(data, String).data, time) == ("in time", 42_000_000_000)
+    assert not reader.has_next()
+
+
+def test_services_by_their_events(node, tmp_path):
+    calls = node.create_publisher(AddTwoInts.Event, "/add/_service_event", 10)
+    node.create_publisher(AddTwoInts.Event, "/sub/_service_event", 10)
+    with Recording(tmp_path / "bag", services=["add"]) as recording:
+        recording.wait_for(node, "/add/_service_event")
+        calls.publish(AddTwoInts.Event())
+    assert content(tmp_path / "bag") == {"/add/_service_event": 1}
+
+
+def test_a_topic_of_two_types_is_told(node, tmp_path, capfd):
+    node.create_publisher(String, "/both", 10)
+    node.create_publisher(Int32, "/both", 10)
+    one = node.create_publisher(Int32, "/one", 10)
+    with Recording(tmp_path / "bag", topics=["/both", "/one"]) as recording:
+        recording.wait_for(node, "/one")
+        one.publish(Int32())
+    assert content(tmp_path / "bag") == {"/one": 1}
+    assert "Topic '/both' has more than one type associated" in capfd.readouterr().err

@@ -192,3 +192,25 @@ def test_overrides_of_quality_of_service(ros2_bag, partner, env, tmp_path):
     offered = graph.endpoints(name="/chatter")[0].qos
     assert (offered.transient_local, offered.depth) == (True, 100)
     assert play.end() == 0
+
+
+def test_types_that_are_not_installed_are_passed_on(ros2_bag, partner, env, tmp_path):
+    from rosbag2_py._types import opaque_class
+
+    kind = opaque_class("no_such_msgs/msg/Thing", "RIHS01_" + "ab" * 32)
+    record = ros2_bag("record", "-o", "bag", "--topics", "/thing", terminal=True)
+    record.wait_for("Recording...")
+    publisher = partner.node.create_publisher(kind, "/thing", 10)
+    record.wait_for("Topic '/thing' has an unknown type 'no_such_msgs/msg/Thing' associated")
+    assert partner.node.handle.graph.wait_for(lambda: publisher.get_subscription_count() > 0, 40)
+    publisher.publish(b"\0\1\0\0hello")
+    record.wait_for("Recorded 1 messages")
+    assert record.end() == 0
+    heard = []
+    partner.node.create_subscription(kind, "/again", heard.append, 10, raw=True)
+    play = ros2_bag("play", "bag", "-m", "/thing:=/again")
+    assert play.finish() == 0
+    assert "its type 'no_such_msgs/msg/Thing' is not installed" in play.text
+    assert _polled(lambda: heard == [b"\0\1\0\0hello"])
+    shown = ros2("bag", "info", "bag", env=env, cwd=tmp_path)
+    assert "Topic: /thing | Type: no_such_msgs/msg/Thing | Count: 1" in shown.out
