@@ -306,7 +306,7 @@ def call_events(folder):
         bag.add_topic(topic)
         for number in (1, 2):
             for kind in (0, 1, 2, 3):
-                event = kind()
+                event = event_class()
                 event.info.event_type = kind
                 event.info.sequence_number = number
                 if kind in (0, 1):
