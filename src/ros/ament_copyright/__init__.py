@@ -1,0 +1,1 @@
+"""The linter of ament that packages call as `ament_copyright`."""

@@ -1,0 +1,1 @@
+"""What the linters that packages call in their tests have in common."""
