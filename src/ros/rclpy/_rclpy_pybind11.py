@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from enum import IntEnum
 from typing import Any
 
+from rclpy import qos
 from rclpy.clock_type import ClockType
 from rclpy.duration import Duration
 from rclpy.expand_topic_name import expand_topic_name as rclpy_expand_topic_name
@@ -101,7 +102,6 @@ Clock = ClockHandle
 RCutilsLogSeverity = LoggingSeverity
 rclpy_qos_check_compatible = qos_check_compatible
 rclpy_remove_ros_args = remove_ros_args
-rmw_qos_profile_t = QoSProfile
 
 
 def rclpy_duration_t(nanoseconds: int) -> Duration:
@@ -126,6 +126,16 @@ def rclpy_logging_get_logger_effective_level(name: str) -> LoggingSeverity:
 
 def _nothing() -> None:
     """Stand in for an executor: what is made here is waited for by wait sets."""
+
+
+class rmw_qos_profile_t(QoSProfile):
+    """A quality of service profile as the middleware takes it."""
+
+    @staticmethod
+    def predefined(name: str) -> QoSProfile:
+        """Return a profile of `rclpy.qos` by its name there, such as ``qos_profile_default``."""
+        profile: QoSProfile = getattr(qos, name)
+        return profile
 
 
 def Node(

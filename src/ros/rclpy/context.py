@@ -69,8 +69,11 @@ class Context(AbstractContextManager["Context"]):
                 if self.__handle.ok():
                     raise RuntimeError("Context.init() must only be called once")
                 self.destroy()
+            arguments = list(sys.argv if args is None else args)
+            for argument in arguments:
+                argument.encode()  # UnicodeEncodeError for what is no text
             try:
-                self.__handle = ContextHandle(list(sys.argv if args is None else args), domain_id)
+                self.__handle = ContextHandle(arguments, domain_id)
             except ValueError as error:
                 raise RuntimeError(str(error)) from None
             self.__handle.on_shutdown(self._call_on_shutdown_callbacks)

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from enum import IntEnum
 from typing import Any
 
+import rclpy.logging
 from rclpy.callback_groups import CallbackGroup
 from rclpy.impl.entities import EndpointHandle
 from rclpy.impl.errors import UnsupportedEventTypeError
@@ -25,7 +26,6 @@ from rclpy.impl.events import (
     event_source,
 )
 from rclpy.impl.ready import ReadyHook
-from rclpy.logging import get_logger
 from rclpy.qos import qos_policy_name_from_kind
 from rclpy.waitable import Waitable
 
@@ -132,17 +132,17 @@ class SubscriptionEventCallbacks(_EventCallbacks):
     ) -> list[EventHandler]:
         """Return a handler for every function."""
         with subscription:
-            logger = get_logger(subscription.node.logger_name())
+            logger = rclpy.logging._root_logger.get_child(subscription.node.logger_name())
 
         def warn_of_qos(event: Any) -> None:
             policy = qos_policy_name_from_kind(event.last_policy_kind)
-            logger.warning(
+            logger.warn(
                 f"New publisher discovered on topic '{topic_name}', offering incompatible QoS. No messages will be "
                 f"received from it. Last incompatible policy: {policy}"
             )
 
         def warn_of_type(event: Any) -> None:
-            logger.warning(f"Incompatible type on topic '{topic_name}', no messages will be received from it.")
+            logger.warn(f"Incompatible type on topic '{topic_name}', no messages will be received from it.")
 
         kinds = QoSSubscriptionEventType
         return self._handlers(
@@ -188,17 +188,17 @@ class PublisherEventCallbacks(_EventCallbacks):
     ) -> list[EventHandler]:
         """Return a handler for every function."""
         with publisher:
-            logger = get_logger(publisher.node.logger_name())
+            logger = rclpy.logging._root_logger.get_child(publisher.node.logger_name())
 
         def warn_of_qos(event: Any) -> None:
             policy = qos_policy_name_from_kind(event.last_policy_kind)
-            logger.warning(
+            logger.warn(
                 f"New subscription discovered on topic '{topic_name}', requesting incompatible QoS. No messages will "
                 f"be sent to it. Last incompatible policy: {policy}"
             )
 
         def warn_of_type(event: Any) -> None:
-            logger.warning(f"Incompatible type on topic '{topic_name}', no messages will be sent to it.")
+            logger.warn(f"Incompatible type on topic '{topic_name}', no messages will be sent to it.")
 
         kinds = QoSPublisherEventType
         return self._handlers(

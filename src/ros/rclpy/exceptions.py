@@ -23,7 +23,7 @@ class NoTypeSupportImportedException(Exception):
         super().__init__("no type_support imported")
 
 
-class NameValidationException(Exception):
+class NameValidationException(ValueError):
     """A name breaks ROS 2's rules."""
 
     def __init__(self, name_type: str, name: str, error_msg: str, invalid_index: int) -> None:

@@ -112,7 +112,7 @@ class Executor(AbstractContextManager["Executor"]):
         """Have a function or coroutine carried out; returns the task, whose result it will be."""
         task = Task(callback, args, kwargs, executor=self)
         task._requeue = self._put
-        self._put(task)
+        self._ready.put_first(task)
         return task
 
     def create_future(self) -> Future:
@@ -142,6 +142,12 @@ class Executor(AbstractContextManager["Executor"]):
             if node not in self._nodes:
                 return
             del self._nodes[node]
+        node._rcl_detach_executor(self)
+
+    def _forget(self, node: Node) -> None:
+        """Let go of a node that is being destroyed."""
+        with self._nodes_lock:
+            self._nodes.pop(node, None)
         node._rcl_detach_executor(self)
 
     def get_nodes(self) -> list[Node]:

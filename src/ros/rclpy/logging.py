@@ -22,6 +22,9 @@ __all__ = [
 ]
 
 
+_root_logger = RcutilsLogger()
+
+
 def get_logger(name: str) -> RcutilsLogger:
     """Return the logger of that name.
 

@@ -273,10 +273,9 @@ class Node(NodeParameters, NodeGraph):
             return
         if current is not None:
             current.remove_node(self)
-        if new_executor is None:
-            self.__executor_weakref = None
-        else:
-            new_executor.add_node(self)
+        self.__executor_weakref = None
+        if new_executor is not None and new_executor.add_node(self):
+            self.__executor_weakref = weakref.ref(new_executor)
 
     def _rcl_attach_executor(self, executor: Executor) -> None:
         """Direct everything that becomes ready to an executor."""
@@ -610,11 +609,19 @@ class Node(NodeParameters, NodeGraph):
         return True
 
     def destroy_node(self) -> None:
-        """Leave the graph; everything the node made is destroyed with it."""
+        """Leave the graph; everything the node made is destroyed with it.
+
+        Raises
+        ------
+        InvalidHandle
+            When that was done before.
+        """
+        with self.handle:
+            """Raises InvalidHandle."""
         self._time_source.detach_node()
         executor = self.executor
         if executor is not None:
-            executor.remove_node(self)
+            executor._forget(self)
         self._parameter_event_publisher = None
         for rate in list(self._rcl_members["rate"]):
             self.destroy_rate(rate)
@@ -634,7 +641,8 @@ class Node(NodeParameters, NodeGraph):
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self.destroy_node()
+        if not self.handle.is_destroyed:
+            self.destroy_node()
 
 
 _KINDS = ("waitable", "publisher", "subscription", "client", "service", "timer", "guard", "rate")

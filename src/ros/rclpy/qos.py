@@ -291,6 +291,10 @@ class QoSProfile:
         """Return what the middleware takes: the object itself."""
         return self
 
+    def to_dict(self) -> dict[str, Any]:
+        """Return the policies, as keyword arguments of a profile."""
+        return {slot[1:]: getattr(self, slot) for slot in self.__slots__}
+
     def resolved(self) -> Qos:
         """Return the profile with every "system default" replaced."""
         history = History.KEEP_ALL if self._history == HistoryPolicy.KEEP_ALL else History.KEEP_LAST

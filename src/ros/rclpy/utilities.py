@@ -41,10 +41,19 @@ def get_default_context(*, shutting_down: bool = False) -> Context:
 
 
 def remove_ros_args(args: Sequence[str] | None = None) -> list[str]:
-    """Return the arguments (of the process where None) without those between ``--ros-args`` and ``--``."""
+    """Return the arguments (of the process where None) without those between ``--ros-args`` and ``--``.
+
+    Raises
+    ------
+    RuntimeError
+        When there is none at all, not even the program's name.
+    """
     from rclpy.impl.arguments import split_ros_args
 
-    return split_ros_args(sys.argv if args is None else args)[1]
+    given = sys.argv if args is None else args
+    if not given:
+        raise RuntimeError("there are no arguments, not even the program's name")
+    return split_ros_args(given)[1]
 
 
 def ok(*, context: Context | None = None) -> bool:

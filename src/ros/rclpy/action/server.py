@@ -110,9 +110,13 @@ class ServerGoalHandle:
         RCLError
             When it is carried out already, or over.
         """
+        self.executing()
+        self._action_server.notify_execute(self, execute_callback)
+
+    def executing(self) -> None:
+        """Note that the goal is carried out, by whom it may be; RCLError when it is already, or over."""
         if not self.is_cancel_requested:
             self._update_state(GoalEvent.EXECUTE)
-        self._action_server.notify_execute(self, execute_callback)
 
     def publish_feedback(self, feedback: Any) -> None:
         """Tell the client how far it got.
@@ -180,7 +184,7 @@ class ActionServer(Waitable):
     action_name
         Its name, relative to the node unless it begins with a slash.
     execute_callback
-        ``callback(goal_handle) -> result``: carries a goal out.
+        ``callback(goal_handle) -> result``: carries a goal out. None where `handle_accepted_callback` takes care.
     callback_group
         The node's default where None.
     goal_callback
@@ -204,7 +208,7 @@ status_pub_qos_profile
         node: Node,
         action_type: Any,
         action_name: str,
-        execute_callback: Callable[[ServerGoalHandle], Any],
+        execute_callback: Callable[[ServerGoalHandle], Any] | None = None,
         *,
         callback_group: CallbackGroup | None = None,
         goal_callback: Callable[[Any], GoalResponse] = default_goal_callback,
@@ -225,7 +229,9 @@ status_pub_qos_profile
         self.register_handle_accepted_callback(handle_accepted_callback)
         self.register_goal_callback(goal_callback)
         self.register_cancel_callback(cancel_callback)
-        self.register_execute_callback(execute_callback)
+        self._execute_callback: Callable[[ServerGoalHandle], Any] | None = None
+        if execute_callback is not None:
+            self.register_execute_callback(execute_callback)
         self._server_node = node
         self._action_type = action_type
         self._goal_handles: dict[bytes, ServerGoalHandle] = {}
@@ -364,6 +370,8 @@ status_pub_qos_profile
     ) -> None:
         """Have a goal carried out by the node's executor."""
         callback = execute_callback or self._execute_callback
+        if callback is None:
+            raise RuntimeError("the action server has no execute_callback, and none was given")
         executor = self._server_node.executor
         if executor is not None:
             executor.create_task(self._execute_goal, callback, goal_handle)

@@ -110,12 +110,16 @@ def _parse_flag(result: RosArguments, flag: str, pending: list[str]) -> None:
     elif ":=" in flag and not flag.startswith("-"):
         result.remaps.append(parse_remap(flag))
     else:
-        raise UnknownROSArgsError(f"Found unknown ROS arguments: '{flag}'")
+        raise UnknownROSArgsError(f"Found unknown ROS arguments: {[flag]}")
+
+
+def _bad(what: str) -> RCLInvalidROSArgsError:
+    return RCLInvalidROSArgsError(f"Failed to parse ROS arguments: {what}")
 
 
 def _value(flag: str, pending: list[str]) -> str:
     if not pending:
-        raise RCLInvalidROSArgsError(f"Failed to parse ROS arguments: '{flag}' needs a value")
+        raise _bad(f"'{flag}' needs a value")
     return pending.pop()
 
 
@@ -129,7 +133,7 @@ def parse_remap(text: str) -> RemapRule:
     """
     match, separator, replacement = text.partition(":=")
     if not separator or not match or not replacement:
-        raise RCLInvalidROSArgsError(f"Couldn't parse remap rule: '{text}'; expected 'from:=to'")
+        raise _bad(f"couldn't parse remap rule: '{text}'; expected 'from:=to'")
     node = ""
     prefixed = _NODE_PREFIX.fullmatch(match)
     if prefixed:
@@ -148,14 +152,14 @@ def parse_remap(text: str) -> RemapRule:
 def _checked_node(rule: RemapRule, text: str) -> RemapRule:
     fault = names.node_name_fault(rule.replacement)
     if fault:
-        raise RCLInvalidROSArgsError(f"Couldn't parse remap rule: '{text}': {fault[0]}")
+        raise _bad(f"couldn't parse remap rule: '{text}': {fault[0]}")
     return rule
 
 
 def _checked_namespace(rule: RemapRule, text: str) -> RemapRule:
     fault = names.namespace_fault(rule.replacement)
     if fault:
-        raise RCLInvalidROSArgsError(f"Couldn't parse remap rule: '{text}': {fault[0]}")
+        raise _bad(f"couldn't parse remap rule: '{text}': {fault[0]}")
     return rule
 
 
@@ -164,7 +168,7 @@ def _parse_parameter(text: str) -> tuple[str, str, Any]:
 
     name, separator, value = text.partition(":=")
     if not separator or not name:
-        raise RCLInvalidROSArgsError(f"Couldn't parse parameter override rule: '-p {text}'; expected 'name:=value'")
+        raise _bad(f"couldn't parse parameter override rule: '-p {text}'; expected 'name:=value'")
     node = "/**"
     prefixed = _NODE_PREFIX.fullmatch(name)
     if prefixed:
@@ -172,7 +176,7 @@ def _parse_parameter(text: str) -> tuple[str, str, Any]:
     try:
         return node, name, parse_value(value)
     except ValueError as error:
-        raise RCLInvalidROSArgsError(f"Couldn't parse parameter override rule: '-p {text}': {error}") from None
+        raise _bad(f"couldn't parse parameter override rule: '-p {text}': {error}") from None
 
 
 def _read_file(path: str) -> list[tuple[str, str, Any]]:
@@ -181,14 +185,12 @@ def _read_file(path: str) -> list[tuple[str, str, Any]]:
     try:
         return read_file(path)
     except ParameterFileError as error:
-        raise RCLInvalidROSArgsError(f"Couldn't parse params file: '--params-file {path}': {error}") from None
+        raise _bad(f"couldn't parse params file: '--params-file {path}': {error}") from None
 
 
 def _parse_log_level(text: str) -> tuple[str, int]:
     name, separator, level = text.rpartition(":=")
     severity = SEVERITIES.get(level.lower())
     if severity is None or (separator and not name):
-        raise RCLInvalidROSArgsError(
-            f"Couldn't parse log level rule: '--log-level {text}'; expected one of {', '.join(SEVERITIES)}"
-        )
+        raise _bad(f"couldn't parse log level rule: '--log-level {text}'; expected one of {', '.join(SEVERITIES)}")
     return name, severity

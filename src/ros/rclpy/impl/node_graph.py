@@ -111,9 +111,7 @@ class NodeGraph:
     def _rcl_count(self, name: str, kind: EndpointKind) -> int:
         is_service = kind in (EndpointKind.SERVICE, EndpointKind.CLIENT)
         with self.handle as handle:
-            validate_topic_name(name, is_service=is_service)
-            full = handle.resolve_name(name, is_service=is_service)
-            validate_full_topic_name(full, is_service=is_service)
+            full = _asked_name(handle, name, is_service=is_service)
             return len(handle.graph.endpoints(kind, name=full))
 
     def get_publishers_info_by_topic(self, topic_name: str, no_mangle: bool = False) -> list[TopicEndpointInfo]:
@@ -126,11 +124,7 @@ class NodeGraph:
 
     def _rcl_infos(self, topic_name: str, kind: EndpointKind, no_mangle: bool) -> list[TopicEndpointInfo]:
         with self.handle as handle:
-            name = topic_name
-            if not no_mangle:
-                validate_topic_name(topic_name)
-                name = handle.resolve_name(topic_name)
-                validate_full_topic_name(name)
+            name = topic_name if no_mangle else _asked_name(handle, topic_name, is_service=False)
             return [TopicEndpointInfo.from_endpoint(one) for one in handle.graph.endpoints(kind, name=name)]
 
     def wait_for_node(self, fully_qualified_node_name: str, timeout: float) -> bool:
@@ -164,6 +158,24 @@ class NodeGraph:
         """
         with self.handle as handle:
             return checked_name(handle, service, is_service=True, only_expand=only_expand)
+
+
+def _asked_name(handle: NodeHandle, name: str, *, is_service: bool) -> str:
+    """Return the full name of what somebody asks about.
+
+    Raises
+    ------
+    TypeError
+        When it is no string.
+    ValueError
+        When it breaks the rules.
+    """
+    if not isinstance(name, str):
+        raise TypeError(f"bad argument type for built-in operation: a name must be a string, not {type(name).__name__}")
+    try:
+        return checked_name(handle, name, is_service=is_service)
+    except ValueError as error:
+        raise ValueError(f"{'service' if is_service else 'topic'} name '{name}' is invalid: {error}") from None
 
 
 def checked_name(handle: NodeHandle, name: str, *, is_service: bool, only_expand: bool = False) -> str:

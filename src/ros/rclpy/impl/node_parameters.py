@@ -15,7 +15,7 @@ from rclpy.exceptions import (
     ParameterNotDeclaredException,
     ParameterUninitializedException,
 )
-from rclpy.parameter import PARAMETER_SEPARATOR_STRING, Parameter, ParameterType
+from rclpy.parameter import PARAMETER_SEPARATOR_STRING, Parameter, ParameterType, parameter_value_to_python
 from rclpy.validate_parameter_name import validate_parameter_name
 
 if TYPE_CHECKING:
@@ -500,6 +500,10 @@ def _unpacked(index: int, entry: Any) -> tuple[str, Any, Any]:
     if not isinstance(name, str):
         raise TypeError(f"First element {name} at index {index} in parameters list is not a str.")
     value = entry[1] if len(entry) > 1 else None
+    if type(value).__name__ == "ParameterValue":
+        value = parameter_value_to_python(value)
+        if value is None:
+            raise TypeError(f"The value of parameter '{name}' is a ParameterValue that is not set.")
     if len(entry) < 3:
         return name, value, ParameterDescriptor(dynamic_typing=value is None)
     descriptor = copy.deepcopy(entry[2])
@@ -527,8 +531,6 @@ def _initial(name: str, value: Any, descriptor: ParameterDescriptor) -> Paramete
     if value is not None:
         if isinstance(value, (list, tuple)) and not value and descriptor.type >= ParameterType.BYTE_ARRAY:
             return Parameter(name, ParameterType(descriptor.type), value)
-        if descriptor.type not in (ParameterType.NOT_SET, parameter.type_) and not descriptor.dynamic_typing:
-            raise InvalidParameterTypeException(parameter, ParameterType(descriptor.type))
         descriptor.type = int(parameter.type_)
     return parameter
 

@@ -7,7 +7,7 @@ import os
 import sys
 import time
 from collections import namedtuple
-from types import FrameType
+from types import CodeType, FrameType
 from typing import Any, ClassVar
 
 from rclpy.clock_type import ClockType
@@ -175,6 +175,7 @@ class RcutilsLogger:
     def __init__(self, name: str = "") -> None:
         self.name = name
         self.contexts: dict[CallerId, dict[str, Any]] = {}
+        self._places: dict[tuple[CodeType, int], tuple[str, LoggingSeverity]] = {}
 
     def get_child(self, name: str) -> RcutilsLogger:
         """Return the logger below this one.
@@ -238,10 +239,17 @@ class RcutilsLogger:
             return False
         frame = _find_caller(sys._getframe(1))
         code = frame.f_code
+        if self._places.setdefault((code, frame.f_lasti), (name, severity)) != (name, severity):
+            self._raise_changed(code, frame.f_lasti, name)
         OUTPUT.write(
             Record(severity, name, str(message), time.time_ns(), code.co_name, code.co_filename, frame.f_lineno)
         )
         return True
+
+    def _raise_changed(self, code: CodeType, position: int, name: str) -> None:
+        before, _ = self._places[code, position]
+        what = "name" if before != name else "severity"
+        raise ValueError(f"Logger {what} cannot be changed between calls.")
 
     def _passes(self, caller: CallerId, severity: LoggingSeverity, kwargs: dict[str, Any]) -> bool:
         context = self.contexts.get(caller)

@@ -7,6 +7,7 @@ import itertools
 import threading
 import time
 from collections import deque
+from contextlib import suppress
 from typing import Any
 
 from rclpy.impl.timer import TimerHandle
@@ -23,6 +24,7 @@ class ReadyQueue:
 
     def __init__(self) -> None:
         self._items: deque[Any] = deque()
+        self._first: deque[Any] = deque()
         self._gate = threading.Lock()
         self._gate.acquire()
         self._timers: list[tuple[int, int, int, TimerHandle]] = []
@@ -33,17 +35,22 @@ class ReadyQueue:
 
     def empty(self) -> bool:
         """Tell whether nothing waits to be taken."""
-        return not self._items
+        return not self._items and not self._first
 
     def put(self, item: Any) -> None:
         """Add an item, and wake who waits."""
         self._items.append(item)
-        gate = self._gate
-        if gate.locked():
-            try:
-                gate.release()
-            except RuntimeError:  # somebody else released it just now
-                return
+        if self._gate.locked():
+            self._open()
+
+    def put_first(self, item: Any) -> None:
+        """Add an item that comes before all that were added by `put`."""
+        self._first.append(item)
+        self._open()
+
+    def _open(self) -> None:
+        with suppress(RuntimeError):  # it is open
+            self._gate.release()
 
     def schedule(self, deadline_ns: int, timer: TimerHandle) -> None:
         """Have a timer told when ``time.monotonic_ns()`` reaches a deadline."""
@@ -66,12 +73,14 @@ class ReadyQueue:
         TimeoutError
             When the deadline came first.
         """
-        items, timers, now = self._items, self._timers, time.monotonic_ns
+        items, first, timers, now = self._items, self._first, self._timers, time.monotonic_ns
         self._waiting_thread = threading.get_ident()
         while True:
             until = deadline_ns
             if timers:
                 until = self._tell_timers(until)
+            if first:
+                return first.popleft()
             if items:
                 return items.popleft()
             if until is None:

@@ -43,13 +43,15 @@ class LifecycleNodeMixin(ManagedEntity):
     def __init__(
         self, *, enable_communication_interface: bool = True, callback_group: CallbackGroup | None = None
     ) -> None:
-        self._rcl_machine = StateMachine()
+        self._state_machine = StateMachine()
         self._rcl_managed_entities: set[ManagedEntity] = set()
         self._rcl_transition_event_publisher: Any = None
         self._callback_group = callback_group
         for transition_name, callback in _CALLBACKS.items():
             if not callable(getattr(self, callback)):
                 raise TypeError(f"{callback} must be callable to {transition_name}")
+        if not isinstance(enable_communication_interface, bool):
+            raise TypeError("enable_communication_interface must be a bool")
         if enable_communication_interface:
             self._rcl_create_interface()
 
@@ -65,7 +67,8 @@ class LifecycleNodeMixin(ManagedEntity):
             (GetAvailableTransitions, "get_available_transitions", self._rcl_on_get_available_transitions),
             (GetAvailableTransitions, "get_transition_graph", self._rcl_on_get_transition_graph),
         ):
-            node.create_service(kind, f"~/{name}", callback, callback_group=self._callback_group)
+            service = node.create_service(kind, f"~/{name}", callback, callback_group=self._callback_group)
+            setattr(self._state_machine, f"service_{name}", service)
         self._rcl_transition_event_publisher = node.create_publisher(
             TransitionEvent, "~/transition_event", QoSProfile(depth=10)
         )
@@ -73,27 +76,27 @@ class LifecycleNodeMixin(ManagedEntity):
     @property
     def current_state(self) -> LifecycleState:
         """The node's state."""
-        return LifecycleState(self._rcl_machine.state.label, self._rcl_machine.state.state_id)
+        return LifecycleState(self._state_machine.state.label, self._state_machine.state.state_id)
 
     def trigger_configure(self) -> TransitionCallbackReturn:
         """Go from unconfigured to inactive; RCLError when the state does not allow it."""
-        return self._rcl_change_state(self._rcl_machine.by_label("configure"))
+        return self._rcl_change_state(self._state_machine.by_label("configure"))
 
     def trigger_cleanup(self) -> TransitionCallbackReturn:
         """Go from inactive to unconfigured; RCLError when the state does not allow it."""
-        return self._rcl_change_state(self._rcl_machine.by_label("cleanup"))
+        return self._rcl_change_state(self._state_machine.by_label("cleanup"))
 
     def trigger_shutdown(self) -> TransitionCallbackReturn:
         """Go to finalized; RCLError when the state does not allow it."""
-        return self._rcl_change_state(self._rcl_machine.by_label("shutdown"))
+        return self._rcl_change_state(self._state_machine.by_label("shutdown"))
 
     def trigger_activate(self) -> TransitionCallbackReturn:
         """Go from inactive to active; RCLError when the state does not allow it."""
-        return self._rcl_change_state(self._rcl_machine.by_label("activate"))
+        return self._rcl_change_state(self._state_machine.by_label("activate"))
 
     def trigger_deactivate(self) -> TransitionCallbackReturn:
         """Go from active to inactive; RCLError when the state does not allow it."""
-        return self._rcl_change_state(self._rcl_machine.by_label("deactivate"))
+        return self._rcl_change_state(self._state_machine.by_label("deactivate"))
 
     def add_managed_entity(self, entity: ManagedEntity) -> None:
         """Take an entity through the node's transitions from now on."""
@@ -155,14 +158,14 @@ class LifecycleNodeMixin(ManagedEntity):
         before = LifecycleState(transition.start.label, transition.start.state_id)
         self._rcl_enter(transition)
         outcome = self._rcl_run(_CALLBACKS[transition.label], before)
-        self._rcl_enter(self._rcl_machine.by_label(f"transition_{outcome.name.lower()}"))
+        self._rcl_enter(self._state_machine.by_label(f"transition_{outcome.name.lower()}"))
         if outcome == TransitionCallbackReturn.ERROR:
             recovery = self._rcl_run("on_error", before)
-            self._rcl_enter(self._rcl_machine.by_label(f"transition_{recovery.name.lower()}"))
+            self._rcl_enter(self._state_machine.by_label(f"transition_{recovery.name.lower()}"))
         return outcome
 
     def _rcl_enter(self, transition: Transition) -> None:
-        self._rcl_machine.state = transition.goal
+        self._state_machine.state = transition.goal
         self._rcl_tell(transition)
 
     def _rcl_run(self, callback: str, state: LifecycleState) -> TransitionCallbackReturn:
@@ -201,7 +204,7 @@ class LifecycleNodeMixin(ManagedEntity):
         wanted = request.transition
         try:
             transition = (
-                self._rcl_machine.by_label(wanted.label) if wanted.label else self._rcl_machine.by_id(wanted.id)
+                self._state_machine.by_label(wanted.label) if wanted.label else self._state_machine.by_id(wanted.id)
             )
         except RCLError as error:
             node: Any = self
@@ -212,8 +215,8 @@ class LifecycleNodeMixin(ManagedEntity):
         return response
 
     def _rcl_on_get_state(self, request: Any, response: Any) -> Any:
-        response.current_state.id = self._rcl_machine.state.state_id
-        response.current_state.label = self._rcl_machine.state.label
+        response.current_state.id = self._state_machine.state.state_id
+        response.current_state.label = self._state_machine.state.label
         return response
 
     def _rcl_on_get_available_states(self, request: Any, response: Any) -> Any:
@@ -221,7 +224,7 @@ class LifecycleNodeMixin(ManagedEntity):
         return response
 
     def _rcl_on_get_available_transitions(self, request: Any, response: Any) -> Any:
-        response.available_transitions = [_description(transition) for transition in self._rcl_machine.available()]
+        response.available_transitions = [_description(transition) for transition in self._state_machine.available()]
         return response
 
     def _rcl_on_get_transition_graph(self, request: Any, response: Any) -> Any:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import IntEnum
+from typing import Any
 
 from rclpy.impl.errors import RCLError
 
@@ -80,10 +81,21 @@ TRANSITIONS = (
 
 
 class StateMachine:
-    """The present state, and how to leave it."""
+    """The present state, and how to leave it; with the services that tell of it, where there are any."""
+
+    service_change_state: Any = None
+    service_get_state: Any = None
+    service_get_available_states: Any = None
+    service_get_available_transitions: Any = None
+    service_get_transition_graph: Any = None
 
     def __init__(self) -> None:
         self.state = UNCONFIGURED
+
+    @property
+    def current_state(self) -> tuple[int, str]:
+        """The present state's number and label."""
+        return self.state.state_id, self.state.label
 
     def available(self) -> Iterator[Transition]:
         """Yield the transitions out of the present state."""

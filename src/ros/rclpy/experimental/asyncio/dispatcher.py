@@ -53,6 +53,8 @@ class Dispatcher:
         """Let go of the node."""
         node._rcl_detach_executor(self)
 
+    _forget = remove_node
+
     def create_task(self, callback: Any, *args: Any, **kwargs: Any) -> Task:
         """Have a function or coroutine carried out; returns the task, whose result it will be."""
         task = Task(callback, args, kwargs)
