@@ -299,9 +299,9 @@ def test_options_that_make_no_sense(graph, tmp_path):
 
 def call_events(folder):
     """Write a bag with the events of two calls, as a client (0, 3) and its service (1, 2) tell of them."""
-    topic = Topic(
-        "/add/_service_event", "example_interfaces/srv/AddTwoInts_Event", type_hash=AddTwoInts.Event._TYPE_HASH
-    )
+    event_class = AddTwoInts.Event
+    type_name = "example_interfaces/srv/AddTwoInts_Event"
+    topic = Topic("/add/_service_event", type_name, type_hash=event_class._TYPE_HASH)
     with BagWriter(folder) as bag:
         bag.add_topic(topic)
         for number in (1, 2):
