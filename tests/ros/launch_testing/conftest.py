@@ -13,6 +13,8 @@ def sandbox(tmp_path, monkeypatch):
     environment = dict(os.environ)
     monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path / "log"))
     monkeypatch.delenv("OVERRIDE_LAUNCH_PROCESS_OUTPUT", raising=False)
+    # Runs of pytest within a test name the plugin that they need.
+    monkeypatch.setenv("PYTEST_DISABLE_PLUGIN_AUTOLOAD", "1")
     launch.logging.reset()
     yield
     launch.logging.reset()

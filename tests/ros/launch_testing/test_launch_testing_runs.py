@@ -278,6 +278,30 @@ def test_pytest_collects_marked_descriptions(pytester):
     result.assert_outcomes(passed=1, deselected=3)
 
 
+def test_the_plugin_of_launch_pytest_may_be_there_too(pytester):
+    write(pytester.path / "test_old.py", "@pytest.mark.launch_test" + GOOD)
+    fixture = """
+    import launch, launch_pytest, pytest
+    from launch.actions import ExecuteProcess
+
+    @launch_pytest.fixture
+    def description():
+        return launch.LaunchDescription(
+            [ExecuteProcess(cmd=['sleep', '1000']), launch_pytest.actions.ReadyToTest()]
+        )
+
+    @pytest.mark.launch(fixture=description)
+    def test_new(launch_context):
+        assert not launch_context.is_shutdown
+
+    def test_plain():
+        pass
+    """
+    (pytester.path / "test_new.py").write_text(textwrap.dedent(fixture))
+    result = pytester.runpytest_subprocess("-p", "launch_pytest.plugin", *PLUGIN, "test_old.py", "test_new.py")
+    result.assert_outcomes(passed=3)
+
+
 def test_pytest_passes_launch_arguments(pytester):
     body = """
     @pytest.mark.launch_test
