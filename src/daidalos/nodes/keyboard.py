@@ -91,8 +91,9 @@ class Keyboard:
             return character or None
         sequence = ""
         while select.select([sys.stdin], [], [], _SEQUENCE_S)[0]:
-            sequence += self._character()
-            if sequence[-1:].isalpha() or sequence[-1:] in ("", "~"):
+            last = self._character()
+            sequence += last
+            if sequence[:1] not in ("[", "O") or (len(sequence) > 1 and (last.isalpha() or last == "~")) or not last:
                 break
         return _ARROWS.get(sequence[-1:], "") if sequence[:1] in ("[", "O") else character
 

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+import shutil
+import subprocess
 import sys
 import webbrowser
 from collections.abc import Sequence
@@ -85,6 +87,11 @@ class Studio:
 
 def open_in_browser(url: str) -> bool:
     """Show an address in the user's browser, where there is a screen to show it on."""
+    if "WSL_DISTRO_NAME" in os.environ and "BROWSER" not in os.environ:
+        opener = shutil.which("wslview") or shutil.which("explorer.exe")  # the browser is that of Windows
+        if opener is not None:
+            subprocess.Popen([opener, url], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            return True
     has_screen = sys.platform in ("win32", "darwin") or any(
         os.environ.get(name) for name in ("DISPLAY", "WAYLAND_DISPLAY", "BROWSER")
     )

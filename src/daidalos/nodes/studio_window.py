@@ -126,6 +126,11 @@ def run_studio(name: str, panel: str, arguments: argparse.Namespace, **details: 
     return run(Window)
 
 
+def rqt_node_name() -> str:
+    """Return the name that nodes of rqt have: there may be many at a time."""
+    return f"rqt_gui_py_node_{os.getpid()}"
+
+
 def studio_parser(program: str, description: str) -> argparse.ArgumentParser:
     """Return a parser of what every command that opens the studio takes."""
     parser = argparse.ArgumentParser(prog=program, description=description, allow_abbrev=False)

@@ -442,6 +442,7 @@ def test_a_trajectory_by_action(arm: Rig) -> None:
     arm.cycle_until(result.done)
     assert (result.result().status, result.result().result.error_code) == (4, 0)
     assert feedback[0].feedback.joint_names == JOINTS
+    arm.cycle()  # mock hardware shows in the next cycle what it was told in the last
     assert arm.node.manager is not None
     assert arm.node.manager.components["mock"].hardware.states["shoulder/position"] == pytest.approx(1.0)
 

@@ -2,7 +2,7 @@
 
 import sys
 
-from daidalos.nodes.studio_window import parse, run_studio, studio_parser
+from daidalos.nodes.studio_window import parse, rqt_node_name, run_studio, studio_parser
 
 _PANELS = {
     "rqt_console": "log",
@@ -30,7 +30,7 @@ def main() -> int:
         if name not in _PANELS:
             parser.error(f"there is no plugin '{arguments.standalone}'; there are: {', '.join(_PANELS)}")
         panel = _PANELS[name]
-    return run_studio("rqt_gui_py_node", panel, arguments)
+    return run_studio(rqt_node_name(), panel, arguments)
 
 
 if __name__ == "__main__":

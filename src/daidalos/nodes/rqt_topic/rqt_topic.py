@@ -2,13 +2,13 @@
 
 import sys
 
-from daidalos.nodes.studio_window import parse, run_studio, studio_parser
+from daidalos.nodes.studio_window import parse, rqt_node_name, run_studio, studio_parser
 
 
 def main() -> int:
     """Serve the studio and open it."""
     return run_studio(
-        "rqt_topic", "topics", parse(studio_parser("rqt_topic", "Topics and their messages, in the studio."))
+        rqt_node_name(), "topics", parse(studio_parser("rqt_topic", "Topics and their messages, in the studio."))
     )
 
 
