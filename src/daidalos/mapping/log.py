@@ -2,12 +2,16 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.bags.errors import BagError
+from daidalos.bags.reader import BagReader
+from daidalos.interfaces.codec import CdrError, codec_of
 from daidalos.mapping import pose2
 from daidalos.mapping.errors import LogError
 from daidalos.mapping.evaluation import poses_at
@@ -67,26 +71,21 @@ def read_log(path: str | Path, *, scan_topic: str | None = None, odom_topic: str
     bag = Path(path)
     if not bag.exists():
         raise LogError(bag, "no such file or folder")
-    from rosbags.highlevel import AnyReader
-    from rosbags.typesys import Stores, get_typestore
-
     try:
-        with AnyReader([bag], default_typestore=get_typestore(Stores.ROS2_JAZZY)) as reader:
+        with BagReader(bag) as reader:
+            if reader.notes and not reader.metadata.message_count:
+                raise LogError(bag, f"not a readable bag: {reader.notes[-1]}")
             return _collect(bag, reader, scan_topic, odom_topic)
-    except LogError:
-        raise
-    except Exception as error:  # A damaged bag fails anywhere in the libraries that parse it, with any error.
-        reason = " ".join(str(error).split()) or type(error).__name__
-        raise LogError(bag, f"not a readable bag: {reason}") from error
+    except (BagError, CdrError) as error:
+        raise LogError(bag, f"not a readable bag: {error}") from error
 
 
-def _collect(bag: Path, reader: Any, scan_topic: str | None, odom_topic: str | None) -> Log:
-    topics = {connection.topic: connection.msgtype for connection in reader.connections}
+def _collect(bag: Path, reader: BagReader, scan_topic: str | None, odom_topic: str | None) -> Log:
+    topics = {name: topic.type for name, topic in reader.topics.items()}
     scan_topic = _choose(bag, topics, LASER_SCAN, scan_topic, "/scan")
     if scan_topic is None:
         raise LogError(bag, f"no scans: expected a topic of type {LASER_SCAN}, found {_listed(topics)}")
     odom_topic = _choose(bag, topics, ODOMETRY, odom_topic, "/odom")
-    wanted = {scan_topic, odom_topic, "/tf", "/tf_static"}
     scans: list[Any] = []
     odometry: list[Any] = []
     transforms: list[Any] = []
@@ -95,9 +94,14 @@ def _collect(bag: Path, reader: Any, scan_topic: str | None, odom_topic: str | N
         ODOMETRY: odometry.append,
         TRANSFORMS: lambda message: transforms.extend(message.transforms),
     }
-    connections = [c for c in reader.connections if c.topic in wanted and c.msgtype in into]
-    for connection, _, raw in reader.messages(connections=connections):
-        into[connection.msgtype](reader.deserialize(raw, connection.msgtype))
+    takers = {
+        topic: (_decoder(topics[topic]), into[topics[topic]])
+        for topic in (scan_topic, odom_topic, "/tf", "/tf_static")
+        if topic is not None and topics.get(topic) in into
+    }
+    for message in reader.messages(takers):
+        decode, take = takers[message.topic]
+        take(decode(message.data))
     if not scans:
         raise LogError(bag, f"no messages on {scan_topic}")
     scans.sort(key=lambda message: _stamp(message.header))
@@ -109,6 +113,12 @@ def _collect(bag: Path, reader: Any, scan_topic: str | None, odom_topic: str | N
         raise LogError(bag, f"no scan on {scan_topic} has odometry at its time: {source} covers another period")
     kept = [_scan(bag, message, mounts) for message, use in zip(scans, covered, strict=True) if use]
     return Log(times[covered], kept, poses_at(stamps, poses, times[covered]), scan_topic, source)
+
+
+def _decoder(type_name: str) -> Callable[[bytes], Any]:
+    """Return what makes messages of a type out of their bytes."""
+    package, kind, name = type_name.split("/")
+    return codec_of(getattr(import_module(f"{package}.{kind}"), name)).decode
 
 
 def _choose(bag: Path, topics: dict[str, str], kind: str, asked: str | None, usual: str) -> str | None:
@@ -177,7 +187,7 @@ def _scan(bag: Path, message: Any, mounts: dict[str, Array]) -> LaserScanData:
     if mount is None:
         raise LogError(bag, f"no transform from the base to the frame {frame!r} of the scans in /tf_static or /tf")
     return LaserScanData(
-        message.ranges,
+        np.asarray(message.ranges, dtype=np.float32),
         message.angle_min,
         message.angle_increment,
         message.range_min,
