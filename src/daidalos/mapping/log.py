@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from daidalos.bags.errors import BagError
 from daidalos.bags.reader import BagReader
-from daidalos.interfaces.codec import CdrError, codec_of
+from daidalos.interfaces.codec import CdrError, Codec, codec_of
 from daidalos.mapping import pose2
 from daidalos.mapping.errors import LogError
 from daidalos.mapping.evaluation import poses_at
@@ -95,13 +95,13 @@ def _collect(bag: Path, reader: BagReader, scan_topic: str | None, odom_topic: s
         TRANSFORMS: lambda message: transforms.extend(message.transforms),
     }
     takers = {
-        topic: (_decoder(topics[topic]), into[topics[topic]])
+        topic: (_codec(topics[topic]), into[topics[topic]])
         for topic in (scan_topic, odom_topic, "/tf", "/tf_static")
         if topic is not None and topics.get(topic) in into
     }
     for message in reader.messages(takers):
-        decode, take = takers[message.topic]
-        take(decode(message.data))
+        codec, take = takers[message.topic]
+        take(codec.decode(message.data))
     if not scans:
         raise LogError(bag, f"no messages on {scan_topic}")
     scans.sort(key=lambda message: _stamp(message.header))
@@ -115,10 +115,10 @@ def _collect(bag: Path, reader: BagReader, scan_topic: str | None, odom_topic: s
     return Log(times[covered], kept, poses_at(stamps, poses, times[covered]), scan_topic, source)
 
 
-def _decoder(type_name: str) -> Callable[[bytes], Any]:
+def _codec(type_name: str) -> Codec:
     """Return what makes messages of a type out of their bytes."""
     package, kind, name = type_name.split("/")
-    return codec_of(getattr(import_module(f"{package}.{kind}"), name)).decode
+    return codec_of(getattr(import_module(f"{package}.{kind}"), name))
 
 
 def _choose(bag: Path, topics: dict[str, str], kind: str, asked: str | None, usual: str) -> str | None:
