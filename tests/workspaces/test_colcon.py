@@ -3,6 +3,7 @@
 import json
 import shutil
 
+import psutil
 import pytest
 
 from terminals import Terminal
@@ -390,3 +391,30 @@ def test_a_package_of_ros_1_shares_what_it_holds(workspace, terminal):
     assert one.run("ros2 run beginner_tutorials say.py").strip() == "said"
     assert one.run("ros2 run beginner_tutorials hello.py").strip() == "Hello world"
     assert (folder.parents[1] / "install/beginner_tutorials/share/beginner_tutorials/launch/all.launch").is_file()
+
+
+def test_a_test_that_does_not_end_is_ended_with_what_it_started(workspace, terminal):
+    packages.cmake_package(
+        workspace / "src",
+        "endless",
+        """
+        ament_add_pytest_test(endless test/test_endless.py TIMEOUT 2)
+        ament_add_pytest_test(breaks test/conftest_breaks.py)
+        ament_add_gtest(compiled test/test.cpp)
+        """,
+        {
+            "test/test_endless.py": "import subprocess\n\n\ndef test():\n    subprocess.run(['sleep', '4217'])\n",
+            "test/conftest_breaks.py": "import no_such_module\n",
+        },
+    )
+    try:
+        one = terminal()
+        assert "endless: left out: compiled (a test in C++)" in one.run("colcon build --packages-select endless")
+        printed = one.run("colcon test --packages-select endless")
+        assert "1 package had test failures: endless" in printed
+        assert not [one for one in psutil.process_iter(["cmdline"]) if one.info["cmdline"] == ["sleep", "4217"]]
+        printed = one.run("colcon test-result --test-result-base build/endless --verbose")
+        assert "The test did not end within 2 s." in printed
+        assert "breaks.xunit.xml: 1 test, 1 error" in printed
+    finally:
+        (workspace / "src" / "endless" / "package.xml").unlink()

@@ -9,7 +9,10 @@ from dataclasses import asdict
 from pathlib import Path
 
 from daidalos.workspaces.cmake.contents import Test
+from daidalos.workspaces.timed import TIMED_OUT
 
+NO_TESTS = 5
+"""What pytest returns when there are no tests."""
 _FILE = "tests.json"
 
 
@@ -42,23 +45,37 @@ def read_tests(build: Path) -> list[Test]:
 
 
 def command(test: Test, package: str, result: Path, build: Path) -> list[str]:
-    """Return the command that runs a test and writes its result as JUnit's XML."""
+    """Return the command that runs a test, no longer than it may, and writes its result as JUnit's XML."""
+    timed = [sys.executable, "-m", "daidalos.workspaces.timed", f"{test.timeout:g}"]
     if test.kind == "pytest":
         return [
-            *(sys.executable, "-m", "pytest", str(test.path), "--tb=short"),
+            *(*timed, sys.executable, "-m", "pytest", str(test.path), "--tb=short"),
             *("-o", f"cache_dir={build / '.pytest_cache'}"),
             *(f"--junit-xml={result}", f"--junit-prefix={package}"),
             *test.arguments,
         ]
     return [
-        *(sys.executable, "-m", "launch_testing.launch_test", str(test.path)),
+        *(*timed, sys.executable, "-m", "launch_testing.launch_test", str(test.path)),
         *(f"--junit-xml={result}", f"--package-name={package}"),
         *test.arguments,
     ]
 
 
-def missing_result(package: str, test: Test, why: str) -> str:
-    """Return the result of a test that does not end, or ends without writing one."""
+def complete_result(result: Path, package: str, test: Test, status: int) -> None:
+    """Write the result of a test that has failed, or was ended, without saying so itself."""
+    if status in (0, NO_TESTS):
+        return
+    written = result.read_text(encoding="utf-8") if result.is_file() else ""
+    if status == TIMED_OUT:
+        why = f"The test did not end within {test.timeout:g} s."
+    elif "<failure" in written or "<error" in written:
+        return
+    else:
+        why = f"The test ended with the exit status {status} and without a result."
+    result.write_text(_failed(package, test, why), encoding="utf-8")
+
+
+def _failed(package: str, test: Test, why: str) -> str:
     return (
         '<?xml version="1.0" encoding="UTF-8"?>\n'
         f'<testsuite name="{package}" tests="1" failures="0" time="0" errors="1" skipped="0">\n'

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 from pathlib import Path
 from typing import Any
 
@@ -13,8 +12,6 @@ from colcon_core.shell import get_command_environment
 from colcon_core.task import TaskExtensionPoint, run
 
 _logger = colcon_logger.getChild(__name__)
-_FAILED = 1
-_NO_TESTS = 5
 
 
 class CmakePackageTestTask(TaskExtensionPoint):  # type: ignore[misc]
@@ -26,7 +23,7 @@ class CmakePackageTestTask(TaskExtensionPoint):  # type: ignore[misc]
 
     async def test(self) -> int:
         """Run the tests; returns the exit status, which failed tests leave at 0."""
-        from daidalos.workspaces.package_tests import read_tests
+        from daidalos.workspaces.package_tests import NO_TESTS, read_tests
 
         args = self.context.args
         try:
@@ -39,24 +36,20 @@ class CmakePackageTestTask(TaskExtensionPoint):  # type: ignore[misc]
             _logger.error(f"Package '{self.context.pkg.name}' has not been built: build it before it is tested")
             return 1
         statuses = [await self._run_test(test, environment) for test in tests]
-        if any(status == _FAILED for status in statuses):
+        if any(status not in (0, NO_TESTS) for status in statuses):
             self.context.put_event_into_queue(TestFailure(self.context.pkg.name))
-        return next((status for status in statuses if status not in (0, _FAILED, _NO_TESTS)), 0)
+        return 0
 
     async def _run_test(self, test: Any, environment: dict[str, str]) -> int:
-        from daidalos.workspaces.package_tests import command, missing_result
+        from daidalos.workspaces.package_tests import command, complete_result
 
         package, args = self.context.pkg.name, self.context.args
         results = Path(args.test_result_base or args.build_base) / "test_results" / package
         results.mkdir(parents=True, exist_ok=True)
         result = results / f"{test.name}.xunit.xml"
-        result.write_text(missing_result(package, test, "The test ended without a result."), encoding="utf-8")
+        result.unlink(missing_ok=True)
         environment = {**environment, **dict(test.environment), "PYTHONDONTWRITEBYTECODE": "1"}
         words = command(test, package, result, Path(args.build_base))
-        try:
-            completed = await asyncio.wait_for(run(self.context, words, cwd=args.path, env=environment), test.timeout)
-        except TimeoutError:
-            why = f"The test did not end within {test.timeout:g} s."
-            result.write_text(missing_result(package, test, why), encoding="utf-8")
-            return _FAILED
+        completed = await run(self.context, words, cwd=args.path, env=environment)
+        complete_result(result, package, test, completed.returncode)
         return int(completed.returncode)
