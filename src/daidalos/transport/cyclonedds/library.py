@@ -107,14 +107,23 @@ class TopicDescriptor(c.Structure):
     )
 
 
-class IoVector(c.Structure):
-    """``ddsrt_iovec_t``, which is the system's own."""
+_LENGTH = ("length", c.c_ulong if sys.platform == "win32" else c.c_size_t)
 
-    _fields_ = (
-        (("length", c.c_ulong), ("base", c.c_void_p))
-        if sys.platform == "win32"
-        else (("base", c.c_void_p), ("length", c.c_size_t))
-    )
+
+def _vector(base: tuple[str, Any]) -> tuple[tuple[str, Any], ...]:
+    return (_LENGTH, base) if sys.platform == "win32" else (base, _LENGTH)
+
+
+class IoVector(c.Structure):
+    """``ddsrt_iovec_t``, which is the system's own: a buffer that the library gives out."""
+
+    _fields_ = _vector(("base", c.c_void_p))
+
+
+class Buffer(c.Structure):
+    """``ddsrt_iovec_t`` again: a buffer that is handed in, bytes or an address."""
+
+    _fields_ = _vector(("base", c.c_char_p))
 
 
 class MatchedStatus(c.Structure):
@@ -190,7 +199,7 @@ _QUICK: dict[str, tuple[Any, tuple[Any, ...]]] = {
     "dds_get_matched_subscription_data": (c.POINTER(BuiltinEndpoint), (ENTITY, HANDLE)),
     "dds_builtintopic_free_endpoint": (None, (c.POINTER(BuiltinEndpoint),)),
     "dds_get_publication_matched_status": (c.c_int32, (ENTITY, c.POINTER(MatchedStatus))),
-    "ddsi_serdata_from_ser_iov": (_PTR, (_PTR, _INT, _COUNT, c.POINTER(IoVector), c.c_size_t)),
+    "ddsi_serdata_from_ser_iov": (_PTR, (_PTR, _INT, _COUNT, _PTR, c.c_size_t)),
     "ddsi_serdata_size": (c.c_uint32, (_PTR,)),
     "ddsi_serdata_to_ser_ref": (_PTR, (_PTR, c.c_size_t, c.c_size_t, c.POINTER(IoVector))),
     "ddsi_serdata_to_ser_unref": (None, (_PTR, c.POINTER(IoVector))),

@@ -22,8 +22,8 @@ from daidalos.transport.cyclonedds.library import (
     PUBLICATION_MATCHED_STATUS,
     RETCODE_TIMEOUT,
     SERDATA_DATA,
+    Buffer,
     BuiltinEndpoint,
-    IoVector,
     Library,
 )
 from daidalos.transport.cyclonedds.qos import BLOCKING_NS, user_data_of
@@ -34,8 +34,8 @@ _HEADER = struct.Struct("<Qq")
 """What precedes the fields of a request and its reply: the client's number and its count of requests."""
 _REQUEST_ID = struct.Struct("<QQ")
 _PADDING = (b"", b"\0\0\0", b"\0\0", b"\0")
-_JOINED = 16_384
-"""Up to this size buffers are joined; larger ones are handed over where they are."""
+_JOINED = 4096
+"""Up to so many items buffers are joined; larger ones are handed over where they are."""
 _CLIENT_PATIENCE_NS = 100_000_000
 
 
@@ -58,8 +58,13 @@ class Writer:
         if self._congested_until and time.monotonic_ns() < self._congested_until:
             return
         library = self._library
-        vectors, size, _kept = _vectors(parts)
-        serialised = library.ddsi_serdata_from_ser_iov(self._type, SERDATA_DATA, len(vectors), vectors, size)
+        if sum(map(len, parts)) <= _JOINED:
+            data = b"".join(parts)
+            data += _PADDING[len(data) & 3]
+            size, count, buffers = len(data), 1, c.byref(Buffer(data, len(data)))
+        else:
+            size, count, buffers = _buffers(parts)
+        serialised = library.ddsi_serdata_from_ser_iov(self._type, SERDATA_DATA, count, buffers, size)
         if not serialised:
             raise CdrError(f"DDS refused a sample of {size} bytes")
         result = library.dds_writecdr(self.entity, serialised)
@@ -70,25 +75,24 @@ class Writer:
         self._library.dds_delete(self.entity)
 
 
-def _vectors(parts: list[Any]) -> tuple[Any, int, Any]:
-    """Return C's description of the buffers, padded to a multiple of four, their size, and what must be kept."""
-    size = sum(memoryview(part).nbytes for part in parts)
-    if size <= _JOINED:
-        data = b"".join(parts) + _PADDING[size & 3]
-        vectors = (IoVector * 1)()
-        vectors[0].base, vectors[0].length = c.cast(c.c_char_p(data), c.c_void_p), len(data)
-        return vectors, len(data), data
-    kept = [*parts, _PADDING[size & 3]] if size & 3 else parts
-    vectors = (IoVector * len(kept))()
-    for vector, part in zip(vectors, kept, strict=True):
-        vector.base, vector.length = _address(part)
-    return vectors, size + (-size & 3), kept
+def _buffers(parts: list[Any]) -> tuple[int, int, Any]:
+    """Return how many bytes buffers have when padded to a multiple of four, how many they are, and C's list of them.
+
+    They stay where they are, so they must outlive the list.
+    """
+    addressed = [(part, len(part)) if isinstance(part, bytes) else _address(part) for part in parts]
+    size = sum(length for _, length in addressed)
+    if size & 3:
+        addressed.append((_PADDING[size & 3], -size & 3))
+    return (
+        size + (-size & 3),
+        len(addressed),
+        (Buffer * len(addressed))(*(Buffer(base, length) for base, length in addressed)),
+    )
 
 
-def _address(part: Any) -> tuple[Any, int]:
-    """Return where a buffer's bytes are, and how many."""
-    if isinstance(part, bytes):
-        return c.cast(c.c_char_p(part), c.c_void_p), len(part)
+def _address(part: Any) -> tuple[int, int]:
+    """Return where the bytes of an array are, and how many."""
     address, count = part.buffer_info()
     return address, count * part.itemsize
 
