@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import os
 import pty
+import signal
 import sys
 import termios
 import threading
@@ -76,3 +77,13 @@ def test_what_is_no_terminal_is_refused(monkeypatch: pytest.MonkeyPatch) -> None
     monkeypatch.setattr(sys, "stdin", io.StringIO("abc"))
     with pytest.raises(UserError, match="no terminal"):
         Keyboard()
+
+
+def test_it_goes_on_after_a_stop(screen: int) -> None:
+    with Keyboard() as keyboard:
+        shell = termios.tcgetattr(sys.stdin)
+        shell[3] |= termios.ECHO | termios.ICANON
+        termios.tcsetattr(sys.stdin, termios.TCSADRAIN, shell)
+        signal.raise_signal(signal.SIGCONT)
+        os.write(screen, b"a")
+        assert keyboard.read(5.0) == "a"

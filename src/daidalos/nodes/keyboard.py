@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 import sys
 import threading
 import time
@@ -33,6 +34,7 @@ class Keyboard:
         if not sys.stdin.isatty():
             raise UserError("the keys are read from standard input, and that is no terminal: start this in one")
         self._before: Any = None
+        self._continued: Any = None
         self._woken = threading.Event()
         self._pipe: tuple[int, int] | None = None
 
@@ -42,9 +44,10 @@ class Keyboard:
 
             self._pipe = os.pipe()
             self._before = termios.tcgetattr(sys.stdin)
-            wanted = termios.tcgetattr(sys.stdin)
-            wanted[3] &= ~(termios.ICANON | termios.ECHO)  # Ctrl-C stays a signal
-            termios.tcsetattr(sys.stdin, termios.TCSADRAIN, wanted)
+            self._take_keys()
+            if threading.current_thread() is threading.main_thread():
+                # Who comes back after Ctrl-Z finds the terminal as the shell had it.
+                self._continued = signal.signal(signal.SIGCONT, lambda *_: self._take_keys())
         return self
 
     def __exit__(
@@ -53,10 +56,21 @@ class Keyboard:
         if sys.platform != "win32" and self._pipe is not None:
             import termios
 
+            if self._continued is not None:
+                signal.signal(signal.SIGCONT, self._continued)
             termios.tcsetattr(sys.stdin, termios.TCSADRAIN, self._before)
             for end in self._pipe:
                 os.close(end)
             self._pipe = None
+
+    def _take_keys(self) -> None:
+        """Have the terminal hand over each key at once, unseen."""
+        if sys.platform != "win32":
+            import termios
+
+            wanted = termios.tcgetattr(sys.stdin)
+            wanted[3] &= ~(termios.ICANON | termios.ECHO)  # Ctrl-C stays a signal
+            termios.tcsetattr(sys.stdin, termios.TCSADRAIN, wanted)
 
     def wake(self) -> None:
         """Let `read` return None from now on; may be called from any thread."""

@@ -84,7 +84,7 @@ def test_course_of_the_services(domain: int) -> None:
         teleported = {"x": 3.0, "y": 4.0, "theta": 1.5, "linear_velocity": 0.0, "angular_velocity": 0.0}
         assert _pose(domain) == teleported
         _ros2(domain, *teleport, "{x: .nan, y: 4, theta: 1.5}")
-        simulator.wait_for(r"Turtle \[turtle1\] can not be teleported to \(nan, 4.0, 1.5\)")
+        simulator.wait_for(r"Turtle \[turtle1\] can not obey \(nan, 4.0, 1.5\)")
         relative = ("service", "call", "/turtle1/teleport_relative", "turtlesim/srv/TeleportRelative")
         _ros2(domain, *relative, "{linear: 1, angular: -1.5}")
         assert _pose(domain)["x"] == pytest.approx(4.0)
@@ -124,6 +124,15 @@ def test_walls(domain: int) -> None:
             r"\[WARN\] \[.*\] \[turtlesim\]: Oh no! I hit the wall! \(Clamping from \[x=11.1\d+, y=5.544445\]\)"
         )
         assert _pose(domain, condition="m.linear_velocity == 0.0")["x"] == pytest.approx(11.088889, abs=1e-6)
+
+
+def test_what_is_no_speed_moves_nobody(domain: int) -> None:
+    with _turtlesim(domain) as simulator:
+        for value in (".nan", ".inf", "1.0e300"):
+            words = ("/turtle1/cmd_vel", "geometry_msgs/msg/Twist", f"{{linear: {{x: {value}}}}}")
+            _ros2(domain, "topic", "pub", "--once", *words)
+        simulator.wait_for(r"Turtle \[turtle1\] can not obey \(", 3)
+        assert _pose(domain)["x"] == pytest.approx(5.544445, abs=1e-6)
 
 
 def test_robots_that_go_sideways(domain: int) -> None:

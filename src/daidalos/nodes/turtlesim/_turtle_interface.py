@@ -14,6 +14,8 @@ from daidalos.nodes.turtlesim._turtle import Pen, Turtle
 if TYPE_CHECKING:
     from rclpy.node import Node
 
+_MOST = 1e30  # of units; what is more, or no number, is a mistake
+
 
 @dataclass(frozen=True)
 class _Rotation:
@@ -34,7 +36,7 @@ class TurtleInterface:
     turtle
         Who is steered.
     moved
-        Called with both ends when the turtle was put elsewhere, so that its pen can draw.
+        Called with where it was when it was put elsewhere, so that its pen can draw.
     """
 
     def __init__(
@@ -101,7 +103,8 @@ class TurtleInterface:
 
     def _on_command(self, twist: Any) -> None:
         sideways = twist.linear.y if self._node.get_parameter("holonomic").value else 0.0
-        self.turtle.command(twist.linear.x, sideways, twist.angular.z, self._now_s())
+        if self._can_be(twist.linear.x, sideways, twist.angular.z):
+            self.turtle.command(twist.linear.x, sideways, twist.angular.z, self._now_s())
 
     def _on_set_pen(self, request: Any, response: Any) -> Any:
         if request.off:
@@ -111,23 +114,24 @@ class TurtleInterface:
         return response
 
     def _on_teleport_relative(self, request: Any, response: Any) -> Any:
-        if self._are_finite(request.linear, request.angular):
+        if self._can_be(request.linear, request.angular):
             before = (self.turtle.x, self.turtle.y)
             self.turtle.teleport_by(request.linear, request.angular)
             self._moved(self.turtle, before)
         return response
 
     def _on_teleport_absolute(self, request: Any, response: Any) -> Any:
-        if self._are_finite(request.x, request.y, request.theta):
+        if self._can_be(request.x, request.y, request.theta):
             before = (self.turtle.x, self.turtle.y)
             self.turtle.teleport(request.x, request.y, request.theta)
             self._moved(self.turtle, before)
         return response
 
-    def _are_finite(self, *numbers: float) -> bool:
-        if all(map(math.isfinite, numbers)):
+    def _can_be(self, *numbers: float) -> bool:
+        """Tell whether numbers can be places and speeds; complain where they can not."""
+        if all(abs(number) < _MOST for number in numbers):
             return True
-        self._node.get_logger().error(f"Turtle [{self.turtle.name}] can not be teleported to {numbers}")
+        self._node.get_logger().error(f"Turtle [{self.turtle.name}] can not obey {numbers}")
         return False
 
     # Action.
