@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from argparse import ArgumentParser, Namespace
 from collections.abc import Iterable
+from pathlib import Path
 from typing import Any
 
 from daidalos.cli.ros2.direct import add_graph_arguments, direct_node
+from daidalos.cli.ros2.errors import CliError
 from daidalos.cli.ros2.extension import Status, Verb
 from daidalos.cli.ros2.parameters import (
     add_node_arguments,
@@ -25,6 +27,10 @@ class DumpVerb(Verb):
         add_graph_arguments(parser)
         add_node_arguments(parser)
         add_timeout_argument(parser)
+        parser.add_argument(
+            "--output-dir", type=Path, help="Write the file there, named after the node, instead of printing it"
+        )
+        parser.add_argument("--print", action="store_true", help="Of no effect: it is printed unless it is written")
 
     def main(self, *, args: Namespace) -> Status:
         """Print a parameter file with the node's parameters."""
@@ -36,17 +42,26 @@ class DumpVerb(Verb):
             names = list_parameters(node, name)
             values = map(parameter_value_to_python, get_parameters(node, name, names))
             tree = nested(zip(names, values, strict=True))
-        print(yaml.safe_dump({name: {"ros__parameters": tree}}, default_flow_style=False))
+        text = yaml.safe_dump({name: {"ros__parameters": tree}}, default_flow_style=False)
+        if args.output_dir is None:
+            print(text)
+            return 0
+        file = args.output_dir / f"{name.lstrip('/').replace('/', '__')}.yaml"
+        try:
+            file.write_text(text, encoding="utf-8")
+        except OSError as error:
+            raise CliError(f"{file}: {error.strerror}") from None
+        print(f"Saving to:  {file}")
         return 0
 
 
 def nested(parameters: Iterable[tuple[str, Any]]) -> dict[str, Any]:
-    """Return parameters as a tree: ``gains.p`` is ``p`` in ``gains``."""
+    """Return parameters as a tree: ``gains.p`` is ``p`` in ``gains``, unless ``gains`` is a parameter itself."""
     tree: dict[str, Any] = {}
-    for name, value in parameters:
+    for name, value in sorted(parameters):
         branch = tree
         *groups, leaf = name.split(".")
-        for group in groups:
-            branch = branch.setdefault(group, {})
-        branch[leaf] = value
+        while groups and isinstance(branch.get(groups[0], {}), dict):
+            branch = branch.setdefault(groups.pop(0), {})
+        branch[".".join([*groups, leaf])] = value
     return tree

@@ -1,0 +1,55 @@
+"""What of `ros2 param` no transcript shows."""
+
+import pytest
+import yaml
+
+from daidalos.cli.ros2.param.dump import nested
+
+from .commands import ros2
+
+NODE = """
+import rclpy
+rclpy.init()
+node = rclpy.create_node("talker", namespace="/lab")
+node.declare_parameter("speed", 1.0)
+node.declare_parameter("gains.p", [1, 2])
+rclpy.spin(node)
+"""
+
+
+def test_parameters_as_a_tree():
+    flat = {"a": 1, "gains.p": 2.0, "gains.d.far": 3.0}
+    assert nested(flat.items()) == {"a": 1, "gains": {"p": 2.0, "d": {"far": 3.0}}}
+    assert nested({"gains.p": 2.0, "gains": 1, "gains.d.far": 3.0}.items()) == {
+        "gains": 1,
+        "gains.p": 2.0,
+        "gains.d.far": 3.0,
+    }
+
+
+@pytest.fixture
+def talker(beside, wait_for):
+    beside(NODE)
+    wait_for("/lab/talker/set_parameters")
+
+
+def test_what_is_dumped_can_be_loaded(env, talker, tmp_path):
+    dumped = ros2("param", "dump", "/lab/talker", env=env).out
+    saved = ros2("param", "dump", "/lab/talker", "--output-dir", ".", env=env, cwd=tmp_path)
+    assert saved.out == "Saving to:  lab__talker.yaml\n"
+    text = (tmp_path / "lab__talker.yaml").read_text()
+    assert yaml.safe_load(text) == yaml.safe_load(dumped)
+    (tmp_path / "faster.yaml").write_text(text.replace("speed: 1.0", "speed: 2.0"))
+    assert (
+        "Set parameter speed successful\n"
+        in ros2("param", "load", "/lab/talker", "faster.yaml", env=env, cwd=tmp_path).out
+    )
+    assert ros2("param", "get", "--hide-type", "/lab/talker", "speed", env=env).out == "2.0\n"
+    result = ros2("param", "dump", "/lab/talker", "--output-dir", "nowhere", env=env, cwd=tmp_path)
+    assert (result.status, result.err) == (1, "nowhere/lab__talker.yaml: No such file or directory\n")
+
+
+def test_lists_are_filtered(env, talker):
+    listed = ros2("param", "list", "/lab/talker", "--param-prefixes", "gains", "--param-type", env=env).out
+    assert listed == "  gains.p (type: integer array)\n"
+    assert ros2("param", "list", "--filter", "^spe", env=env).out == "/lab/talker:\n  speed\n"
