@@ -139,6 +139,24 @@ def test_what_is_not_understood_is_noted_with_its_line(read):
     )
 
 
+def test_what_programs_and_other_packages_would_have_made_is_no_mistake(read):
+    """Real files do all of this, and CMake with ROS 2 builds them."""
+    contents = read("""
+        execute_process(COMMAND git describe OUTPUT_VARIABLE GIT)
+        string(STRIP ${GIT} GIT)
+        find_package(QT NAMES Qt6 Qt5 REQUIRED COMPONENTS Widgets)
+        if(${QT_VERSION_MAJOR} GREATER "5")
+          install(FILES none DESTINATION share)
+        endif()
+        add_executable(node ${CMAKE_CURRENT_BINARY_DIR}/made.cpp)
+        install(FILES ${CMAKE_CURRENT_BINARY_DIR}/made.hpp DESTINATION include)
+        install(DIRECTORY ${CMAKE_BINARY_DIR}/docs DESTINATION share)
+        """)
+    assert contents.files == []
+    assert contents.targets["node"].links == ["generated code"]
+    assert len(contents.notes) == 3
+
+
 @pytest.mark.parametrize(
     ("body", "line", "fault"),
     [

@@ -41,7 +41,7 @@ def _install_files(run: Interpreter, call: Call, values: list[str], executable: 
     for name in files:
         source = run.path(name)
         if not source.is_file():
-            if "OPTIONAL" in found:
+            if "OPTIONAL" in found or run.is_made_by_build(source):
                 continue
             raise WorkspaceError(f"{call.where}: install(): there is no file '{name}'")
         target = found.get("RENAME", [source.name])[0]
@@ -58,7 +58,7 @@ def _install_directories(run: Interpreter, call: Call, values: list[str]) -> Non
     for name in folders:
         folder = run.path(name)
         if not folder.is_dir():
-            if "OPTIONAL" in found:
+            if "OPTIONAL" in found or run.is_made_by_build(folder):
                 continue
             raise WorkspaceError(f"{call.where}: install(): there is no folder '{name}'")
         # Without a slash at its end the folder itself is installed, with one what it holds.

@@ -81,6 +81,10 @@ class Interpreter:
         """Return a path of the source folder as CMake understands it."""
         return self.folder / value
 
+    def is_made_by_build(self, path: Path) -> bool:
+        """Tell whether only a program that is not run here would make a file."""
+        return not path.exists() and path.is_relative_to(self.variables["CMAKE_BINARY_DIR"])
+
     def run_file(self, path: Path) -> None:
         """Run the commands of a file.
 
@@ -218,7 +222,9 @@ class Interpreter:
             except WorkspaceError:
                 raise
             except (IndexError, ValueError, re.error) as error:
-                raise self._fault(command, f"{name}() can not be run with these arguments: {error}") from None
+                if len(call.values) >= len(command.arguments):
+                    raise self._fault(command, f"{name}() can not be run with these arguments: {error}") from None
+                self.contents.notes.append(f"{call.where}: {name}() was left out: a variable is not set here")
         elif name not in self._ignored:
             self.contents.notes.append(f"{call.where}: {name}() is not understood and was left out")
 

@@ -30,7 +30,9 @@ def _add_sources(run: Interpreter, call: Call, target: Target, names: list[str])
         if name in _SCOPES or name in _KINDS or name.startswith("$<"):
             continue
         path = run.path(name)
-        if not path.is_file():
+        if run.is_made_by_build(path):
+            target.links.append("generated code")
+        elif not path.is_file():
             raise WorkspaceError(f"{call.where}: {call.name}({target.name}): there is no file '{name}'")
         target.sources.append(path)
 
