@@ -26,6 +26,13 @@ def goal_of(figure: str) -> Goal | None:
 
 
 GOALS = {
+    "bags.record_1_khz_lost": Goal(0),
+    "bags.record_10_khz_lost": Goal(0),
+    "bags.record_100_mb_per_s_lost": Goal(0),
+    "bags.kill_9_lost_s": Goal(1.2),
+    "bags.play_lost": Goal(0),
+    "bags.play_late_99_percent_ms": Goal(5.0),
+    "bags.info_s": Goal(0.5),
     "demo.real_time_factor": Goal(0.995, at_least=True),
     "demo.moving_robot_s": Goal(10.0),
     "demo.end_s": Goal(5.0),
