@@ -12,7 +12,7 @@ from rclpy.callback_groups import CallbackGroup
 from rclpy.context import Context
 from rclpy.impl.entities import ClientHandle
 from rclpy.impl.ready import ReadyHook
-from rclpy.impl.running import wait_for
+from rclpy.impl.running import THREAD, wait_for
 from rclpy.qos import QoSProfile
 from rclpy.task import Future
 
@@ -47,6 +47,7 @@ class Client:
         self._executor_event = False
         self._lock = threading.RLock()
         self._has_own_waiter = 0
+        self._has_stood_back = False
         client_impl.set_on_ready(self._on_ready)
 
     def call(self, request: Any, timeout_sec: float | None = None) -> Any:
@@ -172,19 +173,27 @@ class Client:
     def _on_ready(self) -> None:
         """Hand a response to who waits in `call`, which may be the executor itself, or make the client ready."""
         if self._has_own_waiter:
-            work = self._rcl_take()
+            work = self._rcl_take_unbound()
             while work is not None:
                 work[0](*work[1])
-                work = self._rcl_take()
+                work = self._rcl_take_unbound()
         else:
             self._rcl_hook()
 
     def _rcl_take(self) -> tuple[Callable[..., Any], tuple[Any, ...]] | None:
+        """Take a response, after what became ready together with it: messages tell how it came about."""
+        executor = THREAD.executor
+        if not self._has_stood_back and executor is not None and not executor._ready.empty():
+            self._has_stood_back = True
+            self._rcl_hook()
+            return None
+        self._has_stood_back = False
+        return self._rcl_take_unbound()
+
+    def _rcl_take_unbound(self) -> tuple[Callable[..., Any], tuple[Any, ...]] | None:
+        """Take a response; it only finishes a future, which need not wait for the callback group."""
         taken = self.__client.take_response()
         return None if taken is None else (self._finish, taken)
-
-    # A response only finishes a future: that need not wait for the callback group.
-    _rcl_take_unbound = _rcl_take
 
     def _finish(self, header: Any, response: Any) -> None:
         with self._lock:

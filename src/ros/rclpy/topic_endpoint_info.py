@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import copy
 from enum import IntEnum
 from typing import Any
 
 from daidalos.transport.graph import EndpointInfo, EndpointKind
-from rclpy.qos import QoSProfile
+from rclpy.qos import QoSProfile, qos_profile_unknown
 from rclpy.type_hash import TypeHash
 
 
@@ -52,7 +53,8 @@ class TopicEndpointInfo:
         self.topic_type_hash = TypeHash() if values["topic_type_hash"] is None else values["topic_type_hash"]
         self.endpoint_type = values["endpoint_type"]
         self.endpoint_gid = list(values["endpoint_gid"])
-        self.qos_profile = QoSProfile(depth=10) if values["qos_profile"] is None else values["qos_profile"]
+        profile = values["qos_profile"]
+        self.qos_profile = copy.copy(qos_profile_unknown) if profile is None else profile
 
     @classmethod
     def from_endpoint(cls, endpoint: EndpointInfo) -> TopicEndpointInfo:

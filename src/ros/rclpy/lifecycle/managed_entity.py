@@ -41,7 +41,6 @@ class SimpleManagedEntity(ManagedEntity):
     """A managed entity that is either active or not."""
 
     def __init__(self) -> None:
-        super().__init__()
         self._enabled = False
 
     def on_activate(self, state: Any) -> TransitionCallbackReturn:
