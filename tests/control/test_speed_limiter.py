@@ -68,10 +68,16 @@ def test_speed_and_acceleration_hold_together(wanted: list[float]) -> None:
     assert np.all(np.abs(np.diff(np.concatenate(([0.0], speeds)))) <= 2.0 * PERIOD + 1e-12)
 
 
-def test_what_is_switched_on_must_be_given() -> None:
-    with pytest.raises(ParameterError, match=r"'linear\.x\.max_velocity' is missing"):
-        SpeedLimiter(SpeedLimits(has_velocity_limits=True), "linear.x")
-    with pytest.raises(ParameterError, match=r"min_velocity' is above max_velocity: 2 > 1"):
-        SpeedLimiter(SpeedLimits(max_velocity=1.0, min_velocity=2.0))
+def test_limits_that_are_switched_off_do_not_hold() -> None:
+    given = {"max_velocity": 1.0, "max_acceleration": 2.0, "max_deceleration": -2.0, "max_jerk": 5.0}
+    off = {f"has_{kind}_limits": False for kind in ("velocity", "acceleration", "jerk")}
+    assert follow(SpeedLimits(**given, **off), [7.0, -7.0]) == pytest.approx([7.0, -7.0])
+    only_speed = SpeedLimits(**given, has_acceleration_limits=False, has_jerk_limits=False)
+    assert follow(only_speed, [7.0, -7.0]) == pytest.approx([1.0, -1.0])
+
+
+def test_contradictions_are_named() -> None:
+    with pytest.raises(ParameterError, match=r"'linear\.x\.min_velocity' is above max_velocity: 2 > 1"):
+        SpeedLimiter(SpeedLimits(max_velocity=1.0, min_velocity=2.0), "linear.x")
     with pytest.raises(ParameterError, match="max_acceleration' must not be negative"):
         SpeedLimiter(SpeedLimits(max_acceleration=-1.0))

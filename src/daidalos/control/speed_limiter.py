@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
+from typing import Any
 
 from daidalos.control.errors import ParameterError
 from daidalos.control.parameters import parameter
@@ -18,7 +19,7 @@ class SpeedLimits:
     Parameters
     ----------
     has_velocity_limits, has_acceleration_limits, has_jerk_limits : bool
-        Old files switch limits on with these; limits that are given hold without as well.
+        Files switch limits that they give off with these.
     max_velocity, min_velocity : float
         Ahead and backwards [m/s, rad/s]; without the second the first holds both ways.
     max_acceleration, min_acceleration : float
@@ -31,9 +32,9 @@ class SpeedLimits:
         [m/s^3, rad/s^3].
     """
 
-    has_velocity_limits: bool = parameter(default=False)
-    has_acceleration_limits: bool = parameter(default=False)
-    has_jerk_limits: bool = parameter(default=False)
+    has_velocity_limits: bool = parameter(default=True)
+    has_acceleration_limits: bool = parameter(default=True)
+    has_jerk_limits: bool = parameter(default=True)
     max_velocity: float = parameter(NAN)
     min_velocity: float = parameter(NAN)
     max_acceleration: float = parameter(NAN)
@@ -57,19 +58,19 @@ class SpeedLimiter:
     Raises
     ------
     ParameterError
-        When limits are asked for and not given, or contradict each other.
+        When limits contradict each other.
     """
 
     def __init__(self, limits: SpeedLimits, name: str = "") -> None:
-        _require(limits, name)
-        self.upper = _given(limits.max_velocity, math.inf)
-        self.lower = _given(limits.min_velocity, -self.upper)
-        self.speed_up = _given(limits.max_acceleration, math.inf)
-        self.slow_down = abs(_given(limits.max_deceleration, _given(limits.min_acceleration, self.speed_up)))
-        self.speed_up_reverse = abs(_given(limits.max_acceleration_reverse, self.speed_up))
-        self.slow_down_reverse = abs(_given(limits.max_deceleration_reverse, self.slow_down))
-        self.jerk_up = _given(limits.max_jerk, math.inf)
-        self.jerk_down = _given(limits.min_jerk, -self.jerk_up)
+        given = _switched_on(limits)
+        self.upper = _given(given.max_velocity, math.inf)
+        self.lower = _given(given.min_velocity, -self.upper)
+        self.speed_up = _given(given.max_acceleration, math.inf)
+        self.slow_down = abs(_given(given.max_deceleration, _given(given.min_acceleration, self.speed_up)))
+        self.speed_up_reverse = abs(_given(given.max_acceleration_reverse, self.speed_up))
+        self.slow_down_reverse = abs(_given(given.max_deceleration_reverse, self.slow_down))
+        self.jerk_up = _given(given.max_jerk, math.inf)
+        self.jerk_down = _given(given.min_jerk, -self.jerk_up)
         for what, lower, upper in (("velocity", self.lower, self.upper), ("jerk", self.jerk_down, self.jerk_up)):
             if lower > upper:
                 raise ParameterError(f"{name}.min_{what}", f"is above max_{what}: {lower:g} > {upper:g}")
@@ -112,14 +113,15 @@ class SpeedLimiter:
         return -back, up
 
 
-def _require(limits: SpeedLimits, name: str) -> None:
-    for wanted, key, value in (
-        (limits.has_velocity_limits, "max_velocity", limits.max_velocity),
-        (limits.has_acceleration_limits, "max_acceleration", limits.max_acceleration),
-        (limits.has_jerk_limits, "max_jerk", limits.max_jerk),
-    ):
-        if wanted and math.isnan(value):
-            raise ParameterError(f"{name}.{key}", "is missing, although its limits are switched on")
+def _switched_on(limits: SpeedLimits) -> SpeedLimits:
+    """Return the limits without those that are switched off."""
+    off: dict[str, Any] = {}
+    for kind in ("velocity", "acceleration", "jerk"):
+        if not getattr(limits, f"has_{kind}_limits"):
+            names = (one.name for one in fields(limits) if one.type != "bool")
+            rates = ("acceleration", "deceleration") if kind == "acceleration" else (kind,)
+            off |= {name: NAN for name in names if any(rate in name for rate in rates)}
+    return replace(limits, **off)
 
 
 def _given(value: float, default: float) -> float:

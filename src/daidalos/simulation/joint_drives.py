@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from enum import IntEnum
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from daidalos.simulation.conversion.wheels import is_wheel
+from daidalos.description.pose import rotation_matrix
 from daidalos.simulation.errors import UnknownNameError
 
 if TYPE_CHECKING:
-    from daidalos.description.geometry import Cylinder
     from daidalos.simulation.conversion.build import ModelBuild
     from daidalos.simulation.instance import Instance
 
@@ -26,6 +25,8 @@ SPEED_TIME = 0.0025
 """Time constant with which a driven wheel takes a speed [s]."""
 DAMPING_TIME, POSITION_TIME = 0.00125, 0.005
 """Time constants with which a joint takes a speed and a position: critically damped [s]."""
+_ROUND = 0.8
+"""How evenly what is about an axle has to lie there to be a wheel."""
 LEAD = 0.05
 """How far a speed's reference may run ahead of a joint that is held up [rad, m]."""
 
@@ -70,12 +71,16 @@ class JointDrives:
         Joints with a motor: largest force or torque that it has [N, N m].
     names : sequence of str
         All joints whose state is asked for.
+    spinning : collection of str
+        Joints with a motor of which only speeds and efforts are commanded; those that turn wheels are driven as
+        wheels.
     """
 
-    def __init__(self, efforts: Mapping[str, float], names: Sequence[str]) -> None:
+    def __init__(self, efforts: Mapping[str, float], names: Sequence[str], spinning: Collection[str] = ()) -> None:
         self.efforts = dict(efforts)
         self.names = tuple(names)
         self.driven = tuple(efforts)
+        self._spinning = frozenset(spinning)
         self._wheels = np.zeros(len(self.driven), dtype=bool)
         self._applied: NDArray[np.int8] | None = None
 
@@ -86,7 +91,7 @@ class JointDrives:
 
     def prepare(self, build: ModelBuild) -> None:
         """Add a servo for positions and one for speeds and efforts to each joint."""
-        wheels = {joint: radius for joint in self.driven if (radius := _wheel_radius(build, joint)) > 0.0}
+        wheels = {joint: radius for joint in self._spinning if (radius := _wheel_radius(build, joint)) > 0.0}
         mass = sum(link.inertial.mass for link in build.model.links.values() if link.inertial)
         self._wheels = np.array([joint in wheels for joint in self.driven], dtype=bool)
         self._actuators: list[tuple[str, str]] = []
@@ -220,13 +225,29 @@ class JointDrives:
 
 
 def _wheel_radius(build: ModelBuild, name: str) -> float:
-    """Return the radius of the wheel that a joint turns, 0 where it turns none."""
+    """Return the radius of the wheel that a joint turns without end, 0 where it turns none.
+
+    A wheel is what lies evenly about its axle, whatever shape it is described by.
+    """
     joint = build.model.joints.get(name)
-    if joint is None:
+    if joint is None or not joint.axes or math.isfinite(joint.axis.upper):
         return 0.0
-    collisions: Iterable[Any] = build.model.links[joint.child].collisions
-    for collision in collisions:
-        if is_wheel(joint, collision):
-            disc: Cylinder = collision.geometry
-            return disc.radius
-    return 0.0
+    from daidalos.description.errors import DescriptionError
+    from daidalos.description.meshes import triangles_of
+
+    corners = []
+    for collision in build.model.links[joint.child].collisions:
+        try:
+            vertices = triangles_of(collision.geometry).vertices
+        except (DescriptionError, TypeError):
+            continue  # what it can not be made of is said where collisions are added
+        turn = rotation_matrix(collision.pose.orientation)
+        corners.append(vertices @ turn.T + np.array(collision.pose.position) - np.array(joint.anchor.position))
+    if not corners:
+        return 0.0
+    points = np.concatenate(corners)
+    axle = rotation_matrix(joint.anchor.orientation) @ np.array(joint.axis.xyz)
+    across = np.linalg.svd(axle[None, :])[2][1:] @ points.T
+    radius = float(np.max(np.linalg.norm(across, axis=0)))
+    reach = min(*np.max(across, axis=1), *np.max(-across, axis=1))
+    return radius if reach > _ROUND * radius else 0.0

@@ -166,7 +166,7 @@ def test_it_stands_when_it_stops() -> None:
         ({"right_wheel_names": ["a", "b"]}, "'right_wheel_names' has 2 elements, left_wheel_names has 1"),
         ({"wheel_radius": 0.0}, "'wheel_radius' must be above 0"),
         ({"left_wheel_names": []}, "'left_wheel_names' must not be empty"),
-        ({"linear": {"x": {"has_velocity_limits": True}}}, r"'linear\.x\.max_velocity' is missing"),
+        ({"linear": {"x": {"max_velocity": 1.0, "min_velocity": 2.0}}}, r"'linear\.x\.min_velocity' is above"),
     ],
 )
 def test_wrong_parameters_are_named(values: dict[str, Any], message: str) -> None:

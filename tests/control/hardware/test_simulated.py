@@ -304,6 +304,16 @@ def test_a_rover_turns_as_its_odometry_says(rover: Rig) -> None:
     assert states["body/linear_acceleration.z"] == pytest.approx(9.8, abs=0.3)
 
 
+def test_wheels_of_any_round_shape_are_driven_as_wheels() -> None:
+    cylinder, ball = '<cylinder radius="0.05" length="0.02"/>', '<sphere radius="0.05"/>'
+    block = '<box size="0.3 0.02 0.02"/>'
+    for shape, round_enough in ((cylinder, True), (ball, True), (block, False)):
+        rig = Rig(ROVER.replace(cylinder, shape), ground=True)
+        armature = rig.simulation.physics.model.joint("robot::left").armature[0]
+        # Two kilograms and two wheels of 50 g, which two wheels of 5 cm drive.
+        assert armature == pytest.approx(2.1 * 0.05**2 / 2 if round_enough else 0.0, rel=0.01)
+
+
 def _yaw(rig: Rig) -> float:
     x, y, z, w = rig.simulation.pose("robot").orientation
     return math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))

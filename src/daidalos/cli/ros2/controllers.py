@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 DEFAULT_MANAGER = "controller_manager"
 _LIST = "/list_controllers"
-_READY_S = 5.0
+_READY_S = 10.0
 _ANSWER_S = 30.0
 
 

@@ -66,7 +66,8 @@ class Ros2Control(Plugin):
         self.cycle: Callable[[int], None] | None = None
         joints = [(info.plugin, joint) for info in self.hardware for joint in info.joints if _moves(joint)]
         efforts = {joint.name: _effort(plugin, joint) for plugin, joint in joints if _is_driven(joint)}
-        self.drives = JointDrives(efforts, [joint.name for _, joint in joints])
+        spinning = {joint.name for _, joint in joints if joint.name in efforts and not _takes_positions(joint)}
+        self.drives = JointDrives(efforts, [joint.name for _, joint in joints], spinning)
         self._initial = {joint.name: position for _, joint in joints if not math.isnan(position := _start(joint))}
 
     def prepare(self, build: ModelBuild) -> None:
@@ -135,8 +136,11 @@ def _is_driven(joint: ComponentInfo) -> bool:
 def _effort(plugin: str, joint: ComponentInfo) -> float:
     """Return what a motor can do; a limit of zero, which many descriptions have by mistake, is none."""
     effort = joint.joint.axis.effort if joint.joint is not None else math.inf
-    positions = any(command.name == "position" for command in joint.commands)
-    return math.inf if effort <= 0.0 or (plugin == _KINEMATIC and positions) else effort
+    return math.inf if effort <= 0.0 or (plugin == _KINEMATIC and _takes_positions(joint)) else effort
+
+
+def _takes_positions(joint: ComponentInfo) -> bool:
+    return any(command.name == "position" for command in joint.commands)
 
 
 def _start(joint: ComponentInfo) -> float:
