@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import _thread
-import contextlib
 import threading
 from collections.abc import Callable
 from typing import Any
@@ -18,6 +17,8 @@ from daidalos.transport.service import Service
 from daidalos.transport.subscription import Subscription
 
 Watcher = Callable[[bool, EndpointInfo], None]
+
+_CLOSING_S = 2.0
 
 
 def _nothing() -> None:
@@ -49,6 +50,7 @@ class Session:
         self._watchers: dict[str, list[Watcher]] = {}
         self._own: set[bytes] = set()
         self._closed = False
+        self._closing: list[_thread.LockType] = []  # changed without a lock, as `abandon` may interrupt its holder
         self._stop_listening = self.graph.listen(self._on_graph_change)
         backend.start(self.graph)
 
@@ -58,6 +60,7 @@ class Session:
             closed, self._closed = self._closed, True
         if closed:
             return
+        self._wait_for_abandoned()
         self._stop_listening()
         with self._lock:
             groups = (self._publishers, self._subscriptions, self._services, self._clients)
@@ -71,8 +74,26 @@ class Session:
 
         The garbage collector finds such things on any thread, with any lock held: they are closed on another.
         """
-        with contextlib.suppress(RuntimeError):  # the process ends, and all is closed anyway
-            _thread.start_new_thread(close, ())
+        done = _thread.allocate_lock()
+        done.acquire()
+
+        def run() -> None:
+            try:
+                close()
+            finally:
+                self._closing.remove(done)
+                done.release()
+
+        self._closing.append(done)
+        try:
+            _thread.start_new_thread(run, ())
+        except RuntimeError:  # the process ends, and all is closed anyway
+            self._closing.remove(done)
+
+    def _wait_for_abandoned(self) -> None:
+        """Wait for what is being closed: a thread in the middleware's hands must not outlive the interpreter."""
+        for done in tuple(self._closing):
+            done.acquire(timeout=_CLOSING_S)
 
     def create_node(self, name: str, namespace: str, enclave: str = "/") -> tuple[NodeInfo, Callable[[], None]]:
         """Join as a node; returns its description and what removes it."""
