@@ -74,7 +74,6 @@ class CycloneBackend(Backend):
         self._registry = Registry(environment.domain, family="cyclonedds")
         self._number = itertools.count(1).__next__
         self._lock = threading.RLock()
-        self._topics: dict[tuple[str, str], int] = {}
         self._entities: dict[str, _Entities] = {}
         self._nodes: dict[str, tuple[NodeInfo, list[_Entities]]] = {}
         self._enclave = ""
@@ -250,27 +249,19 @@ class CycloneBackend(Backend):
     def _make(self, topic: str, type_name: str, qos: Qos, user_data: bytes, *, writes: bool) -> int:
         """Make a writer or reader."""
         library = self._library
-        entity = self._topic(topic, names.dds_type(type_name))
+        described = TopicDescriptor(
+            size=1, align=1, type_name=names.dds_type(type_name).encode(), ops_count=2, ops=_ONE_OCTET, meta=b""
+        )
+        entity = library.check(
+            library.dds_create_topic(self._participant, c.byref(described), topic.encode(), None, None),
+            f"make the topic '{topic}' of type '{type_name}'",
+        )
         create, what = (library.dds_create_writer, "write") if writes else (library.dds_create_reader, "read")
-        with dds_qos(library, qos, user_data, writes=writes) as handle:
-            made = create(self._participant, entity, handle, None)
-        return library.check(made, f"{what} the topic '{topic}'")
-
-    def _topic(self, topic: str, type_name: str) -> int:
-        """Return the topic's entity, made when it is first used."""
-        key = (topic, type_name)
-        found = self._topics.get(key)
-        if found is None:
-            descriptor = TopicDescriptor(
-                size=1, align=1, type_name=type_name.encode(), ops_count=2, ops=_ONE_OCTET, meta=b""
-            )
-            library = self._library
-            found = library.check(
-                library.dds_create_topic(self._participant, c.byref(descriptor), topic.encode(), None, None),
-                f"make the topic '{topic}' of type '{type_name}'",
-            )
-            self._topics[key] = found
-        return found
+        try:
+            with dds_qos(library, qos, user_data, writes=writes) as handle:
+                return library.check(create(self._participant, entity, handle, None), f"{what} the topic '{topic}'")
+        finally:
+            library.dds_delete(entity)  # it lives on in what was made of it
 
     def _make_participant(self) -> int:
         library = self._library

@@ -37,6 +37,8 @@ _PADDING = (b"", b"\0\0\0", b"\0\0", b"\0")
 _JOINED = 4096
 """Up to so many items buffers are joined; larger ones are handed over where they are."""
 _CLIENT_PATIENCE_NS = 100_000_000
+_MOST_REACHABLE = 1000
+"""So many clients are remembered, whether they still live or not."""
 
 
 class Writer:
@@ -176,6 +178,8 @@ class DdsService(WireService):
         client, writer = _REQUEST_ID.unpack(request.client)
         with self._lock:
             if writer not in self._reachable and self._wait_for_reader(writer):
+                if len(self._reachable) > _MOST_REACHABLE:
+                    self._reachable.clear()
                 self._reachable.add(writer)
         self._writer.write(_joined(client, request.sequence, data))
 
