@@ -1,0 +1,1 @@
+"""A humanoid that curls its arms."""

@@ -1,0 +1,1 @@
+"""A truck with driven rear wheels."""

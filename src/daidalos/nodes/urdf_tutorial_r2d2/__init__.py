@@ -1,0 +1,1 @@
+"""A small robot on wheels that walks in circles."""
