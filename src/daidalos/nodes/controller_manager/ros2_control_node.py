@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Iterator
 from typing import Any
 
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
@@ -56,22 +57,42 @@ class Ros2ControlNode(ControllerManagerNode):
             self.start(robot, hardware)
         except (DescriptionError, ControlError) as error:
             raise UserError(str(error)) from None
-        self._period_ns = 1e9 / self.update_rate
-        self._due_ns = 0.0
+        self._cycles = _Cycles(self.update_rate)
         self.create_timer(1.0 / self.update_rate, self._tick, callback_group=MutuallyExclusiveCallbackGroup())
 
     def _tick(self) -> None:
-        """Run a cycle; as many as are due where the clock goes in larger steps."""
+        """Run a cycle; as many as are due where the time is a simulator's, which goes in larger steps."""
         clock = self.get_clock()
-        simulated = getattr(clock, "ros_time_is_active", False)
         now_ns = clock.now().nanoseconds
-        lag_ns = now_ns - self._due_ns
-        jumped = not -self._period_ns < lag_ns < _LONGEST_LAG_NS
-        if jumped or not simulated:
-            self._due_ns = float(now_ns)
-        while self._due_ns <= now_ns:
-            self.publish(self.cycle(round(self._due_ns)))
-            self._due_ns += self._period_ns
+        due = self._cycles.until(now_ns) if getattr(clock, "ros_time_is_active", False) else (now_ns,)
+        for instant in due:
+            self.publish(self.cycle(instant))
+
+
+class _Cycles:
+    """Instants at a rate, counted from the first time that is asked for.
+
+    Parameters
+    ----------
+    rate : float
+        [Hz].
+    """
+
+    def __init__(self, rate: float) -> None:
+        self._period = 1e9 / rate
+        self._start_ns, self._count = -1, 0
+
+    def until(self, now_ns: int) -> Iterator[int]:
+        """Yield the instants up to now [ns] that were not yielded before; a clock that jumps starts anew."""
+        last = self._at(self._count - 1)
+        if self._start_ns < 0 or not last <= now_ns < last + _LONGEST_LAG_NS:
+            self._start_ns, self._count = now_ns, 0
+        while self._at(self._count) <= now_ns:
+            yield self._at(self._count)
+            self._count += 1
+
+    def _at(self, count: int) -> int:
+        return self._start_ns + round(count * self._period)
 
 
 def main() -> int:
