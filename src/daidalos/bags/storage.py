@@ -190,7 +190,8 @@ def open_writer(path: Path, storage_id: str, options: StorageOptions, ros_distro
         known = ", ".join(PROFILES[storage_id])
         raise BagError(path, f"{storage_id} has no profile '{options.profile}'; there are: {known}")
     if storage_id == MCAP:
-        from daidalos.bags.mcap_writer import McapWriter, writer_options
+        from daidalos.bags.mcap_options import writer_options
+        from daidalos.bags.mcap_writer import McapWriter
 
         return McapWriter(path, writer_options(options), ros_distro)
     from daidalos.bags.sqlite_writer import SqliteWriter, pragmas

@@ -22,7 +22,6 @@ from rosbag2_py._storage import (
     get_default_storage_id,
 )
 from rosbag2_py._transport import (
-    MessageOrder,
     Player,
     PlayOptions,
     Recorder,
@@ -47,7 +46,6 @@ __all__ = [
     "Info",
     "LocalMessageDefinitionSource",
     "MessageDefinition",
-    "MessageOrder",
     "MetadataIo",
     "PlayOptions",
     "Player",

@@ -23,16 +23,12 @@ class ServiceRequestsSource(IntEnum):
     CLIENT_INTROSPECTION = 1
 
 
-class MessageOrder(IntEnum):
-    """By what time messages are played."""
-
-    RECEIVED_TIMESTAMP = 0
-    SENT_TIMESTAMP = 1
-
-
 @dataclass
 class PlayOptions:
-    """How to play; times in seconds unless a name says otherwise, negative for no limit."""
+    """How to play; times in seconds unless a name says otherwise, negative for no limit.
+
+    `node_prefix` and `disable_loan_message` are there for programs that set them; they change nothing.
+    """
 
     read_ahead_queue_size: int = 1000
     node_prefix: str = ""
@@ -59,9 +55,7 @@ class PlayOptions:
     disable_loan_message: bool = False
     publish_service_requests: bool = False
     service_requests_source: ServiceRequestsSource = ServiceRequestsSource.SERVICE_INTROSPECTION
-    message_order: MessageOrder = MessageOrder.RECEIVED_TIMESTAMP
     progress_bar_update_rate: int = 3
-    progress_bar_separation_lines: int = 3
 
     def selection(self) -> Selection:
         """Return what is played."""
@@ -81,7 +75,12 @@ class PlayOptions:
 
 @dataclass
 class RecordOptions:
-    """What to record, and how."""
+    """What to record, and how.
+
+    There for programs that set them, without effect: `topic_polling_interval` (topics are noticed when they appear),
+    `rmw_serialization_format` (it is CDR), `compression_queue_size` and `compression_threads_priority` (nothing is
+    dropped while it waits), `node_prefix`.
+    """
 
     all_topics: bool = False
     all_services: bool = False

@@ -6,7 +6,9 @@ from collections.abc import Callable, Iterable
 from dataclasses import replace
 from typing import Any
 
+from rclpy.duration import Duration
 from rclpy.node import Node
+from rclpy.publisher import Publisher
 from rclpy.qos import QoSProfile
 from rclpy.serialization import deserialize_message
 
@@ -39,6 +41,7 @@ class Outlets:
         self._node = node
         self._options = options
         self._ways: dict[str, Callable[[bytes], None]] = {}
+        self._publishers: list[Publisher] = []
         for topic in topics:
             way = self._way(topic)
             if way is not None:
@@ -52,6 +55,18 @@ class Outlets:
     def publish(self, message: BagMessage) -> None:
         """Publish a message."""
         self._ways[message.topic](message.data)
+
+    def wait_for_all_acked(self, timeout_ms: int) -> None:
+        """Wait until subscriptions have all messages: so many milliseconds, 0 for no limit, negative for not at all."""
+        if timeout_ms < 0:
+            return
+        timeout = Duration(nanoseconds=timeout_ms * 1_000_000 or -1)
+        for publisher in self._publishers:
+            if not publisher.wait_for_all_acked(timeout):
+                self._node.get_logger().error(
+                    f"Timed out while waiting for all published messages to be acknowledged for topic "
+                    f"{publisher.topic_name}"
+                )
 
     def _way(self, topic: Topic) -> Callable[[bytes], None] | None:
         """Return what is done with a topic's messages, None where nothing can be."""
@@ -79,7 +94,9 @@ class Outlets:
                 "recorded, to who has the same definition."
             )
             kind = opaque_class(topic.type, topic.type_hash)
-        send: Callable[[bytes], None] = self._node.create_publisher(kind, topic.name, self._qos(topic)).publish
+        publisher = self._node.create_publisher(kind, topic.name, self._qos(topic))
+        self._publishers.append(publisher)
+        send: Callable[[bytes], None] = publisher.publish
         return send
 
     def _qos(self, topic: Topic) -> QoSProfile:

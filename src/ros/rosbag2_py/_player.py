@@ -13,6 +13,7 @@ from daidalos.bags.errors import BagError
 from rosbag2_py._keyboard import DOWN, RIGHT, SPACE, UP, Keyboard
 from rosbag2_py._options import PlayOptions, severity
 from rosbag2_py._player_node import NODE_NAME, PlayerNode
+from rosbag2_py._player_services import create_services
 from rosbag2_py._progress import StatusLine
 from rosbag2_py._storage import StorageOptions
 
@@ -73,7 +74,7 @@ class Player:
             self._context.destroy()
             raise
         self._node.get_logger().set_level(self._severity)
-        self._node.create_services()
+        create_services(self._node)
         self._executor = MultiThreadedExecutor(_THREADS, context=self._context)
         self._executor.add_node(self._node)
         if not options.disable_keyboard_controls:

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.clock import Clock
@@ -75,7 +73,6 @@ class PlayerNode(Node):
         self._clock_of_bag = PlaybackClock(self._start, _steady(), options.rate, paused=options.start_paused)
         self._stream: ReadAhead | None = None
         self._message: BagMessage | None = None
-        self._through = True
         self._playing = False
         self._stopping = False
         self._state = STOPPED
@@ -209,6 +206,8 @@ class PlayerNode(Node):
                 played = self._play_through()
                 if self._stopping or not self._options.loop or not played:
                     break
+            if not self._stopping:
+                self._outlets.wait_for_all_acked(self._options.wait_acked_timeout)
         except BagError as error:
             self.error = error
             self.get_logger().error(f"Failed to play: {error}")
@@ -216,7 +215,6 @@ class PlayerNode(Node):
             with self._changed:
                 self._playing = False
                 self._state = STOPPED
-                self._through = True
                 self._message = None
                 self._end_stream()
             self._began.set()
@@ -238,7 +236,7 @@ class PlayerNode(Node):
             self._state = RUNNING
             self._began.set()
             while self._message is not None and not self._stopping:
-                due = self._clock_of_bag.due(self._time_of(self._message))
+                due = self._clock_of_bag.due(self._message.received_ns)
                 left = None if due is None else due - _steady()
                 if left is None or left > 0:
                     self._changed.wait(None if left is None else left / 1e9)
@@ -253,16 +251,12 @@ class PlayerNode(Node):
         messages = self._bag.messages(wanted, start_ns=max(time_ns, 0), stop_ns=self._stop)
         self._stream = ReadAhead(messages, self._options.read_ahead_queue_size)
         self._clock_of_bag.jump(time_ns, _steady())
-        self._through = False
         self._message = self._stream.next()
 
     def _end_stream(self) -> None:
         if self._stream is not None:
             self._stream.close()
             self._stream = None
-
-    def _time_of(self, message: BagMessage) -> int:
-        return message.sent_ns if self._options.message_order else message.received_ns
 
     def _publish_next(self) -> bool:
         """Publish the next message; False at the end. The lock is held."""
@@ -271,7 +265,7 @@ class PlayerNode(Node):
             return False
         self._outlets.publish(message)
         if self._clock_publisher is not None and (self._clock_topics is None or message.topic in self._clock_topics):
-            self._publish_clock(self._time_of(message))
+            self._publish_clock(message.received_ns)
         self._message = stream.next()
         if self._message is None:
             self._changed.notify_all()
@@ -335,7 +329,7 @@ class PlayerNode(Node):
         if message is None:
             return False
         self._publish_next()
-        self._clock_of_bag.jump(self._time_of(message), _steady())
+        self._clock_of_bag.jump(message.received_ns, _steady())
         return True
 
     def burst(self, count: int) -> int:
@@ -387,48 +381,9 @@ class PlayerNode(Node):
             ReadSplitEvent(closed_file=str(closed), opened_file=str(opened), node_name=self.get_fully_qualified_name())
         )
 
-    def create_services(self) -> None:
-        """Let others control the playing."""
-        from rosbag2_interfaces import srv
-
-        group = ReentrantCallbackGroup()
-
-        def serve(kind: Any, name: str, work: Callable[[Any, Any], None]) -> None:
-            def answer(request: Any, response: Any) -> Any:
-                work(request, response)
-                return response
-
-            self.create_service(kind, f"~/{name}", answer, callback_group=group)
-
-        def fill(field: str, value: Callable[[Any], object]) -> Callable[[Any, Any], None]:
-            return lambda request, response: setattr(response, field, value(request))
-
-        serve(srv.Pause, "pause", lambda request, response: self.pause())
-        serve(srv.Resume, "resume", lambda request, response: self.resume())
-        serve(srv.TogglePaused, "toggle_paused", lambda request, response: self.toggle_paused())
-        serve(srv.IsPaused, "is_paused", fill("paused", lambda request: self.is_paused))
-        serve(srv.GetRate, "get_rate", fill("rate", lambda request: self.rate))
-        serve(srv.SetRate, "set_rate", fill("success", lambda request: self.set_rate(request.rate)))
-        serve(srv.PlayNext, "play_next", fill("success", lambda request: self.play_next()))
-        serve(srv.Burst, "burst", fill("actually_burst", lambda request: self.burst(request.num_messages)))
-        serve(srv.Seek, "seek", fill("success", lambda request: self.seek(_nanoseconds(request.time))))
-        serve(srv.Stop, "stop", lambda request, response: self.stop())
-        serve(srv.Play, "play", fill("success", self._on_play))
-
-    def _on_play(self, request: Any) -> bool:
-        return self.play_part(
-            _nanoseconds(request.start_offset) / _SECOND,
-            _nanoseconds(request.playback_duration) / _SECOND,
-            _nanoseconds(request.playback_until_timestamp),
-        )
-
 
 def _steady() -> int:
     return time.monotonic_ns()
-
-
-def _nanoseconds(message: Any) -> int:
-    return int(message.sec) * _SECOND + int(message.nanosec)
 
 
 def _node_arguments(options: PlayOptions) -> list[str]:

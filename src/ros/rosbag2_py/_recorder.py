@@ -12,6 +12,7 @@ from daidalos.bags.errors import BagError
 from rosbag2_py._keyboard import SPACE, Keyboard
 from rosbag2_py._options import RecordOptions, severity
 from rosbag2_py._recorder_node import NODE_NAME, RecorderNode
+from rosbag2_py._recorder_services import create_services
 from rosbag2_py._storage import StorageOptions
 
 
@@ -66,7 +67,7 @@ class Recorder:
             self._context.destroy()
             raise
         self._node.get_logger().set_level(self._severity)
-        self._node.create_services()
+        create_services(self._node)
         self._executor = SingleThreadedExecutor(context=self._context)
         self._executor.add_node(self._node)
         if not options.disable_keyboard_controls:

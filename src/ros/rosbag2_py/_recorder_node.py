@@ -80,8 +80,6 @@ class RecorderNode(Node):
         self._discovering = False
         self._stop_listening: Callable[[], None] | None = None
         self._changing = threading.RLock()
-        self._stopped = threading.Event()
-        self._stopped.set()
         self._group = MutuallyExclusiveCallbackGroup()
         self._look = self.create_guard_condition(self._discover, callback_group=self._group)
 
@@ -96,10 +94,6 @@ class RecorderNode(Node):
     def bag(self) -> BagWriter | None:
         """The bag that is open."""
         return self._bag
-
-    def wait_until_stopped(self, timeout_s: float | None = None) -> bool:
-        """Wait until nothing is recorded any more; False after so many seconds."""
-        return self._stopped.wait(timeout_s)
 
     def record(self, uri: str = "") -> None:
         """Begin a bag and subscribe to what is there.
@@ -121,7 +115,6 @@ class RecorderNode(Node):
                 self._sink = SnapshotBuffer(self._bag, self._storage.max_cache_size)
             else:
                 self._sink = WriterThread(self._bag, self._storage.max_cache_size, self._fail)
-            self._stopped.clear()
             self._create_split_publisher()
         logger = self.get_logger()
         logger.info(f"Starting recording to '{folder}'")
@@ -149,7 +142,6 @@ class RecorderNode(Node):
                 self._fail(error)
             self._tell_losses(sink)
             self._bag = self._sink = None
-            self._stopped.set()
             self.get_logger().info("Recording stopped")
 
     def _take_what_waits(self) -> None:
@@ -199,6 +191,11 @@ class RecorderNode(Node):
         bag, sink = self._bag, self._sink
         if bag is not None and sink is not None:
             sink.call(bag.split)
+
+    @property
+    def keeps_snapshots(self) -> bool:
+        """Whether messages are kept in memory until a snapshot is asked for."""
+        return self._storage.snapshot_mode
 
     def take_snapshot(self) -> bool:
         """Write what was kept in snapshot mode."""
@@ -364,7 +361,7 @@ class RecorderNode(Node):
             self._warned.add(key)
             self.get_logger().warning(text)
 
-    # Services and events.
+    # Events.
 
     def _create_split_publisher(self) -> None:
         from rosbag2_interfaces.msg import WriteSplitEvent
@@ -378,47 +375,3 @@ class RecorderNode(Node):
         self._split_publisher.publish(
             WriteSplitEvent(closed_file=str(closed), opened_file=str(opened), node_name=self.get_fully_qualified_name())
         )
-
-    def create_services(self) -> None:
-        """Let others control the recording."""
-        from rosbag2_interfaces import srv
-
-        def serve(kind: Any, name: str, work: Callable[[Any, Any], None]) -> None:
-            def answer(request: Any, response: Any) -> Any:
-                work(request, response)
-                return response
-
-            self.create_service(kind, f"~/{name}", answer)
-
-        serve(srv.IsPaused, "is_paused", lambda request, response: setattr(response, "paused", self._paused))
-        serve(srv.Pause, "pause", lambda request, response: self.pause())
-        serve(srv.Resume, "resume", lambda request, response: self.resume())
-        serve(srv.TogglePaused, "toggle_paused", lambda request, response: self.toggle_paused())
-        serve(srv.SplitBagfile, "split_bagfile", lambda request, response: self.split())
-        serve(srv.Stop, "stop", lambda request, response: self.stop())
-        serve(srv.Record, "record", self._on_record)
-        serve(srv.StartDiscovery, "start_discovery", self._on_start_discovery)
-        serve(srv.StopDiscovery, "stop_discovery", lambda request, response: self.stop_discovery())
-        serve(
-            srv.IsDiscoveryRunning,
-            "is_discovery_running",
-            lambda request, response: setattr(response, "running", self._discovering),
-        )
-        if self._storage.snapshot_mode:
-            serve(
-                srv.Snapshot,
-                "snapshot",
-                lambda request, response: setattr(response, "success", self.take_snapshot()),
-            )
-
-    def _on_record(self, request: Any, response: Any) -> None:
-        try:
-            self.record(request.uri)
-        except RuntimeError as error:
-            response.return_code, response.error_string = 1, str(error)
-
-    def _on_start_discovery(self, request: Any, response: Any) -> None:
-        if not self.is_recording:
-            response.return_code, response.error_string = 1, "Nothing is recorded."
-        else:
-            self.start_discovery()

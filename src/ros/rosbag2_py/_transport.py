@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from rosbag2_py._options import MessageOrder, PlayOptions, RecordOptions, ServiceRequestsSource
+from rosbag2_py._options import PlayOptions, RecordOptions, ServiceRequestsSource
 from rosbag2_py._player import Player
 from rosbag2_py._recorder import Recorder
 from rosbag2_py._rewrite import bag_rewrite
 
 __all__ = [
-    "MessageOrder",
     "PlayOptions",
     "Player",
     "RecordOptions",

@@ -1,0 +1,43 @@
+"""The services of a player."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from rclpy.callback_groups import ReentrantCallbackGroup
+
+from rosbag2_py._player_node import PlayerNode
+from rosbag2_py._services import serve
+
+_SECOND = 1_000_000_000
+
+
+def create_services(player: PlayerNode) -> None:
+    """Let others control a player."""
+    from rosbag2_interfaces import srv
+
+    group = ReentrantCallbackGroup()
+
+    def play(request: Any) -> dict[str, Any]:
+        offset, duration = _nanoseconds(request.start_offset), _nanoseconds(request.playback_duration)
+        until = _nanoseconds(request.playback_until_timestamp)
+        return {"success": player.play_part(offset / _SECOND, duration / _SECOND, until)}
+
+    for kind, name, work in (
+        (srv.Pause, "pause", lambda request: player.pause()),
+        (srv.Resume, "resume", lambda request: player.resume()),
+        (srv.TogglePaused, "toggle_paused", lambda request: player.toggle_paused()),
+        (srv.IsPaused, "is_paused", lambda request: {"paused": player.is_paused}),
+        (srv.GetRate, "get_rate", lambda request: {"rate": player.rate}),
+        (srv.SetRate, "set_rate", lambda request: {"success": player.set_rate(request.rate)}),
+        (srv.PlayNext, "play_next", lambda request: {"success": player.play_next()}),
+        (srv.Burst, "burst", lambda request: {"actually_burst": player.burst(request.num_messages)}),
+        (srv.Seek, "seek", lambda request: {"success": player.seek(_nanoseconds(request.time))}),
+        (srv.Stop, "stop", lambda request: player.stop()),
+        (srv.Play, "play", play),
+    ):
+        serve(player, kind, name, work, group)
+
+
+def _nanoseconds(message: Any) -> int:
+    return int(message.sec) * _SECOND + int(message.nanosec)
