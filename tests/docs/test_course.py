@@ -1,13 +1,14 @@
 """Every command of the course's pages, typed, and what it prints compared with what the page says."""
 
 import zlib
-from pathlib import Path
 
 import pytest
 
+from places import REPOSITORY
+
 from . import pages
 
-COURSE = Path(__file__).resolve().parents[2] / "docs" / "course"
+COURSE = REPOSITORY / "docs" / "course"
 _LONGEST_S = 600
 
 pytestmark = [pytest.mark.slow, pytest.mark.timeout(_LONGEST_S)]

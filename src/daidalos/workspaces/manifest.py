@@ -58,16 +58,16 @@ def _root(path: Path, text: str) -> str:
 def _located(path: Path, text: str, message: str) -> str:
     """Return one line about a fault, with the line of the element or value that it names."""
     lines = [line.strip(" -") for line in message.splitlines()]
-    faults = [line for line in lines if line and not line.startswith("Error(s) in")]
-    fault = "; ".join(faults) if faults else message.replace("\n", " ")
-    fault = fault.replace(f"Error(s) in package '{path}':", "").strip().rstrip(".")
+    faults = [line for line in lines if line and not line.startswith("Error(s)")]
+    fault = "; ".join(faults).rstrip(".") or message.replace("\n", " ")
     return f"{path}:{_line(text, fault)}: {fault}"
 
 
 def _line(text: str, fault: str) -> int:
     """Return the line of the first thing that the message quotes, or of the tag that it names; else the first."""
     lines = text.splitlines()
-    quoted = [re.escape(word) for word in re.findall(r"[\"'<]([^\"'<>]+)[\"'>]", fault)]
+    named = re.findall(r"[\"'<]([^\"'<>]+)[\"'>]", fault) + re.findall(r"tags: (\w+)", fault)
+    quoted = [re.escape(word) for word in named]
     for pattern in [*(rf"<{word}\b" for word in quoted), *(rf"(?<!\w){word}(?!\w)" for word in quoted)]:
         for number, line in enumerate(lines, 1):
             if re.search(pattern, line):
