@@ -1,5 +1,10 @@
 """What of `ros2 topic` and `ros2 service` no transcript shows."""
 
+import signal
+import time
+
+import pytest
+
 from .commands import ros2
 
 LATCHED = """
@@ -58,3 +63,16 @@ def test_a_number_of_messages_at_a_rate(env, beside, wait_for):
     sent = ros2("topic", "pub", "-t", "3", "-r", "20", "-w", "1", "/numbers", "std_msgs/msg/Int8", "data: 5", env=env)
     assert sent.out.count("publishing #") == 3
     assert [listener.stdout.readline() for _ in range(3)] == ["5\n"] * 3
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGSTOP"), reason="nothing can be stopped here")
+def test_a_stopped_program_holds_nobody_up_for_long(env, beside, wait_for):
+    stopped = beside(LATCHED)
+    wait_for("/latched")
+    beside(LISTENER)
+    wait_for("/numbers")
+    stopped.send_signal(signal.SIGSTOP)
+    begun = time.monotonic()
+    result = ros2("node", "list", "--no-daemon", env=env)
+    assert time.monotonic() - begun < 8.0
+    assert (result.status, result.out, result.err) == (0, "/ear\n", "")
