@@ -94,6 +94,14 @@ def test_whoever_commands_comes_first_and_whoever_reads_last() -> None:
     assert update_order(controllers) == ("top", "middle", "low", "reader")
 
 
+def test_whoever_commands_and_reads_another_comes_first() -> None:
+    controllers = {
+        "low": Candidate("active", ("a/position",), (), ("low/x",), ("low/x",)),
+        "top": Candidate("active", ("low/x",), ("low/x",)),
+    }
+    assert update_order(controllers) == ("top", "low")
+
+
 def test_a_loop_of_controllers_still_has_an_order() -> None:
     loop = {
         "one": Candidate("active", commands=("two/x",), references=("one/x",)),

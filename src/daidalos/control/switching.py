@@ -91,7 +91,7 @@ def plan_switch(
 
 
 def update_order(controllers: Mapping[str, Candidate]) -> tuple[str, ...]:
-    """Return the names so that whoever commands another comes before it, and whoever reads one comes after it."""
+    """Return the names so that whoever commands another comes before it, and whoever only reads one after it."""
     owner = {name: key for key, one in controllers.items() for name in one.references}
     source = {name: key for key, one in controllers.items() for name in one.exported}
     before: dict[str, set[str]] = {key: set() for key in controllers}
@@ -99,7 +99,9 @@ def update_order(controllers: Mapping[str, Candidate]) -> tuple[str, ...]:
         for name in one.commands:
             if name in owner:
                 before[owner[name]].add(key)
-        before[key] |= {source[name] for name in one.states if source.get(name, key) != key}
+        commanded = {owner[name] for name in one.commands if name in owner}
+        # Who reads a controller that it commands reads what that said one cycle before.
+        before[key] |= {source[name] for name in one.states if name in source} - commanded - {key}
     ordered: list[str] = []
     while len(ordered) < len(controllers):
         ready = next((key for key in controllers if key not in ordered and before[key] <= set(ordered)), None)

@@ -304,6 +304,47 @@ def test_a_rover_turns_as_its_odometry_says(rover: Rig) -> None:
     assert states["body/linear_acceleration.z"] == pytest.approx(9.8, abs=0.3)
 
 
+def test_a_drive_commands_loops_that_command_motors() -> None:
+    interfaces = (
+        '<command_interface name="effort"/><state_interface name="position"/><state_interface name="velocity"/>'
+    )
+    old = '<command_interface name="velocity"/><state_interface name="position"/>'
+    rig = Rig(ROVER.replace(old, interfaces), ground=True)
+    rig.run(0.5)
+    for wheel in ("left", "right"):
+        rig.add(
+            f"pid_{wheel}",
+            "pid_controller/PidController",
+            start=False,
+            dof_names=[wheel],
+            command_interface="effort",
+            reference_and_state_interfaces=["velocity"],
+            gains={wheel: {"p": 0.05, "i": 1.0, "u_clamp_max": 2.0, "u_clamp_min": -2.0}},
+        )
+    rig.add(
+        "drive",
+        "diff_drive_controller/DiffDriveController",
+        start=False,
+        left_wheel_names=["pid_left/left"],
+        right_wheel_names=["pid_right/right"],
+        wheel_separation=0.3,
+        wheel_radius=0.05,
+        position_feedback=False,
+        use_stamped_vel=False,
+        cmd_vel_timeout=1.0,
+        linear={"x": {"max_acceleration": 0.5}},
+    )
+    with pytest.raises(SwitchError, match="'drive' needs pid_left/left/velocity: controller 'pid_left' is not active"):
+        rig.manager.switch(["drive"])
+    rig.manager.switch(["drive", "pid_left", "pid_right"])
+    assert rig.manager.controllers["pid_left"].running.chained
+    drive(rig, 4.0, 0.4, 0.0)
+    linear, _ = rig.simulation.velocity("robot")
+    assert np.linalg.norm(linear) == pytest.approx(0.4, abs=0.01)
+    with pytest.raises(SwitchError, match="'pid_left' is needed by 'drive'"):
+        rig.manager.switch(stop=["pid_left"])
+
+
 def test_wheels_of_any_round_shape_are_driven_as_wheels() -> None:
     cylinder, ball = '<cylinder radius="0.05" length="0.02"/>', '<sphere radius="0.05"/>'
     block = '<box size="0.3 0.02 0.02"/>'

@@ -91,7 +91,7 @@ class PidController(Controller):
         names = interface_names(self._dofs, p.reference_and_state_interfaces)
         self.command_names = interface_names(p.dof_names, (p.command_interface,))
         self.state_names = () if p.use_external_measured_states else names
-        self.references = Interfaces(names)
+        self.references, self.exported = Interfaces(names), Interfaces(names)
         self._count = len(p.dof_names)
         self._with_rates = len(p.reference_and_state_interfaces) == 2
         self._feedforward = p.enable_feedforward
@@ -175,6 +175,7 @@ class PidController(Controller):
         wanted = self.references.values.reshape(-1, self._count)
         external = self.p.use_external_measured_states
         measured = self._measured if external else self.states.read().reshape(-1, self._count)
+        self.exported.values[:] = measured.ravel()
         error = wanted[0] - measured[0]
         error = np.where(self._endless, np.remainder(error + math.pi, 2 * math.pi) - math.pi, error)
         known = ~np.isnan(error)
