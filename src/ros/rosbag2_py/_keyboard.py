@@ -8,6 +8,7 @@ import threading
 from collections.abc import Callable
 
 SPACE, UP, DOWN, RIGHT = "space", "up", "down", "right"
+PAGE_UP, PAGE_DOWN = "page up", "page down"
 _KEYS = {
     b" ": SPACE,
     b"\x1b[A": UP,
@@ -16,8 +17,17 @@ _KEYS = {
     b"\x1bOA": UP,
     b"\x1bOB": DOWN,
     b"\x1bOC": RIGHT,
+    b"\x1b[5~": PAGE_UP,
+    b"\x1b[6~": PAGE_DOWN,
 }
-_WINDOWS_KEYS = {" ": SPACE, "\xe0H": UP, "\xe0P": DOWN, "\xe0M": RIGHT, "\0H": UP, "\0P": DOWN, "\0M": RIGHT}
+_WINDOWS_KEYS = {
+    " ": SPACE,
+    **{f"{first}H": UP for first in "\0\xe0"},
+    **{f"{first}P": DOWN for first in "\0\xe0"},
+    **{f"{first}M": RIGHT for first in "\0\xe0"},
+    **{f"{first}I": PAGE_UP for first in "\0\xe0"},
+    **{f"{first}Q": PAGE_DOWN for first in "\0\xe0"},
+}
 _WINDOWS_PAUSE_S = 0.05
 
 
@@ -27,7 +37,7 @@ class Keyboard:
     Parameters
     ----------
     on_key
-        Called with `SPACE`, `UP`, `DOWN` or `RIGHT`, on a thread of its own.
+        Called with `SPACE`, `UP`, `DOWN`, `RIGHT`, `PAGE_UP` or `PAGE_DOWN`, on a thread of its own.
     """
 
     def __init__(self, on_key: Callable[[str], None]) -> None:

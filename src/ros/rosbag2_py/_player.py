@@ -10,7 +10,7 @@ from rclpy.context import Context
 from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor
 
 from daidalos.bags.errors import BagError
-from rosbag2_py._keyboard import DOWN, RIGHT, SPACE, UP, Keyboard
+from rosbag2_py._keyboard import DOWN, PAGE_DOWN, PAGE_UP, RIGHT, SPACE, UP, Keyboard
 from rosbag2_py._options import PlayOptions, severity
 from rosbag2_py._player_node import NODE_NAME, PlayerNode
 from rosbag2_py._player_services import create_services
@@ -19,6 +19,7 @@ from rosbag2_py._storage import StorageOptions
 
 _THREADS = 2
 _FASTER = 1.1
+_LEAP_NS = 10_000_000_000
 _SECOND = 1_000_000_000
 
 
@@ -95,6 +96,8 @@ class Player:
             RIGHT: node.play_next,
             UP: lambda: node.set_rate(node.rate * _FASTER),
             DOWN: lambda: node.set_rate(node.rate / _FASTER),
+            PAGE_UP: lambda: node.seek(node.bag_time() + _LEAP_NS),
+            PAGE_DOWN: lambda: node.seek(node.bag_time() - _LEAP_NS),
         }
         actions[key]()
 
@@ -160,6 +163,8 @@ class Player:
                 "Press CURSOR_RIGHT for Play Next Message",
                 "Press CURSOR_UP for Increase Rate 10%",
                 "Press CURSOR_DOWN for Decrease Rate 10%",
+                "Press PAGE_UP for Seek 10 s Forward",
+                "Press PAGE_DOWN for Seek 10 s Backward",
             ):
                 node.get_logger().info(line)
             self._keyboard.start()

@@ -4,11 +4,12 @@ import sys
 import threading
 
 import pytest
-from rosbag2_py._keyboard import DOWN, RIGHT, SPACE, UP, Keyboard, split_keys
+from rosbag2_py._keyboard import DOWN, PAGE_DOWN, PAGE_UP, RIGHT, SPACE, UP, Keyboard, split_keys
 
 
 def test_keys_that_a_terminal_sends():
     assert split_keys(b" x\x1b[A\x1b[B\x1b[C\x1bOA") == [SPACE, UP, DOWN, RIGHT, UP]
+    assert split_keys(b"\x1b[5~\x1b[6~\x1b[7~") == [PAGE_UP, PAGE_DOWN]
     assert split_keys(b"\x1b") == []
     assert split_keys(b"") == []
 

@@ -104,6 +104,20 @@ def test_the_keys_of_the_player(ros2_bag, partner, tmp_path):
     assert "[R]" in play.text
 
 
+def test_leaps_by_key(ros2_bag, partner, tmp_path):
+    write_bag(tmp_path / "bag", 300, period_ns=100_000_000)
+    partner.listen()
+    play = ros2_bag("play", "bag", "--start-paused", terminal=True)
+    play.wait_for("[P]")
+    play.press("\x1b[5~\x1b[5~\x1b[C")
+    assert partner.wait_for(1) == [200]
+    play.press("\x1b[6~\x1b[C")
+    assert partner.wait_for(2) == [200, 100]
+    play.press("\x1b[5~\x1b[5~\x1b[C")
+    assert play.finish() == 0
+    assert partner.numbers == [200, 100]
+
+
 def test_the_keys_of_the_recorder(ros2_bag, partner, tmp_path):
     record = ros2_bag("record", "-o", "bag", "--topics", "/chatter", "--start-paused", terminal=True)
     record.wait_for("[P]")
