@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import contextlib
-import itertools
 import os
 import secrets
 import socket
 import sys
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Hashable
 from typing import Any
 
 import zenoh
@@ -29,6 +28,7 @@ from daidalos.transport.qos import Qos
 from daidalos.transport.registry import Peer, Registry
 from daidalos.transport.zenoh import keys
 from daidalos.transport.zenoh.config import ROUTER_PORT, meets_all, reason_of, session_config
+from daidalos.transport.zenoh.numbers import Numbers
 from daidalos.transport.zenoh.wires import (
     ZenohClient,
     ZenohPublisher,
@@ -58,7 +58,7 @@ class ZenohBackend(Backend):
     def __init__(self, environment: Environment) -> None:
         self._environment = environment
         self._domain = environment.domain
-        self._number = itertools.count().__next__
+        self._numbers = Numbers()
         self._registry = Registry(self._domain)
         self._peers: set[str] = set()
         self._own: set[bytes] = set()
@@ -169,23 +169,29 @@ class ZenohBackend(Backend):
 
     def new_node(self, name: str, namespace: str, enclave: str) -> NodeInfo:
         """Return the description of a new node of ours."""
-        number = self._number()
+        number = self._numbers.take((name, namespace, enclave))
         token = keys.node_token(self._domain, self._session_id, number, name, namespace, enclave)
         return NodeInfo(token, name, namespace, enclave)
 
     def declare_node(self, node: NodeInfo) -> Callable[[], None]:
         """Declare the node's token."""
-        return self._declare_token(node.key)
+        return self._declare_token(node.key, (node.name, node.namespace, node.enclave))
 
-    def _declare_token(self, token: str) -> Callable[[], None]:
+    def _declare_token(self, token: str, what: Hashable) -> Callable[[], None]:
         declared = self._session.liveliness().declare_token(token)
-        return lambda: _undeclare(declared)
+
+        def undeclare() -> None:
+            _undeclare(declared)
+            self._numbers.give_back(what, keys.number_of(token))
+
+        return undeclare
 
     def identify(
         self, kind: EndpointKind, node: NodeInfo, name: str, type_name: str, type_hash: str, qos: Qos
     ) -> tuple[str, bytes]:
         """Return a new endpoint's token and the gid made from it."""
-        token = keys.endpoint_token(node, self._number(), kind, name, type_name, type_hash, qos)
+        number = self._numbers.take((kind, node.key, name, type_name, type_hash, qos))
+        token = keys.endpoint_token(node, number, kind, name, type_name, type_hash, qos)
         return token, keys.gid_of(token)
 
     def _data_key(self, endpoint: EndpointInfo) -> str:
@@ -220,7 +226,9 @@ class ZenohBackend(Backend):
 
     def _closer(self, key: str, endpoint: EndpointInfo) -> Callable[[], None]:
         """Declare an endpoint's token; return what takes it back."""
-        undeclare = self._declare_token(key)
+        one = endpoint
+        what = (one.kind, one.node.key, one.name, one.type_name, one.type_hash, one.qos)
+        undeclare = self._declare_token(key, what)
 
         def close() -> None:
             self._own.discard(endpoint.gid)

@@ -108,6 +108,11 @@ def session_of(token: str) -> str:
     return "".join(token.split("/", 3)[2:3])
 
 
+def number_of(token: str) -> int:
+    """Return the number of the node or endpoint with that token."""
+    return int(token.split("/", 5)[4])
+
+
 def gid_of(token: str) -> bytes:
     """Return the 16-byte gid of the endpoint with that token."""
     return xxh3_128_intdigest(token.encode()).to_bytes(16, "little")

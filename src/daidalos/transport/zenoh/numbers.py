@@ -1,0 +1,42 @@
+"""Numbers of nodes and endpoints, given again to what is made again.
+
+zenoh never forgets a token's key once another process has heard of it, some kilobytes each. An entity that is made
+like one that is gone, as by who makes a client for every call, gets its number, and with it its token.
+"""
+
+from __future__ import annotations
+
+import itertools
+import threading
+import time
+from collections import deque
+from collections.abc import Hashable
+
+_REST_S = 2.0
+"""How long a number is not given again: what was sent under it, and the news of its end, are on their way."""
+_MOST = 10_000
+"""So many kinds of entities are remembered."""
+
+
+class Numbers:
+    """Gives numbers from 0 upwards; safe to use from any thread."""
+
+    def __init__(self) -> None:
+        self._next = itertools.count().__next__
+        self._lock = threading.Lock()
+        self._free: dict[Hashable, deque[tuple[float, int]]] = {}
+
+    def take(self, what: Hashable) -> int:
+        """Return a number for an entity; `what` says all that its token says beside the number."""
+        with self._lock:
+            free = self._free.get(what)
+            if free and time.monotonic() - free[0][0] >= _REST_S:
+                return free.popleft()[1]
+        return self._next()
+
+    def give_back(self, what: Hashable, number: int) -> None:
+        """Let an entity's number go."""
+        with self._lock:
+            if len(self._free) >= _MOST and what not in self._free:
+                self._free.clear()
+            self._free.setdefault(what, deque()).append((time.monotonic(), number))
