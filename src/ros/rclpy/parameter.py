@@ -182,7 +182,7 @@ def get_parameter_value(string_value: str) -> ParameterValue:
     from rclpy.impl.parameter_file import parse_value
 
     try:
-        value = parse_value(string_value)
+        value = parse_value(string_value) if string_value.strip() else string_value
         return Parameter("_", value=value).get_parameter_value()
     except (ValueError, TypeError):
         return Parameter("_", value=string_value).get_parameter_value()

@@ -34,6 +34,8 @@ class ComponentContainer(Node):
             return self._refused(response, str(error))
         except Exception as error:  # whatever a component's constructor raises is told to the caller
             return self._refused(response, f"Component constructor threw an exception: {error}")
+        if request.log_level:
+            node.get_logger().set_level(request.log_level)
         self._loaded[self._next_id] = (node, NodeThread(node))
         response.unique_id = self._next_id
         self._next_id += 1
