@@ -91,3 +91,27 @@ def test_check_urdf_prints_the_tree(robot, monkeypatch, capsys):
     monkeypatch.setattr("sys.argv", ["check_urdf", str(robot) + "x"])
     assert check_urdf.main() == 2
     assert "r.urdfx" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("geometry", "words"),
+    [
+        ('<mesh filename="none.stl"/></geometry>', "r.urdf:2: mesh none.stl not found"),
+        ('<mesh filename="torn.stl"/></geometry>', "r.urdf:2: mesh torn.stl holds no triangles"),
+        (
+            '<box size="1 1 1"/></geometry><material name="m"><texture filename="none.png"/></material>',
+            "none.png not found",
+        ),
+    ],
+)
+def test_a_check_finds_missing_and_broken_files(tmp_path, capsys, monkeypatch, geometry, words):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "torn.stl").write_text("solid x\nfacet normal 0 0 1\nouter loop\nvertex a b c\n")
+    text = f'<robot name="r"><link name="a">\n<visual><geometry>{geometry}</visual></link></robot>'
+    (tmp_path / "r.urdf").write_text(text)
+    assert main(["urdf", "r.urdf"]) == 0
+    capsys.readouterr()
+    assert main(["urdf", "r.urdf", "--check"]) == 2
+    said = capsys.readouterr().err
+    assert words in said
+    assert said.count("\n") == 1

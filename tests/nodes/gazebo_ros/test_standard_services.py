@@ -17,6 +17,7 @@ from simulation_interfaces.msg import (
     SimulationState,
 )
 
+from daidalos.nodes.gazebo_ros._host import read_world, wanted_speed
 from nodes.gazebo_ros.conftest import BOX, WORLD
 
 OK = Result.RESULT_OK
@@ -153,3 +154,17 @@ def test_gzs_services_do_the_same(shop):
     assert shop.server._paced.simulation.pose("crate").position[0] == pytest.approx(1.0)
     assert shop.call(DeleteEntity, "/world/shop/remove", entity=Entity(name="crate")).success
     assert not shop.call(DeleteEntity, "/world/shop/remove", entity=Entity(name="crate")).success
+
+
+@pytest.mark.parametrize(
+    ("physics", "speed"),
+    [
+        ("<max_step_size>0.002</max_step_size>", 1.0),
+        ("<max_step_size>0.002</max_step_size><real_time_update_rate>1500</real_time_update_rate>", 3.0),
+        ("<real_time_update_rate>0</real_time_update_rate>", 0.0),
+        ("<real_time_factor>0.5</real_time_factor>", 0.5),
+    ],
+)
+def test_a_world_says_how_fast_it_wants_to_be(physics, speed):
+    text = f"<sdf version='1.6'><world name='w'><physics type='ode'>{physics}</physics></world></sdf>"
+    assert wanted_speed(read_world(None, text).physics) == pytest.approx(speed)

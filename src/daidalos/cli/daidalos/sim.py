@@ -23,7 +23,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("-m", "--model", action="append", default=[], metavar="FILE", help="a robot or model to spawn")
     parser.add_argument("--pause", action="store_true", help="begin with time standing still")
     parser.add_argument("--headless", action="store_true", help="without the studio")
-    parser.add_argument("--speed", type=float, default=1.0, metavar="FACTOR", help="0: as fast as possible")
+    parser.add_argument("--speed", type=float, metavar="FACTOR", help="0: as fast as possible; the world's by default")
     parser.add_argument("--seed", type=int, default=0, help="of all random numbers")
     parser.add_argument("--port", type=int, default=8765, help="of the studio")
     parser.add_argument("--duration", type=float, metavar="S", help="simulate so long, then end; no graph, no studio")
@@ -102,7 +102,7 @@ def _launch(path: Path | None, args: argparse.Namespace) -> int:
     for file in args.model:
         _read_model(Path(file))  # a fault is better told before anything runs
     words = [*([str(path.resolve())] if path else []), *(["--pause"] if args.pause else [])]
-    parameters = {"seed": args.seed, "real_time_factor": float(args.speed)}
+    parameters = {"seed": args.seed} | ({} if args.speed is None else {"real_time_factor": float(args.speed)})
     server = Node(
         package="gazebo_ros",
         executable="gzserver",

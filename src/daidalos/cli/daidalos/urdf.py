@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from daidalos.description.geometry import Geometry
     from daidalos.description.report import RobotReport
     from daidalos.description.robot import Robot
 
@@ -60,14 +61,35 @@ def _load(args: argparse.Namespace) -> "Robot":
 
 
 def _simulated(robot: "Robot") -> list[str]:
-    """Load the robot into an empty world, make ten steps, and return what was warned of."""
+    """Load the robot into an empty world, make ten steps, and return what was warned of.
+
+    A mesh or an image that is missing or broken is an error here, although the simulator goes on without it.
+    """
+    from daidalos.description.errors import DescriptionError
     from daidalos.description.pose import Pose
+    from daidalos.description.visuals import visual_parts
     from daidalos.simulation import Simulation
 
+    for link in robot.links.values():
+        for visual in link.visuals:
+            _require_mesh(visual.geometry)
+            visual_parts(visual)
+            if visual.material is not None and visual.material.texture and visual.material.texture_path is None:
+                raise DescriptionError(f"image {visual.material.texture} not found", link.where)
+        for collision in link.collisions:
+            _require_mesh(collision.geometry)
     simulation = Simulation(heard=lambda topic: False, warn=lambda line: None)
     simulation.spawn(robot, pose=Pose((0.0, 0.0, 10.0)))
     simulation.step(10)
     return simulation.warnings
+
+
+def _require_mesh(shape: "Geometry") -> None:
+    from daidalos.description.geometry import Mesh
+    from daidalos.description.meshes import load_mesh
+
+    if isinstance(shape, Mesh):
+        load_mesh(shape)
 
 
 def _draw(robot: "Robot", path: Path) -> None:

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from daidalos.description.pose import Pose
+from daidalos.description.world import Physics
 from daidalos.nodes.gazebo_ros._entities import find_entity
 from daidalos.nodes.gazebo_ros._pacing import PacedSimulation
 from daidalos.nodes.packages import package_share
@@ -171,6 +172,17 @@ def read_world(path: Path | None, text: str = "") -> World:
     if path is not None:
         return sdf.load(path, resolve=package_share)
     return sdf.parse(text or EMPTY_WORLD, "the world's description" if text else "empty world", package_share)
+
+
+def wanted_speed(physics: Physics) -> float:
+    """Return the simulated seconds in a second that a world asks for; 0 is as fast as possible.
+
+    Gazebo classic multiplies its update rate with the step, gz names the factor: whichever differs from
+    its default counts.
+    """
+    if physics.real_time_update_rate != Physics().real_time_update_rate:
+        return physics.real_time_update_rate * physics.max_step_size
+    return physics.real_time_factor
 
 
 def _unused(name: str, taken: tuple[str, ...]) -> str:

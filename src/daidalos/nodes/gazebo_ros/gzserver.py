@@ -50,12 +50,13 @@ class GzServer(Node):
     def __init__(self, world: Path | None = None, paused: bool = False, **kwargs: Any) -> None:
         super().__init__("gazebo", **kwargs)
         from daidalos.nodes.gazebo_ros._companions import Companions
-        from daidalos.nodes.gazebo_ros._host import Host, read_world
+        from daidalos.nodes.gazebo_ros._host import Host, read_world, wanted_speed
         from daidalos.nodes.gazebo_ros._pacing import PacedSimulation
         from daidalos.simulation import Simulation
 
         seed = self.declare_parameter("seed", 0).value
-        factor = self.declare_parameter("real_time_factor", 1.0).value
+        described = read_world(world)
+        factor = self.declare_parameter("real_time_factor", wanted_speed(described.physics)).value
         self._watched = self.declare_parameter("contact_monitor", "").value
         self._outgoing: dict[str, tuple[Any, Any]] = {}
         self._incoming: dict[str, Any] = {}
@@ -65,7 +66,7 @@ class GzServer(Node):
         def make(description: World) -> Simulation:
             return Simulation(description, seed=seed, heard=self._is_heard, warn=self._warn)
 
-        simulation = make(read_world(world))
+        simulation = make(described)
         self._paced = PacedSimulation(simulation, self._publish, _CLOCK_PERIOD_NS, factor, self._on_failure)
         self._host = Host(self._paced, make, self._topics_changed)
         self._companions = Companions(self.context, self._warn)

@@ -20,9 +20,11 @@ def server(context):
     arguments += ["--verbose"] if is_true("verbose") else []
     parameters = {
         "seed": ParameterValue(LaunchConfiguration("seed"), value_type=int),
-        "real_time_factor": ParameterValue(LaunchConfiguration("real_time_factor"), value_type=float),
         "contact_monitor": LaunchConfiguration("contact_monitor"),
     }
+    speed = LaunchConfiguration("real_time_factor").perform(context)
+    if speed:
+        parameters["real_time_factor"] = float(speed)
     node = Node(
         package="gazebo_ros",
         executable="gzserver",
@@ -46,7 +48,9 @@ def generate_launch_description():
             DeclareLaunchArgument("verbose", default_value="false", description="say more"),
             DeclareLaunchArgument("server", default_value="true", description="whether to start the simulator"),
             DeclareLaunchArgument("seed", default_value="0", description="of all random numbers"),
-            DeclareLaunchArgument("real_time_factor", default_value="1.0", description="0: as fast as possible"),
+            DeclareLaunchArgument(
+                "real_time_factor", default_value="", description="0: as fast as possible; the world's by default"
+            ),
             DeclareLaunchArgument("contact_monitor", default_value="", description="model whose contacts are told"),
             *(
                 DeclareLaunchArgument(name, default_value="", description="accepted, without effect")
