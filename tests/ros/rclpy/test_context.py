@@ -260,14 +260,19 @@ print("ready", flush=True)
     ids=["spin", "finally", "caught", "rate", "wait_for_service", "call", "thread"],
 )
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_a_program_that_is_asked_to_end_ends_without_a_traceback(middle: str, end: str, number: int) -> None:
+@pytest.mark.parametrize("middleware", ["rmw_zenoh_cpp", "rmw_cyclonedds_cpp"])
+def test_a_program_that_is_asked_to_end_ends_without_a_traceback(
+    middleware: str, middle: str, end: str, number: int
+) -> None:
+    if "dds" in middleware:
+        pytest.importorskip("cyclonedds", reason="the extra 'dds' is not installed")
     code = PROGRAM.format(middle=middle, end=end)
     process = subprocess.Popen(
         [sys.executable, "-c", code],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
-        env={**os.environ, "ROS_DOMAIN_ID": "149"},
+        env={**os.environ, "ROS_DOMAIN_ID": "149", "RMW_IMPLEMENTATION": middleware},
     )
     try:
         assert process.stdout is not None
