@@ -85,9 +85,9 @@ def test_values_that_do_not_fit(env, values, fault):
 @pytest.mark.parametrize(
     ("words", "fault"),
     [
-        (["-p", "x:=[1"], "Couldn't parse parameter override rule: '-p x:=[1': line 1, column "),
-        (["-r", "x"], "Couldn't parse remap rule: 'x'"),
-        (["--nope"], "Found unknown ROS arguments: '--nope'"),
+        (["-p", "x:=[1"], "parse parameter override rule: '-p x:=[1': line 1, column "),
+        (["-r", "x"], "parse remap rule: 'x'"),
+        (["--nope"], "Found unknown ROS arguments: "),
         (["--params-file", "missing.yaml"], "'--params-file missing.yaml': No such file or directory"),
         (["-p", "use_sim_time:=3"], "Trying to set parameter 'use_sim_time' to '3' of type 'INTEGER'"),
     ],
