@@ -185,3 +185,17 @@ def test_a_grippers_switch_comes_and_goes_with_its_model(shop):
     assert shop.call(SetBool, "/hand/switch", data=True).success
     shop.call(srv.DeleteEntity, "/delete_entity", name="crate")
     assert not shop.server._offered
+
+
+def test_shapes_are_inserted_and_scaled(shop):
+    from daidalos_msgs.srv import InsertShape, ScaleEntity
+
+    fields = {"shape": "box", "size": Vector3(x=1.0, y=1.0, z=1.0), "mass": 2.0, "pose": at(0.0)}
+    first, second = (shop.call(InsertShape, "/gazebo/insert_shape", **fields) for _ in range(2))
+    assert (first.name, second.name) == ("box", "box_0")
+    assert shop.call(ScaleEntity, "/gazebo/scale_entity", name="box", factor=2.0).success
+    assert state(shop, "box").state.pose.position.z == pytest.approx(1.0)
+    wrong = shop.call(InsertShape, "/gazebo/insert_shape", shape="cube")
+    assert not wrong.success
+    assert "no shape 'cube'" in wrong.status_message
+    assert not shop.call(ScaleEntity, "/gazebo/scale_entity", name="nobody", factor=2.0).success

@@ -58,7 +58,23 @@ class Host:
         ------
         DescriptionError, SimulationError
         """
-        description = read_entity(text)
+        return self.insert(read_entity(text), name, pose, reference, namespace, rename)
+
+    def insert(
+        self,
+        description: Robot | Model,
+        name: str | None,
+        pose: Pose,
+        reference: str = "",
+        namespace: str = "",
+        rename: bool = False,
+    ) -> str:
+        """Put a model into the world; return the name that it got.
+
+        Raises
+        ------
+        DescriptionError, SimulationError
+        """
 
         def work(simulation: Simulation) -> str:
             goal = pose
@@ -73,6 +89,20 @@ class Host:
             return spawned
 
         return self.paced.call(work)
+
+    def scale(self, name: str, factor: float) -> None:
+        """Make a model larger or smaller.
+
+        Raises
+        ------
+        UnknownNameError, ValueError
+        """
+
+        def work(simulation: Simulation) -> None:
+            simulation.scale(name, factor)
+            self._changed(simulation)
+
+        self.paced.call(work)
 
     def delete(self, name: str) -> None:
         """Take a model out of the world.

@@ -94,6 +94,7 @@ class GzServer(Node):
         self._contacts_publisher = self.create_publisher(ContactsState, "/gazebo/contacts", _LATCHED)
 
     def _create_services(self) -> None:
+        from daidalos.nodes.gazebo_ros._editing_services import EditingServices
         from daidalos.nodes.gazebo_ros._gazebo_services import GazeboServices
         from daidalos.nodes.gazebo_ros._gz_services import GzServices
         from daidalos.nodes.gazebo_ros._standard_services import StandardServices
@@ -101,6 +102,7 @@ class GzServer(Node):
         group = MutuallyExclusiveCallbackGroup()
         GazeboServices(self, self._host, group)
         GzServices(self, self._host, group)
+        EditingServices(self, self._host, group)
         StandardServices(self, self._host, group, lambda: signal.raise_signal(signal.SIGTERM))
 
     # The simulation's side: called on its thread.

@@ -1,0 +1,49 @@
+"""Services for those who build a world while it runs: shapes, and sizes of models."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from daidalos.description.primitives import primitive
+from daidalos.nodes.gazebo_ros._host import Host
+from daidalos.nodes.gazebo_ros._states import color_of, pose_of, vector_of
+from daidalos.simulation.errors import SimulationError
+
+
+class EditingServices:
+    """Offers `daidalos_msgs` under the node's namespace.
+
+    Parameters
+    ----------
+    node : Node
+    host : Host
+    group : CallbackGroup
+    """
+
+    def __init__(self, node: Any, host: Host, group: Any) -> None:
+        from daidalos_msgs.srv import InsertShape, ScaleEntity
+
+        self._host = host
+        node.create_service(InsertShape, "~/insert_shape", _told(self._insert), callback_group=group)
+        node.create_service(ScaleEntity, "~/scale_entity", _told(self._scale), callback_group=group)
+
+    def _insert(self, request: Any, response: Any) -> None:
+        color = color_of(request.color) if request.color.a > 0 else (0.6, 0.6, 0.6, 1.0)
+        model = primitive(request.shape, vector_of(request.size), request.mass, color)
+        response.name = self._host.insert(model, request.name or None, pose_of(request.pose), rename=True)
+
+    def _scale(self, request: Any, response: Any) -> None:
+        self._host.scale(request.name, request.factor)
+
+
+def _told(work: Callable[[Any, Any], None]) -> Callable[[Any, Any], Any]:
+    def answer(request: Any, response: Any) -> Any:
+        try:
+            work(request, response)
+            response.success = True
+        except (SimulationError, ValueError) as error:
+            response.success, response.status_message = False, str(error)
+        return response
+
+    return answer
