@@ -120,6 +120,20 @@ def test_an_arm_is_brought_up_moved_and_taken_down(simulator: Command, terminal:
     simulator.assert_no_traceback()
 
 
+def test_a_reset_leaves_controllers_active(simulator: Command, terminal: Terminal) -> None:
+    terminal.spawner("spawner", "joint_state_broadcaster", "arm_controller")
+    terminal.ros2("service", "call", "/reset_simulation", "std_srvs/srv/Empty")
+    stamp = terminal.ros2("topic", "echo", "--once", "--field", "header.stamp.sec", "/joint_states")
+    assert int(stamp.split()[0]) < 20
+    action = "/arm_controller/follow_joint_trajectory"
+    moved = terminal.ros2("action", "send_goal", action, "control_msgs/action/FollowJointTrajectory", GOAL)
+    assert "Goal successfully reached!" in moved
+    terminal.ros2("service", "call", "/delete_entity", "gazebo_msgs/srv/DeleteEntity", "{name: arm}")
+    assert "/controller_manager" not in terminal.ros2("node", "list")
+    assert simulator.interrupt() == 0
+    simulator.assert_no_traceback()
+
+
 def test_spawners_work_while_time_stands_still(simulator: Command, terminal: Terminal) -> None:
     terminal.ros2("service", "call", "/pause_physics", "std_srvs/srv/Empty")
     assert "Configured and activated joint_state_broadcaster" in terminal.spawner("spawner", "joint_state_broadcaster")

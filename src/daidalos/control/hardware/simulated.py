@@ -73,11 +73,11 @@ class SimulatedSystem(Hardware):
                     )
 
     def configure(self) -> None:
-        """Take the state that the simulation is in."""
+        """Take the state that the joints are in; sensors measure between steps, in the first cycle."""
         for sensor in self.info.sensors:
-            if self._plugin.measure(sensor.name, 0) is None:
+            if not self._plugin.has_sensor(sensor.name):
                 self.setting.warn(f"hardware '{self.info.name}': the robot has no sensor '{sensor.name}'")
-        self.read(0, 0.0)
+        self._read_joints()
 
     def prepare_switch(self, start: Sequence[str], stop: Sequence[str]) -> None:
         """Refuse a joint that is to be commanded in two ways."""
@@ -104,6 +104,13 @@ class SimulatedSystem(Hardware):
 
     def read(self, now_ns: int, period: float) -> None:
         """Read joints and sensors."""
+        self._read_joints()
+        for sensor in self.info.sensors:
+            for name, value in self._plugin.measure(sensor.name, now_ns).items():
+                if f"{sensor.name}/{name}" in self.states:
+                    self.states[f"{sensor.name}/{name}"] = value
+
+    def _read_joints(self) -> None:
         drives = self._plugin.drives
         table = np.zeros((3, len(drives.names)))
         if self._used[0]:
@@ -113,11 +120,6 @@ class SimulatedSystem(Hardware):
         if self._used[2]:
             table[2] = drives.efforts_now
         self.states.values[self._states] = table[self._kinds, self._rows]
-        for sensor in self.info.sensors:
-            measured = self._plugin.measure(sensor.name, now_ns) or {}
-            for name, value in measured.items():
-                if f"{sensor.name}/{name}" in self.states:
-                    self.states[f"{sensor.name}/{name}"] = value
 
     def write(self, now_ns: int, period: float) -> None:
         """Pass the commands on."""

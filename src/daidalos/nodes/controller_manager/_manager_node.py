@@ -63,9 +63,11 @@ class ControllerManagerNode(Node):
         )
         self._controller_arguments = controller_arguments or []
         self._use_global_arguments = bool(kwargs.get("use_global_arguments", True))
-        self.update_rate = float(self._parameter("update_rate", 100))
-        if self.update_rate <= 0.0:
-            raise ControlError(f"parameter 'update_rate' must be above 0, got {self.update_rate:g}")
+        rate = self._parameter("update_rate", 100)
+        if not isinstance(rate, int | float) or rate <= 0:
+            super().destroy_node()
+            raise ControlError(f"parameter 'update_rate' must be a number above 0, got {rate!r}")
+        self.update_rate = float(rate)
         self.lock = threading.RLock()
         self.manager: ControllerManager | None = None
         self._nodes: dict[str, ControllerNode] = {}

@@ -97,14 +97,15 @@ class Ros2Control(Plugin):
         self.drives.command(self.memory, self.period)
         return ()
 
-    def measure(self, sensor: str, now_ns: int) -> dict[str, float] | None:
-        """Return what one of the model's sensors measures now, by interface; None when there is none of that name."""
+    def has_sensor(self, name: str) -> bool:
+        """Tell whether the model has a sensor of that name."""
+        return name in self._components
+
+    def measure(self, sensor: str, now_ns: int) -> dict[str, float]:
+        """Return what one of the model's sensors measures now, by interface; nothing when there is none."""
         component: Any = self._components.get(sensor)
-        if component is None:
-            return None
-        for sample in component.measure(now_ns):
-            return _values(sample)
-        return {}
+        samples = () if component is None else component.measure(now_ns)
+        return {name: value for sample in samples for name, value in _values(sample).items()}
 
 
 def _values(sample: Sample) -> dict[str, float]:
