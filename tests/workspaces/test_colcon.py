@@ -417,4 +417,65 @@ def test_a_test_that_does_not_end_is_ended_with_what_it_started(workspace, termi
         assert "The test did not end within 2 s." in printed
         assert "breaks.xunit.xml: 1 test, 1 error" in printed
     finally:
-        (workspace / "src" / "endless" / "package.xml").unlink()
+        shutil.rmtree(workspace / "src" / "endless")
+
+
+def test_hooks_of_packages_set_the_environment(workspace, terminal):
+    folder = packages.cmake_package(
+        workspace.parent / "hooks_ws" / "src",
+        "hooked",
+        """
+        ament_environment_hooks("${CMAKE_CURRENT_SOURCE_DIR}/env/models.dsv.in" env/word.sh)
+        install(DIRECTORY models DESTINATION share/${PROJECT_NAME})
+        """,
+        {
+            "env/models.dsv.in": "prepend-non-duplicate;GZ_SIM_RESOURCE_PATH;share/@PROJECT_NAME@/models\n",
+            "env/word.sh": "export A_WORD=said\n",
+            "models/robot/model.sdf": "<sdf/>\n",
+        },
+    )
+    one = terminal()
+    one.run(f"cd {folder.parents[1]}")
+    assert "1 package finished" in one.run("colcon build")
+    one.run("source install/setup.bash")
+    models = folder.parents[1] / "install" / "hooked" / "share" / "hooked" / "models"
+    assert one.run('echo "$GZ_SIM_RESOURCE_PATH $A_WORD"').strip() == f"{models} said"
+
+
+def test_arguments_for_cmake_count(workspace, terminal):
+    body = """
+        option(WITH_EXTRA "" ON)
+        if(WITH_EXTRA)
+          install(FILES extra.txt DESTINATION share/${PROJECT_NAME})
+        endif()
+        if(BUILD_TESTING)
+          message(FATAL_ERROR "tests")
+        endif()
+        """
+    packages.cmake_package(workspace / "src", "optional_parts", body, {"extra.txt": ""})
+    extra = workspace / "install" / "optional_parts" / "share" / "optional_parts" / "extra.txt"
+    one = terminal()
+    try:
+        assert "CMakeLists.txt:10: tests" in one.run("colcon build --packages-select optional_parts")
+        command = "colcon build --packages-select optional_parts --cmake-args -DBUILD_TESTING=OFF"
+        assert "1 package finished" in one.run(f"{command} -DCMAKE_BUILD_TYPE=Release")
+        assert extra.is_file()
+        assert "1 package finished" in one.run(f"{command} -DWITH_EXTRA:BOOL=OFF")
+        assert not extra.exists()
+    finally:
+        shutil.rmtree(workspace / "src" / "optional_parts")
+
+
+def test_ros_2_itself_builds_where_it_is_installed(built, terminal, workspace):
+    (workspace.parent / "ros" / "share" / "ament_cmake" / "cmake").mkdir(parents=True)
+    printed = terminal().run(f"AMENT_PREFIX_PATH={workspace.parent}/ros colcon list --packages-select mixed")
+    assert printed.strip() == "mixed\tsrc/mixed\t(ros.ament_cmake)"
+
+
+def test_everything_can_go_into_one_prefix(built, terminal, workspace):
+    one = terminal()
+    assert "4 packages finished" in one.run("colcon build --merge-install --build-base b --install-base merged")
+    one.run("source merged/setup.bash")
+    assert one.run("ros2 pkg prefix mixed").strip() == str(workspace / "merged")
+    assert "red is 0" in one.run("ros2 run mixed reporter.py")
+    assert one.run("ros2 interface show tutorial_interfaces/msg/Num").strip() == "int64 num"
