@@ -76,3 +76,20 @@ def test_a_command_knows_its_parser():
     assert args.show_types
     args = parser.parse_args(["topic", "list"])
     assert not args.include_hidden_topics
+
+
+def test_what_fails_after_an_interrupt_is_not_told(monkeypatch):
+    def run(argv):
+        try:
+            raise KeyboardInterrupt
+        finally:
+            argv.half_made.close()
+
+    monkeypatch.setattr("daidalos.cli.ros2.program._run", run)
+    assert main(["topic"]) == 2
+
+
+def test_what_fails_of_itself_is_told(monkeypatch):
+    monkeypatch.setattr("daidalos.cli.ros2.program._run", lambda argv: argv.nothing)
+    with pytest.raises(AttributeError):
+        main(["topic"])

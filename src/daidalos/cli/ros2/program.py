@@ -27,7 +27,17 @@ def run(argv: list[str]) -> int:
     except BrokenPipeError:
         _discard_output()
         return _BROKEN_PIPE
+    except Exception as error:
+        if not _follows_interrupt(error):
+            raise
+        return _INTERRUPTED
     return status
+
+
+def _follows_interrupt(error: BaseException) -> bool:
+    """Tell whether an exception came up while what Ctrl-C had left half made was being cleared away."""
+    context = error.__context__
+    return context is not None and (isinstance(context, KeyboardInterrupt) or _follows_interrupt(context))
 
 
 def run_interruptible(argv: list[str]) -> int:
@@ -71,7 +81,7 @@ def _run(argv: list[str]) -> int:
     except CliError as error:
         return _fail(str(error), error.status)
     except (RuntimeError, ValueError) as error:
-        if isinstance(error, RecursionError | NotImplementedError):
+        if isinstance(error, RecursionError | NotImplementedError) or _follows_interrupt(error):
             raise
         return _fail(str(error), 1)
     return _fail(status, 1) if isinstance(status, str) else status or 0
