@@ -76,6 +76,11 @@ def test_limits_that_are_switched_off_do_not_hold() -> None:
     assert follow(only_speed, [7.0, -7.0]) == pytest.approx([1.0, -1.0])
 
 
+def test_zero_acceleration_and_jerk_are_no_limits() -> None:
+    limits = SpeedLimits(max_velocity=1.0, max_acceleration=0.0, max_jerk=0.0, min_jerk=0.0)
+    assert follow(limits, [7.0, -7.0]) == pytest.approx([1.0, -1.0])
+
+
 def test_contradictions_are_named() -> None:
     with pytest.raises(ParameterError, match=r"'linear\.x\.min_velocity' is above max_velocity: 2 > 1"):
         SpeedLimiter(SpeedLimits(max_velocity=1.0, min_velocity=2.0), "linear.x")

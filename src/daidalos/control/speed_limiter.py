@@ -16,6 +16,8 @@ NAN = math.nan
 class SpeedLimits:
     """Limits of one direction of motion; NaN where there is none.
 
+    An acceleration or jerk of zero, with which nothing could ever move, is no limit either.
+
     Parameters
     ----------
     has_velocity_limits, has_acceleration_limits, has_jerk_limits : bool
@@ -121,6 +123,11 @@ def _switched_on(limits: SpeedLimits) -> SpeedLimits:
             names = (one.name for one in fields(limits) if one.type != "bool")
             rates = ("acceleration", "deceleration") if kind == "acceleration" else (kind,)
             off |= {name: NAN for name in names if any(rate in name for rate in rates)}
+    off |= {
+        one.name: NAN
+        for one in fields(limits)
+        if one.name.endswith(("acceleration", "deceleration", "reverse", "jerk")) and getattr(limits, one.name) == 0.0
+    }
     return replace(limits, **off)
 
 

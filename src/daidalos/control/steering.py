@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 _STRAIGHT = 1e-9
+_FREE_ANGLE = math.pi / 6
 
 
 @dataclass(frozen=True)
@@ -84,3 +85,13 @@ class SteeredBase:
         else:
             curvature = float(slopes[0]) / self.wheelbase
         return speed, speed * curvature
+
+
+def speed_share(error: float) -> float:
+    """Return how much of its speed a base may have while its steering is off by `error` [rad].
+
+    All of it up to 30 degrees, then less, and next to nothing from 90 degrees on.
+    """
+    if error < _FREE_ANGLE:
+        return 1.0
+    return max(math.cos(error), 0.01) / math.cos(_FREE_ANGLE)

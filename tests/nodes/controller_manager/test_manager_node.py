@@ -394,6 +394,7 @@ def test_every_type_is_tried_here_or_is_one_of_a_kind() -> None:
         "parallel_gripper_action_controller/GripperActionController",
         "bicycle_steering_controller/BicycleSteeringController",
         "tricycle_steering_controller/TricycleSteeringController",
+        "tricycle_controller/TricycleController",
     }
     assert set(controllers()) == tried | same_interface
 

@@ -15,13 +15,11 @@ from daidalos.control.errors import ParameterError
 from daidalos.control.interfaces import Interfaces
 from daidalos.control.parameters import above, parameter, size, unique
 from daidalos.control.samples import SteeringSample
-from daidalos.control.steering import SteeredBase
+from daidalos.control.steering import SteeredBase, speed_share
 from daidalos.control.velocity_input import VelocityInput
 from daidalos.simulation.samples import OdometrySample, Sample, TransformSample
 
 _ZEROS = (0.0,) * 6
-_FREE_ANGLE = math.pi / 6
-"""Error of the steering up to which the wheels run at full speed, where they wait for it [rad]."""
 
 
 @dataclass(frozen=True)
@@ -267,7 +265,7 @@ class BicycleSteeringController(Controller):
         angle = self._base.steering_angle(speed, turn)
         self._angle = self._angle if angle is None else angle
         if self.p.reduce_wheel_speed_until_steering_reached:
-            speed *= _share(abs(self._angle - float(np.mean(values[self._count :]))))
+            speed *= speed_share(abs(self._angle - float(np.mean(values[self._count :]))))
         self._last = (speed, speed * math.tan(self._angle) / self._base.wheelbase)
         speeds, angles = self._base.wheel_speeds(speed, self._angle), self._base.wheel_angles(self._angle)
         self.commands.write(np.concatenate((speeds, angles)))
@@ -307,10 +305,3 @@ class AckermannSteeringController(BicycleSteeringController):
 
     types = ("ackermann_steering_controller/AckermannSteeringController",)
     parameters: ClassVar[type] = AckermannParameters
-
-
-def _share(error: float) -> float:
-    """Return how much of its speed a base may have while its steering is off by `error` [rad]."""
-    if error < _FREE_ANGLE:
-        return 1.0
-    return max(math.cos(error), 0.01) / math.cos(_FREE_ANGLE)

@@ -1,0 +1,209 @@
+"""Tricycle controller: one wheel in front that is driven and steered."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from daidalos.control.base_odometry import BaseOdometry
+from daidalos.control.controllers.base import Controller, Service, Subscription
+from daidalos.control.errors import ParameterError
+from daidalos.control.parameters import above, not_empty, parameter, size
+from daidalos.control.samples import Answer, Asked, VelocityCommand
+from daidalos.control.speed_limiter import SpeedLimiter, SpeedLimits
+from daidalos.control.steering import speed_share
+from daidalos.control.velocity_input import VelocityInput
+from daidalos.simulation.odometry import yaw_quaternion
+from daidalos.simulation.samples import OdometrySample, Sample, TransformSample, TwistCommand
+
+_NAN = math.nan
+_ZEROS = (0.0,) * 6
+
+
+@dataclass(frozen=True)
+class TractionLimits:
+    """Limits of the wheel's speed; all positive, NaN for none [rad/s, rad/s^2, rad/s^3]."""
+
+    max_velocity: float = parameter(_NAN)
+    max_acceleration: float = parameter(_NAN)
+    max_deceleration: float = parameter(_NAN)
+    max_jerk: float = parameter(_NAN)
+
+
+@dataclass(frozen=True)
+class SteeringLimits:
+    """Limits of the wheel's angle and of how fast it turns; NaN for none [rad, rad/s]."""
+
+    min_position: float = parameter(_NAN)
+    max_position: float = parameter(_NAN)
+    max_velocity: float = parameter(_NAN)
+
+
+@dataclass(frozen=True)
+class TricycleDriveParameters:
+    """Parameters, as ROS names them.
+
+    Parameters
+    ----------
+    traction_joint_name, steering_joint_name : str
+    wheelbase, wheel_radius : float
+        [m].
+    odom_frame_id, base_frame_id : str
+    pose_covariance_diagonal, twist_covariance_diagonal : tuple of 6 floats
+    open_loop : bool
+        Odometry from commands.
+    enable_odom_tf : bool
+    odom_only_twist : bool
+        Leave the pose of the odometry at zero.
+    cmd_vel_timeout : int
+        Age at which a command counts no more [ms].
+    velocity_rolling_window_size : int
+    use_stamped_vel : bool
+        Whether ``~/cmd_vel`` has stamps.
+    traction, steering : TractionLimits, SteeringLimits
+    """
+
+    traction_joint_name: str = parameter("", not_empty, read_only=True)
+    steering_joint_name: str = parameter("", not_empty, read_only=True)
+    wheelbase: float = parameter(0.0, above(0.0), read_only=True)
+    wheel_radius: float = parameter(0.0, above(0.0), read_only=True)
+    odom_frame_id: str = parameter("odom", read_only=True)
+    base_frame_id: str = parameter("base_link", read_only=True)
+    pose_covariance_diagonal: tuple[float, ...] = parameter(_ZEROS, size(6), read_only=True)
+    twist_covariance_diagonal: tuple[float, ...] = parameter(_ZEROS, size(6), read_only=True)
+    open_loop: bool = parameter(default=False, read_only=True)
+    enable_odom_tf: bool = parameter(default=True, read_only=True)
+    odom_only_twist: bool = parameter(default=False, read_only=True)
+    cmd_vel_timeout: int = parameter(500)
+    velocity_rolling_window_size: int = parameter(10, above(0), read_only=True)
+    use_stamped_vel: bool = parameter(default=True, read_only=True)
+    traction: TractionLimits = field(default_factory=TractionLimits)
+    steering: SteeringLimits = field(default_factory=SteeringLimits)
+
+    def check(self) -> None:
+        """Refuse limits that leave no angle."""
+        if self.steering.min_position > self.steering.max_position:
+            raise ParameterError("steering.min_position", "is above steering.max_position")
+
+
+class TricycleController(Controller):
+    """Drives a base whose front wheel does everything; it can turn on the spot."""
+
+    types = ("tricycle_controller/TricycleController",)
+    parameters = TricycleDriveParameters
+    p: TricycleDriveParameters
+
+    def configure(self) -> None:
+        """Name interfaces."""
+        p = self.p
+        self.command_names = (f"{p.traction_joint_name}/velocity", f"{p.steering_joint_name}/position")
+        self.state_names = self.command_names
+        self._odometry = BaseOdometry(
+            p.odom_frame_id,
+            p.base_frame_id,
+            p.pose_covariance_diagonal,
+            p.twist_covariance_diagonal,
+            p.velocity_rolling_window_size,
+        )
+        limits = p.traction
+        self._limiter = SpeedLimiter(
+            SpeedLimits(
+                max_velocity=limits.max_velocity,
+                max_acceleration=limits.max_acceleration,
+                max_deceleration=limits.max_deceleration,
+                max_jerk=limits.max_jerk,
+            ),
+            "traction",
+        )
+        self._input = VelocityInput(self)
+        self._input.timeout = p.cmd_vel_timeout * 1e-3
+
+    def reconfigure(self, parameters: TricycleDriveParameters) -> None:
+        """Take the timeout."""
+        super().reconfigure(parameters)
+        self._input.timeout = parameters.cmd_vel_timeout * 1e-3
+
+    @property
+    def publications(self) -> Mapping[str, type[Sample]]:
+        """Odometry and its transform."""
+        topics: dict[str, type[Sample]] = {"~/odom": OdometrySample}
+        if self.p.enable_odom_tf:
+            topics["/tf"] = TransformSample
+        return topics
+
+    @property
+    def subscriptions(self) -> Mapping[str, Subscription]:
+        """The wanted velocity."""
+        if self.p.use_stamped_vel:
+            return {"~/cmd_vel": Subscription(VelocityCommand, self._input.take)}
+        return {"~/cmd_vel": Subscription(TwistCommand, self._input.take_plain)}
+
+    @property
+    def services(self) -> Mapping[str, Service]:
+        """The odometry back to its origin."""
+        return {"~/reset_odometry": Service(Asked, self._reset)}
+
+    def _reset(self, question: Asked) -> Answer:
+        self._odometry.reset()
+        return Answer(success=True)
+
+    def activate(self, now_ns: int) -> None:
+        """Stand, with the wheel as it is."""
+        self._input.reset()
+        self._odometry.reset()
+        self._angle = float(np.nan_to_num(self.states.read()[1]))
+        self._speed = self._before = 0.0
+
+    def deactivate(self) -> None:
+        """Stand."""
+        self.commands.write(np.array((0.0, self._angle)))
+
+    def update(self, now_ns: int, period: float) -> Iterable[Sample]:
+        """Measure the wheel, then tell it speed and angle."""
+        measured = self.states.read()
+        wheel = (self._speed, self._angle) if self.p.open_loop else (float(measured[0]), float(measured[1]))
+        self._measure(*wheel, period)
+        latest = self._input.latest(now_ns)
+        ahead, _, turn = latest or (0.0, 0.0, 0.0)
+        speed, angle = self._wheel(ahead, turn)
+        self._turn_to(angle, period)
+        if not math.isnan(measured[1]):
+            speed *= speed_share(abs(angle - float(measured[1])))
+        allowed = self._limiter.limit(speed, self._speed, self._before, period)
+        self._before, self._speed = self._speed, allowed
+        self.commands.write(np.array((self._speed, self._angle)))
+        odometry = self._odometry.sample(now_ns, "~/odom")
+        if self.p.odom_only_twist:
+            odometry = replace(odometry, position=np.zeros(3), orientation=yaw_quaternion(0.0))
+        yield odometry
+        if self.p.enable_odom_tf:
+            yield self._odometry.transform(now_ns)
+
+    def _wheel(self, ahead: float, turn: float) -> tuple[float, float]:
+        """Return the wheel's speed [rad/s] and angle [rad] for a velocity of the base; at rest the angle stays."""
+        sideways = turn * self.p.wheelbase
+        if ahead == 0.0 and turn == 0.0:
+            return 0.0, self._angle
+        speed = math.hypot(ahead, sideways) / self.p.wheel_radius
+        angle = math.atan2(sideways, ahead)
+        if abs(angle) > math.pi / 2:  # backwards
+            return -speed, angle - math.copysign(math.pi, angle)
+        return speed, angle
+
+    def _turn_to(self, angle: float, period: float) -> None:
+        limits = self.p.steering
+        if not math.isnan(limits.max_position):
+            angle = min(angle, limits.max_position)
+        if not math.isnan(limits.min_position):
+            angle = max(angle, limits.min_position)
+        reach = math.inf if math.isnan(limits.max_velocity) else limits.max_velocity * period
+        self._angle += min(max(angle - self._angle, -reach), reach)
+
+    def _measure(self, speed: float, angle: float, period: float) -> None:
+        if math.isnan(speed) or math.isnan(angle):
+            return
+        travel = speed * self.p.wheel_radius * period
+        self._odometry.move(travel * math.cos(angle), travel * math.sin(angle) / self.p.wheelbase, period)
