@@ -134,6 +134,17 @@ class Terminal:
                 self._news.notify_all()
 
 
+def until_shown(pattern: str, *words: str, domain: int) -> str:
+    """Run a command that looks once, again and again until it shows what is to be; returns what it showed."""
+    deadline = time.monotonic() + PATIENCE_S
+    while True:
+        with Terminal(*words, domain=domain) as command:
+            command.wait(PATIENCE_S)
+            if re.search(pattern, command.text, re.MULTILINE):
+                return command.text
+            assert time.monotonic() < deadline, f"{' '.join(words)} never showed {pattern!r}:\n{command.text}"
+
+
 _BECOME = """
 import fcntl, sys, termios
 fcntl.ioctl(0, termios.TIOCSCTTY, 0)  # Ctrl-C is for who has this terminal

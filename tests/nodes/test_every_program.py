@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from daidalos.nodes.executables import executables
-from nodes.terminal import Terminal
+from nodes.terminal import Terminal, until_shown
 
 pytestmark = pytest.mark.slow
 
@@ -57,11 +57,7 @@ _ARGUMENTS = {
 def test_program(package: str, executable: str, domain: int) -> None:
     words = _ARGUMENTS.get((package, executable), ())
     with Terminal("run", package, executable, *words, domain=domain) as program:
-        while True:
-            with Terminal("node", "list", domain=domain) as command:
-                assert command.wait(30) == 0
-                if command.lines:
-                    break
+        until_shown("^/", "node", "list", domain=domain)
         assert program.interrupt() == 0
         assert "rror" not in program.text
 

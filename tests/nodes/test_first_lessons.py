@@ -6,7 +6,7 @@ import contextlib
 
 import pytest
 
-from nodes.terminal import Terminal
+from nodes.terminal import Terminal, until_shown
 
 pytestmark = pytest.mark.slow
 
@@ -155,6 +155,7 @@ def test_parameters(domain: int) -> None:
 
 def test_a_parameter_that_sets_another(domain: int) -> None:
     with Terminal("run", "demo_nodes_py", "set_parameters_callback", domain=domain) as node:
+        until_shown("^/set_param_callback_node$", "node", "list", domain=domain)
         with Terminal("param", "set", "/set_param_callback_node", "param1", "10.0", domain=domain) as command:
             command.wait_for("Set parameter successful")
         node.wait_for("param1 is now 10.0")
@@ -166,7 +167,7 @@ def test_introspection(domain: int) -> None:
     with (
         Terminal("run", "demo_nodes_py", "introspection_service", domain=domain) as server,
         Terminal("run", "demo_nodes_py", "introspection_client", domain=domain) as client,
-        Terminal("service", "echo", "/add_two_ints", domain=domain) as echo,
+        Terminal("service", "echo", "/add_two_ints", "example_interfaces/srv/AddTwoInts", domain=domain) as echo,
     ):
         client.wait_for("Result of add_two_ints: 5")
         words = ("param", "set", "/introspection_service", "service_configure_introspection", "contents")

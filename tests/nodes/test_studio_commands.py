@@ -11,7 +11,7 @@ from pathlib import Path
 import aiohttp
 import pytest
 
-from nodes.terminal import Terminal
+from nodes.terminal import Terminal, until_shown
 
 pytestmark = pytest.mark.slow
 
@@ -34,9 +34,8 @@ def test_command(words: tuple[str, ...], query: str, node: str, domain: int) -> 
     with Terminal("run", *words, domain=domain) as program:
         address = program.wait_for("^window: http://localhost:")[0].split()[1]
         assert address.partition("/?")[2] == query.removeprefix("?")
-        with Terminal("node", "list", domain=domain) as command:
-            assert command.wait(30) == 0
-            assert re.fullmatch(node, command.text)
+        shown = until_shown("^/", "node", "list", domain=domain)
+        assert re.fullmatch(node, shown)
         assert program.interrupt() == 0
 
 
@@ -86,16 +85,12 @@ def test_mistakes_are_named(words: tuple[str, ...], complaint: str, domain: int)
 def test_a_window_leaves_no_traces_in_the_graph(domain: int) -> None:
     with Terminal("run", "turtlesim", "turtlesim_node", domain=domain) as simulator:
         simulator.wait_for("^window: ")
-        with Terminal("node", "list", domain=domain) as command:
-            assert command.wait(30) == 0
-            assert command.lines == ["/turtlesim"]
-        with Terminal("topic", "list", domain=domain) as command:
-            assert command.wait(30) == 0
-            assert command.lines == [
-                "/parameter_events",
-                "/rosout",
-                "/turtle1/cmd_vel",
-                "/turtle1/color_sensor",
-                "/turtle1/pose",
-            ]
+        assert until_shown("^/turtlesim", "node", "list", domain=domain) == "/turtlesim"
+        assert until_shown("/turtle1/pose", "topic", "list", domain=domain).splitlines() == [
+            "/parameter_events",
+            "/rosout",
+            "/turtle1/cmd_vel",
+            "/turtle1/color_sensor",
+            "/turtle1/pose",
+        ]
         assert simulator.interrupt() == 0

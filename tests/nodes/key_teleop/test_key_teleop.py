@@ -14,7 +14,7 @@ _UP, _LEFT = "\x1b[A", "\x1b[D"
 def test_held_keys_become_velocities(domain: int) -> None:
     with (
         Terminal("run", "key_teleop", "key_teleop", domain=domain) as teleop,
-        Terminal("topic", "echo", "/key_vel", "--csv", domain=domain) as echo,
+        Terminal("topic", "echo", "/key_vel", "geometry_msgs/msg/Twist", "--csv", domain=domain) as echo,
     ):
         teleop.wait_for("Use arrow keys to move, q to exit.")
         echo.wait_for("^0.0,0.0,0.0,0.0,0.0,0.0$")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from nodes.terminal import Terminal
+from nodes.terminal import Terminal, until_shown
 
 pytestmark = pytest.mark.slow
 
@@ -17,8 +17,7 @@ def test_keys_become_velocities(domain: int) -> None:
         Terminal(*_RUN, domain=domain) as teleop,
     ):
         teleop.wait_for("currently:\tspeed 0.5\tturn 1.0")
-        with Terminal("topic", "info", "-v", "/cmd_vel", domain=domain) as info:
-            info.wait_for("Node name: _ros2cli_")  # the listener is known
+        until_shown("Subscription count: 1", "topic", "info", "/cmd_vel", domain=domain)  # the listener is known
         teleop.press("i")
         echo.wait_for("^0.5,0.0,0.0,0.0,0.0,0.0$")
         teleop.press("O")
@@ -57,8 +56,7 @@ def test_stamped(domain: int) -> None:
         Terminal(*_RUN, *arguments, domain=domain) as teleop,
     ):
         teleop.wait_for("currently:\tspeed 2.0\tturn 1.0")
-        with Terminal("topic", "info", "-v", "/drive", domain=domain) as info:
-            info.wait_for("Node name: _ros2cli_")
+        until_shown("Subscription count: 1", "topic", "info", "/drive", domain=domain)  # the listener is known
         teleop.press("i")
         echo.wait_for("frame_id: base")
         echo.wait_for("x: 2.0")

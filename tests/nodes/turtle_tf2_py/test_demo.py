@@ -44,7 +44,8 @@ def test_carrots(name: str, frame: str, domain: int) -> None:
 def test_a_turtle_that_a_sensor_sees(domain: int) -> None:
     with Terminal("launch", "turtle_tf2_py", "turtle_tf2_sensor_message_launch.py", domain=domain) as launched:
         launched.wait_for("Successfully spawned turtle3")
-        with Terminal("topic", "echo", "--once", "/turtle3/turtle_point_stamped", domain=domain) as echo:
+        words = ("/turtle3/turtle_point_stamped", "geometry_msgs/msg/PointStamped")
+        with Terminal("topic", "echo", "--once", *words, domain=domain) as echo:
             echo.wait_for("frame_id: world")
         assert launched.interrupt() == 0
 
@@ -52,7 +53,7 @@ def test_a_turtle_that_a_sensor_sees(domain: int) -> None:
 def test_a_turtle_that_stays(domain: int) -> None:
     words = ("run", "turtle_tf2_py", "static_turtle_tf2_broadcaster")
     with Terminal(*words, "mystaticturtle", "0", "0", "1", "0", "0", "0", domain=domain) as publisher:
-        with Terminal("topic", "echo", "--once", "/tf_static", domain=domain) as echo:
+        with Terminal("topic", "echo", "--once", "/tf_static", "tf2_msgs/msg/TFMessage", domain=domain) as echo:
             echo.wait_for("child_frame_id: mystaticturtle")
         assert publisher.interrupt() == 0
     with Terminal(*words, "mystaticturtle", domain=domain) as publisher:

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 import yaml
 
-from nodes.terminal import Terminal
+from nodes.terminal import Terminal, until_shown
 
 pytestmark = pytest.mark.slow
 
@@ -31,7 +31,7 @@ def _pose(domain: int, turtle: str = "turtle1", condition: str = "True") -> dict
 @contextlib.contextmanager
 def _turtlesim(domain: int, *words: str) -> Iterator[Terminal]:
     with Terminal("run", "turtlesim", "turtlesim_node", "--headless", *words, domain=domain) as simulator:
-        simulator.wait_for(r"Spawning turtle \[turtle1\]")
+        until_shown("^/turtlesim$", "node", "list", domain=domain)
         yield simulator
         assert simulator.interrupt() == 0
 
@@ -72,7 +72,7 @@ def test_course_of_the_services(domain: int) -> None:
         simulator.wait_for(r"\[turtlesim\]: A turtle named \[bob\] already exists")
         _ros2(domain, *spawn, "{name: not/so good}")
         simulator.wait_for(r"A turtle can not be named \[not/so good\]: Invalid topic name")
-        assert "/bob/pose" in _ros2(domain, "topic", "list")
+        until_shown("^/bob/pose$", "topic", "list", domain=domain)
 
         _ros2(domain, "service", "call", "/kill", "turtlesim/srv/Kill", "{name: bob}")
         _ros2(domain, "service", "call", "/kill", "turtlesim/srv/Kill", "{name: bob}")
@@ -197,8 +197,7 @@ def test_draw_square(domain: int) -> None:
 def test_ends_quietly_however_it_is_ended(executable: str, domain: int) -> None:
     for end in (Terminal.interrupt, Terminal.terminate):
         with Terminal("run", "turtlesim", executable, domain=domain) as program:
-            while "/" not in _ros2(domain, "node", "list"):
-                pass
+            until_shown("^/", "node", "list", domain=domain)
             assert end(program) == 0
 
 
