@@ -55,6 +55,17 @@ def test_the_base_may_be_in_the_middle() -> None:
         assert chain.jacobian(positions)[:3, column] == pytest.approx(difference, abs=1e-5)
 
 
+def test_a_model_may_hang_on_the_world() -> None:
+    from daidalos.description.gazebo import model_from_robot
+
+    model = model_from_robot(ROBOT)
+    assert "world" not in model.links
+    found, expected = (Chain(one, "world", "d", JOINTS) for one in (model, ROBOT))
+    assert found.pose(POSITIONS)[0] == pytest.approx(expected.pose(POSITIONS)[0])
+    assert found.jacobian(POSITIONS) == pytest.approx(expected.jacobian(POSITIONS))
+    assert found.pose(POSITIONS, "world")[1] == pytest.approx(np.eye(3))
+
+
 def test_what_does_not_fit_is_named() -> None:
     with pytest.raises(UnknownError, match="no link 'e'"):
         Chain(ROBOT, "world", "e", JOINTS)

@@ -39,8 +39,10 @@ class Chain:
     """
 
     def __init__(self, robot: Robot | Model, base: str, tip: str, joints: Sequence[str]) -> None:
+        # In the simulation the world is no link of the model, and is where its fixed joints begin.
+        outside = {joint.parent for joint in robot.joints.values()} - set(robot.links)
         for link in (base, tip):
-            if link not in robot.links:
+            if link not in robot.links and link not in outside:
                 raise UnknownError("link", link, robot.links)
         above = {joint.child: joint for joint in robot.joints.values()}
         path = []
@@ -56,7 +58,8 @@ class Chain:
             if robot.joints[name].type not in _TURNING + _SLIDING or robot.joints[name].mimic is not None:
                 raise ControlError(f"joint '{name}' can not be moved by a controller")
         self._tree = KinematicTree(robot)
-        self._rows = {name: row for row, name in enumerate(self._tree.link_names)}
+        count = len(self._tree.link_names)
+        self._rows = {name: row for row, name in enumerate(self._tree.link_names)} | dict.fromkeys(outside, count)
         self._base, self._tip = self._rows[base], self._rows[tip]
         self._places = np.array([self._tree.index(name) for name in joints], dtype=np.intp)
         self._axes = [
@@ -69,7 +72,7 @@ class Chain:
     def _matrices(self, positions: Array) -> Array:
         full = np.zeros(len(self._tree.joint_names))
         full[self._places] = positions
-        matrices: Array = self._tree.link_matrices(full)
+        matrices = np.concatenate((self._tree.link_matrices(full), np.eye(4)[None]))
         base = matrices[self._base]
         inverse = np.eye(4)
         inverse[:3, :3], inverse[:3, 3] = base[:3, :3].T, -base[:3, :3].T @ base[:3, 3]

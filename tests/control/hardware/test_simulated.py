@@ -345,6 +345,53 @@ def test_a_drive_commands_loops_that_command_motors() -> None:
         rig.manager.switch(stop=["pid_left"])
 
 
+GANTRY = f"""<robot name="gantry"><link name="world"/>
+  <link name="x"><inertial><mass value="2"/>{INERTIA.format(0.1)}</inertial></link>
+  <link name="tool"><inertial><mass value="0.5"/>{INERTIA.format(0.01)}</inertial></link>
+  <joint name="jx" type="prismatic"><parent link="world"/><child link="x"/><origin xyz="0 0 1"/><axis xyz="1 0 0"/>
+    <limit lower="-1" upper="1" effort="500" velocity="0"/></joint>
+  <joint name="flange" type="fixed"><parent link="x"/><child link="tool"/></joint>
+  <gazebo reference="flange"><provideFeedback>true</provideFeedback>
+    <sensor name="wrist" type="force_torque"><update_rate>100</update_rate></sensor></gazebo>
+  <ros2_control name="arm" type="system"><hardware><plugin>gz_ros2_control/GazeboSimSystem</plugin></hardware>
+  <joint name="jx"><command_interface name="position"/><state_interface name="position"/></joint>
+  <sensor name="wrist">{"".join(f'<state_interface name="{k}.{a}"/>' for k in ("force", "torque") for a in "xyz")}
+  </sensor></ros2_control>{PLUGIN.format("")}</robot>"""
+
+
+def test_a_tip_yields_to_a_push_that_its_sensor_feels() -> None:
+    rig = Rig(GANTRY)
+    frames = {"frame": {"id": "tool"}}
+    rig.add(
+        "yield",
+        "admittance_controller/AdmittanceController",
+        joints=["jx"],
+        command_interfaces=["position"],
+        state_interfaces=["position"],
+        kinematics={"base": "world", "tip": "tool", "alpha": 1e-9},
+        ft_sensor={"name": "wrist", "filter_coefficient": 0.3, **frames},
+        control=frames,
+        fixed_world_frame={"frame": {"id": "world"}},
+        gravity_compensation={"CoG": {"force": 0.5 * 9.8}, **frames},
+        admittance={
+            "selected_axes": [True, False, False, False, False, False],
+            "mass": [5.0] * 6,
+            "damping_ratio": [1.0] * 6,
+            "stiffness": [200.0] * 6,
+            "joint_damping": 0.0,
+        },
+    )
+    rig.run(0.5)
+    assert rig.position("jx") == pytest.approx(0.0, abs=1e-4)
+    physics = rig.simulation.physics
+    physics.data.xfrc_applied[physics.model.body("robot::tool").id, 0] = 10.0
+    rig.run(3.0)
+    assert rig.position("jx") == pytest.approx(10.0 / 200.0, rel=0.02)
+    physics.data.xfrc_applied[:] = 0.0
+    rig.run(3.0)
+    assert rig.position("jx") == pytest.approx(0.0, abs=1e-3)
+
+
 def test_wheels_of_any_round_shape_are_driven_as_wheels() -> None:
     cylinder, ball = '<cylinder radius="0.05" length="0.02"/>', '<sphere radius="0.05"/>'
     block = '<box size="0.3 0.02 0.02"/>'
