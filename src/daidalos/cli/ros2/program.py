@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import _thread
 import os
 import signal
 import sys
+import threading
 import time
 from types import FrameType
 
@@ -13,6 +15,8 @@ _INTERRUPTED = int(signal.SIGINT)
 
 _BROKEN_PIPE = 141
 _SAME_PRESS_S = 0.5
+_MOMENT_S = 0.002
+_IMPORT_SYSTEM = "<frozen importlib"
 
 
 def run(argv: list[str]) -> int:
@@ -97,10 +101,15 @@ def _handle_interrupts() -> None:
 
     def on_interrupt(number: int, frame: FrameType | None) -> None:
         nonlocal first
-        if first is None:
+        if frame is not None and frame.f_code.co_filename.startswith(_IMPORT_SYSTEM):
+            # What is raised there may be swallowed: once more when it is through.
+            later = threading.Timer(_MOMENT_S, _thread.interrupt_main)
+            later.daemon = True
+            later.start()
+        elif first is None:
             first = time.monotonic()
             raise KeyboardInterrupt
-        if time.monotonic() - first > _SAME_PRESS_S:
+        elif time.monotonic() - first > _SAME_PRESS_S:
             signal.signal(number, signal.SIG_DFL)
             signal.raise_signal(number)
 
