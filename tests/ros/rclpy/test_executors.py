@@ -190,6 +190,18 @@ def test_tasks_run_in_the_order_they_were_given(executor: Executor) -> None:
     assert executor.create_task(lambda number: number, 3)._args == [3]
 
 
+def test_tasks_that_follow_each_other_leave_room_for_callbacks(executor: Executor, node: Node) -> None:
+    called: list[int] = []
+    node.create_timer(0.001, lambda: called.append(1))
+
+    def again() -> None:
+        if len(called) < 3:
+            executor.create_task(again)
+
+    again()
+    spin_until(executor, lambda: len(called) >= 3)
+
+
 def test_a_coroutine_goes_on_where_it_waited(node: Node) -> None:
     executor = SingleThreadedExecutor()
     executor.add_node(node)

@@ -22,6 +22,15 @@ def test_items_come_out_in_their_order() -> None:
     assert queue.empty()
 
 
+def test_what_is_urgent_comes_first_and_leaves_room_for_the_rest() -> None:
+    queue = ReadyQueue()
+    for number in range(3):
+        queue.put(number)
+    for letter in "abc":
+        queue.put_first(letter)
+    assert [queue.get(None) for _ in range(6)] == ["a", 0, "b", 1, "c", 2]
+
+
 def test_a_wait_ends_with_its_deadline() -> None:
     queue = ReadyQueue()
     for span in (-MS, 0, 1, 10 * MS):

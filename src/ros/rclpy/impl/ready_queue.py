@@ -25,6 +25,7 @@ class ReadyQueue:
     def __init__(self) -> None:
         self._items: deque[Any] = deque()
         self._first: deque[Any] = deque()
+        self._was_first = False
         self._gate = threading.Lock()
         self._gate.acquire()
         self._timers: list[tuple[int, int, int, TimerHandle]] = []
@@ -44,7 +45,7 @@ class ReadyQueue:
             self._open()
 
     def put_first(self, item: Any) -> None:
-        """Add an item that comes before all that were added by `put`."""
+        """Add an item that comes before those that were added by `put`, of which one may come in between."""
         self._first.append(item)
         self._open()
 
@@ -79,9 +80,11 @@ class ReadyQueue:
             until = deadline_ns
             if timers:
                 until = self._tell_timers(until)
-            if first:
+            if first and not (items and self._was_first):
+                self._was_first = True
                 return first.popleft()
             if items:
+                self._was_first = False
                 return items.popleft()
             if until is None:
                 self._gate.acquire()
