@@ -5,9 +5,8 @@ import inspect
 import numpy as np
 import pytest
 
-from daidalos.nodes.gazebo_ros._messages import INCOMING, OUTGOING
+from daidalos.nodes.gazebo_ros._messages import INCOMING, OUTGOING, outgoing
 from daidalos.simulation import Simulation, samples
-from daidalos.simulation.component import Subscription
 from simulation.models import world
 
 
@@ -23,7 +22,24 @@ def test_every_kind_of_sample_has_a_message():
 def test_every_kind_of_command_has_a_message():
     commands = {cls for name, cls in inspect.getmembers(samples, inspect.isclass) if name.endswith("Command")}
     assert commands == set(INCOMING)
-    assert Subscription
+
+
+def test_users_may_bring_samples_of_their_own():
+    class Smell(samples.Sample):
+        pass
+
+    class Colder(samples.TransformSample):
+        pass
+
+    class Taste(samples.Sample):
+        message_class = staticmethod(lambda: str)
+
+        def to_message(self):
+            return "sweet"
+
+    assert outgoing(Smell) is None
+    assert outgoing(Colder) is OUTGOING[samples.TransformSample]
+    assert outgoing(Taste).convert(Taste(0, "/taste", "")) == "sweet"
 
 
 def sensor(kind, settings=""):

@@ -51,6 +51,18 @@ def test_gzs_odometry_publisher_starts_at_zero():
     assert odometry.topic == "/model/b/odometry"
 
 
+def test_gzs_pose_publisher_tells_links_and_model():
+    parameters = "<publish_model_pose>true</publish_model_pose><update_frequency>50</update_frequency>"
+    model = with_plugin(box("b", "1 2 0.5 0 0 0"), "gz-sim-pose-publisher-system", parameters)
+    samples = Simulation(world(model)).advance(SECOND // 10)
+    assert len(samples) == 10
+    whole, link = samples[-2:]
+    assert (whole.topic, whole.frame_id, whole.child_frame_id) == ("/model/b/pose", "w", "b")
+    assert whole.translation == pytest.approx((1, 2, 0.5), abs=1e-3)
+    assert (link.frame_id, link.child_frame_id) == ("b", "b/link")
+    assert link.translation == pytest.approx((0, 0, 0), abs=1e-9)
+
+
 def test_a_force_lasts_until_the_next_command():
     simulation = Simulation(
         world(with_plugin(box("b", "0 0 9 0 0 0"), "libgazebo_ros_force.so", "<link_name>link</link_name>"))

@@ -151,3 +151,13 @@ INCOMING: dict[type, Incoming] = {
     samples.NumberCommand: Incoming(named("std_msgs", "Float64"), _number),
     samples.TrajectoryCommand: Incoming(_trajectory_type, _trajectory),
 }
+
+
+def outgoing(kind: type[samples.Sample]) -> Outgoing | None:
+    """Return how a class of samples becomes a message, if anyone knows.
+
+    A user's class may derive from one of ours, or bring ``message_class`` and ``to_message`` of its own.
+    """
+    if hasattr(kind, "message_class") and hasattr(kind, "to_message"):
+        return Outgoing(kind.message_class, kind.to_message)
+    return next((OUTGOING[cls] for cls in kind.__mro__ if cls in OUTGOING), None)

@@ -62,6 +62,7 @@ class GzServer(Node):
         self._incoming: dict[str, Any] = {}
         self._contacts: dict[str, Any] = {}
         self._offered: dict[str, Any] = {}
+        self._warned: set[str] = set()
 
         def make(description: World) -> Simulation:
             return Simulation(description, seed=seed, heard=self._is_heard, warn=self._warn)
@@ -82,6 +83,11 @@ class GzServer(Node):
 
     def _warn(self, text: str) -> None:
         self.get_logger().warning(text)
+
+    def _warn_once(self, text: str) -> None:
+        if text not in self._warned:
+            self._warned.add(text)
+            self._warn(text)
 
     def _create_topics(self) -> None:
         from gazebo_msgs.msg import ContactsState, LinkStates, ModelStates, PerformanceMetrics
@@ -117,10 +123,10 @@ class GzServer(Node):
         self._clock_publisher.publish(Clock(clock=time_message(now_ns)))
         transforms = []
         for sample in samples:
-            publisher, convert = self._outgoing[sample.topic]
             if sample.topic == "/tf":
                 transforms.append(sample)
-            else:
+            elif sample.topic in self._outgoing:
+                publisher, convert = self._outgoing[sample.topic]
                 publisher.publish(convert(sample))
         if transforms:
             self._publish_transforms(transforms)
@@ -167,22 +173,26 @@ class GzServer(Node):
 
     def _connect(self, simulation: Simulation) -> None:
         """Make a publisher or subscription for every topic of the simulation, and remove those it lost."""
-        from daidalos.nodes.gazebo_ros._messages import INCOMING, OUTGOING
+        from daidalos.nodes.gazebo_ros._messages import INCOMING, outgoing
         from daidalos.simulation.samples import ImageSample
 
         wanted = simulation.publications
         for topic in [topic for topic in self._outgoing if topic not in wanted]:
             self.destroy_publisher(self._outgoing.pop(topic)[0])
         for topic, kind in wanted.items():
-            if topic not in self._outgoing:
-                entry = OUTGOING[kind]
+            entry = outgoing(kind)
+            if entry is None:
+                self._warn_once(f"{topic} is not published: no message is known for {kind.__name__}")
+            elif topic not in self._outgoing:
                 self._outgoing[topic] = (self.create_publisher(entry.message(), topic, 10), entry.convert)
         commands = simulation.subscriptions
         for topic in [topic for topic in self._incoming if topic not in commands]:
             self.destroy_subscription(self._incoming.pop(topic))
         for topic, command in commands.items():
-            if topic not in self._incoming:
-                accepted = INCOMING[command]
+            accepted = INCOMING.get(command)
+            if accepted is None:
+                self._warn_once(f"{topic} is not listened to: no message is known for {command.__name__}")
+            elif topic not in self._incoming:
                 take = self._taker(topic, accepted.convert)
                 self._incoming[topic] = self.create_subscription(accepted.message(), topic, take, 10)
 
