@@ -87,7 +87,9 @@ def test_a_snapshot_holds_the_last_moments(tmp_path):
         buffer.write(message)
     assert buffer.take()
     assert not buffer.take()
+    buffer.write(messages(1)[0])
+    assert buffer.take()
     buffer.close()
     writer.close()
-    assert read_independently(tmp_path / "bag") == received(messages(100)[-20:])
-    assert [file.message_count for file in read_metadata(tmp_path / "bag").files] == [20, 0]
+    assert read_independently(tmp_path / "bag") == received(messages(1) + messages(100)[-20:])
+    assert [file.message_count for file in read_metadata(tmp_path / "bag").files] == [20, 1]

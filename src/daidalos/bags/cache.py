@@ -185,10 +185,11 @@ class SnapshotBuffer:
         """Write what is kept to a file of its own; False when there is nothing."""
         with self._lock:
             kept, self._kept, self._size = self._kept, deque(), 0
+        if kept and not self.writer.is_file_empty:
+            self.writer.split()
         for message in kept:
             self.writer.write(message)
-        if kept:
-            self.writer.split()
+        self.writer.flush()
         return bool(kept)
 
     def close(self) -> None:

@@ -38,8 +38,10 @@ _LOOSE_SIZE = 1024 * 1024
 """Messages that stand in no chunk are read in pieces of about so many bytes."""
 _FAULTS = (McapError, struct.error, ValueError, LookupError, EOFError, OverflowError, MemoryError)
 
-Entry = tuple[int, int, int, bytes]
-"""Time of reception, time of sending, channel, data."""
+Entry = tuple[int, int, int, int, bytes]
+"""Time of reception, the chunk's place in the file, time of sending, channel, data."""
+
+_in_order = itemgetter(0, 1)
 
 
 @dataclass(frozen=True)
@@ -271,7 +273,7 @@ class McapReader(StorageReader):
         else:
             batches = self._forward(chunks, names, start_ns, stop_ns)
         for batch in batches:
-            for received, sent, channel, data in batch:
+            for received, _, sent, channel, data in batch:
                 yield BagMessage(names[channel], data, received, sent)
 
     def _forward(self, chunks: list[_Chunk], names: Collection[int], start: int, stop: int) -> Iterator[list[Entry]]:
@@ -280,7 +282,7 @@ class McapReader(StorageReader):
         waiting: list[Entry] = []
         for k, chunk in enumerate(chunks):
             waiting += self._entries(chunk, names, start, stop)
-            waiting.sort(key=itemgetter(0))
+            waiting.sort(key=_in_order)
             if k + 1 < len(chunks):
                 split = bisect_left(waiting, chunks[k + 1].start_ns, key=itemgetter(0))
                 yield waiting[:split]
@@ -292,7 +294,7 @@ class McapReader(StorageReader):
         chunks.sort(key=lambda chunk: -chunk.end_ns)
         waiting: list[Entry] = []
         for k, chunk in enumerate(chunks):
-            waiting = sorted(self._entries(chunk, names, start, stop) + waiting, key=itemgetter(0))
+            waiting = sorted(self._entries(chunk, names, start, stop) + waiting, key=_in_order)
             if k + 1 < len(chunks):
                 split = bisect_right(waiting, chunks[k + 1].end_ns, key=itemgetter(0))
                 yield waiting[split:][::-1]
@@ -303,7 +305,7 @@ class McapReader(StorageReader):
         """Return the wanted messages of a chunk as they stand in it."""
         try:
             content = self._content(chunk)
-            return _entries(content, names, start, stop)
+            return _entries(content, chunk.offset, names, start, stop)
         except _FAULTS as error:
             raise BagError(self.path, f"the chunk at byte {chunk.offset} is damaged: {error}") from None
 
@@ -349,8 +351,8 @@ class _Loose:
         return _Chunk(self.start_ns, self.end_ns, self.offset, self.end - self.offset)
 
 
-def _entries(content: bytes, names: Collection[int], start: int, stop: int) -> list[Entry]:
-    """Take the wanted messages out of a chunk's records."""
+def _entries(content: bytes, chunk: int, names: Collection[int], start: int, stop: int) -> list[Entry]:
+    """Take the wanted messages out of the records of the chunk at a place in the file."""
     found: list[Entry] = []
     append, unpack, header = found.append, MESSAGE_HEADER.unpack_from, MESSAGE_HEADER.size
     position, size = 0, len(content)
@@ -361,7 +363,7 @@ def _entries(content: bytes, names: Collection[int], start: int, stop: int) -> l
             if end > size:
                 raise ValueError("a message is cut off")
             if channel in names and start <= received <= stop:
-                append((received, sent, channel, content[position + header : end]))
+                append((received, chunk, sent, channel, content[position + header : end]))
             position = end
         else:
             position += 9 + _RECORD.unpack_from(content, position)[1]

@@ -132,6 +132,11 @@ class BagWriter:
         return sum(self._counts.values())
 
     @property
+    def is_file_empty(self) -> bool:
+        """Whether the present file has no messages yet."""
+        return self._count == 0
+
+    @property
     def size(self) -> int:
         """How large the present file is about to be [bytes]."""
         return self._storage.size
