@@ -50,6 +50,6 @@ class LoggingService:
                 rclpy.logging.set_logger_level(level.name, LoggingSeverity(level.level))
             except ValueError:
                 result.successful = False
-                result.reason = f"{level.level} is no severity"
+                result.reason = "Failed reason: Invalid logger level."
             response.results.append(result)
         return response

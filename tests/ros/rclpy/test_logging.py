@@ -105,10 +105,14 @@ def test_levels_can_be_set_from_elsewhere(graph: Context) -> None:
     setter = node.create_client(SetLoggerLevels, "/tested/set_logger_levels")
     getter = node.create_client(GetLoggerLevels, "/tested/get_logger_levels")
     request = SetLoggerLevels.Request()
-    request.levels = [rcl_level("tested", 10)]
+    request.levels = [rcl_level("tested", 10), rcl_level("other", 22)]
     future = setter.call_async(request)
     executor.spin_until_future_complete(future, 10)
-    assert future.result().results[0].successful
+    results = future.result().results
+    assert [(one.successful, one.reason) for one in results] == [
+        (True, ""),
+        (False, "Failed reason: Invalid logger level."),
+    ]
     future = getter.call_async(GetLoggerLevels.Request(names=["tested"]))
     executor.spin_until_future_complete(future, 10)
     assert [(one.name, one.level) for one in future.result().levels] == [("tested", 10)]
