@@ -282,12 +282,13 @@ class ControllerManager:
             What there is to publish, with the controller's name.
         """
         nominal = 1.0 / self.update_rate
-        if now_ns < self.time_ns:
-            self._restart(now_ns)
+        went_back = now_ns < self.time_ns
         period = (now_ns - self.time_ns) * 1e-9 if self._started and now_ns > self.time_ns else nominal
         self._started, self.time_ns = True, now_ns
         for component in self.components.values():
             self._guard(component, component.read, now_ns, period)
+        if went_back:
+            self._restart()
         said: list[tuple[str, Sample]] = []
         for loaded in self._order:
             if loaded.state == ACTIVE and (loaded.pulse is None or loaded.pulse.due(now_ns)):
@@ -437,9 +438,8 @@ class ControllerManager:
                 loaded.controller.chained = chained
                 loaded.references.values[:] = float("nan")
 
-    def _restart(self, now_ns: int) -> None:
+    def _restart(self) -> None:
         """Let active controllers forget what was before time went back."""
-        self.time_ns = now_ns
         self._release(name for one in self._active() for name in one.running.command_names)
         for loaded in reversed(self._order):
             if loaded.state == ACTIVE:

@@ -180,6 +180,27 @@ def test_initial_values_are_where_joints_start_again_and_again() -> None:
     assert rig.position("slide") == pytest.approx(0.07, abs=2e-3)
 
 
+def test_a_trajectory_is_forgotten_by_a_reset() -> None:
+    rig = Rig(pendulum())
+    controller = rig.add(
+        "arm",
+        "joint_trajectory_controller/JointTrajectoryController",
+        joints=["swing"],
+        command_interfaces=["position"],
+        state_interfaces=["position", "velocity"],
+    )
+    take = controller.subscriptions["~/joint_trajectory"].take
+    take(TrajectoryCommand(("swing",), (TrajectoryPoint(0.5, np.array([0.8])),)))
+    rig.run(1.0)
+    assert rig.position("swing") == pytest.approx(0.8, abs=1e-3)
+    rig.simulation.reset()
+    rig.run(1.0)
+    assert rig.position("swing") == pytest.approx(0.0, abs=1e-3)
+    take(TrajectoryCommand(("swing",), (TrajectoryPoint(0.5, np.array([0.4])),)))
+    rig.run(1.0)
+    assert rig.position("swing") == pytest.approx(0.4, abs=1e-3)
+
+
 def test_a_joint_is_commanded_in_one_way() -> None:
     rig = Rig(pendulum())
     rig.group("position", "swing")
