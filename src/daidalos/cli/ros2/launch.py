@@ -101,6 +101,8 @@ class LaunchCommand(Command):
         """Launch, or show what would be launched."""
         path, words = _file_and_arguments(args)
         arguments = parse_arguments(words)
+        if args.show_all_subprocesses_output:
+            os.environ["OVERRIDE_LAUNCH_PROCESS_OUTPUT"] = "both"  # read when a launch file makes its actions
         source, description = _load(path)
         if args.show_args:
             print(arguments_text(description))
@@ -119,8 +121,6 @@ def _launch(
     from launch import LaunchDescription, LaunchService
     from launch.actions import IncludeLaunchDescription
 
-    if args.show_all_subprocesses_output:
-        os.environ["OVERRIDE_LAUNCH_PROCESS_OUTPUT"] = "both"
     options = {"launch-prefix": args.launch_prefix, "launch-prefix-filter": args.launch_prefix_filter}
     arguments = [*arguments, *((name, value) for name, value in options.items() if value is not None)]
     service = LaunchService(argv=words, noninteractive=args.noninteractive, debug=args.debug)
@@ -171,7 +171,8 @@ def find_launch_file(package: str, name: str) -> Path:
         path for path in sorted(share.rglob(Path(name).name)) if path.is_file() and path.as_posix().endswith(f"/{name}")
     ]
     if not found:
-        hint = did_you_mean(name, (file.name for file in launch_files(package)))
+        files = [file.name for file in launch_files(package)]
+        hint = did_you_mean(name, files) or (f"\nThere are: {', '.join(files)}" if files else "")
         raise CliError(
             f"file '{name}' was not found in the share directory of package '{package}' which is at '{share}'{hint}",
             _FAULTY_FILE,
