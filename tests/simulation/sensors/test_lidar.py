@@ -27,7 +27,7 @@ def scan(*parts, seed=0):
     """Return the first scan in a world with a wall 3 m ahead."""
     wall = box("wall", "3.5 0 0.5 0 0 0", "1 20 1", static=True)
     simulation = Simulation(world(wall, *parts), seed=seed)
-    (sample,) = simulation.advance(100_000_000)
+    sample = simulation.advance(100_000_000)[0]
     return sample
 
 
@@ -120,6 +120,20 @@ def test_rings_become_points():
     assert sample.points.shape == (2, 3, 3)
     np.testing.assert_allclose(sample.points[:, :, 0], 3, rtol=1e-5)
     np.testing.assert_allclose(sample.points[:, 1, 2], [-3 * np.tan(0.1), 3 * np.tan(0.1)], rtol=1e-5)
+
+
+def test_gzs_lidar_speaks_in_ranges_and_in_points():
+    fan = (
+        "<horizontal><samples>3</samples><min_angle>-0.5</min_angle><max_angle>0.5</max_angle></horizontal>"
+        "<vertical><samples>3</samples><min_angle>-0.1</min_angle><max_angle>0.1</max_angle></vertical>"
+    )
+    samples = Simulation(world(box("wall", "3.5 0 0 0 0 0", "1 9 9", static=True), carrier(scan=fan, kind="gpu_lidar")))
+    ranges, points = samples.advance(200_000_000)[-2:]
+    assert isinstance(ranges, LaserScanSample)
+    assert isinstance(points, PointCloudSample)
+    assert points.topic == f"{ranges.topic}/points"
+    assert ranges.ranges[1] == pytest.approx(3.0)
+    assert points.points.shape == (3, 3, 3)
 
 
 @pytest.mark.parametrize(

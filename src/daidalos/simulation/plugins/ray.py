@@ -21,7 +21,7 @@ class Laser(SensorPlugin):
         sensor.topic = parameters.topic(element.text_of("topicName", "topic_name", default="scan"))
         sensor.frame_id = frame(element.text_of("frameName", "frame_name", default=sensor.frame_id))
         if isinstance(sensor, Lidar):
-            sensor.as_points = False
+            sensor.as_points = sensor.as_both = False
             stddev = element.number_of("gaussianNoise", "gaussian_noise", default=0.0)
             if stddev > 0:
                 sensor.noise = replace(sensor.noise, stddev=stddev)
@@ -50,6 +50,7 @@ class RaySensor(SensorPlugin):
         sensor.topic = parameters.topic("~/out")
         sensor.frame_id = frame(element.text_of("frame_name", default=sensor.frame_id))
         if isinstance(sensor, Lidar):
+            sensor.as_both = False
             kind = element.text_of("output_type", default="sensor_msgs/PointCloud2")
             sensor.as_points = not kind.endswith(("LaserScan", "Range"))
             sensor.as_range = kind.endswith("Range")

@@ -10,8 +10,10 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.description.link import Sensor as Description
 from daidalos.description.markup import Element
 from daidalos.description.pose import rotation_matrix
+from daidalos.simulation.component import Setting
 from daidalos.simulation.conversion.geometry import RAY_GROUPS
 from daidalos.simulation.instance import Instance
 from daidalos.simulation.noise import read_noise
@@ -55,10 +57,16 @@ class Lidar(Sensor):
         Speak in points rather than ranges; so from the start when there is more than one ring.
     as_range : bool
         Speak of the nearest of all rays alone.
+    as_both : bool
+        Speak as gz's lidar does: the middle ring's ranges, and points on ``<topic>/points``.
     """
 
     types = ("ray", "lidar", "gpu_ray", "gpu_lidar")
     default_topic = "scan"
+
+    def __init__(self, description: Description, link: str, setting: Setting, joint: str = "") -> None:
+        super().__init__(description, link, setting, joint)
+        self.as_both = description.type in ("lidar", "gpu_lidar")
 
     def read(self, element: Element) -> None:
         """Read angles, ranges and noise from ``<ray>`` or ``<lidar>``."""
@@ -79,9 +87,11 @@ class Lidar(Sensor):
 
     @property
     def publications(self) -> Mapping[str, type[Sample]]:
-        """One topic."""
+        """One topic, or gz's two."""
         if self.as_range:
             return {self.topic: RangeSample}
+        if self.as_both:
+            return {self.topic: LaserScanSample, self._points_topic: PointCloudSample}
         return {self.topic: PointCloudSample if self.as_points else LaserScanSample}
 
     def bind(self, instance: Instance) -> None:
@@ -93,6 +103,10 @@ class Lidar(Sensor):
         for geom, (model, info) in physics.geoms.items():
             self._reflection[geom] = info.laser_retro
             self._own[geom] = model == instance.name
+
+    def update(self, now_ns: int) -> Iterable[Sample]:
+        """Measure, unless nobody listens."""
+        return self.measure(now_ns) if any(map(self.instance.heard, self.publications)) else ()
 
     def measure(self, now_ns: int) -> Iterable[Sample]:
         """Cast all rays."""
@@ -106,10 +120,20 @@ class Lidar(Sensor):
         intensities = np.where(far, np.float32(0.0), self._reflection[geoms])
         if self.as_range:
             yield self._nearest(now_ns, ranges)
+        elif self.as_both:
+            if self.instance.heard(self.topic):
+                middle = slice(self.vertical.count // 2 * self.horizontal.count, None)
+                yield self._scan(now_ns, ranges[middle], intensities[middle])
+            if self.instance.heard(self._points_topic):
+                yield self._points(now_ns, ranges, intensities, self._points_topic)
         elif self.as_points:
-            yield self._points(now_ns, ranges, intensities)
+            yield self._points(now_ns, ranges, intensities, self.topic)
         else:
             yield self._scan(now_ns, ranges, intensities)
+
+    @property
+    def _points_topic(self) -> str:
+        return f"{self.topic}/points"
 
     def _cast(self) -> tuple[Array, NDArray[np.int32]]:
         """Return the true range of each ray and the geom that it hit (-1: none)."""
@@ -172,14 +196,14 @@ class Lidar(Sensor):
             intensities=intensities[: self.horizontal.count],
         )
 
-    def _points(self, now_ns: int, ranges: Array, intensities: NDArray[np.float32]) -> PointCloudSample:
+    def _points(self, now_ns: int, ranges: Array, intensities: NDArray[np.float32], topic: str) -> PointCloudSample:
         shape = (self.vertical.count, self.horizontal.count)
         finite = np.where(np.isfinite(ranges), ranges, np.nan)
         points = (self._directions * finite[:, None]).astype(np.float32)
         points[np.isnan(points)] = np.inf
         return PointCloudSample(
             stamp_ns=now_ns,
-            topic=self.topic,
+            topic=topic,
             frame_id=self.frame_id,
             points=points.reshape(*shape, 3),
             intensities=intensities.reshape(shape),
