@@ -12,7 +12,7 @@ from std_msgs.msg import Int32
 
 from daidalos.transport.environment import read_environment
 from daidalos.transport.graph import EndpointKind
-from daidalos.transport.qos import Qos
+from daidalos.transport.qos import Qos, Reliability
 from daidalos.transport.session import Session
 from daidalos.transport.shared import make_backend
 
@@ -49,6 +49,16 @@ def listen(session: Session) -> None:
         news.clear()
         while (taken := subscription.take()) is not None:
             say(f"heard {taken[0].data}")
+
+
+def look(session: Session) -> None:
+    """Subscribe to images and leave them."""
+    node, _remove = session.create_node("looker", "/")
+    _subscription = session.create_subscription(
+        node, "/topic", Image, Qos(reliability=Reliability.BEST_EFFORT, depth=5)
+    )
+    say("ready")
+    threading.Event().wait()
 
 
 def serve(session: Session) -> None:
@@ -90,7 +100,7 @@ def crowd(session: Session) -> None:
     assert publishers
 
 
-ROLES = {"crowd": crowd, "talk": talk, "flood": flood, "listen": listen, "serve": serve, "watch": watch}
+ROLES = {"crowd": crowd, "talk": talk, "flood": flood, "listen": listen, "look": look, "serve": serve, "watch": watch}
 
 if __name__ == "__main__":
     ROLES[sys.argv[1]](Session(make_backend(read_environment())))

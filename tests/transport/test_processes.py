@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import signal
+import sys
 import time
 from collections.abc import Callable
+from pathlib import Path
 
 import pytest
 from example_interfaces.srv import AddTwoInts
@@ -12,8 +14,9 @@ from sensor_msgs.msg import Image
 from std_msgs.msg import Int32
 
 from daidalos.transport.graph import EndpointKind
-from daidalos.transport.qos import Qos
+from daidalos.transport.qos import Qos, Reliability
 from daidalos.transport.session import Session
+from daidalos.transport.zenoh.config import shared_memory_usable
 from transport.peers import Peer
 from transport.test_sessions import Inbox, node_of, subscribe
 
@@ -141,3 +144,32 @@ def test_a_stopped_process_does_not_stop_others(new_session: Callable[[], Sessio
         listener.wait_for("heard -7", line)
     assert publisher.endpoint.name == "/topic"
     assert inbox.wait(1, 0.0) == []
+
+
+def test_best_effort_never_waits(new_session: Callable[[], Session]):
+    session = new_session()
+    qos = Qos(reliability=Reliability.BEST_EFFORT, depth=5)
+    publisher = session.create_publisher(node_of(session, "me"), "/topic", Image, qos)
+    with Peer("look").ready() as stopped:
+        assert session.graph.wait_for(lambda: publisher.is_heard, PATIENCE_S)
+        stopped.process.send_signal(signal.SIGSTOP)
+        image = Image(data=bytes(1_000_000))
+        times = []
+        for _ in range(60):
+            begin = time.monotonic()
+            publisher.publish(image)
+            times.append(time.monotonic() - begin)
+        assert sorted(times)[-2] < 0.2
+        assert sum(times) < 3.0
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="looks where Linux tells of a process's memory")
+def test_large_messages_go_through_shared_memory(new_session: Callable[[], Session], middleware: str):
+    if middleware != "rmw_zenoh_cpp" or not shared_memory_usable():
+        pytest.skip("only zenoh has shared memory, where there is enough of it")
+    session = new_session()
+    inbox = subscribe(session, node_of(session, "me"), "/topic", Image)
+    with Peer("flood").ready() as flood:
+        assert len(inbox.wait(2, PATIENCE_S)) >= 2
+        assert "/dev/shm/" in Path(f"/proc/{flood.process.pid}/maps").read_text()
+    assert len(inbox.taken[0][0].data) == 4_000_000
