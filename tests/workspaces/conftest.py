@@ -1,13 +1,17 @@
 """Terminals that end with the test, and a workspace in a folder of its own."""
 
+import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
 
-from terminals import Terminal, environment
+if TYPE_CHECKING:
+    from terminals import Terminal
 
 DOMAIN = 55
+collect_ignore = ["test_colcon.py", "test_mistakes.py"] if sys.platform == "win32" else []
 
 
 @pytest.fixture(scope="module")
@@ -19,8 +23,10 @@ def workspace(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture
-def terminal(workspace: Path) -> Iterator[Callable[[], Terminal]]:
+def terminal(workspace: Path) -> Iterator["Callable[[], Terminal]"]:
     """Opens terminals in the workspace."""
+    from terminals import Terminal, environment
+
     opened = []
 
     def open_one() -> Terminal:

@@ -6,9 +6,10 @@ import shutil
 import psutil
 import pytest
 
-from terminals import Terminal
+from terminals import Terminal, environment
 
 from . import packages
+from .conftest import DOMAIN
 
 pytestmark = pytest.mark.slow
 
@@ -163,8 +164,6 @@ def built(workspace, tmp_path_factory):
             ),
         },
     )
-    from .conftest import DOMAIN, environment
-
     terminal = Terminal(environment(DOMAIN, workspace.parent), workspace)
     try:
         printed = terminal.run("colcon build --symlink-install")
