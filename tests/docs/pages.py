@@ -12,7 +12,7 @@ A page is Markdown. These fenced blocks have a meaning for the tests:
 any other with a path as its title
     A file with this text, relative to the home folder; it is written when the reader gets there.
 
-``<!-- continues page.md -->`` has another page followed before, ``<!-- needs program -->`` names what a machine must have.
+``<!-- needs program -->`` names what a machine must have.
 """
 
 import re
@@ -22,7 +22,6 @@ from pathlib import Path
 _FENCE = re.compile(
     r"^(?P<indent> *)```(?P<language>\w+)(?: +title=\"(?P<title>[^\"]*)\")?[^\n]*\n(?P<body>.*?)^ *```$", re.M | re.S
 )
-_BEFORE = re.compile(r"<!-- continues (?P<page>\S+) -->")
 _NEEDS = re.compile(r"<!-- needs (?P<program>\S+) -->")
 _TERMINAL = re.compile(r"terminal (\d+)", re.IGNORECASE)
 
@@ -56,11 +55,10 @@ class Block:
 
 @dataclass
 class Page:
-    """The blocks of a page, the page that it continues, and a program that the machine must have."""
+    """The blocks of a page, and a program that the machine must have."""
 
     path: Path
     blocks: list[Block]
-    continues: str | None
     needs: str | None
 
 
@@ -74,8 +72,8 @@ def read(path: Path) -> Page:
         if block is not None:
             blocks.append(block)
     _mark_ends(blocks)
-    before, needs = _BEFORE.search(text), _NEEDS.search(text)
-    return Page(path, blocks, before["page"] if before else None, needs["program"] if needs else None)
+    needs = _NEEDS.search(text)
+    return Page(path, blocks, needs["program"] if needs else None)
 
 
 def _mark_ends(blocks: list[Block]) -> None:

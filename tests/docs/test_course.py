@@ -17,7 +17,7 @@ pytestmark = [pytest.mark.slow, pytest.mark.timeout(_LONGEST_S)]
 
 @pytest.fixture
 def follow(tmp_path):
-    """Follows a page after those that it continues, in a home folder with an empty workspace."""
+    """Follows a page in a home folder with an empty workspace."""
     pytest.importorskip("termios")
     from terminals import Terminal, environment
 
@@ -29,8 +29,6 @@ def follow(tmp_path):
         page = pages.read(COURSE / name)
         if page.needs and not shutil.which(page.needs):
             pytest.skip(f"there is no {page.needs}")
-        if page.continues:
-            follow_page(page.continues)
         domain = 1 + zlib.crc32(str(tmp_path).encode()) % 100
         readers.append(Reader(tmp_path, lambda folder: Terminal(environment(domain, tmp_path), folder)))
         readers[-1].follow(page)
