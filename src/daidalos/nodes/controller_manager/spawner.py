@@ -41,18 +41,23 @@ def _arguments() -> argparse.Namespace:
 
 
 def _type_in(files: list[str], name: str, namespace: str) -> str:
-    """Return the type that parameter files give a controller."""
+    """Return the type that parameter files give a controller, by its name with its namespace or without."""
+    import yaml
     from rclpy.parameter import parameter_dict_from_yaml_file
 
-    full = f"{namespace.rstrip('/')}/{name}"
     found = ""
     for file in files:
-        try:
-            values = parameter_dict_from_yaml_file(file, use_wildcard=True, target_nodes=[full])
-        except (OSError, ValueError, RuntimeError) as error:
-            raise UserError(f"parameter file '{file}' can not be read: {error}") from None
-        if "type" in values:
-            found = values["type"].value.string_value
+        for full in dict.fromkeys((f"/{name}", f"{namespace.rstrip('/')}/{name}")):
+            try:
+                values = parameter_dict_from_yaml_file(file, use_wildcard=True, target_nodes=[full])
+            except (OSError, ValueError, yaml.YAMLError) as error:
+                raise UserError(f"parameter file '{file}' can not be read: {error}") from None
+            except RuntimeError as error:
+                if "does not contain" in str(error):
+                    continue
+                raise UserError(str(error)) from None
+            if "type" in values:
+                found = values["type"].value.string_value
     return found
 
 
