@@ -20,6 +20,7 @@ from sensor_msgs.msg import Image, JointState, LaserScan
 from std_msgs.msg import Bool, Byte, Header, Int8, String, UInt64
 from test_msgs.msg import Arrays, BasicTypes, BoundedSequences, Constants, Defaults, Strings, UnboundedSequences
 
+from daidalos.interfaces.codec import codec_of
 from interfaces.messages import NAMES, PACKAGES, class_of, messages
 
 
@@ -137,6 +138,9 @@ def test_fixed_arrays_are_numpys():
     assert pose.covariance[7] == 0.5
     assert PoseWithCovariance().covariance[7] == 0.0
     assert pose != PoseWithCovariance()
+    square = PoseWithCovariance(covariance=np.ones((6, 6)))
+    assert square != PoseWithCovariance()
+    assert codec_of(PoseWithCovariance).snapshot(square) == square
 
 
 def test_lists_are_kept_so_that_what_is_appended_is_in_the_message():

@@ -97,7 +97,10 @@ def _show(value: Any) -> str:
 
 
 def _equal(a: Any, b: Any) -> bool:
-    result = a == b
+    try:
+        result = a == b
+    except ValueError:  # arrays of two shapes
+        return False
     return result if isinstance(result, bool) else bool(result.all())
 
 
