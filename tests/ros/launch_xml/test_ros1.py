@@ -397,3 +397,17 @@ def test_table_is_sound():
         assert mapping.package
         assert mapping.executable
         assert set(mapping.values) <= set(mapping.parameters.values())
+
+
+@pytest.mark.parametrize(
+    ("package", "name", "expected"),
+    [
+        ("demo_nodes_py", "talker.py", "talker"),
+        ("demo_nodes_py", "talker", "talker"),
+        ("demo_nodes_py", "nope.py", "nope.py"),
+        ("no_such_package", "talker.py", "talker.py"),
+        ("$(arg package)", "talker.py", "talker.py"),
+    ],
+)
+def test_scripts_may_have_lost_their_ending(package, name, expected):
+    assert packages.todays_program(package, name) == expected

@@ -209,3 +209,21 @@ PROGRAMS: dict[tuple[str, str], str] = {
 
 #: Options of programs that are of no use any more.
 DROPPED_OPTIONS: dict[str, tuple[str, ...]] = {"xacro": ("--inorder",)}
+
+
+def todays_program(package: str, name: str) -> str:
+    """Return the name of a program; many a script lost its ending when its package became one of Python."""
+    stem = name.removesuffix(".py")
+    if stem != name and not _is_there(package, name) and _is_there(package, stem):
+        return stem
+    return name
+
+
+def _is_there(package: str, program: str) -> bool:
+    from daidalos.nodes.executables import find_executable
+
+    try:
+        find_executable(package, program)
+    except LookupError:
+        return False
+    return True

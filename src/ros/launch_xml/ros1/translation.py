@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 from .._reader import LocatedElement
 from . import actions as actions  # exposes what translated files are made of
-from .packages import DROPPED_OPTIONS, INCLUDES, NODES, PROGRAMS, NodeMapping
+from .packages import DROPPED_OPTIONS, INCLUDES, NODES, PROGRAMS, NodeMapping, todays_program
 
 _OLD_TEXT = re.compile(r"\$\((find|arg|optenv)\s")
 _FOUND_FILE = re.compile(r"^\s*\$\(find\s+(\S+?)\s*\)/(.*?)\s*$", re.DOTALL)
@@ -167,7 +167,7 @@ class _Translator:
 
     def translate_node(self, old: LocatedElement) -> Iterator[LocatedElement]:
         package, executable = old.attrib.get("pkg", ""), old.attrib.get("type", "")
-        mapping = NODES.get((package, executable), NodeMapping(package, executable))
+        mapping = NODES.get((package, executable)) or NodeMapping(package, todays_program(package, executable))
         if (package, executable) != (mapping.package, mapping.executable):
             note = f" ({mapping.note})" if mapping.note else ""
             self.changes.append(f"node {package}/{executable} -> {mapping.package}/{mapping.executable}{note}")
