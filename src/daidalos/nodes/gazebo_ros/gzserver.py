@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from daidalos.simulation import Simulation
     from daidalos.simulation.samples import Sample
 
+_EMPTY = ("", "empty.world", "worlds/empty.world")
 _CLOCK_PERIOD_NS = 10_000_000
 _LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
@@ -300,7 +301,7 @@ def _steady_clock() -> Any:
 
 def _arguments(arguments: Sequence[str]) -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="gzserver", description="Simulate a world.")
-    parser.add_argument("world", nargs="?", type=Path, help="an SDF file; an empty world by default")
+    parser.add_argument("world", nargs="?", default="", help="an SDF file; an empty world by default")
     parser.add_argument("-u", "--pause", action="store_true", help="begin with time standing still")
     parser.add_argument("--verbose", action="store_true", help="say more")
     parser.add_argument(
@@ -332,10 +333,11 @@ def serve(world: Path | None, paused: bool, seed: int | None = None) -> int:
 def main() -> int:
     """Run the node."""
     arguments = _arguments(remove_ros_args(sys.argv)[1:])
-    if arguments.world and not arguments.world.is_file():
-        print(f"error: there is no world file '{arguments.world}'", file=sys.stderr)
+    world = None if arguments.world in _EMPTY else Path(arguments.world)
+    if world is not None and not world.is_file():
+        print(f"error: there is no world file '{world}'", file=sys.stderr)
         return 2
-    return serve(arguments.world, arguments.pause)
+    return serve(world, arguments.pause)
 
 
 if __name__ == "__main__":
