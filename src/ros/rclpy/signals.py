@@ -79,9 +79,10 @@ _last_signal_s = 0.0
 
 def _on_signal(number: int, frame: FrameType | None) -> None:
     global _last_signal_s
-    before, _last_signal_s = _last_signal_s, time.monotonic()
-    if is_uninterrupted() or _last_signal_s - before < _SAME_WISH_S:
+    now = time.monotonic()
+    if is_uninterrupted() or now - _last_signal_s < _SAME_WISH_S:
         return  # the terminal and the launcher pass on the same Ctrl-C
+    _last_signal_s = now
     for context in list(_contexts):
         context.shutdown_by_signal()
     for guard in list(_guards):

@@ -1,0 +1,104 @@
+"""Signals: what is asked twice at once is one wish, what is asked again is another."""
+
+import signal
+import threading
+from collections.abc import Iterator
+from types import FrameType
+
+import pytest
+import rclpy
+from rclpy import signals
+from rclpy.context import Context
+from rclpy.impl.interrupts import uninterrupted
+from rclpy.signals import SignalHandlerGuardCondition, SignalHandlerOptions
+
+from ros.rclpy.waiting import run_ready
+
+
+@pytest.fixture
+def raised(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[int]]:
+    """The signals that reach the handler that was there before."""
+    reached: list[int] = []
+
+    def note(number: int, frame: FrameType | None) -> None:
+        reached.append(number)
+
+    monkeypatch.setenv("RMW_IMPLEMENTATION", "rmw_daidalos_inprocess")
+    monkeypatch.setattr(signals, "_last_signal_s", 0.0)
+    before = signal.signal(signal.SIGINT, note)
+    yield reached
+    rclpy.try_shutdown()
+    signals.uninstall_signal_handlers()
+    signal.signal(signal.SIGINT, before)
+
+
+def test_a_signal_ends_the_contexts_and_is_passed_on(raised: list[int]) -> None:
+    with Context() as other:
+        rclpy.init(args=[])
+        signals.watch_context(other)
+        signal.raise_signal(signal.SIGINT)
+        signal.raise_signal(signal.SIGINT)
+        assert not rclpy.ok()
+        assert not other.ok()
+        assert raised == [signal.SIGINT]
+        rclpy.shutdown()  # as programs do at their end
+        with pytest.raises(RuntimeError):
+            rclpy.shutdown()
+
+
+def test_what_is_asked_again_later_is_passed_on_again(raised: list[int], monkeypatch: pytest.MonkeyPatch) -> None:
+    rclpy.init(args=[])
+    for _ in range(2):
+        signal.raise_signal(signal.SIGINT)
+        monkeypatch.setattr(signals, "_last_signal_s", 0.0)
+    assert raised == [signal.SIGINT, signal.SIGINT]
+
+
+def test_leaving_the_graph_is_not_broken_off(raised: list[int]) -> None:
+    rclpy.init(args=[])
+    with uninterrupted():
+        signal.raise_signal(signal.SIGINT)
+    assert rclpy.ok()
+    assert raised == []
+
+
+def test_handlers_are_there_as_long_as_the_default_context(raised: list[int]) -> None:
+    assert signals.get_current_signal_handlers_options() == SignalHandlerOptions.NO
+    rclpy.init(args=[])
+    assert signals.get_current_signal_handlers_options() == SignalHandlerOptions.ALL
+    rclpy.shutdown()
+    assert signals.get_current_signal_handlers_options() == SignalHandlerOptions.NO
+    rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
+    assert signals.get_current_signal_handlers_options() == SignalHandlerOptions.NO
+    with Context() as other:
+        rclpy.init(args=[], context=Context())
+        assert other.ok()
+        assert signals.get_current_signal_handlers_options() == SignalHandlerOptions.NO
+
+
+def test_a_guard_condition_may_wait_for_a_signal(raised: list[int]) -> None:
+    rclpy.init(args=[])
+    node = rclpy.create_node("tested")
+    guard = SignalHandlerGuardCondition()
+    triggered = threading.Event()
+    guard.handle.listen(triggered.set)
+    signal.raise_signal(signal.SIGINT)
+    assert triggered.is_set()
+    guard.destroy()
+    node.destroy_node()
+
+
+def test_only_the_main_thread_takes_signals(raised: list[int]) -> None:
+    thread = threading.Thread(target=lambda: rclpy.init(args=[]))
+    thread.start()
+    thread.join()
+    assert rclpy.ok()
+    assert signals.get_current_signal_handlers_options() == SignalHandlerOptions.NO
+    node = rclpy.create_node("tested")
+    run_ready(_executor(node))
+
+
+def _executor(node: rclpy.node.Node) -> rclpy.executors.Executor:
+    executor = rclpy.executors.SingleThreadedExecutor()
+    executor.add_node(node)
+    return executor
