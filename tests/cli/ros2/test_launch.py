@@ -100,3 +100,23 @@ def test_ctrl_c_ends_what_was_launched_in_order(env, tmp_path):
             f"[sleep-{number}]: process has died"
         )
     assert process.returncode == 0
+
+
+def test_a_launch_goes_on_when_nobody_reads(env, tmp_path):
+    program = "for i in 1 2 3 4; do echo $i; sleep 0.05; done; touch done"
+    (tmp_path / "a.launch.xml").write_text(
+        f'<launch><executable shell="true" output="screen" cmd="{program}"/></launch>'
+    )
+    process = subprocess.Popen(
+        [*ROS2, "launch", "a.launch.xml"],
+        env={**env, "ROS_LOG_DIR": str(tmp_path)},
+        cwd=tmp_path,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    process.stdout.readline()
+    process.stdout.close()
+    assert process.stderr.read() == ""
+    process.wait(30)
+    assert (tmp_path / "done").is_file()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import sys
 from typing import Any
 
 __all__ = ["FileHandler", "Handler", "StreamHandler", "with_per_logger_formatting"]
@@ -44,5 +45,30 @@ def with_per_logger_formatting(cls: type[Any]) -> type[Any]:
 
 
 Handler = with_per_logger_formatting(logging.Handler)
-StreamHandler = with_per_logger_formatting(logging.StreamHandler)
+
+
+class _ReadStreamHandler(logging.StreamHandler[Any]):
+    """Writes to a stream as long as it is read: a launch goes on when ``| head`` has seen enough."""
+
+    _is_read = True
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """Write a record."""
+        if self._is_read:
+            super().emit(record)
+
+    def flush(self) -> None:
+        """Write what waits to be written."""
+        if self._is_read:
+            super().flush()
+
+    def handleError(self, record: logging.LogRecord) -> None:
+        """Say what went wrong, unless nobody reads."""
+        if isinstance(sys.exc_info()[1], BrokenPipeError):
+            self._is_read = False
+        else:
+            super().handleError(record)
+
+
+StreamHandler = with_per_logger_formatting(_ReadStreamHandler)
 FileHandler = with_per_logger_formatting(logging.FileHandler)
