@@ -24,6 +24,12 @@ def test_everything_said():
     assert read_environment(variables, domain=7).domain == 7
 
 
+def test_humbles_variable_keeps_to_this_machine():
+    variables = {"ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET", "ROS_STATIC_PEERS": "10.0.0.1"}
+    assert read_environment({**variables, "ROS_LOCALHOST_ONLY": "1"}) == Environment()
+    assert read_environment({**variables, "ROS_LOCALHOST_ONLY": "0"}).discovery is DiscoveryRange.SUBNET
+
+
 @pytest.mark.parametrize(
     ("variable", "value", "words"),
     [

@@ -31,7 +31,8 @@ class Environment:
     domain
         0 to 232 (``ROS_DOMAIN_ID``).
     discovery
-        ``ROS_AUTOMATIC_DISCOVERY_RANGE``; this machine where nothing is said.
+        ``ROS_AUTOMATIC_DISCOVERY_RANGE``; this machine where nothing is said, and where Humble's
+        ``ROS_LOCALHOST_ONLY`` is 1.
     static_peers
         Hosts to connect to as well (``ROS_STATIC_PEERS``, separated by semicolons).
     middleware
@@ -53,10 +54,12 @@ def read_environment(variables: Mapping[str, str] | None = None, domain: int | N
         Naming the variable, its value and what is expected.
     """
     values = os.environ if variables is None else variables
+    local = values.get("ROS_LOCALHOST_ONLY", "") == "1"  # then nothing else is asked, as in ROS 2
+    peers = "" if local else values.get("ROS_STATIC_PEERS", "")
     return Environment(
         _domain(values.get("ROS_DOMAIN_ID", "")) if domain is None else _checked(domain, "domain id"),
-        _discovery(values),
-        tuple(peer.strip() for peer in values.get("ROS_STATIC_PEERS", "").split(";") if peer.strip()),
+        DiscoveryRange.LOCALHOST if local else _discovery(values),
+        tuple(peer.strip() for peer in peers.split(";") if peer.strip()),
         values.get("RMW_IMPLEMENTATION", "") or "rmw_zenoh_cpp",
     )
 

@@ -343,7 +343,8 @@ def _join_domain(library: Library, environment: Environment) -> int:
             if made < 0 and made != RETCODE_PRECONDITION_NOT_MET:
                 raise EnvironmentVariableError(
                     f"DDS could not configure domain {number}: {library.dds_strretcode(made).decode()}; look at "
-                    "CYCLONEDDS_URI, ROS_STATIC_PEERS and whether a network interface is up"
+                    "CYCLONEDDS_URI and ROS_STATIC_PEERS, whether a network interface is up, and whether more than a "
+                    "hundred processes are in the domain"
                 )
             entity = made if made >= 0 else None
         _domains[number] = (entity, users + 1)
