@@ -11,6 +11,7 @@ from control_robots import from_values
 
 from daidalos.control.controllers.base import ControllerSetting
 from daidalos.control.errors import HardwareError, SwitchError
+from daidalos.control.hardware.base import HardwareSetting
 from daidalos.control.hardware.simulated import SimulatedSystem
 from daidalos.control.manager import ControllerManager
 from daidalos.control.samples import TrajectoryCommand, TrajectoryPoint, ValuesCommand
@@ -178,6 +179,50 @@ def test_initial_values_are_where_joints_start_again_and_again() -> None:
     rig.run(0.5)
     assert rig.manager.controllers["position"].state == "active"
     assert rig.position("slide") == pytest.approx(0.07, abs=2e-3)
+
+
+@pytest.mark.parametrize(
+    ("interface", "gains"),
+    [
+        ("effort", {"p": 800.0, "i": 500.0, "d": 60.0}),
+        ("velocity", {"p": 10.0, "ff_velocity_scale": 1.0}),
+    ],
+)
+def test_a_trajectory_is_followed_by_a_closed_loop(interface: str, gains: dict[str, float], tmp_path: Path) -> None:
+    file = tmp_path / "parameters.yaml"
+    file.write_text("controller_manager:\n  ros__parameters:\n    update_rate: 500\n", encoding="utf-8")
+    rig = Rig(pendulum(options=f"<parameters>{file}</parameters>"))
+    controller = rig.add(
+        "arm",
+        "joint_trajectory_controller/JointTrajectoryController",
+        joints=["swing"],
+        command_interfaces=[interface],
+        state_interfaces=["position", "velocity"],
+        gains={"swing": gains},
+    )
+    rig.run(1.0)
+    points = (TrajectoryPoint(1.0, np.array([0.8]), np.zeros(1)), TrajectoryPoint(2.0, np.array([-0.5]), np.zeros(1)))
+    controller.subscriptions["~/joint_trajectory"].take(TrajectoryCommand(("swing",), points))
+    rig.run(3.0)
+    states = [sample for _, sample in rig.said if sample.topic == "~/controller_state"]
+    assert max(abs(state.error.positions[0]) for state in states[520:]) < 0.03
+    assert rig.position("swing") == pytest.approx(-0.5, abs=0.01)
+
+
+def test_old_names_of_interfaces_move_joints_and_strange_ones_are_said() -> None:
+    commands = '<command_interface name="{}"/><state_interface name="position"/>'
+    rig = Rig(pendulum(joints=f'<joint name="slide">{commands.format("position_pid")}</joint>'))
+    controller = rig.add(
+        "it", "forward_command_controller/ForwardCommandController", joints=["slide"], interface_name="position_pid"
+    )
+    controller.subscriptions["~/commands"].take(ValuesCommand(np.array([0.04])))
+    rig.run(0.5)
+    assert rig.position("slide") == pytest.approx(0.04, abs=1e-3)
+    said: list[str] = []
+    text = pendulum(joints=f'<joint name="slide">{commands.format("gap")}</joint>')
+    rig = Rig(text)
+    SimulatedSystem(rig.plugin.hardware[0], HardwareSetting(warn=said.append), rig.plugin)
+    assert "command interface 'slide/gap' moves nothing" in said[0]
 
 
 def test_a_trajectory_is_forgotten_by_a_reset() -> None:

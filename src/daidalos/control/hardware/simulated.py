@@ -16,7 +16,14 @@ if TYPE_CHECKING:
     from daidalos.simulation.plugins.ros2_control import Ros2Control
 
 _STATES = ("position", "velocity", "effort")
-_MODES = {"position": Mode.POSITION, "velocity": Mode.VELOCITY, "effort": Mode.EFFORT}
+_MODES = {
+    "position": Mode.POSITION,
+    "velocity": Mode.VELOCITY,
+    "effort": Mode.EFFORT,
+    # With these names Gazebo's hardware closes a loop of its own; ours always does.
+    "position_pid": Mode.POSITION,
+    "velocity_pid": Mode.VELOCITY,
+}
 
 
 class SimulatedSystem(Hardware):
@@ -67,8 +74,8 @@ class SimulatedSystem(Hardware):
             for command in joint.commands:
                 if command.name not in _MODES:
                     known = ", ".join(_MODES)
-                    raise HardwareError(
-                        f"{self.info.where}: joint '{joint.name}' has the command interface '{command.name}'; "
+                    self.setting.warn(
+                        f"{self.info.where}: command interface '{joint.name}/{command.name}' moves nothing; "
                         f"the simulation has {known}"
                     )
 
@@ -85,7 +92,7 @@ class SimulatedSystem(Hardware):
         going_on = [self.commands.names[place] for place in self._commands if self.commands.names[place] not in stop]
         for name in (*going_on, *start):
             joint, _, kind = name.rpartition("/")
-            if joint in self._driven and wanted.setdefault(joint, kind) != kind:
+            if joint in self._driven and kind in _MODES and wanted.setdefault(joint, kind) != kind:
                 raise HardwareError(f"joint '{joint}' can not take {wanted[joint]} and {kind} at once")
 
     def switch(self, start: Sequence[str], stop: Sequence[str]) -> None:
@@ -97,7 +104,7 @@ class SimulatedSystem(Hardware):
                 state.modes[row], state.targets[row] = self._idle, np.nan
         for name in start:
             joint, _, kind = name.rpartition("/")
-            if joint in self._driven:
+            if joint in self._driven and kind in _MODES:
                 row = self._driven[joint]
                 self._commands[self.commands.index[name]] = row
                 state.modes[row] = _MODES[kind]

@@ -141,7 +141,7 @@ def _effort(plugin: str, joint: ComponentInfo) -> float:
 
 
 def _takes_positions(joint: ComponentInfo) -> bool:
-    return any(command.name == "position" for command in joint.commands)
+    return any(command.name in ("position", "position_pid") for command in joint.commands)
 
 
 def _start(joint: ComponentInfo) -> float:
