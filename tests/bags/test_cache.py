@@ -91,5 +91,5 @@ def test_a_snapshot_holds_the_last_moments(tmp_path):
     assert buffer.take()
     buffer.close()
     writer.close()
-    assert read_independently(tmp_path / "bag") == received(messages(1) + messages(100)[-20:])
+    assert read_independently(tmp_path / "bag") == received(messages(100)[-20:] + messages(1))
     assert [file.message_count for file in read_metadata(tmp_path / "bag").files] == [20, 1]

@@ -257,6 +257,12 @@ class Player:
         if self._keyboard is not None:
             self._keyboard.stop()
 
+    def interrupt(self) -> None:
+        """Note that playing is to stop; for handlers of signals, `stop` is to follow."""
+        node = self._node
+        if node is not None:
+            node.interrupt()
+
     def wait_for_playback_to_start(self, timeout: float = -1.0) -> bool:
         """Wait until it plays; False after so many seconds (negative: no limit)."""
         return self._configured().wait_for_start(timeout if timeout >= 0 else None)

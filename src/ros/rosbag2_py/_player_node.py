@@ -192,6 +192,10 @@ class PlayerNode(Node):
         if thread is not None and thread is not threading.current_thread():
             thread.join()
 
+    def interrupt(self) -> None:
+        """Note that playing is to stop, and nothing else: this may be called by a signal's handler."""
+        self._stopping = True
+
     def close(self) -> None:
         """Play no more and let the bag go."""
         self.stop()

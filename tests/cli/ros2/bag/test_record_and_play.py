@@ -143,6 +143,21 @@ def test_being_asked_to_end_completes_the_bag(ros2_bag, partner, tmp_path):
     assert read_metadata(tmp_path / "bag").compression_mode == "MESSAGE"
 
 
+def test_scripts_end_what_they_put_in_the_background(ros2_bag, partner, tmp_path):
+    def ignore():
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+    record = ros2_bag("record", "-o", "bag", "--topics", "/chatter", terminal=True, prepare=ignore)
+    record.wait_for("Recording...")
+    partner.talk(range(50))
+    record.wait_for("Recorded 50 messages")
+    assert record.end(signal.SIGINT) == 0
+    assert numbers(tmp_path / "bag") == list(range(50))
+    play = ros2_bag("play", "bag", "--loop", prepare=ignore)
+    play.wait_for("Playback until")
+    assert play.end(signal.SIGINT) == 0
+
+
 def test_a_full_disk_ends_the_recording_with_a_word(ros2_bag, partner, tmp_path):
     def limit():
         resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, 20_000))

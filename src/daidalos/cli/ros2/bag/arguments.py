@@ -3,13 +3,21 @@
 from __future__ import annotations
 
 import os
+import signal
 import sys
+import time
 from argparse import ArgumentParser, ArgumentTypeError
+from collections.abc import Callable
+from types import FrameType
+from typing import Any, Self
 
 from daidalos.bags.storage import SUFFIXES
 from daidalos.cli.ros2.errors import CliError
 
 STORAGES = tuple(SUFFIXES)
+LOOK_S = 0.1
+"""How often who waits looks whether the process was asked to end."""
+_SAME_PRESS_S = 0.5
 
 
 def add_bag_arguments(parser: ArgumentParser) -> None:
@@ -123,6 +131,43 @@ def positive_int(text: str) -> int:
     if value == 0:
         raise ArgumentTypeError(f"{text} is not in the valid range (> 0)")
     return value
+
+
+class Ending:
+    """Notes, while it is entered, that the process was asked to end by Ctrl-C, ``kill`` or ``kill -INT``.
+
+    An exception out of a signal's handler could strike where a lock is held. A shell's script makes what it puts in
+    the background ignore Ctrl-C, but ends it by ``kill -INT``: that is heard all the same. Who asks again, later than
+    one press of the keys takes, means it: the process dies at once.
+
+    Parameters
+    ----------
+    on_asked
+        Called by the handler: it may do no more than set an attribute.
+    """
+
+    def __init__(self, on_asked: Callable[[], None] = lambda: None) -> None:
+        self.asked = False
+        self._on_asked = on_asked
+        self._first_s = 0.0
+        self._before: dict[int, Any] = {}
+
+    def __enter__(self) -> Self:
+        for number in (signal.SIGINT, signal.SIGTERM):
+            self._before[number] = signal.signal(number, self._note)
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        for number, handler in self._before.items():
+            signal.signal(number, handler)
+
+    def _note(self, number: int, frame: FrameType | None) -> None:
+        if not self.asked:
+            self.asked, self._first_s = True, time.monotonic()
+            self._on_asked()
+        elif time.monotonic() - self._first_s > _SAME_PRESS_S:
+            signal.signal(number, signal.SIG_DFL)
+            signal.raise_signal(number)
 
 
 def error(text: str) -> CliError:

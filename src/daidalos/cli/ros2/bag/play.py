@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import signal
 from argparse import ArgumentParser, Namespace
 from typing import TYPE_CHECKING
 
@@ -193,17 +192,15 @@ def play_options(args: Namespace) -> PlayOptions:
 
 def run(player: Player, burst: int | None = None) -> Status:
     """Play to the end or Ctrl-C; burst so many messages at first where a number is given."""
-    before = signal.signal(signal.SIGTERM, lambda number, frame: player.cancel())
-    try:
-        if burst is None:
-            player.play_sync()
-        else:
-            player.burst_sync(burst)
-    except KeyboardInterrupt:
-        return 0
-    except BagError:
-        return 1  # The node has said why.
-    finally:
-        player.stop_spin()
-        signal.signal(signal.SIGTERM, before)
-    return 0
+    with common.Ending(player.interrupt) as ending:
+        try:
+            player.start_spin()
+            player.play()
+            if burst is not None and not ending.asked:
+                player.burst(burst)
+            while not (ending.asked or player.wait_for_playback_to_finish(common.LOOK_S)):
+                continue
+            return 1 if player.error else 0  # The node has said why.
+        finally:
+            player.stop()
+            player.stop_spin()

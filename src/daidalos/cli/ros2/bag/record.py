@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import signal
 import time
 from argparse import ArgumentParser, Namespace
 from datetime import datetime, timedelta
@@ -294,22 +293,20 @@ def _run(recorder: Recorder) -> Status:
     """Record until Ctrl-C or the request to end, and complete the bag."""
     from rosbag2_py._progress import StatusLine
 
-    before = signal.signal(signal.SIGTERM, lambda number, frame: recorder.cancel())
     status = StatusLine(_Progress(recorder).text, _STATUS_HZ)
-    try:
-        recorder.start_spin()
-        recorder.record()
-        status.start()
-        recorder.wait()
-    except KeyboardInterrupt:
-        pass
-    except (BagError, ValueError) as fault:
-        raise common.error(str(fault)) from None
-    finally:
-        status.stop()
-        recorder.stop()
-        recorder.stop_spin()
-        signal.signal(signal.SIGTERM, before)
+    with common.Ending() as ending:
+        try:
+            recorder.start_spin()
+            recorder.record()
+            status.start()
+            while not (ending.asked or recorder.wait(common.LOOK_S)):
+                continue
+        except (BagError, ValueError) as fault:
+            raise common.error(str(fault)) from None
+        finally:
+            status.stop()
+            recorder.stop()
+            recorder.stop_spin()
     return 1 if recorder.failed else 0
 
 
