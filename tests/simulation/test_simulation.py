@@ -341,3 +341,12 @@ def test_two_hundred_models_leave_nothing_behind():
     after = (model.nbody, model.ngeom, model.nmesh, model.nexclude, model.nu, len(simulation._schedule._entries))
     assert after == before
     assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - memory < 20_000  # [KiB]
+
+
+def test_a_divergence_writes_no_file(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    simulation = Simulation(world(box("b")))
+    simulation.push("b", force=(1e30, 0, 0))
+    with pytest.raises(SimulationError, match="diverged"):
+        simulation.advance(1_000_000_000)
+    assert not list(tmp_path.iterdir())

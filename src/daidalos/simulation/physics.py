@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable, Mapping
 from typing import Any
 
@@ -12,11 +13,22 @@ from daidalos.simulation.errors import SimulationError
 from daidalos.simulation.forces import Forces
 from daidalos.simulation.stage import Stage
 
+_log = logging.getLogger(__name__)
+
 _DIVERGED = (
     mujoco.mjtWarning.mjWARN_BADQPOS,
     mujoco.mjtWarning.mjWARN_BADQVEL,
     mujoco.mjtWarning.mjWARN_BADQACC,
 )
+
+
+def _note(message: str) -> None:
+    """Log a warning of MuJoCo's; numbers that diverge are raised as an error anyway."""
+    _log.log(logging.DEBUG if "unstable" in message else logging.WARNING, message)
+
+
+# Otherwise MuJoCo writes a file into the user's working directory.
+mujoco.set_mju_user_warning(_note)
 
 
 class Physics:

@@ -27,8 +27,7 @@ def scan(*parts, seed=0):
     """Return the first scan in a world with a wall 3 m ahead."""
     wall = box("wall", "3.5 0 0.5 0 0 0", "1 20 1", static=True)
     simulation = Simulation(world(wall, *parts), seed=seed)
-    sample = simulation.advance(100_000_000)[0]
-    return sample
+    return simulation.advance(100_000_000)[0]
 
 
 def test_a_wall_in_closed_form():
