@@ -74,6 +74,8 @@ class Session:
 
         The garbage collector finds such things on any thread, with any lock held: they are closed on another.
         """
+        if self._closed:
+            return
         done = _thread.allocate_lock()
         done.acquire()
 

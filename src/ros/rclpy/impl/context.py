@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import sys
 import threading
 import weakref
 from collections.abc import Callable, Sequence
@@ -104,6 +105,6 @@ class ContextHandle(Destroyable):
         self.release()
 
     def __del__(self) -> None:
-        if getattr(self, "_released", True):
+        if getattr(self, "_released", True) or sys.is_finalizing():
             return
         self.session.abandon(functools.partial(shared.release, self.environment))
