@@ -5,62 +5,21 @@ from __future__ import annotations
 import logging
 import traceback
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from typing import TypeVar
 
 from daidalos.control.component import ACTIVE, FINALIZED, INACTIVE, UNCONFIGURED, Component
-from daidalos.control.controllers.base import Controller, ControllerSetting, Pulse
+from daidalos.control.controllers.base import ControllerSetting, Pulse
 from daidalos.control.errors import ControlError, HardwareError, StateError, SwitchError, UnknownError
 from daidalos.control.hardware.base import Hardware
 from daidalos.control.interfaces import Interfaces, Loan
+from daidalos.control.loaded_controller import LoadedController, Reader, prefixed
 from daidalos.control.plugins import controller_class
 from daidalos.control.switching import Candidate, Strictness, Switch, plan_switch, update_order
 from daidalos.simulation.samples import Sample
 
 _log = logging.getLogger(__name__)
 T = TypeVar("T")
-Reader = Callable[[type], object]
-"""Makes an instance of a controller's parameter class."""
-
-
-@dataclass(eq=False)
-class LoadedController:
-    """A controller in the manager.
-
-    Parameters
-    ----------
-    name, type : str
-    kind : type
-        The controller's class.
-    read_parameters : callable
-        Makes an instance of its parameter class, whenever it is configured.
-    setting : ControllerSetting
-    fallbacks : tuple of str
-        Controllers to start when this one fails.
-    state : str
-    controller : Controller or None
-        Once it is configured.
-    """
-
-    name: str
-    type_name: str
-    kind: type[Controller]
-    read_parameters: Reader
-    setting: ControllerSetting
-    fallbacks: tuple[str, ...] = ()
-    state: str = UNCONFIGURED
-    controller: Controller | None = None
-    references: Interfaces = field(default_factory=Interfaces)
-    exported: Interfaces = field(default_factory=Interfaces)
-    pulse: Pulse | None = None
-    updated_ns: int = -1
-
-    @property
-    def running(self) -> Controller:
-        """The controller; an error where it is not configured."""
-        if self.controller is None:
-            raise StateError(f"controller '{self.name}' is not configured")
-        return self.controller
 
 
 class ControllerManager:
@@ -198,8 +157,8 @@ class ControllerManager:
         rate = rate if 0 < rate < self.update_rate else self.update_rate
         setting = replace(loaded.setting, update_rate=rate, state_names=self.state_names)
         controller = loaded.kind(loaded.read_parameters(loaded.kind.parameters), setting)
-        loaded.references = _prefixed(name, controller.references)
-        loaded.exported = _prefixed(name, controller.exported)
+        loaded.references = prefixed(name, controller.references)
+        loaded.exported = prefixed(name, controller.exported)
         loaded.pulse = Pulse(rate) if rate < self.update_rate else None
         loaded.controller, loaded.state = controller, INACTIVE
 
@@ -454,16 +413,7 @@ class ControllerManager:
         return [one for one in self.controllers.values() if one.state == ACTIVE]
 
     def _candidates(self) -> dict[str, Candidate]:
-        return {
-            name: Candidate(
-                state=one.state,
-                commands=one.controller.command_names if one.controller else (),
-                states=one.controller.state_names if one.controller else (),
-                references=one.references.names,
-                exported=one.exported.names,
-            )
-            for name, one in self.controllers.items()
-        }
+        return {name: one.candidate for name, one in self.controllers.items()}
 
     def _problem_with(self, kind: str, interface: str) -> str:
         for component in self.components.values():
@@ -486,13 +436,6 @@ class ControllerManager:
 
 def _interfaces(component: Component, kind: str) -> Interfaces:
     return component.hardware.commands if kind == "command" else component.hardware.states
-
-
-def _prefixed(name: str, interfaces: Interfaces) -> Interfaces:
-    """Return the same values under names with the controller's in front."""
-    result = Interfaces(f"{name}/{one}" for one in interfaces.names)
-    result.values = interfaces.values
-    return result
 
 
 def _find(known: Mapping[str, T], what: str, name: str) -> T:
