@@ -2,13 +2,15 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from mcap.reader import make_reader
+from mcap.records import Message
+from mcap.stream_reader import StreamReader
 
 from daidalos.bags.compression import Compression
 from daidalos.bags.errors import BagError
 from daidalos.bags.message import BagMessage
 from daidalos.bags.metadata import read_metadata
 from daidalos.bags.reader import BagReader
-from daidalos.bags.storage import StorageOptions
+from daidalos.bags.storage import PROFILES, StorageOptions
 from daidalos.bags.writer import BagWriter, WriterOptions
 
 from .records import NUMBER, SECOND, TEXT, messages, read_independently, received, write
@@ -97,6 +99,23 @@ def test_mcap_files_say_what_they_are(tmp_path):
         assert "durability: transient_local" in channel.metadata["offered_qos_profiles"]
         assert [one.name for one in reader.iter_metadata()] == ["rosbag2", "rosbag2"]
         assert [message.publish_time for _, _, message in reader.iter_messages()] == [m.sent_ns for m in messages(4)]
+
+
+@pytest.mark.parametrize("profile", PROFILES["mcap"])
+@pytest.mark.parametrize(
+    "text", ["", "enableDataCRC: true", "noSummary: true", "noMessageIndex: true\nnoStatistics: true"]
+)
+def test_the_reference_implementation_finds_nothing_wrong(tmp_path, profile, text):
+    config = tmp_path / "settings.yaml"
+    config.write_text(text)
+    folder = write(tmp_path / "bag", messages(300), WriterOptions(storage=StorageOptions(profile, config)))
+    with (folder / "bag_0.mcap").open("rb") as file:
+        found = [one for one in StreamReader(file, validate_crcs=True).records if isinstance(one, Message)]
+    assert [(one.log_time, one.publish_time, one.data) for one in found] == [
+        (one.received_ns, one.sent_ns, one.data) for one in messages(300)
+    ]
+    with BagReader(folder) as bag:
+        assert list(bag.messages()) == messages(300)
 
 
 def test_a_setting_outweighs_the_profile(tmp_path):

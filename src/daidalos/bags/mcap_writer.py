@@ -71,7 +71,7 @@ class McapWriter(StorageWriter):
         self._chunk_start, self._chunk_end = 2**64 - 1, 0
         from daidalos import __version__
 
-        self._put(MAGIC, in_data=False)
+        self._put(MAGIC)
         self._put(_bytes(records.Header(profile="ros2", library=f"daidalos {__version__}")))
         self._put_metadata({DISTRO_KEY: ros_distro})
 

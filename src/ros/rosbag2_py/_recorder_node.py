@@ -147,9 +147,11 @@ class RecorderNode(Node):
     def _take_what_waits(self) -> None:
         """Take the messages that have come but were not taken yet."""
         for subscription in self._subscribed.values():
-            while (waiting := subscription._rcl_take()) is not None:
-                callback, arguments = waiting
-                callback(*arguments)
+            for _ in range(len(subscription.handle.impl)):
+                waiting = subscription._rcl_take()
+                if waiting is not None:
+                    callback, arguments = waiting
+                    callback(*arguments)
 
     def _tell_losses(self, sink: WriterThread | SnapshotBuffer) -> None:
         if sink.lost:
