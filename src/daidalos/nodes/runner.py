@@ -35,15 +35,17 @@ def run_program(body: Callable[[], None], interrupted: int = 0) -> int:
         The exit status.
     """
     import rclpy
-    from rclpy.executors import ExternalShutdownException
+    from rclpy.signals import is_orderly
 
     try:
         body()
-    except (KeyboardInterrupt, ExternalShutdownException):
-        return 1 if _failed.is_set() else interrupted
     except UserError as error:
         print(f"error: {error}", file=sys.stderr)
         return 2
+    except BaseException as error:
+        if not is_orderly(error):
+            raise
+        return 1 if _failed.is_set() else interrupted
     finally:
         ignore_interrupts()
         rclpy.try_shutdown()

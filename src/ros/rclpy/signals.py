@@ -97,19 +97,24 @@ def _on_signal(number: int, frame: FrameType | None) -> None:
 
 def _quiet_excepthook(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
     """Show no traceback when a program ends because it was asked to."""
-    if not _is_orderly(kind):
+    if not is_orderly(error):
         (_previous_hook or sys.__excepthook__)(kind, error, trace)
 
 
 def _quiet_thread_excepthook(arguments: threading.ExceptHookArgs) -> None:
     """Do the same for a thread that spins."""
-    if not _is_orderly(arguments.exc_type):
+    if arguments.exc_value is None or not is_orderly(arguments.exc_value):
         threading.__excepthook__(arguments)
 
 
-def _is_orderly(kind: type[BaseException]) -> bool:
-    """Tell whether an exception only says that the program is to end."""
-    return issubclass(kind, (KeyboardInterrupt, ExternalShutdownException, ROSInterruptException))
+def is_orderly(error: BaseException) -> bool:
+    """Tell whether an exception only says that the program is to end.
+
+    An interrupt while a compiled module is being imported arrives as the cause of an ImportError.
+    """
+    if isinstance(error, (KeyboardInterrupt, ExternalShutdownException, ROSInterruptException)):
+        return True
+    return isinstance(error, ImportError) and error.__cause__ is not None and is_orderly(error.__cause__)
 
 
 class SignalHandlerGuardCondition(GuardCondition):

@@ -1,0 +1,51 @@
+"""How programs end."""
+
+import pytest
+
+from daidalos.nodes.runner import UserError, run_program
+
+
+@pytest.fixture(autouse=True)
+def handler():
+    """Ending a program switches interrupts off; the tests go on."""
+    import signal
+
+    previous = signal.getsignal(signal.SIGINT)
+    yield
+    signal.signal(signal.SIGINT, previous)
+
+
+def test_the_end_of_the_work_is_success():
+    assert run_program(lambda: None) == 0
+
+
+def test_a_mistake_of_the_users_is_one_line(capsys):
+    def body():
+        raise UserError("no such file")
+
+    assert run_program(body) == 2
+    assert capsys.readouterr().err == "error: no such file\n"
+
+
+def test_an_interrupt_is_no_error():
+    def body():
+        raise KeyboardInterrupt
+
+    assert run_program(body) == 0
+    assert run_program(body, interrupted=130) == 130
+
+
+def test_an_interrupt_in_the_import_of_a_compiled_module_is_no_error():
+    def body():
+        raise ImportError("initialization failed") from KeyboardInterrupt()
+
+    assert run_program(body) == 0
+
+
+@pytest.mark.parametrize("error", [ImportError("no module named x"), ValueError("a bug")])
+def test_a_bug_is_shown(error):
+    def body():
+        raise error
+
+    with pytest.raises(type(error)):
+        run_program(body)
