@@ -8,6 +8,7 @@ import "./styles/shell.css";
 import "./styles/controls.css";
 import "./styles/panels.css";
 import "./styles/turtlesim.css";
+import "./styles/graph.css";
 import { Help } from "./app/help";
 import { Layout } from "./app/layout";
 import { readOpening } from "./app/opening";

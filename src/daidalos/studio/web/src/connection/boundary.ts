@@ -18,6 +18,13 @@ export interface ParameterInfo {
   type?: string;
 }
 
+/** Who talks to whom: names of nodes by topic or service. */
+export interface ConnectionGraph {
+  publishers: ReadonlyMap<string, readonly string[]>;
+  subscribers: ReadonlyMap<string, readonly string[]>;
+  services: ReadonlyMap<string, readonly string[]>;
+}
+
 export interface Received {
   topic: string;
   /** When it arrived in the graph, in seconds of the graph's clock. */
@@ -58,7 +65,8 @@ export type ToWorker =
   | { kind: "call"; id: number; service: string; request: unknown }
   | { kind: "fetchAsset"; id: number; uri: string }
   | { kind: "getParameters"; names: string[] }
-  | { kind: "setParameters"; parameters: ParameterInfo[] };
+  | { kind: "setParameters"; parameters: ParameterInfo[] }
+  | { kind: "watchGraph"; on: boolean };
 
 export type FromWorker =
   | { kind: "link"; state: LinkState; reason?: string }
@@ -72,4 +80,5 @@ export type FromWorker =
   | { kind: "published"; topic: string; error?: string }
   | { kind: "response"; id: number; message?: unknown; error?: string }
   | { kind: "asset"; id: number; data?: ArrayBuffer; error?: string }
-  | { kind: "parameters"; parameters: ParameterInfo[] };
+  | { kind: "parameters"; parameters: ParameterInfo[] }
+  | { kind: "graph"; graph: ConnectionGraph };

@@ -4,6 +4,7 @@ import { Backlog } from "./backlog";
 import { Calls, type Service } from "./calls";
 import { attempt, makeReader, type Reader } from "./codecs";
 import { parseFrame } from "./frames";
+import { GraphWatch, type GraphUpdate } from "./graph_watch";
 import { Publishers } from "./publishers";
 import { TrafficMeter } from "./traffic";
 
@@ -27,7 +28,8 @@ type ServerMessage =
   | { op: "serviceCallFailure"; serviceId: number; callId: number; message: string }
   | { op: "status"; level: number; message: string; id?: string }
   | { op: "removeStatus"; statusIds: string[] }
-  | { op: "parameterValues"; parameters: ParameterInfo[] };
+  | { op: "parameterValues"; parameters: ParameterInfo[] }
+  | ({ op: "connectionGraphUpdate" } & GraphUpdate);
 
 interface Subscription {
   keep: number;
@@ -48,6 +50,7 @@ export class Link {
   private readonly readers = new Map<string, Reader | Error>();
   private readonly calls: Calls;
   private readonly publishers: Publishers;
+  private readonly graph: GraphWatch;
   private readonly backlog = new Backlog();
   private readonly meter = new TrafficMeter();
   private clock: ClockReading | undefined;
@@ -56,6 +59,7 @@ export class Link {
 
   constructor(private readonly out: Output) {
     this.calls = new Calls(out);
+    this.graph = new GraphWatch(out);
     this.publishers = new Publishers(out, {
       number: () => ++this.numbers,
       definitionOf: (type) => [...this.channels.values()].find((channel) => channel.schemaName === type)?.schema,
@@ -73,6 +77,7 @@ export class Link {
     this.topicOf.clear();
     this.publishers.reset();
     this.calls.reset();
+    this.graph.reset();
     this.readers.clear();
     this.backlog.clear();
     this.hasClock = false;
@@ -95,6 +100,7 @@ export class Link {
           session: message.sessionId ?? "",
           hasTime: this.hasClock,
         });
+        this.graph.greet(message.capabilities.includes("connectionGraph"));
         break;
       case "advertise":
         for (const channel of message.channels) {
@@ -126,6 +132,9 @@ export class Link {
         break;
       case "parameterValues":
         this.out.toPage({ kind: "parameters", parameters: message.parameters });
+        break;
+      case "connectionGraphUpdate":
+        this.graph.update(message);
         break;
     }
   }
@@ -188,6 +197,9 @@ export class Link {
         break;
       case "setParameters":
         this.say({ op: "setParameters", parameters: message.parameters, id: "page" });
+        break;
+      case "watchGraph":
+        this.graph.watch(message.on);
         break;
     }
   }

@@ -2,6 +2,7 @@
 import { signal } from "@preact/signals";
 import type {
   ClockReading,
+  ConnectionGraph,
   FromWorker,
   LinkState,
   ParameterInfo,
@@ -33,6 +34,8 @@ export class Session {
   readonly traffic = signal<Record<string, Traffic>>({});
   readonly statuses = signal<(StatusInfo & { key: number })[]>([]);
   readonly parameters = signal<ReadonlyMap<string, ParameterInfo>>(new Map());
+  /** Who talks to whom, as long as somebody watches it. */
+  readonly graph = signal<ConnectionGraph | undefined>(undefined);
   readonly lastPublished = signal<Publishing | undefined>(undefined);
 
   /** Called when robot time moves. */
@@ -46,6 +49,7 @@ export class Session {
   private readonly requests = new Map<number, (message: FromWorker) => void>();
   private server = "";
   private numbers = 0;
+  private graphWatchers = 0;
 
   constructor(private readonly worker: Worker) {
     worker.onmessage = (event: MessageEvent<FromWorker>) => this.receive(event.data);
@@ -109,6 +113,21 @@ export class Session {
 
   setParameters(parameters: ParameterInfo[]): void {
     this.send({ kind: "setParameters", parameters });
+  }
+
+  /** Keep `graph` up to date until the returned function is called. */
+  watchGraph(): () => void {
+    if (this.graphWatchers++ === 0) {
+      this.send({ kind: "watchGraph", on: true });
+    }
+    let watches = true;
+    return () => {
+      if (watches && --this.graphWatchers === 0) {
+        this.send({ kind: "watchGraph", on: false });
+        this.graph.value = undefined;
+      }
+      watches = false;
+    };
   }
 
   /** The type of a topic, where it exists. */
@@ -200,6 +219,9 @@ export class Session {
         this.parameters.value = known;
         break;
       }
+      case "graph":
+        this.graph.value = this.graphWatchers ? message.graph : undefined;
+        break;
     }
   }
 

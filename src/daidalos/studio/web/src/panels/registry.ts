@@ -1,5 +1,6 @@
 // The panels, in the order of the menu: adding one means a file beside this one and a line below.
 import { DISPLAYS_PANEL } from "./displays_panel";
+import { GRAPH_PANEL } from "./graph_panel";
 import { IMAGE_PANEL } from "./image_panel";
 import { LOG_PANEL } from "./log_panel";
 import { MESSAGE_PANEL } from "./message_panel";
@@ -17,5 +18,6 @@ export const PANELS: readonly PanelType[] = [
   PLOT_PANEL,
   IMAGE_PANEL,
   LOG_PANEL,
+  GRAPH_PANEL,
   TURTLESIM_PANEL,
 ];
