@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import signal
 import sys
 import threading
@@ -74,7 +75,7 @@ def watch_context(context: Context) -> None:
 
 
 _SAME_WISH_S = 0.5
-_last_signal_s = 0.0
+_last_signal_s = -math.inf
 
 
 def _on_signal(number: int, frame: FrameType | None) -> None:
