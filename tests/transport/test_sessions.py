@@ -346,3 +346,27 @@ def test_entities_come_and_go_without_a_trace(two):
     publisher, inbox = connected(two, String)
     publisher.publish(String(data="still here"))
     assert inbox.wait(1)[0][0].data == "still here"
+
+
+def test_closing_while_others_publish_harms_nobody(two):
+    here, there = two
+    node = node_of(here, "talker")
+    inbox = subscribe(there, node_of(there, "listener"), "/topic", Int32)
+    for _ in range(10):
+        publisher = here.create_publisher(node, "/topic", Int32, Qos())
+        assert here.graph.wait_for(lambda p=publisher: p.is_heard, PATIENCE_S)
+        stop = threading.Event()
+
+        def publish(publisher: Any = publisher, stop: threading.Event = stop) -> None:
+            while not stop.is_set():
+                publisher.publish(Int32(data=1))
+
+        threads = [threading.Thread(target=publish) for _ in range(3)]
+        for thread in threads:
+            thread.start()
+        inbox.wait(len(inbox.taken) + 5)
+        publisher.close()
+        stop.set()
+        for thread in threads:
+            thread.join(PATIENCE_S)
+            assert not thread.is_alive()

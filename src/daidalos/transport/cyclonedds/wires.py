@@ -50,22 +50,31 @@ class Writer:
         self._type = c.c_void_p()
         library.check(library.dds_get_entity_sertype(entity, c.byref(self._type)), "find a writer's type")
         self._congested_until = 0
+        # The library does not notice when the type that a sample is made of is gone. A signal's handler may close
+        # what the thread that it interrupts is about to use.
+        self._lock = threading.RLock()
+        self._closed = False
 
     def write(self, parts: list[Any]) -> None:
         """Write one sample, given as buffers.
 
         A reader that does not keep up holds us back once; then samples are dropped for as long as that took,
-        so that one stopped process does not stop us.
+        so that one stopped process does not stop us. After `close`, nothing is written.
         """
         if self._congested_until and time.monotonic_ns() < self._congested_until:
             return
-        library = self._library
         if sum(map(len, parts)) <= _JOINED:
             data = b"".join(parts)
             data += _PADDING[len(data) & 3]
             size, count, buffers = len(data), 1, c.byref(Buffer(data, len(data)))
         else:
             size, count, buffers = _buffers(parts)
+        with self._lock:
+            if not self._closed:
+                self._write(size, count, buffers)
+
+    def _write(self, size: int, count: int, buffers: Any) -> None:
+        library = self._library
         serialised = library.ddsi_serdata_from_ser_iov(self._type, SERDATA_DATA, count, buffers, size)
         if not serialised:
             raise CdrError(f"DDS refused a sample of {size} bytes")
@@ -74,6 +83,8 @@ class Writer:
 
     def close(self) -> None:
         """Delete the writer."""
+        with self._lock:
+            self._closed = True
         self._library.dds_delete(self.entity)
 
 

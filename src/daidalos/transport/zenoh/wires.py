@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import struct
+import threading
 from collections.abc import Callable
 from typing import Any
 
@@ -48,10 +49,18 @@ class _Wire:
 
     on_close: Callable[[], None]
 
+    def __init__(self) -> None:
+        # zenoh takes no other call on an entity while one of another thread is under way, and none afterwards.
+        # The same thread may come twice: a signal's handler closes what it interrupts.
+        self._lock = threading.RLock()
+        self._closed = False
+
     def _close(self, entity: Any) -> None:
         self.on_close()
-        with contextlib.suppress(zenoh.ZError):  # the session may have been closed before
-            entity.undeclare()
+        with self._lock:
+            self._closed = True
+            with contextlib.suppress(zenoh.ZError):  # the session may have been closed before
+                entity.undeclare()
 
 
 class ZenohPublisher(_Wire, WirePublisher):
@@ -63,6 +72,7 @@ class ZenohPublisher(_Wire, WirePublisher):
         key: str,
         endpoint: EndpointInfo,
     ) -> None:
+        super().__init__()
         self._gid = endpoint.gid
         qos = endpoint.qos
         # Reliable means that nothing is lost on the way; best effort never waits.
@@ -90,7 +100,10 @@ class ZenohPublisher(_Wire, WirePublisher):
     def put(self, parts: list[Any], sequence: int, stamp_ns: int) -> None:
         """Send one sample."""
         data = parts[0] if len(parts) == 1 else b"".join(parts)
-        self._publisher.put(data, attachment=_attachment(sequence, stamp_ns, self._gid))
+        attachment = _attachment(sequence, stamp_ns, self._gid)
+        with self._lock:
+            if not self._closed:
+                self._publisher.put(data, attachment=attachment)
 
     def close(self) -> None:
         """Undeclare."""
@@ -108,6 +121,7 @@ class ZenohSubscription(_Wire, WireSubscription):
         on_sample: Callable[[Any], None],
         own: set[bytes],
     ) -> None:
+        super().__init__()
         qos = endpoint.qos
         if qos.transient_local:
 
@@ -147,6 +161,7 @@ class ZenohService(_Wire, WireService):
     """Answers queries; a query is held until its reply is sent."""
 
     def __init__(self, session: zenoh.Session, key: str, on_request: Callable[[Any], None]) -> None:
+        super().__init__()
         self._key = key
         self._queries: dict[RequestId, zenoh.Query] = {}
         self._queryable = session.declare_queryable(
@@ -186,6 +201,7 @@ class ZenohClient(_Wire, WireClient):
         endpoint: EndpointInfo,
         on_response: Callable[[Any], None],
     ) -> None:
+        super().__init__()
         self._gid = endpoint.gid
         self._callback = Callback(on_response, indirect=False)
         waits_for_result = endpoint.name.endswith("/_action/get_result")
@@ -200,7 +216,10 @@ class ZenohClient(_Wire, WireClient):
 
     def send(self, data: bytes, sequence: int, stamp_ns: int) -> None:
         """Send one request."""
-        self._querier.get(self._callback, payload=data, attachment=_attachment(sequence, stamp_ns, self._gid))
+        attachment = _attachment(sequence, stamp_ns, self._gid)
+        with self._lock:
+            if not self._closed:
+                self._querier.get(self._callback, payload=data, attachment=attachment)
 
     def response(self, item: Any) -> tuple[bytes, int, int]:
         """Return the answer's bytes, its request's sequence number and its source stamp."""
