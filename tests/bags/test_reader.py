@@ -61,6 +61,24 @@ def test_a_bag_without_description_is_read_from_its_files(tmp_path):
         assert list(bag.messages()) == messages(300)
 
 
+@pytest.mark.parametrize("storage", ["mcap", "sqlite3"])
+def test_a_bag_of_many_files_does_not_keep_them_all_open(tmp_path, storage):
+    import psutil
+
+    content = messages(120)
+    folder = write(tmp_path / "bag", content, WriterOptions(storage, max_duration_ns=1))
+    process = psutil.Process()
+    before, most = process.num_fds(), 0
+    with BagReader(folder) as bag:
+        assert len(bag.metadata.files) == 120
+        for number, message in enumerate(bag.messages()):
+            assert message.data == content[number].data
+            most = max(most, process.num_fds() - before)
+        assert received(bag.messages(reverse=True)) == received(content[::-1])
+    assert most <= 2 * 17
+    assert process.num_fds() <= before
+
+
 def test_a_file_that_is_missing(tmp_path):
     folder = write(tmp_path / "bag", messages(300), WriterOptions(max_duration_ns=SECOND))
     (folder / "bag_1.mcap").unlink()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import heapq
+from collections import Counter
 from collections.abc import Callable, Collection, Iterator
 from contextlib import ExitStack
 from operator import attrgetter
@@ -16,6 +17,9 @@ from daidalos.bags.errors import BagError
 from daidalos.bags.message import BagMessage, Topic
 from daidalos.bags.metadata import FILE_NAME, BagFile, read_metadata
 from daidalos.bags.storage import FOREVER_NS, StorageReader
+
+_OPEN_FILES = 16
+"""How many files stay open though nobody reads them."""
 
 
 class BagReader:
@@ -51,8 +55,8 @@ class BagReader:
         self.path = Path(path)
         self.on_file = on_file
         self.notes: list[str] = []
-        self._stack = ExitStack()
-        self._readers: dict[str, StorageReader] = {}
+        self._readers: dict[str, tuple[StorageReader, ExitStack]] = {}
+        self._users: Counter[str] = Counter()
         if not self.path.exists():
             raise BagError(self.path, "no such file or folder")
         self._folder = self.path if self.path.is_dir() else self.path.parent
@@ -150,26 +154,34 @@ class BagReader:
         self, file: BagFile, wanted: set[str], start_ns: int, stop_ns: int, reverse: bool, by_file: bool
     ) -> Iterator[BagMessage]:
         reader = self._reader(file)
-        messages = reader.messages(wanted, start_ns, stop_ns, reverse=reverse, by_file=by_file)
-        if self.metadata.compression_mode != MESSAGE:
-            yield from messages
-            return
-        restore = message_decompressor(self._folder / file.path)
-        for message in messages:
-            yield message._replace(data=restore(message.data))
+        self._users[file.path] += 1
+        try:
+            messages = reader.messages(wanted, start_ns, stop_ns, reverse=reverse, by_file=by_file)
+            if self.metadata.compression_mode != MESSAGE:
+                yield from messages
+                return
+            restore = message_decompressor(self._folder / file.path)
+            for message in messages:
+                yield message._replace(data=restore(message.data))
+        finally:
+            self._users[file.path] -= 1
 
     def _reader(self, file: BagFile) -> StorageReader:
-        """Return the reader of a file; it stays open, as seeking may come back to it."""
-        reader = self._readers.get(file.path)
-        if reader is None:
-            reader = self._stack.enter_context(opened(self._folder / file.path, self._storage_id))
-            self._readers[file.path] = reader
-        return reader
+        """Return the reader of a file; some stay open, as seeking may come back to them."""
+        if file.path not in self._readers:
+            idle = [path for path in self._readers if not self._users[path]]
+            for path in idle[: max(len(self._readers) - _OPEN_FILES + 1, 0)]:
+                self._readers.pop(path)[1].close()
+            stack = ExitStack()
+            reader = stack.enter_context(opened(self._folder / file.path, self._storage_id))
+            self._readers[file.path] = reader, stack
+        return self._readers[file.path][0]
 
     def close(self) -> None:
         """Let the files go."""
+        for _, stack in self._readers.values():
+            stack.close()
         self._readers.clear()
-        self._stack.close()
 
     def __enter__(self) -> Self:
         return self
