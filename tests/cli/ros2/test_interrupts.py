@@ -47,9 +47,8 @@ def test_ctrl_c_at_any_moment(env, tmp_path, name):
         with contextlib.suppress(ProcessLookupError):
             os.killpg(process.pid, signal.SIGINT)
         told = process.communicate(timeout=30)[0]
-        with contextlib.suppress(ProcessLookupError):
-            os.killpg(process.pid, signal.SIGKILL)
-            pytest.fail(f"something was left at {moment} s")
+        left = _left_of(process.pid)
+        assert not left, f"{left} was left at {moment} s"
         assert "Traceback" not in told, f"at {moment} s"
         assert process.returncode in (0, 2, -signal.SIGINT), f"at {moment} s"
 
@@ -71,3 +70,17 @@ def _wait_until_ours(process: subprocess.Popen[str], moment_s: float) -> None:
         while process.poll() is None and (times := observed.cpu_times()).user + times.system < MOMENTS_S[0]:
             time.sleep(0.005)
     time.sleep(moment_s - MOMENTS_S[0])
+
+
+def _left_of(group: int, patience_s: float = 10.0) -> list[str]:
+    """Return what does not leave a process group; it is killed."""
+    deadline = time.monotonic() + patience_s
+    while time.monotonic() < deadline:
+        try:
+            os.killpg(group, 0)
+        except ProcessLookupError:
+            return []
+        time.sleep(0.02)
+    left = [" ".join(one.cmdline()) for one in psutil.process_iter() if os.getpgid(one.pid) == group]
+    os.killpg(group, signal.SIGKILL)
+    return left
