@@ -10,6 +10,7 @@ from typing import Any
 
 from rclpy.clock import Clock
 from rclpy.clock_type import ClockType
+from rclpy.duration import Duration
 from rclpy.utilities import remove_ros_args
 
 from daidalos.nodes.description_files import read_description
@@ -116,16 +117,18 @@ def _spawn(arguments: argparse.Namespace, node: Any) -> None:
 
 def _wait_for(entity: str, node: Any, base: str, timeout: float) -> None:
     """Wait until the simulation tells of an entity."""
-    from gazebo_msgs.msg import ModelStates
-    from rclpy.wait_for_message import wait_for_message
+    from gazebo_msgs.srv import GetModelList
 
     node.get_logger().info(f"Waiting for entity {entity}")
+    client = node.create_client(GetModelList, f"{base}/get_model_list")
     clock = Clock(clock_type=ClockType.STEADY_TIME)
-    end = clock.now().nanoseconds + round(timeout * 1e9)
-    while clock.now().nanoseconds < end:
-        found, message = wait_for_message(ModelStates, node, f"{base}/model_states", time_to_wait=timeout)
-        if found and entity in message.name:
+    end = clock.now() + Duration(seconds=timeout)
+    # Asked rather than heard: while time stands still the simulation says nothing.
+    while client.wait_for_service(max(0.0, (end - clock.now()).nanoseconds * 1e-9)):
+        response = client.call(GetModelList.Request(), timeout)
+        if response is not None and entity in response.model_names:
             return
+        clock.sleep_for(Duration(seconds=0.2))
     raise UserError(f"there was no entity '{entity}' within {timeout:g} s")
 
 

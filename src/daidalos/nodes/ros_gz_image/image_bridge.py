@@ -1,0 +1,25 @@
+"""`image_bridge`: a bridge for images alone; it renames topics where a remapping asks for it."""
+
+from __future__ import annotations
+
+import sys
+
+from rclpy.utilities import remove_ros_args
+
+from daidalos.nodes.ros_gz_bridge.parameter_bridge import ParameterBridge
+from daidalos.nodes.runner import UserError, run
+
+
+def _bridge(topics: list[str]) -> ParameterBridge:
+    if not topics:
+        raise UserError("name the topics of images that are to be bridged")
+    return ParameterBridge([f"{topic}@sensor_msgs/msg/Image[gz.msgs.Image" for topic in topics])
+
+
+def main() -> int:
+    """Run the node."""
+    return run(lambda: _bridge(remove_ros_args(sys.argv)[1:]))
+
+
+if __name__ == "__main__":
+    sys.exit(main())
