@@ -80,8 +80,10 @@ def test_bash_completes_what_is_in_the_graph(bash, beside, wait_for):
 
 def test_bash_completes_launch_files_and_their_arguments(bash, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    Path("lab.launch.xml").write_text('<launch><arg name="robot" default="a"/></launch>')
+    choices = '<choice value="fast"/><choice value="slow"/>'
+    Path("lab.launch.xml").write_text(f'<launch><arg name="robot"/><arg name="mode">{choices}</arg></launch>')
     assert bash("ros2 launch lab.la") == ["lab.launch.xml"]
+    assert bash("ros2 launch lab.launch.xml mode:=f") == ["fast"]
     assert bash("ros2 launch lab.launch.xml rob") in (["robot:="], ["robot:"])
 
 

@@ -94,7 +94,7 @@ class LaunchCommand(Command):
                 nargs="*",
                 help="Arguments to the launch file; '<name>:=<value>' (for duplicates, last one wins)",
             ),
-            lambda parsed_args, **_: _argument_names(parsed_args),
+            lambda prefix, parsed_args, **_: _complete_argument(prefix, parsed_args),
         )
 
     def main(self, *, parser: ArgumentParser, args: Namespace) -> Status:
@@ -244,10 +244,14 @@ def _complete_first(prefix: str, **_: Any) -> list[str]:
     return [*package_names(), *files]
 
 
-def _argument_names(args: Any) -> list[str]:
+def _complete_argument(prefix: str, args: Any) -> list[str]:
+    """Return the names of launch arguments, and the choices of one whose name is typed."""
     try:
         path, _ = _file_and_arguments(args)
-        description = _load(path)[1]
+        declared = _load(path)[1].get_launch_arguments()
     except CliError:
         return []  # what stands before is not complete itself
-    return [f"{argument.name}:=" for argument in description.get_launch_arguments()]
+    name, separator, _ = prefix.partition(":=")
+    if not separator:
+        return [f"{argument.name}:=" for argument in declared]
+    return [f"{name}:={choice}" for argument in declared if argument.name == name for choice in argument.choices or ()]
