@@ -10,7 +10,9 @@ from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor
 from ros.graph import graph  # noqa: F401
 
 WORLD = """<sdf version="1.9"><world name="shop"><include><uri>model://ground_plane</uri></include>
-<include><uri>model://sun</uri></include><frame name="door"><pose>3 4 0 0 0 0</pose></frame>
+<include><uri>model://sun</uri></include>
+<plugin name="state" filename="libgazebo_ros_state.so"><ros><namespace>/demo</namespace></ros></plugin>
+<frame name="door"><pose>3 4 0 0 0 0</pose></frame>
 <model name="shelf"><static>true</static><pose>2 0 0.5 0 0 0</pose><link name="board"><collision name="c"><geometry>
 <box><size>1 2 1</size></box></geometry></collision></link></model></world></sdf>"""
 

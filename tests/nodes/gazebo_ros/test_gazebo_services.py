@@ -199,3 +199,28 @@ def test_shapes_are_inserted_and_scaled(shop):
     assert not wrong.success
     assert "no shape 'cube'" in wrong.status_message
     assert not shop.call(ScaleEntity, "/gazebo/scale_entity", name="nobody", factor=2.0).success
+
+
+def test_looks_of_models_are_told(shop):
+    from daidalos_msgs.srv import GetShapes, InsertShape
+
+    fields = {"shape": "cylinder", "size": Vector3(x=0.4, y=0.0, z=1.0), "mass": 2.0, "pose": at(0.0)}
+    name = shop.call(InsertShape, "/gazebo/insert_shape", **fields).name
+    seen = shop.call(GetShapes, "/gazebo/get_shapes", names=[name])
+    assert seen.success
+    (shape,) = seen.shapes
+    assert (shape.type, shape.header.frame_id) == (shape.CYLINDER, "cylinder::link")
+    assert (shape.scale.x, shape.scale.y, shape.scale.z) == (0.4, 0.4, 1.0)
+    assert list(seen.entities) == ["cylinder", "cylinder::link"]
+    assert seen.poses[0].position.z == pytest.approx(state(shop, name).state.pose.position.z, abs=1e-3)
+    assert name in shop.call(GetShapes, "/gazebo/get_shapes").entities
+    wrong = shop.call(GetShapes, "/gazebo/get_shapes", names=["nobody"])
+    assert not wrong.success
+    assert "nobody" in wrong.status_message
+
+
+def test_the_state_plugin_may_name_a_place_of_its_own(shop):
+    answer = shop.call(srv.GetEntityState, "/demo/get_entity_state", name="shelf")
+    assert answer.success
+    assert answer.state.pose.position.x == pytest.approx(2.0)
+    assert "/demo/model_states" in dict(shop.server.get_topic_names_and_types())

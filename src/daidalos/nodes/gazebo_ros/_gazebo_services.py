@@ -13,7 +13,7 @@ from daidalos.description.errors import DescriptionError
 from daidalos.description.joint import JointType
 from daidalos.nodes.conversions import nanoseconds, time_message
 from daidalos.nodes.gazebo_ros._entities import Entity, find_entity, find_joint, motion_of, set_motion
-from daidalos.nodes.gazebo_ros._host import Host
+from daidalos.nodes.gazebo_ros._host import Host, state_namespaces
 from daidalos.nodes.gazebo_ros._states import color_message, color_of, pose_message, pose_of, twist_message, vector_of
 from daidalos.simulation import Simulation
 from daidalos.simulation.errors import SimulationError
@@ -120,8 +120,11 @@ class GazeboServices:
             SetModelState,
         )
 
-        self._simulate(GetEntityState, ("get_entity_state",), _get_entity_state)
-        self._simulate(SetEntityState, ("set_entity_state",), lambda s, q, r: _set_state(s, q.state.name, q.state))
+        places = state_namespaces(self._host.paced.simulation.world)
+        self._simulate(GetEntityState, ("get_entity_state",), _get_entity_state, places)
+        self._simulate(
+            SetEntityState, ("set_entity_state",), lambda s, q, r: _set_state(s, q.state.name, q.state), places
+        )
         self._simulate(GetModelState, ("get_model_state",), _get_model_state)
         self._simulate(
             SetModelState, ("set_model_state",), lambda s, q, r: _set_state(s, q.model_state.model_name, q.model_state)
@@ -196,8 +199,10 @@ class GazeboServices:
 
     # How they are offered
 
-    def _simulate(self, kind: Any, names: tuple[str, ...], work: Work) -> None:
-        """Offer a service that works on the simulation between its steps, in both places."""
+    def _simulate(
+        self, kind: Any, names: tuple[str, ...], work: Work, places: tuple[str, ...] = ("", "/gazebo")
+    ) -> None:
+        """Offer a service that works on the simulation between its steps, in several places."""
 
         def answer(request: Any, response: Any) -> Any:
             def told(_: Any) -> None:
@@ -206,7 +211,7 @@ class GazeboServices:
             return _told("status_message", told)(request, response)
 
         for name in names:
-            self._offer(kind, (f"/{name}", f"/gazebo/{name}"), answer)
+            self._offer(kind, tuple(f"{place}/{name}" for place in places), answer)
 
     def _offer(self, kind: Any, names: tuple[str, ...], answer: Callable[[Any, Any], Any]) -> None:
         for name in names:

@@ -13,6 +13,7 @@ from daidalos.nodes.gazebo_ros._entities import find_entity
 from daidalos.nodes.gazebo_ros._pacing import PacedSimulation
 from daidalos.nodes.packages import package_share
 from daidalos.simulation import Simulation
+from daidalos.simulation.plugins.base import library_name
 
 if TYPE_CHECKING:
     from daidalos.description.robot import Robot
@@ -213,6 +214,17 @@ def wanted_speed(physics: Physics) -> float:
     if physics.real_time_update_rate != Physics().real_time_update_rate:
         return physics.real_time_update_rate * physics.max_step_size
     return physics.real_time_factor
+
+
+def state_namespaces(world: World) -> tuple[str, ...]:
+    """Return where states are told: at the root, below ``/gazebo``, and where the world's state plugin says."""
+    found = ["", "/gazebo"]
+    for plugin in world.plugins:
+        if library_name(plugin.filename) == "gazebo_ros_state":
+            ros = plugin.element.first("ros")
+            namespace = "" if ros is None else ros.text_of("namespace").strip("/")
+            found.append(f"/{namespace}" if namespace else "")
+    return tuple(dict.fromkeys(found))
 
 
 def _unused(name: str, taken: tuple[str, ...]) -> str:

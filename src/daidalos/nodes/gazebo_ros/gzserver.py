@@ -73,7 +73,7 @@ class GzServer(Node):
         self._host = Host(self._paced, make, self._topics_changed)
         self._companions = Companions(self.context, self._warn)
         self._host.world_path = world
-        self._create_topics()
+        self._create_topics(described)
         self._topics_changed(simulation)
         self._create_services()
         self.add_on_set_parameters_callback(self._on_set_parameters)
@@ -90,13 +90,16 @@ class GzServer(Node):
             self._warned.add(text)
             self._warn(text)
 
-    def _create_topics(self) -> None:
+    def _create_topics(self, world: World) -> None:
         from gazebo_msgs.msg import ContactsState, LinkStates, ModelStates, PerformanceMetrics
         from rosgraph_msgs.msg import Clock
 
+        from daidalos.nodes.gazebo_ros._host import state_namespaces
+
         self._clock_publisher = self.create_publisher(Clock, "/clock", 10)
-        self._states = [self.create_publisher(ModelStates, f"{place}/model_states", 10) for place in ("/gazebo", "")]
-        self._link_states = [self.create_publisher(LinkStates, f"{place}/link_states", 10) for place in ("/gazebo", "")]
+        places = state_namespaces(world)
+        self._states = [self.create_publisher(ModelStates, f"{place}/model_states", 10) for place in places]
+        self._link_states = [self.create_publisher(LinkStates, f"{place}/link_states", 10) for place in places]
         self._metrics = self.create_publisher(PerformanceMetrics, "/performance_metrics", 10)
         self._contacts_publisher = self.create_publisher(ContactsState, "/gazebo/contacts", _LATCHED)
 
