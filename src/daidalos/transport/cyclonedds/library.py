@@ -7,7 +7,6 @@ here messages are bytes already, so the library's functions for serialised sampl
 from __future__ import annotations
 
 import ctypes as c
-import runpy
 import sys
 from importlib.util import find_spec
 from pathlib import Path
@@ -257,5 +256,7 @@ def load() -> Library:
                 "RMW_IMPLEMENTATION is 'rmw_cyclonedds_cpp', which needs the package cyclonedds: "
                 "pip install 'daidalos[dds]'"
             )
-        _loaded = Library(Path(runpy.run_path(str(locator))["library_path"]))
+        scope: dict[str, Any] = {"__file__": str(locator)}
+        exec(compile(locator.read_text(encoding="utf-8"), str(locator), "exec"), scope)
+        _loaded = Library(Path(scope["library_path"]))
     return _loaded
