@@ -1,4 +1,4 @@
-"""Services for those who build a world while it runs: shapes, and sizes of models."""
+"""Services for those who build a world while it runs: shapes, sizes and looks of models."""
 
 from __future__ import annotations
 
@@ -7,7 +7,9 @@ from typing import Any
 
 from daidalos.description.primitives import primitive
 from daidalos.nodes.gazebo_ros._host import Host
-from daidalos.nodes.gazebo_ros._states import color_of, pose_of, vector_of
+from daidalos.nodes.gazebo_ros._shapes import shape_markers
+from daidalos.nodes.gazebo_ros._states import color_of, pose_message, pose_of, vector_of
+from daidalos.simulation import Simulation
 from daidalos.simulation.errors import SimulationError
 
 
@@ -22,10 +24,11 @@ class EditingServices:
     """
 
     def __init__(self, node: Any, host: Host, group: Any) -> None:
-        from daidalos_msgs.srv import InsertShape, ScaleEntity
+        from daidalos_msgs.srv import GetShapes, InsertShape, ScaleEntity
 
         self._host = host
         node.create_service(InsertShape, "~/insert_shape", _told(self._insert), callback_group=group)
+        node.create_service(GetShapes, "~/get_shapes", _told(self._shapes), callback_group=group)
         node.create_service(ScaleEntity, "~/scale_entity", _told(self._scale), callback_group=group)
 
     def _insert(self, request: Any, response: Any) -> None:
@@ -35,6 +38,18 @@ class EditingServices:
 
     def _scale(self, request: Any, response: Any) -> None:
         self._host.scale(request.name, request.factor)
+
+    def _shapes(self, request: Any, response: Any) -> None:
+        def work(simulation: Simulation) -> None:
+            for name in request.names or simulation.models:
+                model = simulation.instance(name).model
+                response.shapes += shape_markers(model, name)
+                links = [(f"{name}::{link}", link) for link in model.links]
+                for entity, link in [(name, None), *links]:
+                    response.entities.append(entity)
+                    response.poses.append(pose_message(simulation.pose(name, link)))
+
+        self._host.paced.call(work)
 
 
 def _told(work: Callable[[Any, Any], None]) -> Callable[[Any, Any], Any]:
