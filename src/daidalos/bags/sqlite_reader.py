@@ -15,6 +15,8 @@ from daidalos.bags.qos import parse_profiles
 from daidalos.bags.storage import StorageReader
 
 _BATCH = 256
+_LONGEST = 100
+_FAULTS = (sqlite3.Error, UnicodeDecodeError)
 
 
 class SqliteReader(StorageReader):
@@ -36,6 +38,9 @@ class SqliteReader(StorageReader):
         self._database = self._connect()
         try:
             self._describe()
+        except (AttributeError, LookupError, TypeError, ValueError) as error:
+            self.close()
+            raise BagError(path, f"damaged: {_line(error)}") from None
         except BaseException:
             self.close()
             raise
@@ -50,8 +55,8 @@ class SqliteReader(StorageReader):
                 return database
             except sqlite3.OperationalError:
                 continue
-            except sqlite3.DatabaseError as error:
-                raise BagError(self.path, f"no sqlite3 file: {error}") from None
+            except _FAULTS as error:
+                raise BagError(self.path, f"no sqlite3 file: {_line(error)}") from None
         raise BagError(self.path, "can not be opened as an sqlite3 file")
 
     def close(self) -> None:
@@ -107,8 +112,8 @@ class SqliteReader(StorageReader):
             cursor.arraysize = _BATCH
             while rows := cursor.fetchmany():
                 yield from rows
-        except sqlite3.Error as error:
-            raise BagError(self.path, f"damaged: {error}") from None
+        except _FAULTS as error:
+            raise BagError(self.path, f"damaged: {_line(error)}") from None
 
     def messages(
         self, topics: Collection[str], start_ns: int, stop_ns: int, *, reverse: bool = False, by_file: bool = False
@@ -121,4 +126,11 @@ class SqliteReader(StorageReader):
         limits = (max(start_ns, -(2**63)), min(stop_ns, 2**63 - 1))
         query = f"SELECT topic_id, timestamp, data FROM messages WHERE topic_id IN ({which}) "
         for number, time, data in self._rows(f"{query} AND timestamp BETWEEN ? AND ? ORDER BY {order}", *limits):
+            if data.__class__ is not bytes:
+                raise BagError(self.path, f"damaged: a message on {names[number]} is no bytes")
             yield BagMessage(names[number], data, time, time)
+
+
+def _line(error: Exception) -> str:
+    """Return what an error says as one line; some of sqlite's quote all that they stumbled over."""
+    return " ".join(str(error).split())[:_LONGEST]
