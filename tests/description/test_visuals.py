@@ -3,9 +3,10 @@ import pytest
 import trimesh
 
 from daidalos.description.errors import DescriptionError
-from daidalos.description.geometry import Box, Cylinder, Empty, Heightmap, Mesh, Plane, Sphere
+from daidalos.description.geometry import Box, Cone, Cylinder, Empty, Heightmap, Mesh, Plane, Sphere
 from daidalos.description.link import Material, Visual
-from daidalos.description.visuals import GREY, visual_parts
+from daidalos.description.meshes import triangles_of
+from daidalos.description.visuals import GREY, _flat, visual_parts
 
 RED = Material("red", (1, 0, 0, 1))
 
@@ -81,3 +82,20 @@ def test_terrains(tmp_path):
 def test_missing_meshes_are_named():
     with pytest.raises(DescriptionError, match=r"w\.sdf:3: mesh x not found"):
         visual_parts(Visual(Mesh("x", None, where="w.sdf:3")))
+
+
+def test_an_stl_keeps_its_edges(tmp_path):
+    """Corners of a cube have the normals of their faces, not means over three of them."""
+    path = tmp_path / "cube.stl"
+    trimesh.creation.box((1, 1, 1)).export(path)
+    (part,) = visual_parts(Visual(Mesh("cube.stl", path)))
+    assert np.abs(part.normals).max(axis=1) == pytest.approx(1.0)
+    corners = part.vertices[part.faces]
+    flat = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    assert np.einsum("ij,ij->i", flat, part.normals[part.faces[:, 0]]) == pytest.approx(1.0)
+
+
+def test_a_place_where_very_many_triangles_meet_stays_quick():
+    fan = triangles_of(Cone(1.0, 1.0), 4000)
+    part = _flat(fan.vertices, fan.faces)
+    assert np.linalg.norm(part.normals, axis=1) == pytest.approx(1.0, abs=1e-5)

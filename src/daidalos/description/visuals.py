@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
@@ -20,6 +19,11 @@ from daidalos.description.pose import quaternion_between, rotation_matrix
 
 GREY: Rgba = (0.7, 0.7, 0.7, 1.0)
 WHITE: Rgba = (1.0, 1.0, 1.0, 1.0)
+
+_CREASE = 0.76
+"""Cosine of the angle between triangles from which on an edge is seen: 40 degrees."""
+
+_MOST_CORNERS = 256
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,7 +95,11 @@ def _mesh_parts(path: Path, submesh: str, _modified: int, where: str) -> tuple[P
         transform, name = scene.graph[node]
         geometry = scene.geometry[name]
         if hasattr(geometry, "faces") and (not submesh or submesh in (str(node), str(name))):
-            parts.append(_textured(geometry, np.asarray(transform)))
+            part = _textured(geometry, np.asarray(transform))
+            if path.suffix.lower() == ".stl":
+                # Such a file has no normals of vertices: edges would look smeared.
+                part = replace(_flat(part.vertices.astype(np.float64), part.faces), color=part.color)
+            parts.append(part)
     return tuple(parts)
 
 
@@ -141,16 +149,30 @@ def _flat(vertices: NDArray[np.float64], faces: NDArray[np.int32]) -> Part:
     _, place = np.unique(np.round(corners.reshape(-1, 3), 6), axis=0, return_inverse=True)
     place = place.ravel()
     owner = np.repeat(np.arange(len(faces)), 3)
-    smooth = np.zeros((len(owner), 3))
-    order = np.argsort(place, kind="stable")
-    starts = np.searchsorted(place[order], np.arange(place.max() + 2))
-    for first, last in itertools.pairwise(starts):
-        here = order[first:last]
-        alike = unit[owner[here]] @ unit[owner[here]].T > 0.76
-        smooth[here] = alike @ normals[owner[here]]
-    smooth /= np.linalg.norm(smooth, axis=1, keepdims=True).clip(1e-12)
+    first, second = _pairs(place)
+    alike = np.einsum("ij,ij->i", unit[owner[first]], unit[owner[second]]) > _CREASE
+    first, second = first[alike], second[alike]
+    sums = [np.bincount(first, normals[owner[second], axis], minlength=len(owner)) for axis in range(3)]
+    smooth: NDArray[np.float64] = np.stack(sums, axis=1).astype(np.float64)
+    smooth = smooth / np.linalg.norm(smooth, axis=1, keepdims=True).clip(1e-12)
     triangles = np.arange(len(owner), dtype=np.int32).reshape(-1, 3)
     return Part(corners.reshape(-1, 3).astype(np.float32), smooth.astype(np.float32), triangles, GREY)
+
+
+def _pairs(place: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Return all pairs of corners (with themselves too) that are in one place.
+
+    Where very many meet, such as in the tip of a finely cut cone, each is paired with itself alone.
+    """
+    order = np.argsort(place, kind="stable")
+    starts = np.searchsorted(place[order], np.arange(place.max(initial=-1) + 2))
+    counts = np.diff(starts)[place]
+    counts[counts > _MOST_CORNERS] = 1
+    first = np.repeat(np.arange(len(place)), counts)
+    step = np.arange(len(first)) - np.repeat(np.cumsum(counts) - counts, counts)
+    alone = counts[first] == 1
+    second = np.where(alone, first, order[np.minimum(starts[place[first]] + step, len(place) - 1)])
+    return first, second
 
 
 def _wrapped(part: Part, boxed: bool) -> Part:
