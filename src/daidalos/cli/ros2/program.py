@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import _thread
 import os
 import signal
 import sys
-import threading
 import time
 from types import FrameType
 
@@ -15,7 +13,6 @@ _INTERRUPTED = int(signal.SIGINT)
 
 _BROKEN_PIPE = 141
 _SAME_PRESS_S = 0.5
-_MOMENT_S = 0.002
 _IMPORT_SYSTEM = "<frozen importlib"
 
 
@@ -101,17 +98,14 @@ def _handle_interrupts() -> None:
 
     def on_interrupt(number: int, frame: FrameType | None) -> None:
         nonlocal first
-        if frame is not None and frame.f_code.co_filename.startswith(_IMPORT_SYSTEM):
-            # What is raised there may be swallowed: once more when it is through.
-            later = threading.Timer(_MOMENT_S, _thread.interrupt_main)
-            later.daemon = True
-            later.start()
+        # What is raised in the import system may be swallowed. While it works little is there to be tidied up.
+        importing = frame is not None and frame.f_code.co_filename.startswith(_IMPORT_SYSTEM)
+        if importing or (first is not None and time.monotonic() - first > _SAME_PRESS_S):
+            signal.signal(number, signal.SIG_DFL)
+            signal.raise_signal(number)
         elif first is None:
             first = time.monotonic()
             raise KeyboardInterrupt
-        elif time.monotonic() - first > _SAME_PRESS_S:
-            signal.signal(number, signal.SIG_DFL)
-            signal.raise_signal(number)
 
     if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:
         signal.signal(signal.SIGINT, on_interrupt)
