@@ -321,7 +321,7 @@ class McapReader(StorageReader):
             except zstandard.ZstdError as error:
                 raise ValueError(str(error)) from None
         elif chunk.compression == "lz4":
-            import lz4.frame  # type: ignore[import-untyped]
+            import lz4.frame
 
             try:
                 data = lz4.frame.decompress(data)

@@ -285,7 +285,7 @@ def _compressor(options: McapOptions) -> Callable[[bytes], bytes]:
 
         return zstandard.ZstdCompressor(level=ZSTD_LEVELS[options.level]).compress
     if options.compression == "lz4":
-        import lz4.frame  # type: ignore[import-untyped]
+        import lz4.frame
 
         level = LZ4_LEVELS[options.level]
         return lambda data: bytes(lz4.frame.compress(data, compression_level=level))
