@@ -42,7 +42,7 @@ class RosGraphSource:
         self._handle = node.handle
         self._graph = node.handle.graph
         self._clients: dict[str, AsyncParameterClient] = {}
-        self._callers: dict[str, _Caller] = {}
+        self._callers: dict[tuple[str, str], _Caller] = {}
         self._clock: SubscriptionHandle | None = None
         self._time: int | None = None
         self._observers: list[Observer] = []
@@ -106,7 +106,10 @@ class RosGraphSource:
 
     def services(self) -> list[Service]:
         """List every service whose type is known."""
-        found = {endpoint.name: endpoint.type_name for endpoint in self._graph.endpoints(EndpointKind.SERVICE)}
+        found: dict[str, str] = {}
+        for endpoint in self._graph.endpoints(EndpointKind.SERVICE):
+            # Clients call by name: of several types under one name they are told the one that `call` takes.
+            found[endpoint.name] = min(endpoint.type_name, found.get(endpoint.name, endpoint.type_name))
         result = []
         for name, kind in sorted(found.items()):
             request, response = _schema(f"{kind}_Request"), _schema(f"{kind}_Response")
@@ -162,12 +165,13 @@ class RosGraphSource:
         if not servers:
             answer.set_exception(SourceError(f"nobody serves {service}"))
             return answer
+        type_name = min(server.type_name for server in servers)
         try:
             with self._lock:
-                caller = self._callers.get(service)
+                caller = self._callers.get((service, type_name))
                 if caller is None:
-                    kind = _class_of(get_service, servers[0].type_name)
-                    caller = self._callers[service] = _Caller(self._handle, kind, service)
+                    kind = _class_of(get_service, type_name)
+                    caller = self._callers[service, type_name] = _Caller(self._handle, kind, service)
             caller.call(request, answer)
         except (SourceError, ValueError) as error:
             answer.set_exception(SourceError(str(error)))

@@ -9,6 +9,7 @@ import "./styles/controls.css";
 import "./styles/panels.css";
 import "./styles/turtlesim.css";
 import "./styles/graph.css";
+import "./styles/simulation.css";
 import { Help } from "./app/help";
 import { Layout } from "./app/layout";
 import { readOpening } from "./app/opening";

@@ -7,6 +7,7 @@ import { MESSAGE_PANEL } from "./message_panel";
 import type { PanelType } from "./panel";
 import { PLOT_PANEL } from "./plot_panel";
 import { SCENE_PANEL } from "./scene_panel";
+import { SIMULATION_PANEL } from "./simulation_panel";
 import { TOPICS_PANEL } from "./topics_panel";
 import { TURTLESIM_PANEL } from "./turtlesim_panel";
 
@@ -19,5 +20,6 @@ export const PANELS: readonly PanelType[] = [
   IMAGE_PANEL,
   LOG_PANEL,
   GRAPH_PANEL,
+  SIMULATION_PANEL,
   TURTLESIM_PANEL,
 ];

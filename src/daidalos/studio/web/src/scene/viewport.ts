@@ -1,5 +1,15 @@
 // The canvas: renders the scene when something has changed, and no more finely than the machine can.
-import { Color, Object3D, Raycaster, Scene, Vector2, Vector3, WebGLRenderer, PCFShadowMap } from "three";
+import {
+  Color,
+  type Intersection,
+  Object3D,
+  Raycaster,
+  Scene,
+  Vector2,
+  Vector3,
+  WebGLRenderer,
+  PCFShadowMap,
+} from "three";
 import { beginsFine } from "./graphics";
 import { Lights } from "./lights";
 import { Quality } from "./quality";
@@ -78,14 +88,24 @@ export class Viewport {
 
   /** Where the ray through a pixel meets the ground. */
   groundAt(x: number, y: number): Vector3 | undefined {
+    return this.planeAt(x, y, 0);
+  }
+
+  /** Where the ray through a pixel meets the level plane at a height. */
+  planeAt(x: number, y: number, height: number): Vector3 | undefined {
     const { origin, direction } = this.rayThrough(x, y);
-    const along = -origin.z / direction.z;
+    const along = (height - origin.z) / direction.z;
     // Beyond the horizon or behind the camera there is no ground.
     return along > 0 && along < 1e4 ? origin.clone().addScaledVector(direction, along) : undefined;
   }
 
   /** The nearest surface under a pixel, else the ground. */
   surfaceAt(x: number, y: number): Vector3 | undefined {
+    return this.hitAt(x, y)?.point ?? this.groundAt(x, y);
+  }
+
+  /** The nearest thing under a pixel, and where it is hit. */
+  hitAt(x: number, y: number): Intersection | undefined {
     this.rayThrough(x, y);
     const pickable: Object3D[] = [];
     this.scene.traverseVisible((object) => {
@@ -93,7 +113,7 @@ export class Viewport {
         pickable.push(object);
       }
     });
-    return this.raycaster.intersectObjects(pickable, false)[0]?.point ?? this.groundAt(x, y);
+    return this.raycaster.intersectObjects(pickable, false)[0];
   }
 
   dispose(): void {

@@ -1,0 +1,320 @@
+// Simulation: the simulated world to look at and to edit, and the keys of its time.
+import { useSignal } from "@preact/signals";
+import { useEffect, useRef } from "preact/hooks";
+import type { Studio } from "../app/studio";
+import { theme } from "../app/theme";
+import { formatTime } from "../ros/time";
+import { Choice, NumberField } from "../ui/editors";
+import { Empty } from "../ui/empty";
+import { Icon, type IconName } from "../ui/icons";
+import { Menu, MenuItem } from "../ui/menu";
+import type { PanelProps, PanelType } from "./panel";
+import { Editor, type Mode, type Shape } from "./simulation/editor";
+import { SIMULATOR_TYPE, Simulator, type Resource } from "./simulation/simulator";
+import { Stage } from "./simulation/stage";
+
+const SPEEDS: readonly (readonly [string, string])[] = [
+  ["0.1", "0.1 ×"],
+  ["0.25", "¼ ×"],
+  ["0.5", "½ ×"],
+  ["1", "1 ×"],
+  ["2", "2 ×"],
+  ["5", "5 ×"],
+  ["10", "10 ×"],
+  ["0", "as fast as possible"],
+];
+const STEPS: readonly (readonly [string, string])[] = ["1", "10", "100", "1000"].map(
+  (count) => [count, count === "1" ? "1 step" : `${count} steps`] as const,
+);
+const MODES: readonly (readonly [Mode, IconName, string])[] = [
+  ["look", "top", "Select: click a model, turn the view"],
+  ["move", "move", "Move: drag a model along the ground, with Shift up and down"],
+  ["turn", "reset", "Turn: drag a model sideways"],
+  ["scale", "scale", "Scale: drag a model up or down"],
+];
+const SHAPES: readonly (readonly [Shape, IconName])[] = [
+  ["box", "cube"],
+  ["sphere", "sphere"],
+  ["cylinder", "cylinder"],
+];
+const HINTS: Record<Mode, string> = {
+  look: "Click a model to select it · Left: turn · Middle: move · Wheel: zoom",
+  move: "Drag a model along the ground · with Shift up and down",
+  turn: "Drag a model sideways to turn it",
+  scale: "Drag a model up to make it larger, down to make it smaller",
+  insert: "Click where it shall stand · Escape ends",
+};
+
+function SimulationPanel({ studio, visible }: PanelProps) {
+  const service = studio.session.services.value.find(({ type }) => type === SIMULATOR_TYPE)?.name;
+  if (service === undefined) {
+    return (
+      <Empty icon="cube" title="No simulator runs">
+        <code>ros2 launch gazebo_ros gazebo.launch.py</code>
+      </Empty>
+    );
+  }
+  const name = service.replace(/\/[^/]*$/, "");
+  return <Room key={name} studio={studio} name={name} isVisible={visible.value} />;
+}
+
+interface Tools {
+  simulator: Simulator;
+  stage: Stage;
+  editor: Editor;
+}
+
+function Room({ studio, name, isVisible }: { studio: Studio; name: string; isVisible: boolean }) {
+  const container = useRef<HTMLDivElement>(null);
+  const tools = useSignal<Tools | undefined>(undefined);
+  const failure = useSignal("");
+  useEffect(() => {
+    if (!isVisible) {
+      return undefined;
+    }
+    try {
+      const [made, dispose] = open(studio, name, container.current as HTMLDivElement);
+      tools.value = made;
+      return () => {
+        tools.value = undefined;
+        dispose();
+      };
+    } catch (error) {
+      failure.value = error instanceof Error ? error.message : String(error);
+      return undefined;
+    }
+  }, [isVisible]);
+  return (
+    <div class="column">
+      {tools.value && <TimeBar studio={studio} tools={tools.value} />}
+      <div class="scene simulation">
+        <div class="scene-canvas" ref={container} data-test="simulation" />
+        {tools.value && <EditBar tools={tools.value} />}
+        {tools.value && (
+          <div class={`hint ${tools.value.editor.mode.value === "look" ? "" : "busy"}`}>
+            {HINTS[tools.value.editor.mode.value]}
+          </div>
+        )}
+        {failure.value && <Empty icon="cube" title="This browser can not draw in 3-D" />}
+      </div>
+      {tools.value && <Foot tools={tools.value} />}
+    </div>
+  );
+}
+
+function open(studio: Studio, name: string, container: HTMLDivElement): [Tools, () => void] {
+  const { session, tf, assets } = studio;
+  const stage = new Stage(container, { session, tf, assets, theme: () => theme.value });
+  const simulator = new Simulator(session, name);
+  const editor = new Editor(container, stage, simulator);
+  let isLooking = false;
+  const look = async () => {
+    if (!isLooking) {
+      isLooking = true;
+      // Nobody answers while the connection is lost or a world is exchanged: the next beat asks again.
+      await simulator.look().then(
+        (looks) => stage.show(looks),
+        () => undefined,
+      );
+      isLooking = false;
+    }
+  };
+  void look();
+  const observer = new ResizeObserver(() => stage.viewport.resize(container.clientWidth, container.clientHeight));
+  observer.observe(container);
+  const stops = [
+    () => observer.disconnect(),
+    simulator.follow(
+      (states) => {
+        if (!stage.place(states)) {
+          void look();
+        }
+      },
+      () => {
+        if (simulator.isPlaying.value === false) {
+          void look();
+        }
+      },
+    ),
+    studio.onFrame((page) => stage.draw(page)),
+    () => editor.dispose(),
+    () => stage.dispose(),
+  ];
+  return [{ simulator, stage, editor }, () => stops.forEach((stop) => stop())];
+}
+
+function TimeBar({ studio, tools: { simulator, editor } }: { studio: Studio; tools: Tools }) {
+  const steps = useSignal("10");
+  const isPlaying = simulator.isPlaying.value;
+  const factor = simulator.factor.value;
+  const { time } = studio.reading.value;
+  return (
+    <div class="bar wrap">
+      <button
+        class="button primary"
+        title={isPlaying ? "Let time stand still" : "Let time go on"}
+        data-test="play"
+        disabled={isPlaying === undefined}
+        onClick={() => void editor.do(() => simulator.play(!isPlaying))}
+      >
+        <Icon name={isPlaying ? "pause" : "play"} /> {isPlaying ? "Pause" : "Play"}
+      </button>
+      <button
+        class="button"
+        title="Go on by some steps, while time stands still"
+        data-test="step"
+        disabled={isPlaying !== false}
+        onClick={() => void editor.do(() => simulator.step(Number(steps.value)))}
+      >
+        <Icon name="step" /> Step
+      </button>
+      <Choice label="Steps at a time" value={steps.value} options={STEPS} onChange={(count) => (steps.value = count)} />
+      <Choice
+        label="Speed"
+        value={String(simulator.speed ?? "1")}
+        options={SPEEDS}
+        onChange={(speed) => simulator.setSpeed(Number(speed))}
+      />
+      <button
+        class="button"
+        title="Begin anew: time at zero, everything where it was"
+        data-test="reset"
+        onClick={() => void editor.do(() => simulator.reset())}
+      >
+        <Icon name="reset" /> Reset
+      </button>
+      <span class="stretch" />
+      <span class="clock">
+        <span class="clock-field" title="Simulated time">
+          <span class="faint">Time</span>
+          <span class="figures">{time === undefined ? "–" : formatTime(time)}</span>
+        </span>
+        <span class="clock-field" title="Real-time factor: simulated seconds per second">
+          <span class="faint">RTF</span>
+          <span class="figures" data-test="rtf">
+            {isPlaying === false ? "paused" : factor === undefined ? "–" : `${factor.toFixed(2)}×`}
+          </span>
+        </span>
+      </span>
+    </div>
+  );
+}
+
+function EditBar({ tools: { simulator, editor, stage } }: { tools: Tools }) {
+  const mode = editor.mode.value;
+  const goods = editor.goods.value;
+  const file = useRef<HTMLInputElement>(null);
+  const readFile = async (given: File | undefined) => {
+    if (given) {
+      editor.take("insert", { title: given.name, uri: "", resource_string: await given.text() });
+    }
+  };
+  return (
+    <div class="overlay-bar tools wrap" role="toolbar" aria-label="Edit the world">
+      {MODES.map(([each, icon, title]) => (
+        <button
+          key={each}
+          class={`tool ${mode === each ? "active" : ""}`}
+          title={title}
+          aria-pressed={mode === each}
+          data-test={`mode-${each}`}
+          onClick={() => editor.take(each)}
+        >
+          <Icon name={icon} />
+        </button>
+      ))}
+      <span class="tool-gap" />
+      {SHAPES.map(([shape, icon]) => (
+        <button
+          key={shape}
+          class={`tool ${mode === "insert" && goods === shape ? "active" : ""}`}
+          title={`Insert a ${shape}`}
+          data-test={`insert-${shape}`}
+          onClick={() => editor.take("insert", shape)}
+        >
+          <Icon name={icon} />
+        </button>
+      ))}
+      <Menu label="Model" icon="add" align="left" class="tool">
+        {simulator.spawnables.value.map((model: Resource) => (
+          <MenuItem key={model.uri} icon="cube" onChoose={() => editor.take("insert", model)}>
+            {model.title}
+          </MenuItem>
+        ))}
+        <MenuItem icon="add" onChoose={() => file.current?.click()}>
+          From a file (SDF or URDF) …
+        </MenuItem>
+      </Menu>
+      <input
+        ref={file}
+        type="file"
+        accept=".sdf,.urdf,.xml"
+        hidden
+        data-test="model-file"
+        onChange={(event) => void readFile(event.currentTarget.files?.[0])}
+      />
+      {mode === "insert" && typeof goods === "string" && (
+        <>
+          <NumberField
+            label="Size"
+            value={editor.size.value}
+            min={0.02}
+            max={20}
+            step={0.05}
+            unit="m"
+            onChange={(size) => (editor.size.value = size)}
+          />
+          <NumberField
+            label="Mass, 0 never moves"
+            value={editor.mass.value}
+            min={0}
+            max={10000}
+            step={0.5}
+            unit="kg"
+            onChange={(mass) => (editor.mass.value = mass)}
+          />
+        </>
+      )}
+      {mode === "insert" && typeof goods !== "string" && <span class="faint tool-words">{goods.title}</span>}
+      <span class="tool-gap" />
+      <button
+        class="tool"
+        title="Delete what is selected (Delete)"
+        data-test="delete"
+        disabled={!stage.selected.value}
+        onClick={() => editor.remove()}
+      >
+        <Icon name="trash" />
+      </button>
+    </div>
+  );
+}
+
+function Foot({ tools: { stage, editor } }: { tools: Tools }) {
+  return (
+    <footer class="bar faint">
+      <Choice
+        label="Selected model"
+        value={stage.selected.value}
+        options={[["", "nothing selected"], ...stage.names.value.map((name) => [name, name] as const)]}
+        onChange={(name) => stage.select(name)}
+      />
+      <span class="figures" data-test="models">
+        {stage.names.value.length} models
+      </span>
+      <span class="stretch" />
+      {editor.complaint.value && (
+        <span class="complaint-text ellipsis" role="alert" title={editor.complaint.value}>
+          {editor.complaint.value}
+        </span>
+      )}
+    </footer>
+  );
+}
+
+export const SIMULATION_PANEL: PanelType = {
+  id: "simulation",
+  title: "Simulation",
+  icon: "play",
+  component: SimulationPanel,
+};
