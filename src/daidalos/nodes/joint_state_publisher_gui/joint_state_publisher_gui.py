@@ -7,7 +7,7 @@ import sys
 from typing import Any
 
 from daidalos.nodes.joint_state_publisher.joint_state_publisher import JointStatePublisher, description_from_arguments
-from daidalos.nodes.runner import run
+from daidalos.nodes.studio_window import run_with_window
 
 _PREFIX = "joints."
 
@@ -62,8 +62,12 @@ class JointStatePublisherGui(JointStatePublisher):
 
 
 def main() -> int:
-    """Run the node."""
-    return run(lambda: JointStatePublisherGui(description_from_arguments()))
+    """Run the node with its window."""
+    return run_with_window(
+        lambda: JointStatePublisherGui(description_from_arguments()),
+        "joints",
+        lambda node: {"node": node.get_fully_qualified_name()},
+    )
 
 
 if __name__ == "__main__":

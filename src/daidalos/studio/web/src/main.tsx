@@ -10,6 +10,7 @@ import "./styles/panels.css";
 import "./styles/turtlesim.css";
 import "./styles/graph.css";
 import "./styles/simulation.css";
+import "./styles/joints.css";
 import { Help } from "./app/help";
 import { Layout } from "./app/layout";
 import { readOpening } from "./app/opening";

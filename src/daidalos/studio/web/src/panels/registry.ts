@@ -2,6 +2,7 @@
 import { DISPLAYS_PANEL } from "./displays_panel";
 import { GRAPH_PANEL } from "./graph_panel";
 import { IMAGE_PANEL } from "./image_panel";
+import { JOINTS_PANEL } from "./joints_panel";
 import { LOG_PANEL } from "./log_panel";
 import { MESSAGE_PANEL } from "./message_panel";
 import type { PanelType } from "./panel";
@@ -21,5 +22,6 @@ export const PANELS: readonly PanelType[] = [
   LOG_PANEL,
   GRAPH_PANEL,
   SIMULATION_PANEL,
+  JOINTS_PANEL,
   TURTLESIM_PANEL,
 ];

@@ -1,0 +1,144 @@
+// The joints of a joint_state_publisher_gui: parameters with limits, which the node's own services tell and set.
+import { signal } from "@preact/signals";
+import type { Session } from "../../connection/session";
+
+const PREFIX = "joints.";
+const DOUBLE = 3;
+const KEEP = 32;
+
+export interface Joint {
+  name: string;
+  lower: number;
+  upper: number;
+  value: number;
+}
+
+interface Value {
+  type: number;
+  double_value: number;
+}
+
+interface ParameterEvent {
+  node: string;
+  new_parameters: { name: string; value: Value }[];
+  changed_parameters: { name: string; value: Value }[];
+  deleted_parameters: { name: string }[];
+}
+
+interface Descriptor {
+  name: string;
+  floating_point_range: ArrayLike<{ from_value: number; to_value: number }>;
+}
+
+export class Joints {
+  readonly joints = signal<readonly Joint[]>([]);
+  readonly complaint = signal("");
+  /** Positions that are not sent yet: one call is under way at a time, and the newest position wins. */
+  private readonly unsent = new Map<string, number>();
+  private isSending = false;
+
+  constructor(
+    private readonly session: Session,
+    private readonly node: string,
+  ) {}
+
+  /** Follow the node until the returned function is called. */
+  follow(): () => void {
+    void this.read();
+    return this.session.subscribe<ParameterEvent>("/parameter_events", KEEP, (event) => this.hear(event));
+  }
+
+  /** Put a joint somewhere. */
+  set(name: string, value: number): void {
+    this.take(new Map([[name, value]]));
+    this.unsent.set(name, value);
+    void this.send();
+  }
+
+  center(): void {
+    void this.try(() => this.call("center", {}));
+  }
+
+  randomize(): void {
+    void this.try(() => this.call("randomize", {}));
+  }
+
+  private async read(): Promise<void> {
+    await this.try(async () => {
+      const listed = (await this.call("list_parameters", { prefixes: ["joints"], depth: 0n })) as {
+        result: { names: string[] };
+      };
+      const names = listed.result.names.filter((name) => name.startsWith(PREFIX));
+      const [described, got] = (await Promise.all([
+        this.call("describe_parameters", { names }),
+        this.call("get_parameters", { names }),
+      ])) as [{ descriptors: Descriptor[] }, { values: Value[] }];
+      this.joints.value = names.map((name, i) => {
+        const range = described.descriptors[i]?.floating_point_range[0];
+        return {
+          name: name.slice(PREFIX.length),
+          lower: range?.from_value ?? -Math.PI,
+          upper: range?.to_value ?? Math.PI,
+          value: got.values[i]?.double_value ?? 0,
+        };
+      });
+    });
+  }
+
+  private hear({ node, new_parameters, changed_parameters, deleted_parameters }: ParameterEvent): void {
+    if (node !== this.node) {
+      return;
+    }
+    if ([...new_parameters, ...deleted_parameters].some(({ name }) => name.startsWith(PREFIX))) {
+      void this.read(); // another robot
+      return;
+    }
+    const changed = new Map<string, number>();
+    for (const { name, value } of changed_parameters) {
+      const joint = name.slice(PREFIX.length);
+      // What the user's hand has moved on from is not shown again.
+      if (name.startsWith(PREFIX) && !this.isSending && !this.unsent.has(joint)) {
+        changed.set(joint, value.double_value);
+      }
+    }
+    this.take(changed);
+  }
+
+  private take(values: ReadonlyMap<string, number>): void {
+    if (values.size) {
+      this.joints.value = this.joints.value.map((joint) => ({
+        ...joint,
+        value: values.get(joint.name) ?? joint.value,
+      }));
+    }
+  }
+
+  private async send(): Promise<void> {
+    if (this.isSending) {
+      return;
+    }
+    this.isSending = true;
+    while (this.unsent.size) {
+      const parameters = [...this.unsent].map(([name, double_value]) => ({
+        name: PREFIX + name,
+        value: { type: DOUBLE, double_value },
+      }));
+      this.unsent.clear();
+      await this.try(() => this.call("set_parameters", { parameters }));
+    }
+    this.isSending = false;
+  }
+
+  private async try(work: () => Promise<unknown>): Promise<void> {
+    try {
+      await work();
+      this.complaint.value = "";
+    } catch (error) {
+      this.complaint.value = error instanceof Error ? error.message : String(error);
+    }
+  }
+
+  private call(service: string, request: object): Promise<unknown> {
+    return this.session.call(`${this.node}/${service}`, request);
+  }
+}

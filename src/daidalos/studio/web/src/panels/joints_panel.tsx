@@ -1,0 +1,126 @@
+// Joints: sliders for a robot's joints, the window of a joint_state_publisher_gui.
+import { useSignal } from "@preact/signals";
+import { useEffect, useMemo } from "preact/hooks";
+import type { Studio } from "../app/studio";
+import type { ServiceInfo } from "../connection/boundary";
+import { Choice } from "../ui/editors";
+import { Empty } from "../ui/empty";
+import { Icon } from "../ui/icons";
+import { Joints, type Joint } from "./joints/joints";
+import type { PanelProps, PanelType } from "./panel";
+
+function JointsPanel({ studio, visible, params, remember }: PanelProps) {
+  const nodes = publishersIn(studio.session.services.value);
+  const chosen = useSignal(typeof params.node === "string" ? params.node : "");
+  const node = nodes.includes(chosen.value) ? chosen.value : nodes[0];
+  if (node === undefined) {
+    return (
+      <Empty icon="sliders" title="No joint_state_publisher_gui runs">
+        <code>ros2 run joint_state_publisher_gui joint_state_publisher_gui</code>
+      </Empty>
+    );
+  }
+  return (
+    <div class="column">
+      {nodes.length > 1 && (
+        <div class="bar">
+          <Choice
+            label="Node"
+            value={node}
+            options={nodes.map((name) => [name, name])}
+            onChange={(name) => {
+              chosen.value = name;
+              remember({ node: name });
+            }}
+          />
+        </div>
+      )}
+      <Sliders key={node} studio={studio} node={node} isVisible={visible.value} />
+    </div>
+  );
+}
+
+function Sliders({ studio, node, isVisible }: { studio: Studio; node: string; isVisible: boolean }) {
+  const model = useMemo(() => new Joints(studio.session, node), []);
+  useEffect(() => (isVisible ? model.follow() : undefined), [isVisible]);
+  const joints = model.joints.value;
+  if (joints.length === 0) {
+    return (
+      <Empty icon="sliders" title="No joints yet">
+        {model.complaint.value || "They appear with the robot’s description."}
+      </Empty>
+    );
+  }
+  return (
+    <>
+      <div class="scroll joints" data-test="joints">
+        {joints.map((joint) => (
+          <Slider key={joint.name} joint={joint} onChange={(value) => model.set(joint.name, value)} />
+        ))}
+      </div>
+      <footer class="bar">
+        <button class="button" title="Put every joint anywhere" data-test="randomize" onClick={() => model.randomize()}>
+          <Icon name="marker" /> Randomize
+        </button>
+        <button class="button" title="Put every joint back" data-test="center" onClick={() => model.center()}>
+          <Icon name="focus" /> Center
+        </button>
+        <span class="stretch complaint-text ellipsis">{model.complaint.value}</span>
+        <span class="faint figures">{joints.length}</span>
+      </footer>
+    </>
+  );
+}
+
+function Slider({ joint: { name, lower, upper, value }, onChange }: { joint: Joint; onChange(value: number): void }) {
+  const limit = (typed: number) => Math.min(upper, Math.max(lower, typed));
+  const share = upper > lower ? (100 * (value - lower)) / (upper - lower) : 0;
+  return (
+    <label class="joint" data-joint={name}>
+      <span class="joint-name ellipsis" title={name}>
+        {name}
+      </span>
+      <input
+        class="field joint-value figures"
+        type="number"
+        aria-label={`Position of ${name}`}
+        step={0.01}
+        min={lower}
+        max={upper}
+        value={value.toFixed(3)}
+        onChange={(event) => {
+          const typed = Number(event.currentTarget.value);
+          if (event.currentTarget.value.trim() && Number.isFinite(typed)) {
+            onChange(limit(typed));
+          }
+        }}
+      />
+      <input
+        class="slider"
+        type="range"
+        aria-label={name}
+        min={lower}
+        max={upper}
+        step="any"
+        style={`--share: ${share}%`}
+        value={value}
+        onInput={(event) => onChange(limit(Number(event.currentTarget.value)))}
+      />
+      <span class="joint-limits faint figures">
+        <span>{lower.toFixed(2)}</span>
+        <span>{upper.toFixed(2)}</span>
+      </span>
+    </label>
+  );
+}
+
+/** Nodes that can centre and randomize joints. */
+function publishersIn(services: readonly ServiceInfo[]): string[] {
+  const names = new Set(services.filter(({ type }) => type === "std_srvs/srv/Empty").map(({ name }) => name));
+  return [...names]
+    .filter((name) => name.endsWith("/randomize"))
+    .map((name) => name.replace(/\/randomize$/, ""))
+    .filter((node) => names.has(`${node}/center`));
+}
+
+export const JOINTS_PANEL: PanelType = { id: "joints", title: "Joints", icon: "sliders", component: JointsPanel };
