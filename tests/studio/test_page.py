@@ -265,6 +265,28 @@ def test_a_small_window_still_shows_the_view_and_the_displays(browser, source, r
         browser.resize(1280, 800)
 
 
+def test_a_phones_window_shows_the_view_whole_and_the_bar_in_order(browser, source, robot):
+    browser.resize(390, 760)
+    try:
+        with serve(source) as server:
+            show(browser, server.url)
+            browser.wait_for(SEES, 60)
+            assert browser.evaluate("document.querySelector('.scene-canvas').clientWidth") > 350
+            browser.wait_for("!!document.querySelector('.top-bar .clock')")
+            edges = browser.evaluate(
+                "[...document.querySelector('.top-bar').children]"
+                ".flatMap((each) => [each.getBoundingClientRect().left, each.getBoundingClientRect().right])"
+            )
+            assert edges == sorted(edges), "nothing lies over its neighbour"
+            assert edges[-1] <= 390
+            assert browser.evaluate(
+                "[...document.querySelectorAll('.top-bar > *')]"
+                ".every((each) => each.scrollWidth <= each.clientWidth + 1)"
+            )
+    finally:
+        browser.resize(1280, 800)
+
+
 class Listener(foxglove.websocket.ServerListener):
     """Notes what the page does at Foxglove's server."""
 

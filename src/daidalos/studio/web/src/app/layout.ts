@@ -18,6 +18,8 @@ const KEY = "layout";
 const THEME = { name: "daidalos", className: "dockview-theme-daidalos", gap: 6 };
 /** Below this width there is no right column; what matters of it goes behind the displays. */
 const NARROW_PX = 1200;
+/** Below this width, that of a phone, all panels lie behind the view. */
+const PHONE_PX = 640;
 const DISPLAYS_NARROW_PX = 250;
 
 /** What stands beside a panel that is opened as a window of its own, and how wide. */
@@ -124,6 +126,11 @@ export class Layout {
         ...(beside === undefined ? {} : { position: { referencePanel: beside, direction } }),
       });
     const scene = add("scene");
+    if (width < PHONE_PX) {
+      ["displays", "topics", "message"].forEach((id) => add(id, "scene"));
+      scene.api.setActive();
+      return;
+    }
     const displays = add("displays", "scene", "left");
     if (width < NARROW_PX) {
       add("topics", "displays");

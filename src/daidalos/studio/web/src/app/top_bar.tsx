@@ -15,7 +15,7 @@ export function TopBar({ studio, layout }: { studio: Studio; layout: () => Layou
     <header class="top-bar">
       <span class="brand">
         <Mark />
-        Daidalos
+        <span class="wide-only">Daidalos</span>
       </span>
       <Connection studio={studio} />
       <Complaints studio={studio} />
@@ -59,8 +59,10 @@ function Connection({ studio: { session } }: { studio: Studio }) {
   return (
     <span class={`pill ${state}`} data-test="connection" role="status">
       <span class="dot" />
-      {LINK_WORDS[state]}
-      {state === "connected" && session.serverName.value && <span class="faint">{session.serverName.value}</span>}
+      <span class={state === "connected" ? "wide-only" : ""}>{LINK_WORDS[state]}</span>
+      {state === "connected" && session.serverName.value && (
+        <span class="faint ellipsis roomy-only">{session.serverName.value}</span>
+      )}
     </span>
   );
 }
