@@ -11,6 +11,7 @@ import "./styles/turtlesim.css";
 import "./styles/graph.css";
 import "./styles/simulation.css";
 import "./styles/joints.css";
+import "./styles/call.css";
 import { Help } from "./app/help";
 import { Layout } from "./app/layout";
 import { readOpening } from "./app/opening";

@@ -63,6 +63,8 @@ export type ToWorker =
   | { kind: "unsubscribe"; topic: string }
   | { kind: "publish"; topic: string; type: string; message: unknown }
   | { kind: "call"; id: number; service: string; request: unknown }
+  /** Ask what a request of a service, or a message of a topic, looks like with nothing filled in. */
+  | { kind: "template"; id: number; of: "service" | "topic"; name: string }
   | { kind: "fetchAsset"; id: number; uri: string }
   | { kind: "getParameters"; names: string[] }
   | { kind: "setParameters"; parameters: ParameterInfo[] }

@@ -59,6 +59,12 @@ export class Calls {
     }
   }
 
+  /** The definition of a service's requests. */
+  requestOf(name: string): string | undefined {
+    const service = [...this.services.values()].find((each) => each.name === name);
+    return service && (service.request?.schema ?? service.requestSchema ?? "");
+  }
+
   answer(id: number, payload: Uint8Array): void {
     const service = this.waiting.get(id);
     if (!service) {

@@ -15,6 +15,11 @@ export function makeWriter(definition: string): Writer {
   return (message) => writer.writeMessage(message);
 }
 
+/** A message with nothing filled in: what the definition gives by itself. */
+export function emptyMessage(definition: string): unknown {
+  return makeReader(definition)(makeWriter(definition)({}));
+}
+
 /** Run what may fail because of a definition or a message that others wrote. */
 export function attempt<T>(run: () => T): T | Error {
   try {

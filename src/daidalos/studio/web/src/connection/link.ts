@@ -2,7 +2,7 @@
 import type { ClockReading, FromWorker, ParameterInfo, Received, ToWorker } from "./boundary";
 import { Backlog } from "./backlog";
 import { Calls, type Service } from "./calls";
-import { attempt, makeReader, type Reader } from "./codecs";
+import { attempt, emptyMessage, makeReader, type Reader } from "./codecs";
 import { parseFrame } from "./frames";
 import { GraphWatch, type GraphUpdate } from "./graph_watch";
 import { Publishers } from "./publishers";
@@ -189,6 +189,9 @@ export class Link {
       case "call":
         this.calls.call(message.id, message.service, message.request);
         break;
+      case "template":
+        this.tellTemplate(message.id, message.of, message.name);
+        break;
       case "fetchAsset":
         this.say({ op: "fetchAsset", requestId: message.id, uri: message.uri });
         break;
@@ -331,6 +334,13 @@ export class Link {
       }
     }
     return reader instanceof Error ? undefined : reader;
+  }
+
+  private tellTemplate(id: number, of: "service" | "topic", name: string): void {
+    const definition = of === "service" ? this.calls.requestOf(name) : this.channelOf(name)?.schema;
+    const message =
+      definition === undefined ? new Error(`there is no ${of} ${name}`) : attempt(() => emptyMessage(definition));
+    this.out.toPage({ kind: "response", id, ...(message instanceof Error ? { error: message.message } : { message }) });
   }
 
   private tellTopics(): void {

@@ -91,8 +91,17 @@ export class Session {
     this.send({ kind: "publish", topic, type, message });
   }
 
-  async call(service: string, request: unknown): Promise<unknown> {
-    const answer = await this.ask((id) => ({ kind: "call", id, service, request }));
+  call(service: string, request: unknown): Promise<unknown> {
+    return this.askFor((id) => ({ kind: "call", id, service, request }));
+  }
+
+  /** A request of a service, or a message of a topic, with nothing filled in. */
+  template(of: "service" | "topic", name: string): Promise<unknown> {
+    return this.askFor((id) => ({ kind: "template", id, of, name }));
+  }
+
+  private async askFor(build: (id: number) => ToWorker): Promise<unknown> {
+    const answer = await this.ask(build);
     if (answer.kind !== "response" || answer.error !== undefined) {
       throw new Error(answer.kind === "response" ? answer.error : "no answer");
     }

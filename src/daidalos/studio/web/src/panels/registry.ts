@@ -7,7 +7,9 @@ import { LOG_PANEL } from "./log_panel";
 import { MESSAGE_PANEL } from "./message_panel";
 import type { PanelType } from "./panel";
 import { PLOT_PANEL } from "./plot_panel";
+import { PUBLISH_PANEL } from "./publish_panel";
 import { SCENE_PANEL } from "./scene_panel";
+import { SERVICE_PANEL } from "./service_panel";
 import { SIMULATION_PANEL } from "./simulation_panel";
 import { TOPICS_PANEL } from "./topics_panel";
 import { TURTLESIM_PANEL } from "./turtlesim_panel";
@@ -21,6 +23,8 @@ export const PANELS: readonly PanelType[] = [
   IMAGE_PANEL,
   LOG_PANEL,
   GRAPH_PANEL,
+  SERVICE_PANEL,
+  PUBLISH_PANEL,
   SIMULATION_PANEL,
   JOINTS_PANEL,
   TURTLESIM_PANEL,

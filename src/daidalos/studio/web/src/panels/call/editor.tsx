@@ -1,0 +1,85 @@
+// A name to choose from many, and a message to edit as text.
+import { useSignal, type Signal } from "@preact/signals";
+import { useEffect } from "preact/hooks";
+import type { Session } from "../../connection/session";
+import { fromText, toText } from "../../ros/text";
+
+interface NameProps {
+  id: string;
+  label: string;
+  value: string;
+  names: readonly string[];
+  onChange(name: string): void;
+}
+
+export function NameField({ id, label, value, names, onChange }: NameProps) {
+  return (
+    <label class="field grow">
+      <input
+        type="text"
+        list={id}
+        value={value}
+        placeholder={label}
+        aria-label={label}
+        spellcheck={false}
+        data-test={id}
+        onChange={(event) => onChange(event.currentTarget.value.trim())}
+      />
+      <datalist id={id}>
+        {names.map((name) => (
+          <option key={name} value={name} />
+        ))}
+      </datalist>
+    </label>
+  );
+}
+
+export interface Draft {
+  text: Signal<string>;
+  /** What is wrong with it. */
+  complaint: Signal<string>;
+  /** The message, or nothing where the text is none: then `complaint` says why. */
+  read(): unknown;
+}
+
+/** A draft of a request or message, begun anew when another service or topic is named. */
+export function useDraft(session: Session, of: "service" | "topic", name: string, isThere: boolean): Draft {
+  const text = useSignal("");
+  const complaint = useSignal("");
+  useEffect(() => {
+    let isWanted = true;
+    [text.value, complaint.value] = ["", ""];
+    if (name && isThere) {
+      session.template(of, name).then(
+        (message) => isWanted && (text.value = toText(message)),
+        (error: Error) => isWanted && (complaint.value = error.message),
+      );
+    }
+    return () => {
+      isWanted = false;
+    };
+  }, [name, isThere]);
+  const read = () => {
+    try {
+      complaint.value = "";
+      return fromText(text.value || "{}");
+    } catch (error) {
+      complaint.value = error instanceof Error ? error.message : String(error);
+      return undefined;
+    }
+  };
+  return { text, complaint, read };
+}
+
+export function DraftField({ draft, label }: { draft: Draft; label: string }) {
+  return (
+    <textarea
+      class="draft mono"
+      aria-label={label}
+      spellcheck={false}
+      data-test="draft"
+      value={draft.text.value}
+      onInput={(event) => (draft.text.value = event.currentTarget.value)}
+    />
+  );
+}
