@@ -1,6 +1,6 @@
 // Graph: nodes and topics, and who talks to whom, as rqt_graph shows them.
 import { useSignal, type Signal } from "@preact/signals";
-import { useEffect, useRef } from "preact/hooks";
+import { useEffect, useLayoutEffect, useRef } from "preact/hooks";
 import type { ConnectionGraph } from "../connection/boundary";
 import type { Studio } from "../app/studio";
 import { Choice } from "../ui/editors";
@@ -101,7 +101,7 @@ function Drawing({ placed, hovered, picked }: DrawingProps) {
   const size = useRef(placed);
   size.current = placed;
   const fit = () => canvas.current?.fit(size.current.width, size.current.height);
-  useEffect(() => {
+  useLayoutEffect(() => {
     const made = new Canvas(frame.current as SVGSVGElement, content.current as SVGGElement);
     canvas.current = made;
     const observer = new ResizeObserver(() => made.isMoved || fit());
@@ -111,7 +111,7 @@ function Drawing({ placed, hovered, picked }: DrawingProps) {
       made.dispose();
     };
   }, []);
-  useEffect(() => {
+  useLayoutEffect(() => {
     if (!canvas.current?.isMoved) {
       fit();
     }
