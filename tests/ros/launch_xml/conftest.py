@@ -1,40 +1,5 @@
-"""What the tests of this package share: log files and an environment of their own, and a way to run launches."""
+"""Each test has its own log files and environment."""
 
-import os
+from ros.launching import run_text, sandbox
 
-import pytest
-
-
-@pytest.fixture(autouse=True)
-def sandbox(tmp_path, monkeypatch):
-    """Give each test its own log files and environment."""
-    import launch.logging
-
-    environment = dict(os.environ)
-    monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path / "log"))
-    monkeypatch.delenv("OVERRIDE_LAUNCH_PROCESS_OUTPUT", raising=False)
-    launch.logging.reset()
-    yield
-    launch.logging.reset()
-    os.environ.clear()
-    os.environ.update(environment)
-
-
-@pytest.fixture
-def run_text():
-    """Run the text of a launch file in markup, and return the service."""
-    import io
-    import textwrap
-
-    from launch import LaunchService
-    from launch.frontend import Parser
-
-    def run(text, expected=0, **configurations):
-        root, parser = Parser.load(io.StringIO(textwrap.dedent(text)))
-        service = LaunchService()
-        service.context.launch_configurations.update(configurations)
-        service.include_launch_description(parser.parse_description(root))
-        assert service.run() == expected
-        return service
-
-    return run
+__all__ = ["run_text", "sandbox"]

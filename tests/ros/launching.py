@@ -1,0 +1,40 @@
+"""What the tests of launch, its markup and its ROS actions share: an environment of their own, and running text."""
+
+import os
+
+import pytest
+
+
+@pytest.fixture(autouse=True)
+def sandbox(tmp_path, monkeypatch):
+    """Give each test its own log files and environment."""
+    import launch.logging
+
+    environment = dict(os.environ)
+    monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path / "log"))
+    monkeypatch.delenv("OVERRIDE_LAUNCH_PROCESS_OUTPUT", raising=False)
+    launch.logging.reset()
+    yield
+    launch.logging.reset()
+    os.environ.clear()
+    os.environ.update(environment)
+
+
+@pytest.fixture
+def run_text():
+    """Run the text of a launch file in markup, and return the service."""
+    import io
+    import textwrap
+
+    from launch import LaunchService
+    from launch.frontend import Parser
+
+    def run(text, expected=0, **configurations):
+        root, parser = Parser.load(io.StringIO(textwrap.dedent(text)))
+        service = LaunchService()
+        service.context.launch_configurations.update(configurations)
+        service.include_launch_description(parser.parse_description(root))
+        assert service.run() == expected
+        return service
+
+    return run
