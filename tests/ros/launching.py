@@ -8,6 +8,7 @@ import pytest
 @pytest.fixture(autouse=True)
 def sandbox(tmp_path, monkeypatch):
     """Give each test its own log files and environment."""
+    import launch._process  # before a test puts another module of executables in its place
     import launch.logging
 
     environment = dict(os.environ)
