@@ -8,6 +8,9 @@ import pytest
 
 from places import REPOSITORY
 
+# Options meant for this run are not for the pytest that a test starts, which may know other plugins.
+os.environ.pop("PYTEST_ADDOPTS", None)
+
 _numbers = itertools.count(os.getpid())
 
 
