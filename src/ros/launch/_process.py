@@ -12,7 +12,9 @@ import os
 import signal
 import struct
 import sys
-from collections.abc import Callable
+import types
+from collections.abc import Callable, Coroutine, Generator
+from contextlib import AbstractContextManager
 from typing import Any
 
 from daidalos.nodes.executables import interrupts_blocked
@@ -224,8 +226,27 @@ async def _spawn(child: ChildProcess, cmd: list[str], shell: bool, options: dict
         if found is None:
             raise FileNotFoundError(f"executable '{program}' not found on the PATH")
         program = found
-    with interrupts_blocked(cmd):
-        await loop.subprocess_exec(lambda: child, program, *cmd[1:], **options)
+    starting = loop.subprocess_exec(lambda: child, program, *cmd[1:], **options)
+    await _first_step_in(interrupts_blocked(cmd), starting)
+
+
+@types.coroutine
+def _first_step_in(
+    context: AbstractContextManager[None], starting: Coroutine[Any, Any, Any]
+) -> Generator[Any, Any, Any]:
+    """Await a coroutine, of which the first step, which makes the process, is done within a context.
+
+    While the rest waits for the process's pipes, the loop makes other processes, which would inherit a signal that is
+    still blocked.
+    """
+    steps = starting.__await__()
+    with context:
+        awaited = next(steps)
+    try:
+        yield awaited
+    except BaseException as error:  # it is for the coroutine, as in an await
+        yield steps.throw(error)
+    yield from steps
 
 
 def _open_channel(emulate_tty: bool) -> tuple[int, int]:

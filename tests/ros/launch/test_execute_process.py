@@ -31,6 +31,8 @@ from launch.events import matches_action
 from launch.events.process import ProcessStdin, ShutdownProcess, SignalProcess
 from launch.substitutions import EnvironmentVariable, LaunchConfiguration, LocalSubstitution
 
+from daidalos.nodes.executables import find_executable
+
 posix = pytest.mark.skipif(os.name != "posix", reason="process groups and signals are POSIX's")
 
 # Runs until it is told to stop, and says when it is ready for that.
@@ -100,6 +102,17 @@ def test_process_that_ends_badly(run_launch, python, capsys):
     assert action.return_code == 3
     printed = capsys.readouterr().out
     assert f"process has died [pid {action.process_details['pid']}, exit code 3, cmd '{sys.executable} -u -c" in printed
+
+
+@posix
+def test_only_built_in_executables_begin_deaf_to_ctrl_c(run_launch, python):
+    """Their start blocks the signal; what is started at the same time must not inherit that."""
+    program = "import signal; print(signal.SIGINT in signal.pthread_sigmask(signal.SIG_BLOCK, []))"
+    built_in = ExecuteProcess(cmd=[*find_executable("xacro", "xacro"), "--help"])
+    others = [python(program, cached_output=True) for _ in range(3)]
+    run_launch(built_in, *others)
+    assert built_in.return_code == 0
+    assert [other.get_stdout() for other in others] == ["False\n"] * 3
 
 
 @pytest.mark.parametrize("command", [["no-such-program"], ["./no/such/program"], [str(Path(__file__))]])
