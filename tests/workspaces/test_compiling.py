@@ -48,6 +48,12 @@ def test_what_needs_other_packages_is_left_out_also_by_way_of_a_library(compiler
     )
 
 
+def test_a_library_without_a_name_is_that_of_the_packages_messages(compiler):
+    """`target_link_libraries(node "${cpp_typesupport_target}")`, a variable that nothing sets here."""
+    line = summary(planned(target("node", "a.cpp", links=["", "Qt5::Widgets"]))[1])
+    assert "needs its own messages, Qt5, of which" in line
+
+
 def test_long_lists_are_cut(compiler):
     line = summary(planned(target("node", "a.cpp", links=["a", "b", "c", "d", "e"]))[1])
     assert "needs a, b, c, d and more, of which" in line

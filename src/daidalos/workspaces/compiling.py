@@ -94,9 +94,12 @@ def _parts(target: Target, targets: Mapping[str, Target]) -> list[Target]:
 
 
 def _foreign(target: Target, targets: Mapping[str, Target]) -> list[str]:
-    """Return the packages that a target needs from elsewhere."""
+    """Return the packages that a target needs from elsewhere.
+
+    The library of the package's own messages is linked by a variable that nothing sets here.
+    """
     names = [
-        link.split("::")[0].lstrip("-l")
+        link.split("::")[0].lstrip("-l") or "its own messages"
         for part in _parts(target, targets)
         for link in part.links
         if link not in targets and link not in _SYSTEM_LIBRARIES
