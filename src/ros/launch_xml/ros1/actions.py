@@ -39,6 +39,7 @@ def parse_node(entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, 
     parts = [part for tag in _PARTS for part in entity.get_attr(tag, data_type=list[Entity], optional=True) or []]
     if any(_condition(part, parser) is not None for part in parts):
         return _NodeWithConditions, {"entity": entity, "parser": parser}
+    verb = entity.get_attr("rosbag", optional=True)
     _, kwargs = Node.parse(entity, parser)
     files = entity.get_attr("rosparam", data_type=list[Entity], optional=True) or []
     values: dict[Any, Any] = {}
@@ -50,6 +51,11 @@ def parse_node(entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, 
     command_line = entity.get_attr("command_line", optional=True)
     if command_line is not None:
         kwargs["command_line"] = parser.parse_substitution(command_line)
+    if verb is not None:
+        from .rosbag_action import Rosbag
+
+        names = ("package", "executable", "parameters")
+        return Rosbag, {"verb": verb, **{name: value for name, value in kwargs.items() if name not in names}}
     return _node_class(), kwargs
 
 

@@ -166,8 +166,6 @@ NODES: dict[tuple[str, str], NodeMapping] = {
         note="the planners, the controller and both costmaps of Nav2 stand in for it",
     ),
     ("robot_state_publisher", "state_publisher"): NodeMapping("robot_state_publisher", "robot_state_publisher"),
-    ("rosbag", "play"): NodeMapping("rosbag2", "play"),
-    ("rosbag", "record"): NodeMapping("rosbag2", "record"),
     ("rospy_tutorials", "listener"): NodeMapping("demo_nodes_py", "listener"),
     ("rospy_tutorials", "talker"): NodeMapping("demo_nodes_py", "talker"),
     ("roscpp_tutorials", "listener"): NodeMapping("demo_nodes_cpp", "listener"),

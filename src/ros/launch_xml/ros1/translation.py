@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from .._reader import LocatedElement
 from . import actions as actions  # exposes what translated files are made of
 from .packages import DROPPED_OPTIONS, INCLUDES, NODES, PROGRAMS, NodeMapping, todays_program
+from .rosbag import VERBS
 
 _OLD_TEXT = re.compile(r"\$\((find|arg|optenv)\s")
 _FOUND_FILE = re.compile(r"^\s*\$\(find\s+(\S+?)\s*\)/(.*?)\s*$", re.DOTALL)
@@ -172,6 +173,9 @@ class _Translator:
             note = f" ({mapping.note})" if mapping.note else ""
             self.changes.append(f"node {package}/{executable} -> {mapping.package}/{mapping.executable}{note}")
         attributes = {"pkg": mapping.package, "exec": mapping.executable, **self.node_attributes(old)}
+        if package == "rosbag" and executable in VERBS:
+            attributes["rosbag"] = executable
+            self.changes.append(f"node rosbag/{executable} -> ros2 bag {executable}")
         arguments = old.attrib.get("args", "")
         parameters: dict[str, str] = {}
         if mapping.arguments is not None:
