@@ -100,6 +100,8 @@ def _mesh_parts(path: Path, submesh: str, _modified: int, where: str) -> tuple[P
                 # Such a file has no normals of vertices: edges would look smeared.
                 part = replace(_flat(part.vertices.astype(np.float64), part.faces), color=part.color)
             parts.append(part)
+    if not any(len(part.faces) for part in parts):
+        raise DescriptionError(f"mesh {path} {f'has no part {submesh!r}' if submesh else 'holds no triangles'}", where)
     return tuple(parts)
 
 

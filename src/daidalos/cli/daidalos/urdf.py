@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from daidalos.description.geometry import Geometry
+    from daidalos.description.link import Visual
     from daidalos.description.report import RobotReport
     from daidalos.description.robot import Robot
 
@@ -63,33 +63,32 @@ def _load(args: argparse.Namespace) -> "Robot":
 def _simulated(robot: "Robot") -> list[str]:
     """Load the robot into an empty world, make ten steps, and return what was warned of.
 
-    A mesh or an image that is missing or broken is an error here, although the simulator goes on without it.
+    As in Gazebo a mesh or an image that is missing or broken is no more than a warning.
     """
-    from daidalos.description.errors import DescriptionError
     from daidalos.description.pose import Pose
-    from daidalos.description.visuals import visual_parts
     from daidalos.simulation import Simulation
 
-    for link in robot.links.values():
-        for visual in link.visuals:
-            _require_mesh(visual.geometry)
-            visual_parts(visual)
-            if visual.material is not None and visual.material.texture and visual.material.texture_path is None:
-                raise DescriptionError(f"image {visual.material.texture} not found", link.where)
-        for collision in link.collisions:
-            _require_mesh(collision.geometry)
     simulation = Simulation(heard=lambda topic: False, warn=lambda line: None)
     simulation.spawn(robot, pose=Pose((0.0, 0.0, 10.0)))
     simulation.step(10)
-    return simulation.warnings
+    unseen = [line for link in robot.links.values() for visual in link.visuals for line in _unseen(visual, link.where)]
+    return [*unseen, *simulation.warnings]
 
 
-def _require_mesh(shape: "Geometry") -> None:
-    from daidalos.description.geometry import Mesh
-    from daidalos.description.meshes import load_mesh
+def _unseen(visual: "Visual", where: str) -> list[str]:
+    """Return what of a visual can not be shown, since no camera looks at it in a check."""
+    from daidalos.description.errors import DescriptionError
+    from daidalos.description.visuals import visual_parts
 
-    if isinstance(shape, Mesh):
-        load_mesh(shape)
+    image = visual.material.texture if visual.material is not None else ""
+    if image and visual.material is not None and visual.material.texture_path is None:
+        return [f"{where}: image {image} not found"]
+    try:
+        visual_parts(visual)
+    except DescriptionError as problem:
+        place = "" if problem.source else f"{where}: "
+        return [f"{place}{problem}; the visual is not drawn"]
+    return []
 
 
 def _draw(robot: "Robot", path: Path) -> None:
