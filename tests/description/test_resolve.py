@@ -32,6 +32,20 @@ def test_each_kind_of_address(tree):
     assert find(str(mesh)) == mesh
 
 
+def test_packages_that_are_not_installed_are_found_around_the_file(tree):
+    for name in ("src/arm/meshes/a.stl", "src/arm/urdf/deep/r.urdf", "src/wrist_v2/b.stl", "src/wrist_v2/sub/c.stl"):
+        path = tree / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.touch()
+    (tree / "src/wrist_v2/package.xml").write_text("<package><name> wrist\n</name></package>")
+    assert resolve_uri("package://arm/meshes/a.stl", tree / "src/arm/urdf/deep") == tree / "src/arm/meshes/a.stl"
+    assert resolve_uri("model://arm/meshes/a.stl", tree / "src/wrist_v2") == tree / "src/arm/meshes/a.stl"
+    assert resolve_uri("package://wrist/b.stl", tree / "src/wrist_v2/sub") == tree / "src/wrist_v2/b.stl"
+    assert resolve_uri("package://wrist/b.stl", tree / "src/arm/urdf") is None
+    assert resolve_uri("package://arm/meshes/a.stl", tree / "src/arm", lambda name: tree / "nowhere") is not None
+    assert resolve_uri("package://arm/meshes/a.stl") is None
+
+
 @pytest.mark.parametrize("uri", ["package://nowhere/a.stl", "model://nowhere", "missing.stl", "https://x.org/a"])
 def test_what_is_not_there_is_none(tree, uri):
     assert resolve_uri(uri, tree, lambda name: None, [tree]) is None

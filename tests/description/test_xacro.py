@@ -71,6 +71,12 @@ def test_find_asks_the_resolver(files):
     assert "left_wheel" in urdf.load(files / "r.urdf.xacro", resolve=lambda name: files).links
 
 
+def test_find_knows_the_package_around_the_file(files):
+    change(files / "r.urdf.xacro", "wheel.xacro", "$(find my_robot)/wheel.xacro")
+    (files / "package.xml").write_text("<package format='3'><name>my_robot</name></package>")
+    assert "left_wheel" in urdf.load(files / "r.urdf.xacro").links
+
+
 def test_an_own_m_pi_wins(files):
     change(files / "r.urdf.xacro", "<link name", '<xacro:property name="M_PI" value="3"/><link name')
     assert urdf.load(files / "r.urdf.xacro").joints["left_joint"].origin.rpy[0] == pytest.approx(-1.5)

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Sequence
+import re
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 from urllib.parse import unquote, urlparse
 from urllib.request import url2pathname
@@ -34,7 +35,8 @@ def resolve_uri(
         ``package://name/path``, ``model://name/path``, ``file://path``, an absolute path, or a path
         relative to `base`.
     base : Path or None
-        Folder of the file that holds `uri`.
+        Folder of the file that holds `uri`. What neither `packages` nor `model_path` know is looked for
+        around it, see `packages_near`.
     packages : callable or None
         Share directory of a package.
     model_path : sequence of Path
@@ -46,12 +48,13 @@ def resolve_uri(
         An existing path, or None.
     """
     scheme, separator, rest = uri.partition("://")
+    candidates: Iterable[Path]
     if not separator:
         candidates = _relative(uri, base, model_path)
     elif scheme == "file":
         candidates = _file(uri, rest, base, model_path)
     elif scheme in ("package", "model"):
-        candidates = _named(scheme, unquote(rest), packages, model_path)
+        candidates = _named(scheme, unquote(rest), base, packages, model_path)
     else:
         return None
     return next((path for path in candidates if path.exists()), None)
@@ -68,6 +71,28 @@ def default_model_path() -> tuple[Path, ...]:
     return (*folders, Path.home() / ".gazebo" / "models")
 
 
+def packages_near(name: str, folder: Path) -> Iterator[Path]:
+    """Yield the folders that could be a package or model which is not installed.
+
+    These are the folders around `folder` that are called so or whose ``package.xml`` says so, and what lies
+    beside one of them under that name, as in the source folder of a workspace; the nearest comes first.
+    """
+    here = folder.absolute()
+    for around in (here, *here.parents[:-1]):
+        if around.name == name or _package_name(around / "package.xml") == name:
+            yield around
+        if (around / name).is_dir():
+            yield around / name
+
+
+def _package_name(manifest: Path) -> str:
+    try:
+        found = re.search(rb"<name>\s*([^<\s]+)\s*</name>", manifest.read_bytes())
+    except OSError:
+        return ""
+    return found[1].decode(errors="replace") if found else ""
+
+
 def _relative(uri: str, base: Path | None, model_path: Sequence[Path]) -> list[Path]:
     path = Path(uri)
     if path.is_absolute():
@@ -82,9 +107,13 @@ def _file(uri: str, rest: str, base: Path | None, model_path: Sequence[Path]) ->
     return _relative(unquote(rest), base, model_path)
 
 
-def _named(scheme: str, rest: str, packages: PackageResolver | None, model_path: Sequence[Path]) -> list[Path]:
+def _named(
+    scheme: str, rest: str, base: Path | None, packages: PackageResolver | None, model_path: Sequence[Path]
+) -> Iterator[Path]:
     name, _, inside = rest.partition("/")
     share = packages(name) if packages is not None else None
     in_package = [] if share is None else [Path(share) / inside]
     in_models = [folder / rest for folder in model_path]
-    return in_package + in_models if scheme == "package" else in_models + in_package
+    yield from in_package + in_models if scheme == "package" else in_models + in_package
+    if base is not None:
+        yield from (folder / inside for folder in packages_near(name, base))

@@ -69,7 +69,7 @@ def expand(
         raise DescriptionError("no such file", str(path))
     import xacro
 
-    with _LOCK, _supplied(xacro, resolve) as files:
+    with _LOCK, _supplied(xacro, resolve, path.parent) as files:
         xacro.init_stacks(str(path))
         try:
             document = xacro.parse(None, str(path))
@@ -88,9 +88,11 @@ def expand(
 
 
 @contextmanager
-def _supplied(xacro: Any, resolve: PackageResolver | None) -> Iterator[list[str]]:
+def _supplied(xacro: Any, resolve: PackageResolver | None, folder: Path) -> Iterator[list[str]]:
     """Put our parser and package finder into xacro; yields the list of files that were read."""
     from xacro import substitution_args
+
+    from daidalos.description.resolve import packages_near
 
     files: list[str] = []
     parse, find = xacro.parse, substitution_args._eval_find
@@ -114,6 +116,8 @@ def _supplied(xacro: Any, resolve: PackageResolver | None) -> Iterator[list[str]
         try:
             return str(find(name))
         except (ImportError, LookupError):
+            for near in packages_near(name, folder):
+                return str(near)
             raise DescriptionError(f"package {name!r} not found") from None
 
     xacro.parse, substitution_args._eval_find = parse_marked, find_package
