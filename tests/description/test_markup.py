@@ -32,6 +32,11 @@ def test_lines_are_kept():
     assert root.children[0].where == "r.urdf:5"
 
 
+def test_comments_may_come_before_the_declaration():
+    root = parse_markup("<!-- by\n ?> me --> <!-- -->\n<?xml version='1.0'?>\n<a>\n<b/></a>", "a.sdf")
+    assert (root.line, root.children[0].line) == (4, 5)
+
+
 def test_byte_order_mark_and_declared_encoding():
     assert parse_markup(b"\xef\xbb\xbf<a/>").tag == "a"
     assert parse_markup('<?xml version="1.0" encoding="latin-1"?><a b="ü"/>').attribute("b") == "ü"

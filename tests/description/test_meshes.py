@@ -26,6 +26,7 @@ HOLE = ((0.5, 0.5), (1.0, 0.5), (1.0, 1.0), (0.5, 1.0))
     [
         (Box((1, 2, 3)), 6, (1, 2, 3)),
         (Sphere(1), 4 / 3 * np.pi, (2, 2, 2)),
+        (Sphere(1e-4), 4e-12 / 3 * np.pi, (2e-4, 2e-4, 2e-4)),
         (Ellipsoid((1, 2, 3)), 8 * np.pi, (2, 4, 6)),
         (Cylinder(1, 3), 3 * np.pi, (2, 2, 3)),
         (Capsule(0.5, 2), np.pi * 0.25 * 2 + np.pi / 6, (1, 1, 3)),
@@ -42,6 +43,12 @@ def test_solids_have_their_volume(shape, volume, extent):
     assert tuple(np.ptp(mesh.vertices, axis=0)) == pytest.approx(extent, rel=1e-3)
     if not isinstance(shape, Polyline):
         np.testing.assert_allclose(mesh.vertices.max(axis=0) + mesh.vertices.min(axis=0), 0, atol=1e-9)
+
+
+@pytest.mark.parametrize("shape", [Sphere(0), Box((1, 0, 1)), Cylinder(1, -1), Ellipsoid((1, 1, 0))])
+def test_a_shape_needs_an_extent(shape):
+    with pytest.raises(DescriptionError, match="needs positive sizes, got"):
+        triangles_of(shape)
 
 
 def test_a_plane_has_no_inside():

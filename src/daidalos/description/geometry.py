@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from daidalos.description.errors import DescriptionError
 from daidalos.description.pose import Vector
 
 
@@ -131,3 +132,37 @@ class Empty:
 
 
 Geometry = Box | Sphere | Cylinder | Capsule | Ellipsoid | Cone | Plane | Mesh | Heightmap | Polyline | Empty
+
+
+def require_size(geometry: Geometry) -> None:
+    """Check that a shape has an extent.
+
+    Raises
+    ------
+    DescriptionError
+        When a length of it is zero or negative.
+    """
+    lengths = _lengths(geometry)
+    if min(lengths, default=1.0) <= 0:
+        words = ", ".join(f"{length:g}" for length in lengths)
+        raise DescriptionError(f"a {type(geometry).__name__.lower()} needs positive sizes, got {words}")
+
+
+def _lengths(geometry: Geometry) -> tuple[float, ...]:
+    """Return the lengths of a shape that must be positive."""
+    match geometry:
+        case Box(size):
+            return size
+        case Sphere(radius):
+            return (radius,)
+        case Cylinder(radius, length) | Capsule(radius, length) | Cone(radius, length):
+            return (radius, length)
+        case Ellipsoid(radii):
+            return radii
+        case Mesh(scale=scale):
+            return tuple(abs(factor) for factor in scale)
+        case Polyline(height=height):
+            return (height,)
+        case Heightmap(size=(width, depth, _)):
+            return (width, depth)
+    return ()

@@ -13,6 +13,8 @@ from daidalos.description.errors import DescriptionError
 _TRUE = frozenset({"true", "1", "yes", "on"})
 _FALSE = frozenset({"false", "0", "no", "off"})
 
+_LATE_DECLARATION = re.compile(rb"((?:<!--.*?-->\s*)+)(<\?xml\b[^>\n]*\?>)", re.DOTALL)
+
 
 def parse_markup(text: str | bytes, source: str = "") -> Element:
     """Read an XML document.
@@ -20,7 +22,7 @@ def parse_markup(text: str | bytes, source: str = "") -> Element:
     Parameters
     ----------
     text : str or bytes
-        The document. White space before the XML declaration is tolerated, as ROS's own parsers do.
+        The document. White space and comments before the XML declaration are tolerated, as by ROS's own parsers.
     source : str
         Where it came from; errors name it.
 
@@ -42,6 +44,9 @@ def parse_markup(text: str | bytes, source: str = "") -> Element:
     if not body:
         raise DescriptionError("the document is empty, expected XML", source)
     skipped_lines = text[: len(text) - len(body)].count(b"\n")
+    late = _LATE_DECLARATION.match(body)
+    if late:
+        body = late[1] + b" " * len(late[2]) + body[late.end() :]
     return _TreeBuilder(source, skipped_lines, encoding).build(body)
 
 

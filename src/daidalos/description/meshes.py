@@ -23,6 +23,7 @@ from daidalos.description.geometry import (
     Mesh,
     Polyline,
     Sphere,
+    require_size,
 )
 
 _FORMATS = ("stl", "dae", "obj", "gltf", "glb", "ply", "off")
@@ -61,7 +62,7 @@ def triangles_of(geometry: Geometry, segments: int = 48) -> TriangleMesh:
     Raises
     ------
     DescriptionError
-        When a mesh file is missing or can not be read.
+        When a mesh file is missing or can not be read, or a shape has no extent.
     TypeError
         When the shape has no closed surface.
     """
@@ -70,6 +71,7 @@ def triangles_of(geometry: Geometry, segments: int = 48) -> TriangleMesh:
     maker = _MAKERS.get(type(geometry))
     if maker is None:
         raise TypeError(f"a {type(geometry).__name__} has no closed surface")
+    require_size(geometry)
     made = maker(geometry, segments)
     return TriangleMesh(np.asarray(made.vertices, dtype=np.float64), np.asarray(made.faces, dtype=np.int32))
 
@@ -170,7 +172,9 @@ def _box(shape: Box, _: int) -> Any:
 def _sphere(shape: Sphere, segments: int) -> Any:
     import trimesh
 
-    return trimesh.creation.uv_sphere(radius=shape.radius, count=(segments // 2 + 1, segments))
+    # trimesh leaves small triangles out, which a small sphere has nothing else than.
+    sphere = trimesh.creation.uv_sphere(radius=1.0, count=(segments // 2 + 1, segments))
+    return sphere.apply_scale(shape.radius)
 
 
 def _ellipsoid(shape: Ellipsoid, segments: int) -> Any:

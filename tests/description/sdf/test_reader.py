@@ -196,6 +196,26 @@ def test_nested_models_are_flattened(tmp_path):
     assert world.frames["robot::left::tip"] == Pose((5, 1, 1))
 
 
+@pytest.mark.parametrize(
+    ("inside", "links", "parent", "words"),
+    [
+        ("", ["hook"], "world", "taken for the world"),
+        ("<inertial><mass>1</mass></inertial>", ["world_link", "hook"], "world_link", "the link is called world_link"),
+    ],
+)
+def test_a_link_called_world_is_the_world_unless_it_is_a_body(inside, links, parent, words):
+    world = sdf.parse(
+        f"<sdf version='1.6'><world name='w'><model name='m'><link name='world'>{inside}</link>"
+        "<link name='hook'><pose>0 0 2 0 0 0</pose></link><joint name='j' type='fixed'><parent>world</parent>"
+        "<child>hook</child></joint></model></world></sdf>"
+    )
+    (model,) = world.models
+    assert list(model.links) == links
+    assert model.joints["j"].parent == parent
+    assert model.joints["j"].origin == Pose((0, 0, 2))
+    assert words in world.warnings[0]
+
+
 def test_merged_models_lose_their_name(tmp_path):
     folder_of_models(tmp_path)
     model = sdf.parse_model(

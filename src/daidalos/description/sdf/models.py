@@ -51,9 +51,10 @@ class _ModelReader:
 
     def model(self) -> Model:
         element = self._element
+        left_out = self._settle_world()
         self._read_nested()
         self._place_links_and_frames()
-        links = {link.name: link for link in map(self._link, element.all("link"))}
+        links = {link.name: link for link in map(self._link, element.all("link")) if link.name not in left_out}
         joints = {joint.name: joint for joint in map(self._joint, element.all("joint"))}
         plugins = [read_plugin(child) for child in element.all("plugin")]
         for nested, merged in self._nested:
@@ -110,6 +111,21 @@ class _ModelReader:
             name = end.text.strip() or end.text_of("link_name")
             self._graph.add(child.name(), read_pose(child), name, child)
             self._attached[child.name()] = name
+
+    def _settle_world(self) -> set[str]:
+        """Return the links to leave out, since they are but another word for the world; rename others called so."""
+        for link in self._element.all("link"):
+            if link.name() != "world":
+                continue
+            if link.first("inertial", "collision", "visual", "sensor", "light") is None:
+                self._context.warn(link, "taken for the world")
+                return {"world"}
+            self._context.warn(link, "the name means the world, the link is called world_link")
+            link.attributes["name"] = "world_link"
+            for joint in self._element.all("joint"):
+                for end in joint.all("parent", "child"):
+                    end.text = end.text if end.text.strip() != "world" else "world_link"
+        return set()
 
     def _link_of(self, name: str, element: Element) -> str:
         """Follow frames and joints to the link that carries them."""

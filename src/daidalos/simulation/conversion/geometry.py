@@ -26,6 +26,7 @@ from daidalos.description.geometry import (
     Plane,
     Polyline,
     Sphere,
+    require_size,
 )
 from daidalos.description.images import read_grey
 from daidalos.description.meshes import triangles_of
@@ -66,9 +67,7 @@ def add_geoms(body: Any, geometry: Geometry, pose: Pose, assets: Assets, static:
     """
     if isinstance(geometry, Empty):
         return []
-    if min(_sizes(geometry), default=1.0) <= 0:
-        words = ", ".join(f"{size:g}" for size in _sizes(geometry))
-        raise DescriptionError(f"a {type(geometry).__name__.lower()} needs positive sizes, got {words}")
+    require_size(geometry)
     if isinstance(geometry, Mesh | Cone | Polyline):
         optimization = getattr(geometry, "optimization", "")
         decompose = optimization == "convex_decomposition" or (static and optimization != "convex_hull")
@@ -92,26 +91,6 @@ def add_wheel(body: Any, disc: Geometry, pose: Pose) -> list[Any]:
     seen = _add(body, _Type.mjGEOM_CYLINDER, (disc.radius, disc.length / 2, 0.0), pose)
     _only_seen(seen)
     return [rolling, seen]
-
-
-def _sizes(geometry: Geometry) -> tuple[float, ...]:
-    """Return the lengths of a shape that must be positive."""
-    match geometry:
-        case Box(size):
-            return size
-        case Sphere(radius):
-            return (radius,)
-        case Cylinder(radius, length) | Capsule(radius, length) | Cone(radius, length):
-            return (radius, length)
-        case Ellipsoid(radii):
-            return radii
-        case Mesh(scale=scale):
-            return tuple(abs(factor) for factor in scale)
-        case Polyline(height=height):
-            return (height,)
-        case Heightmap(size=(width, depth, _)):
-            return (width, depth)
-    return ()
 
 
 def _add(body: Any, kind: Any, size: tuple[float, float, float], pose: Pose) -> Any:
