@@ -1,8 +1,10 @@
+import tracemalloc
+
 import numpy as np
 import pytest
 import trimesh
 
-from daidalos.description.geometry import Box, Polyline
+from daidalos.description.geometry import Box, Polyline, Sphere
 from daidalos.description.meshes import TriangleMesh, triangles_of
 from daidalos.simulation.conversion import convex
 from daidalos.simulation.conversion.convex import connected_pieces, content_key, convex_parts
@@ -81,6 +83,17 @@ def test_what_moves_gets_hulls():
     parts, concave = parts_of(crumbs, decompose=False)
     assert len(parts) == 1
     assert concave
+
+
+def test_a_hull_of_very_many_vertices_needs_little_memory():
+    ball = triangles_of(Sphere(1), segments=300)
+    tracemalloc.start()
+    (hull,), concave = parts_of(ball, decompose=False)
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert not concave
+    assert volume(hull) == pytest.approx(4 / 3 * np.pi, rel=1e-3)
+    assert peak < 100 * ball.vertices.nbytes
 
 
 @pytest.mark.parametrize(

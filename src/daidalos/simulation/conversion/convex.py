@@ -121,7 +121,8 @@ def _hull(vertices: np.ndarray) -> TriangleMesh:
     from scipy.spatial import ConvexHull
 
     center = vertices.mean(axis=0)
-    _, spread, axes = np.linalg.svd(vertices - center, full_matrices=True)
+    # The small triangular factor has the singular values and axes of all vertices.
+    _, spread, axes = np.linalg.svd(np.linalg.qr(vertices - center, mode="r"), full_matrices=True)
     spread = np.concatenate((spread, np.zeros(3)))[:3]
     size = float(np.ptp(vertices, axis=0).max())
     for axis in axes[spread < max(1e-4 * float(spread[0]), 1e-9)]:
