@@ -87,6 +87,7 @@ class RobotStatePublisher(Node):
             self._transforms(np.flatnonzero(~self._tree.moving), self.get_clock().now().to_msg())
         )
         self._description_publisher.publish(String(data=text))
+        self.get_logger().info("Robot initialized")
 
     def _transforms(self, rows: Any, stamp: Any) -> list[Any]:
         from geometry_msgs.msg import Quaternion, Transform, TransformStamped, Vector3
