@@ -37,6 +37,7 @@ FLAGS = (
 )
 START_S = 30
 ANSWER_S = 30
+CTRL = 2  # among the modifiers of an event
 
 
 def find_chromium() -> str | None:
@@ -136,11 +137,20 @@ class Chromium:
             raise PageError(f"not true within {timeout} s: {condition}; errors: {self.errors}")
         return value
 
-    def press(self, key: str) -> None:
+    def press(self, key: str, *, ctrl: bool = False) -> None:
         """Press and release a key."""
-        text = {"text": key} if len(key) == 1 else {}
-        self._run(self._command("Input.dispatchKeyEvent", type="keyDown", key=key, **text))
+        more: dict[str, Any] = {"modifiers": CTRL if ctrl else 0}
+        if key == "Enter":
+            more |= {"code": key, "windowsVirtualKeyCode": 13, "text": "\r"}
+        elif len(key) == 1 and not ctrl:
+            more |= {"text": key}
+        self._run(self._command("Input.dispatchKeyEvent", type="keyDown", key=key, **more))
         self._run(self._command("Input.dispatchKeyEvent", type="keyUp", key=key))
+
+    def type(self, text: str) -> None:
+        """Press the keys of a text, into what has the focus."""
+        for key in text:
+            self.press(key)
 
     def click(self, x: float, y: float) -> None:
         """Press and release the left button at a place in the window."""
@@ -156,15 +166,23 @@ class Chromium:
         )
         self.click(box["x"], box["y"])
 
-    def drag(self, points: list[tuple[float, float]], button: str = "left") -> None:
-        """Press at the first point, move through the others, release at the last."""
-        mouse = {"button": button, "clickCount": 1}
+    def drag(
+        self, points: list[tuple[float, float]], button: str = "left", *, ctrl: bool = False, key: str = ""
+    ) -> None:
+        """Press at the first point, move through the others, press a key there if one is named, and release."""
+        mouse: dict[str, Any] = {"button": button, "modifiers": CTRL if ctrl else 0}
         (x, y), *others = points
         self._mouse("mouseMoved", x, y)
-        self._mouse("mousePressed", x, y, buttons=1, **mouse)
+        self._mouse("mousePressed", x, y, buttons=1, clickCount=1, **mouse)
         for x, y in others:
-            self._mouse("mouseMoved", x, y, buttons=1, button=button)
-        self._mouse("mouseReleased", x, y, **mouse)
+            self._mouse("mouseMoved", x, y, buttons=1, **mouse)
+        if key:
+            self.press(key)
+        self._mouse("mouseReleased", x, y, clickCount=1, **mouse)
+
+    def hover(self, x: float, y: float) -> None:
+        """Move the mouse to a place in the window."""
+        self._mouse("mouseMoved", x, y)
 
     def wheel(self, x: float, y: float, by: float) -> None:
         """Turn the wheel at a place in the window."""

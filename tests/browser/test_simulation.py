@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -16,6 +19,7 @@ pytestmark = [pytest.mark.browser, pytest.mark.slow]
 _DOMAIN = 100 + os.getpid() % 100
 _MODELS = "document.querySelector('[data-test=models]')?.textContent"
 _FACTOR = "document.querySelector('[data-test=rtf]').textContent"
+_POSE = "document.querySelector('[data-test=pose]').textContent"
 _SELECTED = "document.querySelector('footer select').value"
 
 
@@ -36,52 +40,169 @@ def _settle(browser: Chromium) -> None:
     browser.evaluate("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
 
 
-def _position(name: str) -> tuple[float, float, float]:
-    with Terminal(
-        "service", "call", "/gazebo/get_entities_states", "simulation_interfaces/srv/GetEntitiesStates",
-        f"{{filters: {{filter: '^{name}$'}}}}", domain=_DOMAIN,
-    ) as call:  # fmt: skip
+def _pose(browser: Chromium) -> tuple[float, float, float, float]:
+    """What the page says of the selected model: x, y and z in m, yaw in degrees."""
+    text = browser.wait_for("document.querySelector('[data-test=pose]')?.textContent")
+    x, y, z, yaw = (float(number) for number in re.findall(r"-?\d+(?:\.\d+)?", text))
+    return x, y, z, yaw
+
+
+def _wait_for_pose(browser: Chromium, condition: str) -> tuple[float, float, float, float]:
+    """Wait until x, y, z and yaw of the selected model fulfil a condition, and return them."""
+    numbers = rf"{_POSE}.match(/-?\d+([.]\d+)?/g).map(Number)"
+    browser.wait_for(f"(([x, y, z, yaw]) => {condition})({numbers})")
+    return _pose(browser)
+
+
+def _handle(browser: Chromium, axis: str) -> tuple[float, float]:
+    _settle(browser)
+    at = browser.evaluate(f"daidalos.handle('{axis}')")
+    return at["x"], at["y"]
+
+
+def _pull(browser: Chromium, axis: str, by: tuple[float, float], **how: Any) -> None:
+    """Drag a handle of the selected model, with three moves of the mouse."""
+    x, y = _handle(browser, axis)
+    browser.drag([(x, y), *((x + by[0] * part, y + by[1] * part) for part in (0.2, 0.7, 1.0))], **how)
+    _settle(browser)
+
+
+def _told(name: str) -> str:
+    """What a model looks like and where it is, asked from a terminal."""
+    words = ("service", "call", "/gazebo/get_shapes", "daidalos_msgs/srv/GetShapes", f"{{names: [{name}]}}")
+    with Terminal(*words, domain=_DOMAIN) as call:
         assert call.wait(30) == 0, call.text
-        numbers = call.text.partition("Point(")[2].partition(")")[0]
-    x, y, z = (float(part.partition("=")[2]) for part in numbers.split(","))
+        return call.text
+
+
+def _size(told: str) -> tuple[float, float, float]:
+    x, y, z = (float(number) for number in re.findall(r"scale=\S*Vector3\(x=(\S+), y=(\S+), z=(\S+)\)", told)[0])
     return x, y, z
 
 
-def test_world_is_edited_while_it_runs(browser: Chromium) -> None:
+def _write_model(folder: Path) -> None:
+    (folder / "lamp").mkdir()
+    (folder / "lamp" / "model.config").write_text("<model><sdf version='1.6'>model.sdf</sdf></model>")
+    shape = "<geometry><box><size>0.2 0.2 0.6</size></box></geometry>"
+    (folder / "lamp" / "model.sdf").write_text(
+        f"<sdf version='1.6'><model name='lamp'><link name='link'><pose>0 0 0.3 0 0 0</pose><collision name='c'>{shape}"
+        f"</collision><visual name='v'>{shape}</visual></link></model></sdf>"
+    )
+
+
+def test_world_is_edited_while_it_runs(browser: Chromium, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    _write_model(tmp_path)
+    monkeypatch.setenv("GAZEBO_MODEL_PATH", str(tmp_path))
     with (
         Terminal("run", "gazebo_ros", "gzserver", domain=_DOMAIN),
         Terminal("run", "rqt_gui", "rqt_gui", "--headless", "--port", "0", domain=_DOMAIN) as studio,
     ):
         url = studio.wait_for("^window: ")[0].split()[1].split("?")[0]
         browser.open(f"{url}?panel=simulation")
-        browser.wait_for(f"{_MODELS} === '1 models'", 60)
+        browser.wait_for(f"{_MODELS} === '1 model'", 60)
         browser.wait_for(f"/^[01][.]\\d\\d×$/.test({_FACTOR})")
 
-        browser.click_on("[data-test=insert-box]")
-        browser.click(550, 430)
-        browser.wait_for(f"{_MODELS} === '2 models' && {_SELECTED} === 'box'")
-        _settle(browser)
-        before = _position("box")
-        assert before[2] == pytest.approx(0.15, abs=0.02)
-
-        browser.click_on("[data-test=mode-move]")
-        browser.drag([(550, 428), (570, 440), (620, 470), (680, 500)])
-        browser.wait_for(f"{_SELECTED} === 'box'")
-        after = _position("box")
-        assert abs(after[0] - before[0]) + abs(after[1] - before[1]) > 0.3
-
-        browser.click_on("[data-test=mode-scale]")
-        browser.drag([(680, 497), (680, 460), (680, 400)])
-        browser.wait_for("!document.querySelector('.complaint-text')")
-
-        browser.click_on("[data-test=play]")
-        browser.wait_for(f"{_FACTOR} === 'paused'")
-        assert _position("box")[2] > 0.2, "twice as large, its middle is higher"
-        browser.click_on("[data-test=step]")
-        browser.click_on("[data-test=play]")
-        browser.wait_for(f"{_FACTOR} !== 'paused'")
-
-        browser.click_on("[data-test=delete]")
-        browser.wait_for(f"{_MODELS} === '1 models'")
+        _shapes_are_put(browser)
+        _a_box_is_moved_and_turned(browser)
+        _every_shape_is_scaled(browser)
+        _time_is_steered(browser)
+        _models_are_put(browser)
+        _all_is_taken_back(browser)
         assert browser.evaluate("document.querySelector('.complaint-text')?.textContent ?? ''") == ""
         assert browser.errors == []
+
+
+def _put(browser: Chromium, shape: str, x: float, y: float, name: str) -> None:
+    browser.click_on(f"[data-test=insert-{shape}]")
+    browser.hover(x, y)
+    browser.click(x, y)
+    browser.wait_for(f"{_SELECTED} === '{name}'")
+
+
+def _choose(browser: Chromium, name: str) -> None:
+    browser.evaluate(
+        f"(() => {{ const e = document.querySelector('footer select'); e.value = '{name}';"
+        " e.dispatchEvent(new Event('change', { bubbles: true })); })()"
+    )
+    browser.wait_for(f"{_SELECTED} === '{name}'")
+    _settle(browser)
+
+
+def _shapes_are_put(browser: Chromium) -> None:
+    _put(browser, "sphere", 330, 300, "sphere")
+    _put(browser, "cylinder", 800, 300, "cylinder")
+    _put(browser, "box", 550, 430, "box")
+    browser.wait_for(f"{_MODELS} === '4 models'")
+    assert _pose(browser)[2] == pytest.approx(0.15, abs=0.02)
+
+
+def _a_box_is_moved_and_turned(browser: Chromium) -> None:
+    x, y, *_ = before = _pose(browser)
+    browser.press("Escape")
+    browser.wait_for(f"{_SELECTED} === ''")
+    browser.press("t")
+    browser.drag([(550, 428), (560, 440), (590, 460), (620, 480)])  # the model itself, along the ground
+    browser.wait_for(f"{_SELECTED} === 'box'")
+    after = _wait_for_pose(browser, f"Math.hypot(x - {x}, y - {y}) > 0.2")
+    assert after[2] == pytest.approx(before[2], abs=0.02)
+
+    _pull(browser, "x", (60, -60))  # by a handle, along its axis
+    along = _wait_for_pose(browser, f"Math.abs(x - {after[0]}) > 0.1")
+    assert along[1] == pytest.approx(after[1], abs=0.02)
+
+    _pull(browser, "x", (60, 60), key="Escape")
+    _wait_for_pose(browser, f"Math.abs(x - {along[0]}) < 0.02")
+
+    browser.press("r")
+    where = browser.evaluate("daidalos.simulated('box')")
+    browser.drag([(where["x"] + by, where["y"]) for by in (0, 20, 60, 90)], ctrl=True)
+    _wait_for_pose(browser, "yaw === 60")
+
+
+def _every_shape_is_scaled(browser: Chromium) -> None:
+    browser.press("s")
+    for name, changes in (("box", (False, False, True)), ("cylinder", (False, False, True)), ("sphere", (True,) * 3)):
+        _choose(browser, name)
+        _pull(browser, "z", (0, -60))
+        x, y, z = _size(_told(name))
+        grown = (x > 0.31, y > 0.31, z > 0.31)
+        assert grown == changes, name
+        assert _pose(browser)[2] == pytest.approx(z / 2, abs=0.03), "it stands where it stood"
+
+
+def _time_is_steered(browser: Chromium) -> None:
+    time = "document.querySelector('.bar .clock .figures').textContent"
+    browser.click_on("[data-test=play]")
+    browser.wait_for(f"{_FACTOR} === 'paused'")
+    before = browser.evaluate(time)
+    browser.click_on("[data-test=step]")
+    browser.wait_for(f"{time} !== '{before}'")
+    browser.evaluate(
+        "(() => { const e = document.querySelector('[aria-label=Speed]'); e.value = '0.5';"
+        " e.dispatchEvent(new Event('change', { bubbles: true })); })()"
+    )
+    browser.click_on("[data-test=play]")
+    browser.wait_for(f"/^0[.][45]/.test({_FACTOR})")
+
+
+def _models_are_put(browser: Chromium) -> None:
+    browser.click_on("[data-test=models-to-insert]")
+    browser.wait_for("[...document.querySelectorAll('.menu-item')].some((e) => e.textContent.startsWith('lamp'))")
+    assert browser.evaluate("document.querySelector('.menu-list').textContent.includes('turtlebot3_waffle')")
+    browser.click_on("[data-test=model-address]")
+    browser.type("model://lamp")
+    browser.press("Enter")
+    browser.hover(300, 550)
+    browser.click(300, 550)
+    browser.wait_for(f"{_MODELS} === '5 models' && {_SELECTED} === 'lamp'")
+
+
+def _all_is_taken_back(browser: Chromium) -> None:
+    browser.press("z", ctrl=True)
+    browser.wait_for(f"{_MODELS} === '4 models'")
+    _choose(browser, "sphere")
+    large = _pose(browser)[2]
+    browser.press("z", ctrl=True)
+    _wait_for_pose(browser, f"z < {large - 0.02}")
+    browser.press("Delete")
+    browser.wait_for(f"{_MODELS} === '3 models' && {_SELECTED} === ''")

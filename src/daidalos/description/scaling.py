@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import TypeVar
 
 from daidalos.description.geometry import (
     Box,
@@ -18,21 +19,34 @@ from daidalos.description.geometry import (
     Sphere,
 )
 from daidalos.description.joint import Joint, JointType
-from daidalos.description.link import Inertial, Link
+from daidalos.description.link import Collision, Inertial, Link, Visual
 from daidalos.description.pose import Pose, Vector
 from daidalos.description.world import Model
 
+Part = TypeVar("Part", Visual, Collision)
 
-def scaled(model: Model, factor: float) -> Model:
-    """Return a model whose every length is multiplied; masses grow by the third power, inertias by the fifth.
+
+def scaled(model: Model, factor: float | Vector) -> Model:
+    """Return a model whose lengths are multiplied; it keeps its density.
+
+    Parameters
+    ----------
+    model : Model
+    factor : float or tuple of 3 floats
+        Of all lengths, or of those along the model's axes.
 
     Raises
     ------
     ValueError
-        When the factor is not positive.
+        When a factor is not positive, or when a model of several links or of turned shapes should be stretched.
     """
-    if not factor > 0:
-        raise ValueError(f"a factor should be positive, got {factor:g}")
+    factors = factor if isinstance(factor, tuple) else (factor, factor, factor)
+    for each in factors:
+        if not each > 0:
+            raise ValueError(f"a factor should be positive, got {each:g}")
+    if factors != (factors[0],) * 3:
+        return replace(model, links={name: _stretched(model, link, factors) for name, link in model.links.items()})
+    factor = factors[0]
     return replace(
         model,
         links={name: _link(link, factor) for name, link in model.links.items()},
@@ -67,6 +81,29 @@ def scaled_geometry(shape: Geometry, factor: float) -> Geometry:
     return shape
 
 
+def stretched_geometry(shape: Geometry, factors: Vector) -> Geometry:
+    """Return a shape that is larger by a factor along each of its axes.
+
+    Raises
+    ------
+    ValueError
+        When there is no such shape.
+    """
+    x, y, z = factors
+    match shape:
+        case Box((width, depth, height)):
+            return replace(shape, size=(width * x, depth * y, height * z))
+        case Sphere(radius):
+            return Ellipsoid((radius * x, radius * y, radius * z))
+        case Ellipsoid((first, second, third)):
+            return replace(shape, radii=(first * x, second * y, third * z))
+        case Cylinder(radius, length) | Cone(radius, length) if x == y:
+            return replace(shape, radius=radius * x, length=length * z)
+        case Mesh(scale=(first, second, third)):
+            return replace(shape, scale=(first * x, second * y, third * z))
+    raise ValueError(f"a {type(shape).__name__.lower()} can not be scaled by {x:g}, {y:g}, {z:g}")
+
+
 def _link(link: Link, factor: float) -> Link:
     return replace(
         link,
@@ -82,6 +119,50 @@ def _link(link: Link, factor: float) -> Link:
         sensors=tuple(replace(sensor, pose=_pose(sensor.pose, factor)) for sensor in link.sensors),
         lights=tuple(replace(light, pose=_pose(light.pose, factor)) for light in link.lights),
     )
+
+
+def _stretched(model: Model, link: Link, factors: Vector) -> Link:
+    poses = [link.pose, *(visual.pose for visual in link.visuals), *(solid.pose for solid in link.collisions)]
+    if len(model.links) > 1 or not all(_is_upright(pose) for pose in poses):
+        raise ValueError(f"{model.name} can only be scaled as a whole: it has several links or turned shapes")
+    return replace(
+        link,
+        inertial=None if link.inertial is None else _stretched_inertial(link.inertial, factors),
+        pose=_stretched_pose(link.pose, factors),
+        visuals=tuple(_stretched_part(visual, factors) for visual in link.visuals),
+        collisions=tuple(_stretched_part(collision, factors) for collision in link.collisions),
+        sensors=tuple(replace(sensor, pose=_stretched_pose(sensor.pose, factors)) for sensor in link.sensors),
+        lights=tuple(replace(light, pose=_stretched_pose(light.pose, factors)) for light in link.lights),
+    )
+
+
+def _stretched_part(part: Part, factors: Vector) -> Part:
+    geometry = stretched_geometry(part.geometry, factors)
+    return replace(part, pose=_stretched_pose(part.pose, factors), geometry=geometry)
+
+
+def _stretched_inertial(inertial: Inertial, factors: Vector) -> Inertial:
+    # The second moment of the mass about a plane grows with the square of the factor across it.
+    if not _is_upright(inertial.pose):
+        raise ValueError("a model can only be scaled as a whole where its centre of mass is turned")
+    x, y, z = factors
+    volume = x * y * z
+    xx, xy, xz, yy, yz, zz = inertial.inertia
+    across_x = (yy + zz - xx) / 2 * x * x
+    across_y = (xx + zz - yy) / 2 * y * y
+    across_z = (xx + yy - zz) / 2 * z * z
+    moments = (across_y + across_z, xy * x * y, xz * x * z, across_x + across_z, yz * y * z, across_x + across_y)
+    xx, xy, xz, yy, yz, zz = (volume * moment for moment in moments)
+    return Inertial(inertial.mass * volume, _stretched_pose(inertial.pose, factors), (xx, xy, xz, yy, yz, zz))
+
+
+def _stretched_pose(pose: Pose, factors: Vector) -> Pose:
+    (x, y, z), (a, b, c) = pose.position, factors
+    return Pose((x * a, y * b, z * c), pose.orientation)
+
+
+def _is_upright(pose: Pose) -> bool:
+    return all(abs(value) < 1e-9 for value in pose.orientation[:3])
 
 
 def _joint(joint: Joint, factor: float) -> Joint:

@@ -14,6 +14,7 @@ from urllib.parse import urlencode
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
 
+from daidalos.description.resolve import default_model_path
 from daidalos.nodes.foxglove_bridge._graph_source import RosGraphSource
 from daidalos.nodes.packages import package_share
 from daidalos.studio.assets import AssetResolver
@@ -44,7 +45,7 @@ class Studio:
     def __init__(self, node: Node, port: int = DEFAULT_PORT, hosts: Sequence[str] = LOOPBACK) -> None:
         self._node = node
         self._graph = node.handle.graph
-        self._assets = AssetResolver(_share_directory)
+        self._assets = AssetResolver(_share_directory, default_model_path())
         self._source = RosGraphSource(node)
         self._server = StudioServer(
             self._source,

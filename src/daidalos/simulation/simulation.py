@@ -154,8 +154,14 @@ class Simulation(Engine):
                 corners += [centre - reach, centre + reach]
         return np.min(corners, axis=0), np.max(corners, axis=0)
 
-    def scale(self, model: str, factor: float) -> None:
+    def scale(self, model: str, factor: float | Vector) -> None:
         """Make a model larger or smaller where it stands: its lowest point stays at its height.
+
+        Parameters
+        ----------
+        model : str
+        factor : float or tuple of 3 floats
+            Of all its lengths, or of those along its axes where it has one link.
 
         Raises
         ------

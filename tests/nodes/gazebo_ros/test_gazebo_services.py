@@ -193,12 +193,14 @@ def test_shapes_are_inserted_and_scaled(shop):
     fields = {"shape": "box", "size": Vector3(x=1.0, y=1.0, z=1.0), "mass": 2.0, "pose": at(0.0)}
     first, second = (shop.call(InsertShape, "/gazebo/insert_shape", **fields) for _ in range(2))
     assert (first.name, second.name) == ("box", "box_0")
-    assert shop.call(ScaleEntity, "/gazebo/scale_entity", name="box", factor=2.0).success
+    assert shop.call(ScaleEntity, "/gazebo/scale_entity", name="box", factors=Vector3(x=2.0, y=1.0, z=2.0)).success
     assert state(shop, "box").state.pose.position.z == pytest.approx(1.0)
     wrong = shop.call(InsertShape, "/gazebo/insert_shape", shape="cube")
     assert not wrong.success
     assert "no shape 'cube'" in wrong.status_message
-    assert not shop.call(ScaleEntity, "/gazebo/scale_entity", name="nobody", factor=2.0).success
+    assert not shop.call(
+        ScaleEntity, "/gazebo/scale_entity", name="nobody", factors=Vector3(x=2.0, y=2.0, z=2.0)
+    ).success
 
 
 def test_looks_of_models_are_told(shop):

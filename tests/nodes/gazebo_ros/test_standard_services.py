@@ -1,6 +1,8 @@
 """The services and the action that every simulator may offer."""
 
 import pytest
+import trimesh
+from daidalos_msgs.srv import GetShapes
 from geometry_msgs.msg import Point, Pose, PoseStamped, Twist, Vector3
 from rclpy.action import ActionClient
 from ros_gz_interfaces.msg import Entity, EntityFactory, WorldControl
@@ -21,6 +23,8 @@ from daidalos.nodes.gazebo_ros._host import read_world, wanted_speed
 from nodes.gazebo_ros.conftest import BOX, WORLD
 
 OK = Result.RESULT_OK
+LAMP = """<sdf version="1.6"><model name="lamp"><link name="link"><visual name="v"><geometry><mesh>
+<uri>meshes/lamp.stl</uri></mesh></geometry></visual></link></model></sdf>"""
 
 
 def ask(shop, kind, name, /, **fields):
@@ -47,6 +51,22 @@ def test_entities_are_spawned_by_text_or_file(shop, tmp_path):
     broken = spawn(shop, "broken", resource=Resource(resource_string="<sdf"))
     assert broken.result.result == srv.SpawnEntity.Response.RESOURCE_PARSE_ERROR
     assert broken.result.error_message
+
+
+def test_models_and_robots_to_spawn_are_listed(shop, tmp_path, monkeypatch):
+    (tmp_path / "lamp" / "meshes").mkdir(parents=True)
+    trimesh.creation.box((0.2, 0.2, 0.2)).export(tmp_path / "lamp" / "meshes" / "lamp.stl")
+    (tmp_path / "lamp" / "model.config").write_text("<model><sdf version='1.6'>lamp-1_6.sdf</sdf></model>")
+    (tmp_path / "lamp" / "lamp-1_6.sdf").write_text(LAMP)
+    monkeypatch.setenv("GAZEBO_MODEL_PATH", str(tmp_path))
+    spawnables = [each.entity_resource.uri for each in ask(shop, srv.GetSpawnables, "get_spawnables").spawnables]
+    assert spawnables[0] == "model://lamp"
+    assert "package://turtlebot3_description/urdf/turtlebot3_waffle.urdf.xacro" in spawnables
+    assert not [uri for uri in spawnables if "wheel" in uri], "parts of robots are none"
+
+    assert spawn(shop, "lamp", resource=Resource(uri="model://lamp")).result.result == OK
+    (shape,) = shop.call(GetShapes, "/gazebo/get_shapes", names=["lamp"]).shapes
+    assert shape.mesh_resource == (tmp_path / "lamp" / "meshes" / "lamp.stl").as_uri()
 
 
 def test_entities_are_filtered(shop):

@@ -37,7 +37,7 @@ class EditingServices:
         response.name = self._host.insert(model, request.name or None, pose_of(request.pose), rename=True)
 
     def _scale(self, request: Any, response: Any) -> None:
-        self._host.scale(request.name, request.factor)
+        self._host.scale(request.name, vector_of(request.factors))
 
     def _shapes(self, request: Any, response: Any) -> None:
         def work(simulation: Simulation) -> None:

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from daidalos.description.pose import Pose
+from daidalos.description.pose import Pose, Vector
 from daidalos.description.world import Physics
 from daidalos.nodes.gazebo_ros._entities import find_entity
 from daidalos.nodes.gazebo_ros._pacing import PacedSimulation
@@ -91,8 +91,8 @@ class Host:
 
         return self.paced.call(work)
 
-    def scale(self, name: str, factor: float) -> None:
-        """Make a model larger or smaller.
+    def scale(self, name: str, factors: Vector) -> None:
+        """Make a model larger or smaller along its axes.
 
         Raises
         ------
@@ -100,7 +100,7 @@ class Host:
         """
 
         def work(simulation: Simulation) -> None:
-            simulation.scale(name, factor)
+            simulation.scale(name, factors)
             self._changed(simulation)
 
         self.paced.call(work)
@@ -177,8 +177,25 @@ class Host:
         self.paced.call(lambda simulation: simulation.restore(self._saved))
 
 
-def read_entity(text: str) -> Robot | Model:
-    """Read a URDF or SDF document.
+def read_entity_file(path: Path) -> Robot | Model:
+    """Read a URDF, xacro or SDF file, or a model's folder.
+
+    Raises
+    ------
+    DescriptionError, OSError, UnicodeDecodeError
+    """
+    from daidalos.description.markup import Element
+    from daidalos.description.sdf.includes import model_file
+    from daidalos.description.xacro import load_xacro
+
+    file = model_file(path, Element("entity", source=str(path)))
+    is_xacro = file.suffix == ".xacro"
+    text = load_xacro(file, resolve=package_share) if is_xacro else file.read_text(encoding="utf-8")
+    return read_entity(text, str(file))
+
+
+def read_entity(text: str, source: str = "the entity's description") -> Robot | Model:
+    """Read a URDF or SDF document; relative addresses in SDF start at the folder of `source`.
 
     Raises
     ------
@@ -187,8 +204,8 @@ def read_entity(text: str) -> Robot | Model:
     from daidalos.description import sdf, urdf
 
     if "<robot" in text.lstrip()[:2000]:
-        return urdf.parse(text, "the entity's description", package_share)
-    return sdf.parse_model(text, "the entity's description", package_share)
+        return urdf.parse(text, source, package_share)
+    return sdf.parse_model(text, source, package_share)
 
 
 def read_world(path: Path | None, text: str = "") -> World:

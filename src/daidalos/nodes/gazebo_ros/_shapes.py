@@ -55,7 +55,7 @@ def shape_markers(model: Robot | Model, name: str) -> list[Any]:
             marker.scale = Vector3(x=float(x), y=float(y), z=float(z))
             marker.color = color_message((red, green, blue, alpha * opacity))
             if isinstance(geometry, Mesh):
-                marker.mesh_resource = geometry.uri
+                marker.mesh_resource = _address(geometry)
                 marker.mesh_use_embedded_materials = material is None
             markers.append(marker)
     return markers
@@ -67,6 +67,13 @@ def _seen(link: Link) -> Iterator[tuple[Geometry, Pose, Material | None, float]]
     if not link.visuals:
         for collision in link.collisions:
             yield collision.geometry, collision.pose, None, 1.0
+
+
+def _address(mesh: Mesh) -> str:
+    """Return where those who know nothing of models and of this description's folder find the file."""
+    if mesh.path is None or mesh.uri.startswith(("package://", "file://")):
+        return mesh.uri
+    return mesh.path.absolute().as_uri()
 
 
 def _color(material: Material | None) -> Rgba:

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -14,17 +14,23 @@ from daidalos.description.errors import DescriptionError
 from daidalos.description.resolve import default_model_path, resolve_uri
 from daidalos.nodes.conversions import time_message
 from daidalos.nodes.gazebo_ros._entities import find_entity, motion_of, set_motion
-from daidalos.nodes.gazebo_ros._host import Host, read_world
+from daidalos.nodes.gazebo_ros._host import Host, read_entity, read_entity_file, read_world
 from daidalos.nodes.gazebo_ros._states import pose_message, pose_of, twist_message, vector_of
 from daidalos.nodes.packages import package_share
 from daidalos.simulation import Simulation
 from daidalos.simulation.errors import NameTakenError, SimulationError, UnknownNameError
+
+if TYPE_CHECKING:
+    from daidalos.description.robot import Robot
+    from daidalos.description.world import Model
 
 _NOT_FOUND, _INCORRECT_STATE, _FAILED, _UNSUPPORTED, _OK = 2, 3, 4, 0, 1
 _NAME_TAKEN, _NAME_INVALID, _NO_RESOURCE, _PARSE_ERROR = 101, 102, 104, 106
 _WORLD_NO_RESOURCE, _WORLD_PARSE_ERROR = 102, 103
 _STOPPED, _PLAYING, _PAUSED, _QUITTING = 0, 1, 2, 3
 _FEATURES = (0, 1, 2, 4, 5, 6, 8, 9, 10, 11, 12, 13, 14, 20, 21, 22, 23, 24, 25, 26, 31, 32, 33, 40, 41, 43, 44, 45, 50)
+
+_ROBOT = re.compile(r"<robot[^>]*\sname=")
 
 
 @dataclass(frozen=True)
@@ -109,11 +115,10 @@ class StandardServices:
     def _spawned(self, request: Any) -> str:
         if request.name and not re.fullmatch(r"[\w.:/ -]+", request.name):
             raise Failure(_NAME_INVALID, f"{request.name!r} is no name for an entity")
-        text = _resource(request.entity_resource, _NO_RESOURCE)
         stamped = request.initial_pose
         try:
-            return self._host.spawn(
-                text,
+            return self._host.insert(
+                _entity(request.entity_resource),
                 request.name or None,
                 pose_of(stamped.pose),
                 stamped.header.frame_id,
@@ -211,9 +216,10 @@ class StandardServices:
 
         folders = [Path(source) for source in request.sources] + list(default_model_path())
         configs = [config for folder in folders if folder.is_dir() for config in sorted(folder.glob("*/model.config"))]
+        found = [(f"model://{config.parent.name}", config.parent) for config in configs]
         response.spawnables = [
-            Spawnable(entity_resource=Resource(uri=f"model://{config.parent.name}"), description=str(config.parent))
-            for config in configs
+            Spawnable(entity_resource=Resource(uri=uri), description=str(path))
+            for uri, path in (*found, *(() if request.sources else _robots()))
         ]
 
     # Time
@@ -330,6 +336,29 @@ def _answering(work: Callable[[Any, Any], None]) -> Callable[[Any, Any], Any]:
         return response
 
     return answer
+
+
+def _robots() -> Iterator[tuple[str, Path]]:
+    """Yield addresses and files of the robots that packages describe."""
+    from ament_index_python.packages import get_packages_with_prefixes
+
+    for package, prefix in sorted(get_packages_with_prefixes().items()):
+        folder = Path(prefix, "share", package, "urdf")
+        for path in sorted(folder.glob("*.urdf*")):
+            # What has no name is a part that others include.
+            if path.suffix in (".urdf", ".xacro") and _ROBOT.search(path.read_text(encoding="utf-8", errors="replace")):
+                yield f"package://{package}/urdf/{path.name}", path
+
+
+def _entity(resource: Any) -> Robot | Model:
+    """Read a description that is given as text or by its address."""
+    if resource.resource_string:
+        return read_entity(resource.resource_string)
+    path = _file(resource.uri, _NO_RESOURCE)
+    try:
+        return read_entity_file(path)
+    except (OSError, UnicodeDecodeError) as error:
+        raise Failure(_NO_RESOURCE, f"{path} can not be read: {error}") from None
 
 
 def _resource(resource: Any, missing: int) -> str:

@@ -2,6 +2,7 @@
 import { Vector3 } from "three";
 import { MapDisplay } from "../displays/occupancy_grid";
 import { PointsDisplay } from "../displays/points_display";
+import type { Editor } from "../panels/simulation/editor";
 import type { World } from "../scene/world";
 import type { Studio } from "./studio";
 
@@ -35,6 +36,10 @@ export interface TestHooks {
   /** Where a point of the fixed frame is in the window, in CSS pixels. */
   project(x: number, y: number, z?: number): { x: number; y: number } | null;
   takeTool(id: string): void;
+  /** Where a model of the simulation is in the window. */
+  simulated(name: string): { x: number; y: number } | null;
+  /** Where the handle of the selected model in the simulation is in the window. */
+  handle(axis: "x" | "y" | "z"): { x: number; y: number } | null;
 }
 
 declare global {
@@ -44,6 +49,7 @@ declare global {
 }
 
 let world: World | undefined;
+let editor: Editor | undefined;
 
 /** Tell the hooks of the 3-D view; returns how to take it back. */
 export function attachWorld(attached: World): () => void {
@@ -51,6 +57,16 @@ export function attachWorld(attached: World): () => void {
   return () => {
     if (world === attached) {
       world = undefined;
+    }
+  };
+}
+
+/** Tell the hooks of the simulation's editor; returns how to take it back. */
+export function attachEditor(attached: Editor): () => void {
+  editor = attached;
+  return () => {
+    if (editor === attached) {
+      editor = undefined;
     }
   };
 }
@@ -79,6 +95,8 @@ export function installTestHooks(studio: Studio): void {
       return { x: box.left + at.x, y: box.top + at.y };
     },
     takeTool: (id) => world?.toolbox.takeById(id),
+    simulated: (name) => editor?.modelAt(name) ?? null,
+    handle: (axis) => editor?.handleAt(axis) ?? null,
   };
 }
 

@@ -2,15 +2,16 @@
 import { useSignal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 import type { Studio } from "../app/studio";
+import { attachEditor } from "../app/test_hooks";
 import { theme } from "../app/theme";
 import { formatTime } from "../ros/time";
 import { Choice, NumberField } from "../ui/editors";
 import { Empty } from "../ui/empty";
 import { Icon, type IconName } from "../ui/icons";
-import { Menu, MenuItem } from "../ui/menu";
+import { Menu, MenuItem, MenuSeparator } from "../ui/menu";
 import type { PanelProps, PanelType } from "./panel";
-import { Editor, type Mode, type Shape } from "./simulation/editor";
-import { SIMULATOR_TYPE, Simulator, type Resource } from "./simulation/simulator";
+import { describePose, Editor, type Mode, type Shape } from "./simulation/editor";
+import { resourceAt, SIMULATOR_TYPE, Simulator, type Resource } from "./simulation/simulator";
 import { Stage } from "./simulation/stage";
 
 const SPEEDS: readonly (readonly [string, string])[] = [
@@ -27,10 +28,10 @@ const STEPS: readonly (readonly [string, string])[] = ["1", "10", "100", "1000"]
   (count) => [count, count === "1" ? "1 step" : `${count} steps`] as const,
 );
 const MODES: readonly (readonly [Mode, IconName, string])[] = [
-  ["look", "top", "Select: click a model, turn the view"],
-  ["move", "move", "Move: drag a model along the ground, with Shift up and down"],
-  ["turn", "reset", "Turn: drag a model sideways"],
-  ["scale", "scale", "Scale: drag a model up or down"],
+  ["look", "select", "Select (Esc)"],
+  ["move", "move", "Move (t)"],
+  ["turn", "turn", "Turn (r)"],
+  ["scale", "scale", "Scale (s)"],
 ];
 const SHAPES: readonly (readonly [Shape, IconName])[] = [
   ["box", "cube"],
@@ -38,11 +39,11 @@ const SHAPES: readonly (readonly [Shape, IconName])[] = [
   ["cylinder", "cylinder"],
 ];
 const HINTS: Record<Mode, string> = {
-  look: "Click a model to select it · Left: turn · Middle: move · Wheel: zoom",
-  move: "Drag a model along the ground · with Shift up and down",
-  turn: "Drag a model sideways to turn it",
-  scale: "Drag a model up to make it larger, down to make it smaller",
-  insert: "Click where it shall stand · Escape ends",
+  look: "Click: select · Double click: look at · Left: turn · Middle: move · Wheel: zoom",
+  move: "Drag an arrow, or the model along the ground (Shift: up and down) · Ctrl: in steps of 0.25 m · Esc: cancel",
+  turn: "Drag a ring, or the model sideways · Ctrl: in steps of 15° · Esc: cancel",
+  scale: "Drag a handle, or the model up and down · Ctrl: in steps of a quarter · Esc: cancel",
+  insert: "Click where it shall stand · Shift: and another one · Esc: cancel",
 };
 
 function SimulationPanel({ studio, visible }: PanelProps) {
@@ -107,6 +108,7 @@ function open(studio: Studio, name: string, container: HTMLDivElement): [Tools, 
   const stage = new Stage(container, { session, tf, assets, theme: () => theme.value });
   const simulator = new Simulator(session, name);
   const editor = new Editor(container, stage, simulator);
+  const detach = attachEditor(editor);
   let isLooking = false;
   const look = async () => {
     if (!isLooking) {
@@ -136,7 +138,11 @@ function open(studio: Studio, name: string, container: HTMLDivElement): [Tools, 
         }
       },
     ),
-    studio.onFrame((page) => stage.draw(page)),
+    studio.onFrame((page) => {
+      editor.follow();
+      stage.draw(page);
+    }),
+    detach,
     () => editor.dispose(),
     () => stage.dispose(),
   ];
@@ -235,15 +241,24 @@ function EditBar({ tools: { simulator, editor, stage } }: { tools: Tools }) {
           <Icon name={icon} />
         </button>
       ))}
-      <Menu label="Model" icon="add" align="left" class="tool">
+      <Menu
+        test="models-to-insert"
+        label="Model"
+        icon="add"
+        align="left"
+        class="tool"
+        onOpen={() => void simulator.readSpawnables()}
+      >
         {simulator.spawnables.value.map((model: Resource) => (
-          <MenuItem key={model.uri} icon="cube" onChoose={() => editor.take("insert", model)}>
+          <MenuItem key={model.uri} icon="cube" note={model.origin ?? ""} onChoose={() => editor.take("insert", model)}>
             {model.title}
           </MenuItem>
         ))}
+        <MenuSeparator />
         <MenuItem icon="add" onChoose={() => file.current?.click()}>
           From a file (SDF or URDF) …
         </MenuItem>
+        <AddressField onChoose={(uri) => editor.take("insert", resourceAt(uri))} />
       </Menu>
       <input
         ref={file}
@@ -279,6 +294,15 @@ function EditBar({ tools: { simulator, editor, stage } }: { tools: Tools }) {
       <span class="tool-gap" />
       <button
         class="tool"
+        title={editor.undoing.next.value ? `Undo: ${editor.undoing.next.value} (Ctrl+Z)` : "Nothing to undo"}
+        data-test="undo"
+        disabled={!editor.undoing.next.value}
+        onClick={() => editor.undo()}
+      >
+        <Icon name="undo" />
+      </button>
+      <button
+        class="tool"
         title="Delete what is selected (Delete)"
         data-test="delete"
         disabled={!stage.selected.value}
@@ -286,6 +310,31 @@ function EditBar({ tools: { simulator, editor, stage } }: { tools: Tools }) {
       >
         <Icon name="trash" />
       </button>
+    </div>
+  );
+}
+
+/** For what is in no list: an address that the simulator knows how to find. */
+function AddressField({ onChoose }: { onChoose(uri: string): void }) {
+  return (
+    <div class="menu-field">
+      <input
+        class="field grow mono"
+        type="text"
+        aria-label="Address of a model"
+        placeholder="model://name"
+        title="model://…, package://…, or a path where the simulator runs"
+        spellcheck={false}
+        data-test="model-address"
+        onClick={(event) => event.stopPropagation()}
+        onKeyDown={(event) => {
+          const uri = event.currentTarget.value.trim();
+          if (event.key === "Enter" && uri) {
+            onChoose(uri);
+            event.currentTarget.parentElement?.click();
+          }
+        }}
+      />
     </div>
   );
 }
@@ -300,8 +349,13 @@ function Foot({ tools: { stage, editor } }: { tools: Tools }) {
         onChange={(name) => stage.select(name)}
       />
       <span class="figures" data-test="models">
-        {stage.names.value.length} models
+        {stage.names.value.length} {stage.names.value.length === 1 ? "model" : "models"}
       </span>
+      {stage.reading.value && (
+        <span class="figures ellipsis pose" data-test="pose" title="Where the selected model is in the world">
+          {describePose(stage.reading.value)}
+        </span>
+      )}
       <span class="stretch" />
       {editor.complaint.value && (
         <span class="complaint-text ellipsis" role="alert" title={editor.complaint.value}>

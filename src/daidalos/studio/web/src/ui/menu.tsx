@@ -10,16 +10,20 @@ interface MenuProps {
   class?: string;
   /** At which edge of the button the list hangs. */
   align?: "left" | "right";
+  onOpen?(): void;
+  /** For tests: what the button is called. */
+  test?: string;
   children: ComponentChildren;
 }
 
-export function Menu({ label, icon, align = "right", children, ...rest }: MenuProps) {
+export function Menu({ label, icon, align = "right", children, onOpen, ...rest }: MenuProps) {
   const [open, setOpen] = useState(false);
   const root = useRef<HTMLSpanElement>(null);
   useEffect(() => {
     if (!open) {
       return undefined;
     }
+    onOpen?.();
     const closeOutside = (event: PointerEvent) => {
       if (!root.current?.contains(event.target as Node)) {
         setOpen(false);
@@ -41,6 +45,7 @@ export function Menu({ label, icon, align = "right", children, ...rest }: MenuPr
     <span class="menu" ref={root}>
       <button
         class={`button ${rest.class ?? ""}`}
+        data-test={rest.test}
         aria-haspopup="menu"
         aria-expanded={open}
         onClick={() => setOpen(!open)}

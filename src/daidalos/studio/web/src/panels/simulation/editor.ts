@@ -1,28 +1,43 @@
-// What the mouse does with the simulated world: look around, take hold of models, put new ones.
+// What the mouse and the keys do with the simulated world: look around, take hold of models, put new ones.
 import { signal } from "@preact/signals";
-import { Vector3 } from "three";
-import type { ColorRGBA } from "../../ros/messages";
-import { movedPose, type Stage } from "./stage";
+import { Euler, Matrix4, Quaternion, Vector3 } from "three";
+import { MarkerType } from "../../displays/marker_shapes";
+import type { ColorRGBA, Marker, Pose } from "../../ros/messages";
+import { Gizmo, type Motion, SNAP } from "./gizmo";
 import type { Resource, Simulator } from "./simulator";
+import { movedPose, type Stage } from "./stage";
+import { Undoing } from "./undoing";
 
-export type Mode = "look" | "move" | "turn" | "scale" | "insert";
+export type Mode = "look" | Motion | "insert";
 export type Shape = "box" | "sphere" | "cylinder";
 
 const CLICK_PX = 4;
 const TURN_PER_PX = 0.012;
 const GROW_PER_PX = 0.007;
+const LEAST_FACTOR = 0.02;
+/** How large what stands for a model is that has not been put yet. */
+const UNKNOWN_SIZE_M = 0.4;
 /** Colours of what is inserted, one after the other. */
 const PALETTE = ["#e2a355", "#4d8dff", "#5fc26b", "#f2555a", "#a78bfa", "#3fc1c9"];
+const MARKERS: Record<Shape, number> = {
+  box: MarkerType.CUBE,
+  sphere: MarkerType.SPHERE,
+  cylinder: MarkerType.CYLINDER,
+};
+/** Gazebo's keys, without Ctrl. */
+const KEYS: Readonly<Record<string, Mode>> = { t: "move", r: "turn", s: "scale" };
 
 interface Hold {
   name: string;
-  mode: Mode;
+  mode: Motion;
+  /** Taken by a handle, else by the model itself. */
+  byHandle: boolean;
   from: Vector3;
   x: number;
   y: number;
-  by: Vector3;
-  yaw: number;
-  factor: number;
+  pose: Pose;
+  motion: Matrix4;
+  factors: Vector3;
 }
 
 export class Editor {
@@ -32,6 +47,8 @@ export class Editor {
   readonly size = signal(0.3);
   readonly mass = signal(1);
   readonly complaint = signal("");
+  readonly undoing = new Undoing();
+  private readonly gizmo: Gizmo;
   private hold: Hold | undefined;
   private pressed: { x: number; y: number } | undefined;
   private inserted = 0;
@@ -39,47 +56,91 @@ export class Editor {
   private readonly listening = new AbortController();
 
   constructor(
-    container: HTMLElement,
+    private readonly container: HTMLElement,
     private readonly stage: Stage,
     private readonly simulator: Simulator,
   ) {
+    this.gizmo = new Gizmo(stage.viewport);
     const { signal } = this.listening;
     // Before the camera hears of it: whoever has hold of a model does not turn the view.
     container.addEventListener("pointerdown", (event) => this.down(event), { signal, capture: true });
     container.addEventListener("pointermove", (event) => this.move(event), { signal });
     container.addEventListener("pointerup", (event) => this.up(event), { signal });
-    container.addEventListener("pointercancel", () => this.letGo(), { signal });
-    container.addEventListener("keydown", (event) => this.key(event), { signal });
+    container.addEventListener("pointercancel", () => this.cancel(), { signal });
+    container.addEventListener("pointerleave", () => this.stage.showGhost(undefined), { signal });
+    container.addEventListener("dblclick", (event) => this.focusOn(event), { signal });
     container.addEventListener("contextmenu", (event) => event.preventDefault(), { signal });
+    // Before the keys of the 3-D view.
+    document.addEventListener("keydown", (event) => this.key(event), { signal, capture: true });
   }
 
   take(mode: Mode, goods: Shape | Resource = this.goods.value): void {
+    this.cancel();
     this.mode.value = mode;
     this.goods.value = goods;
-    this.stage.viewport.canvas.style.cursor = mode === "look" ? "" : mode === "insert" ? "crosshair" : "move";
+    this.stage.showGhost(undefined);
+    this.stage.viewport.canvas.style.cursor = mode === "insert" ? "crosshair" : "";
   }
 
   /** Take what is selected out of the world. */
   remove(): void {
     const name = this.stage.selected.value;
     if (name) {
+      this.undoing.forget(name);
       void this.do(() => this.simulator.remove(name));
     }
   }
 
+  /** Take back what was done last: what was put goes, what was moved, turned or scaled is as before. */
+  undo(): void {
+    const last = this.undoing.take();
+    if (last) {
+      void this.do(last.undo);
+    }
+  }
+
   /** Do something with the simulator, say what went wrong, and look again. */
-  async do(work: () => Promise<unknown>): Promise<void> {
+  async do(work: () => Promise<unknown>): Promise<boolean> {
     this.complaint.value = "";
     try {
       await work();
       this.stage.show(await this.simulator.look());
+      return true;
     } catch (error) {
       this.complaint.value = error instanceof Error ? error.message : String(error);
+      return false;
     }
+  }
+
+  /** Keep the handles at the selected model; once per frame. */
+  follow(): void {
+    if (this.hold) {
+      return;
+    }
+    const mode = this.mode.value;
+    const pose = mode === "look" || mode === "insert" ? undefined : this.stage.poseOf(this.stage.selected.value);
+    if (pose && mode !== "look" && mode !== "insert") {
+      this.gizmo.place(mode, pose, this.stage.radius);
+    } else {
+      this.gizmo.hide();
+    }
+  }
+
+  /** Where the end of a handle is in the window, in CSS pixels. */
+  handleAt(axis: "x" | "y" | "z"): { x: number; y: number } {
+    return this.inWindow(this.gizmo.tip(axis));
+  }
+
+  /** Where a model is in the window. */
+  modelAt(name: string): { x: number; y: number } | undefined {
+    const position = this.stage.poseOf(name)?.position;
+    return position && this.inWindow(new Vector3(position.x, position.y, position.z));
   }
 
   dispose(): void {
     this.listening.abort();
+    this.stage.showGhost(undefined);
+    this.gizmo.dispose();
   }
 
   private down(event: PointerEvent): void {
@@ -87,39 +148,111 @@ export class Editor {
       return;
     }
     const { x, y } = this.at(event);
-    this.stage.viewport.canvas.focus({ preventScroll: true });
+    const { stage } = this;
+    stage.viewport.canvas.focus({ preventScroll: true });
     this.pressed = { x, y };
     const mode = this.mode.value;
-    const hit = mode === "look" || mode === "insert" ? undefined : this.stage.pick(x, y);
-    this.stage.viewport.view.leftButton = hit === undefined;
-    if (hit) {
-      this.stage.viewport.canvas.setPointerCapture(event.pointerId);
-      this.stage.select(hit.name);
-      this.stage.hold(hit.name);
-      this.hold = { name: hit.name, mode, from: hit.point, x, y, by: new Vector3(), yaw: 0, factor: 1 };
+    const hold = mode === "look" || mode === "insert" ? undefined : this.grasp(mode, x, y);
+    stage.viewport.view.leftButton = hold === undefined;
+    if (hold) {
+      this.hold = hold;
+      stage.viewport.canvas.setPointerCapture(event.pointerId);
+      stage.select(hold.name);
+      stage.hold(hold.name);
     }
+  }
+
+  private grasp(mode: Motion, x: number, y: number): Hold | undefined {
+    const selected = this.stage.selected.value;
+    const byHandle = selected !== "" && this.gizmo.press(x, y);
+    const hit = byHandle ? undefined : this.stage.pick(x, y);
+    const name = byHandle ? selected : hit?.name;
+    const pose = name === undefined ? undefined : this.stage.poseOf(name);
+    if (name === undefined || !pose) {
+      return undefined;
+    }
+    if (!byHandle) {
+      this.stage.select(name);
+      this.gizmo.place(mode, pose, this.stage.radius);
+    }
+    const from = hit?.point ?? new Vector3();
+    return { name, mode, byHandle, from, x, y, pose, motion: new Matrix4(), factors: new Vector3(1, 1, 1) };
   }
 
   private move(event: PointerEvent): void {
     const { hold, stage } = this;
+    const { x, y } = this.at(event);
     if (!hold) {
+      this.hover(x, y, event.buttons !== 0);
       return;
     }
-    const { x, y } = this.at(event);
-    if (hold.mode === "turn") {
-      hold.yaw = (x - hold.x) * TURN_PER_PX;
-    } else if (hold.mode === "scale") {
-      hold.factor = Math.exp((hold.y - y) * GROW_PER_PX);
-    } else if (event.shiftKey) {
-      hold.by.z = (hold.y - y) * stage.viewport.view.metresPerPixel(hold.from, stage.viewport.height);
-    } else {
-      const at = stage.viewport.planeAt(x, y, hold.from.z);
-      if (at) {
-        hold.by.set(at.x - hold.from.x, at.y - hold.from.y, hold.by.z);
+    const snaps = event.ctrlKey || event.metaKey;
+    if (hold.byHandle) {
+      this.gizmo.drag(x, y, snaps);
+    }
+    switch (hold.mode) {
+      case "move":
+        hold.motion = hold.byHandle ? this.gizmo.motion : this.shift(hold, x, y, event.shiftKey, snaps);
+        break;
+      case "turn":
+        hold.motion = hold.byHandle
+          ? this.gizmo.motion
+          : turnAbout(hold.pose, round((x - hold.x) * TURN_PER_PX, snaps && SNAP.turn));
+        break;
+      case "scale": {
+        const all = round(Math.exp((hold.y - y) * GROW_PER_PX), snaps && SNAP.scale);
+        hold.factors = this.allowed(hold.name, hold.byHandle ? this.gizmo.factors : new Vector3(all, all, all));
+        hold.motion = stage.growth(hold.name, hold.factors);
       }
     }
-    stage.preview(hold.name, hold.by, hold.yaw, hold.factor);
+    stage.preview(hold.name, hold.motion);
     void this.tell(hold);
+  }
+
+  private hover(x: number, y: number, isPressed: boolean): void {
+    if (isPressed) {
+      return;
+    }
+    const { canvas } = this.stage.viewport;
+    if (this.mode.value === "insert") {
+      this.stage.showGhost(this.ghost(), this.placeAt(x, y));
+    } else if (this.mode.value !== "look") {
+      const isOver = this.gizmo.hover(x, y) || this.stage.pick(x, y) !== undefined;
+      canvas.style.cursor = isOver ? "move" : "";
+    }
+  }
+
+  /** Move along the ground, or up and down. */
+  private shift({ from, y: y0, pose }: Hold, x: number, y: number, isUpright: boolean, snaps: boolean): Matrix4 {
+    const { viewport } = this.stage;
+    const by = new Vector3();
+    const at = isUpright ? undefined : viewport.planeAt(x, y, from.z);
+    if (isUpright) {
+      by.z = (y0 - y) * viewport.view.metresPerPixel(from, viewport.height);
+    } else if (at) {
+      by.set(at.x - from.x, at.y - from.y, 0);
+    }
+    const { position: p } = pose;
+    const step = snaps && SNAP.move;
+    return new Matrix4().makeTranslation(
+      by.x && round(p.x + by.x, step) - p.x,
+      by.y && round(p.y + by.y, step) - p.y,
+      by.z && round(p.z + by.z, step) - p.z,
+    );
+  }
+
+  /** Factors that a model can take: what is round stays round, what has several parts keeps its proportions. */
+  private allowed(name: string, { x, y, z }: Vector3): Vector3 {
+    const { types, links } = this.stage.anatomy(name);
+    const positive = (factor: number) => Math.max(LEAST_FACTOR, factor);
+    if (links === 1 && types.every((type) => type === MarkerType.CUBE)) {
+      return new Vector3(positive(x), positive(y), positive(z));
+    }
+    if (links === 1 && types.every((type) => type === MarkerType.CUBE || type === MarkerType.CYLINDER)) {
+      const wide = positive(farthest(x, y));
+      return new Vector3(wide, wide, positive(z));
+    }
+    return new Vector3().setScalar(positive(farthest(x, y, z)));
   }
 
   private up(event: PointerEvent): void {
@@ -132,47 +265,68 @@ export class Editor {
     } else if (hold) {
       this.stage.release(hold.name);
     } else if (isClick && event.button === 0) {
-      this.click(x, y);
+      this.click(x, y, event.shiftKey);
     }
   }
 
   private letGo(): void {
+    this.gizmo.release();
     this.stage.viewport.view.leftButton = true;
     [this.hold, this.pressed] = [undefined, undefined];
   }
 
-  private click(x: number, y: number): void {
+  /** Let go of a model as if it had never been taken hold of. */
+  private cancel(): void {
+    const { hold } = this;
+    this.letGo();
+    if (hold) {
+      this.stage.release(hold.name);
+      if (hold.mode !== "scale") {
+        void this.do(() => this.simulator.move(hold.name, hold.pose));
+      }
+    }
+  }
+
+  private click(x: number, y: number, goesOn: boolean): void {
     if (this.mode.value !== "insert") {
       this.stage.select(this.stage.pick(x, y)?.name ?? "");
       return;
     }
-    const point = this.stage.pick(x, y)?.point ?? this.stage.viewport.groundAt(x, y);
+    const point = this.placeAt(x, y);
     if (point) {
-      void this.insert(point);
+      void this.insert(point, goesOn);
     }
   }
 
-  private async insert(point: Vector3): Promise<void> {
+  private async insert(point: Vector3, goesOn: boolean): Promise<void> {
     const goods = this.goods.value;
+    const color = this.color;
     let name = "";
+    if (!goesOn) {
+      this.take("look");
+    }
+    this.stage.showGhost(undefined);
     await this.do(async () => {
       name =
         typeof goods === "string"
-          ? await this.simulator.insert(goods, point, this.size.value, this.mass.value, this.nextColor())
+          ? await this.simulator.insert(goods, point, this.size.value, this.mass.value, color)
           : await this.simulator.spawn(goods, point);
     });
-    this.stage.select(name);
+    if (name) {
+      this.inserted++;
+      this.undoing.note(name, "insert", () => this.simulator.remove(name));
+      this.stage.select(name);
+    }
   }
 
   /** Let the model follow the hand in the simulation too, as fast as that answers. */
   private async tell(hold: Hold): Promise<void> {
-    const pose = this.stage.poseAtHold(hold.name);
-    if (this.isTelling || !pose || hold.mode === "scale") {
+    if (this.isTelling || hold.mode === "scale") {
       return;
     }
     this.isTelling = true;
     try {
-      await this.simulator.move(hold.name, movedPose(pose, hold.by, hold.yaw));
+      await this.simulator.move(hold.name, movedPose(hold.pose, hold.motion));
     } catch (error) {
       this.complaint.value = error instanceof Error ? error.message : String(error);
     } finally {
@@ -180,39 +334,138 @@ export class Editor {
     }
   }
 
-  private async finish(hold: Hold): Promise<void> {
-    const pose = this.stage.poseAtHold(hold.name);
-    await this.do(async () => {
-      if (hold.mode === "scale") {
-        await this.simulator.scale(hold.name, hold.factor);
-      } else if (pose) {
-        await this.simulator.move(hold.name, movedPose(pose, hold.by, hold.yaw));
+  private async finish({ name, mode, pose, motion, factors }: Hold): Promise<void> {
+    const isDone = await this.do(async () => {
+      if (mode === "scale") {
+        await this.simulator.scale(name, factors);
+      } else {
+        await this.simulator.move(name, movedPose(pose, motion));
       }
-      this.stage.release(hold.name);
+      this.stage.release(name);
     });
-    this.stage.release(hold.name);
+    this.stage.release(name);
+    if (isDone) {
+      const back = new Vector3(1 / factors.x, 1 / factors.y, 1 / factors.z);
+      const undo = () => (mode === "scale" ? this.simulator.scale(name, back) : this.simulator.move(name, pose));
+      this.undoing.note(name, mode, undo);
+    }
+  }
+
+  private focusOn(event: MouseEvent): void {
+    const { x, y } = this.at(event);
+    const hit = this.stage.pick(x, y);
+    if (hit && this.mode.value !== "insert") {
+      this.stage.viewport.view.lookAt(hit.point);
+    }
   }
 
   private key(event: KeyboardEvent): void {
-    if (event.key === "Delete" || event.key === "Backspace") {
+    if (this.isForOthers(event.target)) {
+      return;
+    }
+    const { key, ctrlKey, metaKey, altKey } = event;
+    const mode = KEYS[key];
+    if ((ctrlKey || metaKey) && key === "z") {
+      this.undo();
+    } else if (ctrlKey || metaKey || altKey) {
+      return;
+    } else if (key === "Delete" || key === "Backspace") {
       this.remove();
-    } else if (event.key === "Escape") {
-      this.take("look");
-      this.stage.select("");
+    } else if (mode) {
+      this.take(mode);
+    } else if (key === "Escape") {
+      this.escape();
     } else {
       return;
     }
     event.preventDefault();
+    event.stopPropagation();
   }
 
-  private at(event: PointerEvent): { x: number; y: number } {
+  private escape(): void {
+    if (this.hold) {
+      this.cancel();
+    } else if (this.mode.value !== "look") {
+      this.take("look");
+    } else {
+      this.stage.select("");
+    }
+  }
+
+  /** Keys are the editor's where it has the focus, or where nobody has it and no other view is there. */
+  private isForOthers(target: EventTarget | null): boolean {
+    if (target === document.body) {
+      return document.querySelector("[data-panel=scene]") !== null;
+    }
+    const panel = this.container.closest("[data-panel]");
+    return (
+      !(target instanceof HTMLElement) ||
+      !panel?.contains(target) ||
+      target.matches("input:not([type=checkbox]), textarea, select")
+    );
+  }
+
+  private inWindow(point: Vector3): { x: number; y: number } {
+    const { viewport } = this.stage;
+    const [at, box] = [viewport.project(point), viewport.canvas.getBoundingClientRect()];
+    return { x: box.left + at.x, y: box.top + at.y };
+  }
+
+  /** Where something that is put at a pixel stands: on what is there. */
+  private placeAt(x: number, y: number): Vector3 | undefined {
+    return this.stage.pick(x, y)?.point ?? this.stage.viewport.groundAt(x, y);
+  }
+
+  private ghost(): Marker {
+    const goods = this.goods.value;
+    const size = typeof goods === "string" ? this.size.value : UNKNOWN_SIZE_M;
+    return {
+      ns: "",
+      id: 0,
+      type: typeof goods === "string" ? MARKERS[goods] : MarkerType.CUBE,
+      pose: { position: { x: 0, y: 0, z: size / 2 }, orientation: { x: 0, y: 0, z: 0, w: 1 } },
+      scale: { x: size, y: size, z: size },
+      color: this.color,
+    } as Marker;
+  }
+
+  private at(event: MouseEvent): { x: number; y: number } {
     const box = this.stage.viewport.canvas.getBoundingClientRect();
     return { x: event.clientX - box.left, y: event.clientY - box.top };
   }
 
-  private nextColor(): ColorRGBA {
-    const hex = PALETTE[this.inserted++ % PALETTE.length] as string;
+  private get color(): ColorRGBA {
+    const hex = PALETTE[this.inserted % PALETTE.length] as string;
     const part = (from: number) => parseInt(hex.slice(from, from + 2), 16) / 255;
     return { r: part(1), g: part(3), b: part(5), a: 1 };
   }
+}
+
+/** Turn in the world about the vertical through a pose's origin. */
+function turnAbout({ position: { x, y, z } }: Pose, angle: number): Matrix4 {
+  return new Matrix4()
+    .makeTranslation(x, y, z)
+    .multiply(new Matrix4().makeRotationZ(angle))
+    .multiply(new Matrix4().makeTranslation(-x, -y, -z));
+}
+
+function round(value: number, step: number | false): number {
+  return step ? Math.round(value / step) * step : value;
+}
+
+/** The factor that is farthest from leaving things as they are. */
+function farthest(...factors: number[]): number {
+  const change = (factor: number) => Math.abs(Math.log(Math.max(LEAST_FACTOR, factor)));
+  return factors.reduce((most, factor) => (change(factor) > change(most) ? factor : most));
+}
+
+/** A model's place in words: metres, and degrees about the vertical. */
+export function describePose({ position: { x, y, z }, orientation: o }: Pose): string {
+  const yaw = new Euler().setFromQuaternion(new Quaternion(o.x, o.y, o.z, o.w), "ZYX").z;
+  const metres = [x, y, z].map((each, i) => `${"xyz"[i]} ${tidy(each.toFixed(2))}`).join("  ");
+  return `${metres} m  yaw ${tidy(((yaw * 180) / Math.PI).toFixed(0))}°`;
+}
+
+function tidy(number: string): string {
+  return Number(number) === 0 ? number.replace("-", "") : number;
 }

@@ -22,6 +22,8 @@ export interface Looks {
 
 export interface Resource {
   title: string;
+  /** Where it comes from: the model path, or a package. */
+  origin?: string;
   uri: string;
   resource_string: string;
 }
@@ -109,8 +111,8 @@ export class Simulator {
     await this.call("set_entity_state", { entity, state, set_pose: true, set_twist: true, set_acceleration: false });
   }
 
-  async scale(name: string, factor: number): Promise<void> {
-    await this.call("scale_entity", { name, factor });
+  async scale(name: string, { x, y, z }: Vector3): Promise<void> {
+    await this.call("scale_entity", { name, factors: { x, y, z } });
   }
 
   async remove(entity: string): Promise<void> {
@@ -131,14 +133,10 @@ export class Simulator {
     this.isPlaying.value = answer && answer.state.state === STATE.playing;
   }
 
-  private async readSpawnables(): Promise<void> {
+  async readSpawnables(): Promise<void> {
     const answer = (await this.call("get_spawnables", { sources: [] }).catch(() => undefined)) as
       { spawnables: { entity_resource: { uri: string } }[] } | undefined;
-    this.spawnables.value = (answer?.spawnables ?? []).map(({ entity_resource: { uri } }) => ({
-      title: uri.replace(/^model:\/\//, ""),
-      uri,
-      resource_string: "",
-    }));
+    this.spawnables.value = (answer?.spawnables ?? []).map(({ entity_resource: { uri } }) => resourceAt(uri));
   }
 
   private async call(service: string, request: object): Promise<unknown> {
@@ -149,6 +147,14 @@ export class Simulator {
     }
     return answer;
   }
+}
+
+/** What an address names, called as people call it. */
+export function resourceAt(uri: string): Resource {
+  const [scheme = "", path = ""] = uri.split("://");
+  const file = uri.split("/").filter(Boolean).at(-1) ?? uri;
+  const origin = scheme === "package" ? (path.split("/")[0] ?? "") : scheme === "model" ? "model" : "";
+  return { title: file.replace(/\.(urdf|sdf|xml|xacro)/g, ""), origin, uri, resource_string: "" };
 }
 
 interface Answer {

@@ -1,6 +1,18 @@
 // The simulated world to look at and to take hold of: models by their shapes, in the world's own frame.
 import { signal } from "@preact/signals";
-import { Box3, BoxHelper, Group, type Object3D, Quaternion, Vector3 } from "three";
+import {
+  Box3,
+  BoxGeometry,
+  EdgesGeometry,
+  Group,
+  LineBasicMaterial,
+  LineSegments,
+  Matrix4,
+  type Mesh,
+  type Object3D,
+  Quaternion,
+  Vector3,
+} from "three";
 import { disposeTree, type DisplayContext } from "../../displays/display";
 import { GRID } from "../../displays/grid";
 import { markerObject } from "../../displays/marker_shapes";
@@ -12,6 +24,11 @@ import type { EntityStates, Looks } from "./simulator";
 /** Flatter and larger than these, a shape is ground: the grid stands for it. */
 const GROUND_M2 = 100;
 const GROUND_THICKNESS_M = 0.05;
+/** A link that moves less than this, in metres and as a quaternion, has not moved: nothing is drawn again. */
+const STILL = 1e-5;
+const FRAME_COLOR = 0xe2a355;
+const GHOST_OPACITY = 0.45;
+const NEAREST_M = 3.5;
 
 interface Shown {
   name: string;
@@ -20,18 +37,27 @@ interface Shown {
   links: Map<string, Group>;
   /** The looks from which it was made. */
   told: string;
-  /** While the user has hold of it: what it turns and grows about. What comes from the simulator is not shown then. */
-  held?: { pivot: Vector3; pose: Pose } | undefined;
+  /** While the user has hold of it: where it was then. What comes from the simulator is not shown. */
+  held?: { pose: Pose; bottom: number } | undefined;
 }
 
 export class Stage {
   readonly viewport: Viewport;
   readonly selected = signal("");
   readonly names = signal<readonly string[]>([]);
+  /** Where the selected model is. */
+  readonly reading = signal<Pose | undefined>(undefined);
   private readonly models = new Map<string, Shown>();
   private readonly poses = new Map<string, Pose>();
-  private readonly frame = new BoxHelper(new Group(), 0xe2a355);
+  private readonly frame = new LineSegments(
+    new EdgesGeometry(new BoxGeometry()),
+    new LineBasicMaterial({ color: FRAME_COLOR }),
+  );
+  private ghost: Object3D | undefined;
+  /** Of the selected model. */
+  radius = 0;
   private wasSeen = false;
+  private isFramed = false;
 
   constructor(
     container: HTMLElement,
@@ -40,6 +66,7 @@ export class Stage {
     this.viewport = new Viewport(container);
     const grid = GRID.create({ ...context, invalidate: this.viewport.invalidate }, GRID.defaults);
     this.frame.visible = false;
+    this.frame.matrixAutoUpdate = false;
     this.viewport.scene.add(grid.object, this.frame);
   }
 
@@ -87,17 +114,28 @@ export class Stage {
       known &&= shown !== undefined;
       this.poses.set(name, pose);
       const group = link === undefined ? undefined : shown?.links.get(link);
-      if (group && !shown?.held) {
-        put(group, pose);
+      if (group && !shown?.held && put(group, pose)) {
+        this.touch();
       }
     });
-    this.viewport.invalidate();
     return known && seen.size === this.models.size;
   }
 
   select(name: string): void {
     this.selected.value = name;
-    this.viewport.invalidate();
+    this.touch();
+  }
+
+  /** Where a model is, as the simulator told last. */
+  poseOf(name: string): Pose | undefined {
+    return this.poses.get(name);
+  }
+
+  /** The kinds of shapes that a model consists of, and how many links it has. */
+  anatomy(name: string): { types: readonly number[]; links: number } {
+    const shown = this.models.get(name);
+    const markers = shown ? (JSON.parse(shown.told) as Marker[]) : [];
+    return { types: markers.map(({ type }) => type), links: shown?.links.size ?? 0 };
   }
 
   /** The model under a pixel, and where it is hit. */
@@ -121,23 +159,33 @@ export class Stage {
     const shown = this.models.get(name);
     const pose = this.poses.get(name);
     if (shown && pose) {
-      const bottom = new Box3().setFromObject(shown.holder).min.z;
-      shown.held = { pose, pivot: new Vector3(pose.position.x, pose.position.y, bottom) };
+      shown.held = { pose, bottom: new Box3().setFromObject(shown.holder).min.z };
+      shown.holder.matrixAutoUpdate = false;
     }
   }
 
-  /** Show a held model moved, turned about its origin's vertical, and scaled where it stands. */
-  preview(name: string, by: Vector3, yaw: number, factor: number): void {
+  /** Show a held model moved from where it was. */
+  preview(name: string, motion: Matrix4): void {
     const shown = this.models.get(name);
-    if (!shown?.held) {
-      return;
+    if (shown?.held) {
+      shown.holder.matrix.copy(motion);
+      shown.holder.matrixWorldNeedsUpdate = true;
+      this.touch();
     }
-    const { pivot } = shown.held;
-    shown.holder.quaternion.setFromAxisAngle(UP, yaw);
-    shown.holder.scale.setScalar(factor);
-    const turned = pivot.clone().applyQuaternion(shown.holder.quaternion).multiplyScalar(factor);
-    shown.holder.position.copy(pivot).add(by).sub(turned);
-    this.viewport.invalidate();
+  }
+
+  /** How a held model moves when it grows along its axes and goes on standing where it stands. */
+  growth(name: string, factors: Vector3): Matrix4 {
+    const held = this.models.get(name)?.held;
+    if (!held) {
+      return new Matrix4();
+    }
+    const there = matrixOf(held.pose);
+    const grown = there.clone().scale(factors).multiply(there.invert());
+    const { position } = held.pose;
+    const origin = new Vector3(position.x, position.y, position.z);
+    const lift = (origin.z - held.bottom) * (this.verticalFactor(held.pose, factors) - 1);
+    return new Matrix4().makeTranslation(0, 0, lift).multiply(grown);
   }
 
   /** Let go: the simulator says again where it is. */
@@ -145,17 +193,34 @@ export class Stage {
     const shown = this.models.get(name);
     if (shown) {
       shown.held = undefined;
-      shown.holder.position.set(0, 0, 0);
-      shown.holder.quaternion.identity();
-      shown.holder.scale.setScalar(1);
+      shown.holder.matrixAutoUpdate = true;
+      this.touch();
     }
   }
 
+  /** Show what is about to be put, and where; undefined: nothing. */
+  showGhost(marker: Marker | undefined, at?: Vector3): void {
+    if (this.ghost) {
+      disposeTree(this.ghost);
+      this.ghost.removeFromParent();
+      this.ghost = undefined;
+    }
+    if (marker && at) {
+      this.ghost = this.objectOf({ ...marker, color: { ...marker.color, a: GHOST_OPACITY } });
+      this.ghost?.traverse((object) => (object.userData.pickable = false));
+      this.ghost?.position.add(at);
+      if (this.ghost) {
+        this.viewport.scene.add(this.ghost);
+      }
+    }
+    this.viewport.invalidate();
+  }
+
   draw(page: number): void {
-    const shown = this.models.get(this.selected.value);
-    this.frame.visible = shown !== undefined;
-    if (shown) {
-      this.frame.setFromObject(shown.holder);
+    if (!this.isFramed) {
+      this.isFramed = true;
+      this.drawFrame();
+      this.reading.value = this.models.has(this.selected.value) ? this.poses.get(this.selected.value) : undefined;
     }
     this.viewport.lights.follow(this.viewport.view.focus);
     this.viewport.frame(page);
@@ -168,6 +233,46 @@ export class Stage {
     this.viewport.dispose();
   }
 
+  /** Something looks different now, and the frame around what is selected may have to follow. */
+  private readonly touch = (): void => {
+    this.isFramed = false;
+    this.viewport.invalidate();
+  };
+
+  /** A box along the selected model's own axes. */
+  private drawFrame(): void {
+    const shown = this.models.get(this.selected.value);
+    const pose = shown?.held?.pose ?? this.poses.get(this.selected.value);
+    const box = shown && pose ? boxAlong(matrixOf(pose), shown.links.values()) : new Box3();
+    this.frame.visible = !box.isEmpty();
+    this.radius = this.frame.visible ? box.getSize(new Vector3()).length() / 2 : 0;
+    if (shown && pose && this.frame.visible) {
+      shown.holder.updateMatrix();
+      const size = box.getSize(new Vector3()).addScalar(FRAME_MARGIN_M);
+      this.frame.matrix
+        .copy(shown.holder.matrix)
+        .multiply(matrixOf(pose))
+        .multiply(new Matrix4().makeTranslation(box.getCenter(new Vector3())))
+        .scale(size);
+      this.frame.matrixWorldNeedsUpdate = true;
+    }
+  }
+
+  /** By how much the way down to the ground grows. */
+  private verticalFactor({ orientation: { x, y, z, w } }: Pose, factors: Vector3): number {
+    const down = UP.clone().applyQuaternion(new Quaternion(x, y, z, w).invert());
+    return down.multiply(factors).length();
+  }
+
+  private objectOf(marker: Marker): Object3D | undefined {
+    return markerObject(marker, {
+      assets: this.context.assets,
+      dark: true,
+      changed: this.touch,
+      complain: () => undefined, // a mesh that this page may not read: the rest is shown
+    });
+  }
+
   private make(name: string, markers: Marker[], told: string): Shown {
     const shown: Shown = { name, holder: new Group(), links: new Map(), told };
     shown.holder.userData.model = name;
@@ -177,12 +282,7 @@ export class Stage {
       }
       const link = marker.header.frame_id.split("::")[1] ?? "";
       const group = shown.links.get(link) ?? new Group();
-      const object = markerObject(marker, {
-        assets: this.context.assets,
-        dark: true,
-        changed: this.viewport.invalidate,
-        complain: () => undefined, // a mesh that this page may not read: the rest is shown
-      });
+      const object = this.objectOf(marker);
       if (object) {
         group.add(object);
       }
@@ -197,7 +297,7 @@ export class Stage {
     disposeTree(shown.holder);
     shown.holder.removeFromParent();
     this.models.delete(shown.name);
-    this.viewport.invalidate();
+    this.touch();
   }
 
   /** Look at everything, once. */
@@ -206,33 +306,68 @@ export class Stage {
     for (const { holder } of this.models.values()) {
       all.union(new Box3().setFromObject(holder));
     }
-    if (!this.wasSeen && !all.isEmpty()) {
+    // Meshes come later than the models that they belong to.
+    const isEmpty = [...this.models.values()].every(({ links }) => links.size === 0);
+    if (!this.wasSeen && (isEmpty || !all.isEmpty())) {
       this.wasSeen = true;
-      const centre = all.getCenter(new Vector3());
-      const distance = Math.max(3, 1.15 * all.getSize(new Vector3()).length());
+      const centre = isEmpty ? new Vector3() : all.getCenter(new Vector3());
+      const size = isEmpty ? new Vector3() : all.getSize(new Vector3());
+      const distance = Math.max(NEAREST_M, 1.15 * size.length());
       this.viewport.view.restore({ ...HOME, focus: [centre.x, centre.y, 0], distance });
     }
   }
 }
 
 const UP = new Vector3(0, 0, 1);
+const FRAME_MARGIN_M = 0.01;
 
 function isGround({ scale }: Marker): boolean {
   return scale.z < GROUND_THICKNESS_M && scale.x * scale.y > GROUND_M2;
 }
 
-function put(object: Object3D, { position, orientation }: Pose): void {
-  object.position.set(position.x, position.y, position.z);
-  object.quaternion.set(orientation.x, orientation.y, orientation.z, orientation.w);
+/** Put an object where it is; false where it was there already. */
+function put(object: Object3D, { position: p, orientation: o }: Pose): boolean {
+  const { position: at, quaternion: turn } = object;
+  const by = Math.max(Math.abs(at.x - p.x), Math.abs(at.y - p.y), Math.abs(at.z - p.z));
+  const turned = Math.max(Math.abs(turn.x - o.x), Math.abs(turn.y - o.y), Math.abs(turn.z - o.z));
+  if (by < STILL && turned < STILL) {
+    return false;
+  }
+  at.set(p.x, p.y, p.z);
+  turn.set(o.x, o.y, o.z, o.w);
+  return true;
 }
 
-/** A pose that is moved and turned about its own vertical. */
-export function movedPose({ position, orientation }: Pose, by: Vector3, yaw: number): Pose {
-  const { x, y, z, w } = new Quaternion()
-    .setFromAxisAngle(UP, yaw)
-    .multiply(new Quaternion(orientation.x, orientation.y, orientation.z, orientation.w));
-  return {
-    position: { x: position.x + by.x, y: position.y + by.y, z: position.z + by.z },
-    orientation: { x, y, z, w },
+export function matrixOf({ position: p, orientation: o }: Pose): Matrix4 {
+  const turn = new Quaternion(o.x, o.y, o.z, o.w);
+  return new Matrix4().compose(new Vector3(p.x, p.y, p.z), turn, new Vector3(1, 1, 1));
+}
+
+/** A pose that is moved and turned in the world. */
+export function movedPose(pose: Pose, motion: Matrix4): Pose {
+  const [position, orientation] = [new Vector3(), new Quaternion()];
+  motion.clone().multiply(matrixOf(pose)).decompose(position, orientation, new Vector3());
+  const { x, y, z, w } = orientation;
+  return { position: { x: position.x, y: position.y, z: position.z }, orientation: { x, y, z, w } };
+}
+
+/** The box around objects along the axes of a pose, in that pose. */
+function boxAlong(pose: Matrix4, links: Iterable<Group>): Box3 {
+  const box = new Box3();
+  const toPose = pose.clone().invert();
+  const path = new Matrix4();
+  const add = (object: Object3D, from: Matrix4) => {
+    object.updateMatrix();
+    const here = from.clone().multiply(object.matrix);
+    const { geometry } = object as Partial<Mesh>;
+    if (geometry) {
+      geometry.computeBoundingBox();
+      box.union((geometry.boundingBox as Box3).clone().applyMatrix4(path.multiplyMatrices(toPose, here)));
+    }
+    object.children.forEach((child) => add(child, here));
   };
+  for (const link of links) {
+    add(link, new Matrix4());
+  }
+  return box;
 }
