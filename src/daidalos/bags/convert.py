@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import heapq
 import shutil
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, field, replace
-from operator import attrgetter
 from pathlib import Path
 
 from daidalos.bags.errors import BagError
+from daidalos.bags.merged import MergedBags
 from daidalos.bags.message import BagMessage, Topic
-from daidalos.bags.reader import BagReader
 from daidalos.bags.selection import Selection
 from daidalos.bags.storage import FOREVER_NS
 from daidalos.bags.writer import BagWriter, WriterOptions
@@ -40,7 +38,7 @@ class Output:
 
 
 def convert(
-    inputs: Sequence[tuple[Path, str]],
+    inputs: Sequence[tuple[str | Path, str]],
     outputs: Sequence[Output],
     progress: Callable[[int, int], None] | None = None,
 ) -> list[str]:
@@ -70,17 +68,17 @@ def convert(
             raise BagError(output.folder, "already exists; a bag is not written over another")
         output.selection.check()
     with ExitStack() as stack:
-        readers = [stack.enter_context(BagReader(path, storage)) for path, storage in inputs]
-        topics = _topics(readers)
+        bags = stack.enter_context(MergedBags(inputs))
+        topics = bags.topics_with_definitions()
         writers = [_begun(stack, output) for output in outputs]
         takers = [_taker(output, writer, topics) for output, writer in zip(outputs, writers, strict=True)]
-        total = sum(reader.metadata.message_count for reader in readers)
-        for count, message in enumerate(_merged(readers), 1):
+        total = bags.message_count
+        for count, message in enumerate(bags.messages(), 1):
             for take in takers:
                 take(message)
             if progress and (count % 1000 == 0 or count == total):
                 progress(count, total)
-        return [note for reader in readers for note in reader.notes]
+        return bags.notes
 
 
 def _begun(stack: ExitStack, output: Output) -> BagWriter:
@@ -96,16 +94,6 @@ def _begun(stack: ExitStack, output: Output) -> BagWriter:
 
     stack.push(end)
     return writer
-
-
-def _topics(readers: Iterable[BagReader]) -> dict[str, Topic]:
-    found: dict[str, Topic] = {}
-    for reader in readers:
-        for name, topic in reader.topics_with_definitions().items():
-            known = found.setdefault(name, topic)
-            if known.type != topic.type:
-                raise BagError(reader.path, f"topic {name} is of type {topic.type} here and {known.type} in another")
-    return found
 
 
 def _taker(output: Output, writer: BagWriter, topics: dict[str, Topic]) -> Callable[[BagMessage], None]:
@@ -126,8 +114,3 @@ def _wants(selection: Selection, name: str, type_name: str) -> bool:
     if selection.is_empty:
         selection = replace(selection, all_topics=True, all_services=True, hidden=True)
     return selection.wants(name, type_name)
-
-
-def _merged(readers: Sequence[BagReader]) -> Iterator[BagMessage]:
-    streams = [reader.messages() for reader in readers]
-    return streams[0] if len(streams) == 1 else heapq.merge(*streams, key=attrgetter("received_ns"))

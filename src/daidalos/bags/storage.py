@@ -21,6 +21,7 @@ FOREVER_NS = 2**63 - 1
 """A time after all others."""
 ZSTD_SUFFIX = ".zstd"
 ZSTD_MAGIC = b"\x28\xb5\x2f\xfd"
+_ROS1_MAGIC = b"#ROSBAG"
 _MAGIC = {b"\x89MCAP": MCAP, b"SQLite format 3\0": SQLITE3}
 
 
@@ -154,6 +155,9 @@ def storage_of(path: Path) -> str:
     for storage, suffix in SUFFIXES.items():
         if name.endswith(suffix):
             return storage
+    if start.startswith(_ROS1_MAGIC):
+        way = f"'rosbags-convert --src {path} --dst {path.with_suffix('')}'"
+        raise BagError(path, f"this is a bag of ROS 1; {way} makes one of ROS 2 from it")
     raise BagError(path, f"no bag: it begins with {start[:8].hex(' ')}, expected an MCAP or sqlite3 file")
 
 

@@ -1,9 +1,10 @@
-"""The node that plays a bag."""
+"""The node that plays bags."""
 
 from __future__ import annotations
 
 import threading
 import time
+from collections.abc import Sequence
 from pathlib import Path
 
 from rclpy.callback_groups import ReentrantCallbackGroup
@@ -15,9 +16,9 @@ from rclpy.qos import QoSProfile
 
 from daidalos.bags.clock import PlaybackClock
 from daidalos.bags.errors import BagError
+from daidalos.bags.merged import MergedBags
 from daidalos.bags.message import BagMessage
 from daidalos.bags.read_ahead import ReadAhead
-from daidalos.bags.reader import BagReader
 from daidalos.bags.storage import FOREVER_NS
 from rosbag2_py._options import PlayOptions
 from rosbag2_py._outlets import Outlets
@@ -30,7 +31,7 @@ RUNNING, PAUSED, BURST, DELAYED, STOPPED = "R", "P", "B", "D", "S"
 
 
 class PlayerNode(Node):
-    """Publishes a bag's messages when their time has come.
+    """Publishes the messages of bags when their time has come.
 
     One thread plays. Whoever else goes on, jumps or changes the speed does so under the same lock, which the thread
     holds except while it waits.
@@ -38,9 +39,9 @@ class PlayerNode(Node):
     Parameters
     ----------
     storage
-        The bag.
+        The bags.
     options
-        How to play it.
+        How to play them.
     name
         The node's name.
     context
@@ -49,24 +50,24 @@ class PlayerNode(Node):
     Raises
     ------
     BagError
-        When the bag can not be read.
+        When a bag can not be read.
     ValueError
         When an option makes no sense.
     """
 
-    def __init__(self, storage: StorageOptions, options: PlayOptions, name: str, context: Context) -> None:
+    def __init__(self, storage: Sequence[StorageOptions], options: PlayOptions, name: str, context: Context) -> None:
         self._options = options
         self._selection = options.selection()
         self._selection.check()
         if not options.rate > 0:
             raise ValueError(f"rate: expected a number above 0, found {options.rate}")
-        self._bag = BagReader(storage.uri, storage.storage_id, self._publish_file_change)
+        self._bags = MergedBags([(one.uri, one.storage_id) for one in storage], self._publish_file_change)
         try:
             super().__init__(name, context=context, cli_args=_node_arguments(options), use_global_arguments=False)
         except BaseException:
-            self._bag.close()
+            self._bags.close()
             raise
-        for note in self._bag.notes:
+        for note in self._bags.notes:
             self.get_logger().warning(note)
         self._set_limits()
         self._changed = threading.Condition(threading.RLock())
@@ -85,12 +86,12 @@ class PlayerNode(Node):
 
     def _set_limits(self) -> None:
         """Note what of the bag is played."""
-        options, metadata = self._options, self._bag.metadata
+        options = self._options
         offset = round(options.start_offset * _SECOND)
         if offset < 0:
             self.get_logger().warning("Negative start offset ignored.")
             offset = 0
-        self._start = metadata.start_ns + offset
+        self._start = self._bags.start_ns + offset
         self._stop = FOREVER_NS
         if options.playback_duration >= 0:
             self._stop = self._start + round(options.playback_duration * _SECOND)
@@ -102,7 +103,7 @@ class PlayerNode(Node):
         from rosgraph_msgs.msg import Clock as ClockMessage
 
         options = self._options
-        wanted = [topic for name, topic in self._bag.topics.items() if self._selection.wants(name, topic.type)]
+        wanted = [topic for name, topic in self._bags.topics.items() if self._selection.wants(name, topic.type)]
         self._outlets = Outlets(self, wanted, options)
         self._split_publisher = self.create_publisher(ReadSplitEvent, "events/read_split", 1)
         self._clock_publisher = None
@@ -132,7 +133,7 @@ class PlayerNode(Node):
     @property
     def end_ns(self) -> int:
         """The bag's time at which playing ends."""
-        return min(self._stop, self._bag.metadata.end_ns)
+        return min(self._stop, self._bags.end_ns)
 
     @property
     def state(self) -> str:
@@ -196,10 +197,11 @@ class PlayerNode(Node):
         """Note that playing is to stop, and nothing else: this may be called by a signal's handler."""
         self._stopping = True
 
-    def close(self) -> None:
-        """Play no more and let the bag go."""
+    def destroy_node(self) -> None:
+        """Play no more, let the bags go and leave the graph."""
         self.stop()
-        self._bag.close()
+        self._bags.close()
+        super().destroy_node()
 
     def _run(self) -> None:
         """Play, in the thread: once, or again and again."""
@@ -251,8 +253,8 @@ class PlayerNode(Node):
     def _go_to(self, time_ns: int) -> None:
         """Go on from a time of the bag."""
         self._end_stream()
-        wanted = [name for name in self._outlets.names if name in self._bag.topics]
-        messages = self._bag.messages(wanted, start_ns=max(time_ns, 0), stop_ns=self._stop)
+        wanted = [name for name in self._outlets.names if name in self._bags.topics]
+        messages = self._bags.messages(wanted, start_ns=max(time_ns, 0), stop_ns=self._stop)
         self._stream = ReadAhead(messages, self._options.read_ahead_queue_size)
         self._clock_of_bag.jump(time_ns, _steady())
         self._message = self._stream.next()
@@ -362,7 +364,7 @@ class PlayerNode(Node):
         with self._changed:
             if not self._playing:
                 return False
-            self._go_to(max(time_ns, self._bag.metadata.start_ns))
+            self._go_to(max(time_ns, self._bags.start_ns))
             self._changed.notify_all()
             return True
 

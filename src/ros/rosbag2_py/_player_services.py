@@ -7,7 +7,7 @@ from typing import Any
 from rclpy.callback_groups import ReentrantCallbackGroup
 
 from rosbag2_py._player_node import PlayerNode
-from rosbag2_py._services import serve
+from rosbag2_py._services import create_common_services, serve
 
 _SECOND = 1_000_000_000
 
@@ -23,17 +23,13 @@ def create_services(player: PlayerNode) -> None:
         until = _nanoseconds(request.playback_until_timestamp)
         return {"success": player.play_part(offset / _SECOND, duration / _SECOND, until)}
 
+    create_common_services(player, player, group)
     for kind, name, work in (
-        (srv.Pause, "pause", lambda request: player.pause()),
-        (srv.Resume, "resume", lambda request: player.resume()),
-        (srv.TogglePaused, "toggle_paused", lambda request: player.toggle_paused()),
-        (srv.IsPaused, "is_paused", lambda request: {"paused": player.is_paused}),
         (srv.GetRate, "get_rate", lambda request: {"rate": player.rate}),
         (srv.SetRate, "set_rate", lambda request: {"success": player.set_rate(request.rate)}),
         (srv.PlayNext, "play_next", lambda request: {"success": player.play_next()}),
         (srv.Burst, "burst", lambda request: {"actually_burst": player.burst(request.num_messages)}),
         (srv.Seek, "seek", lambda request: {"success": player.seek(_nanoseconds(request.time))}),
-        (srv.Stop, "stop", lambda request: player.stop()),
         (srv.Play, "play", play),
     ):
         serve(player, kind, name, work, group)

@@ -5,14 +5,11 @@ from __future__ import annotations
 import threading
 from typing import ClassVar
 
-from rclpy.context import Context
-from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
-
-from daidalos.bags.errors import BagError
-from rosbag2_py._keyboard import SPACE, Keyboard
+from rosbag2_py._keyboard import SPACE
 from rosbag2_py._options import RecordOptions, severity
 from rosbag2_py._recorder_node import NODE_NAME, RecorderNode
 from rosbag2_py._recorder_services import create_services
+from rosbag2_py._running import RunningNode
 from rosbag2_py._storage import StorageOptions
 
 
@@ -49,45 +46,32 @@ class Recorder:
     ) -> None:
         self._severity = severity(storage_options if isinstance(storage_options, str) else log_level)
         self._failed = False
-        self._node: RecorderNode | None = None
-        self._context: Context | None = None
-        self._executor: SingleThreadedExecutor | None = None
-        self._thread: threading.Thread | None = None
-        self._keyboard: Keyboard | None = None
+        self._running_node: RunningNode[RecorderNode] | None = None
         self._cancelled = threading.Event()
         if storage_options is not None and not isinstance(storage_options, str) and record_options is not None:
             self._prepare(storage_options, record_options, node_name)
 
     def _prepare(self, storage: StorageOptions, options: RecordOptions, node_name: str) -> None:
-        self._context = Context()
-        self._context.init(args=[])
-        try:
-            self._node = RecorderNode(storage, options, node_name, self._context, self._on_failure)
-        except BaseException:
-            self._context.destroy()
-            raise
-        self._node.get_logger().set_level(self._severity)
-        create_services(self._node)
-        self._executor = SingleThreadedExecutor(context=self._context)
-        self._executor.add_node(self._node)
-        if not options.disable_keyboard_controls:
-            self._keyboard = Keyboard(self._on_key)
+        self._running_node = RunningNode(
+            lambda context: RecorderNode(storage, options, node_name, context, self._fail),
+            self._severity,
+            keys=None if options.disable_keyboard_controls else {SPACE: RecorderNode.toggle_paused},
+            on_crash=self._fail,
+        )
+        create_services(self._running_node.node)
 
-    def _configured(self) -> RecorderNode:
-        if self._node is None:
+    @property
+    def _configured(self) -> RunningNode[RecorderNode]:
+        if self._running_node is None:
             raise RuntimeError("Recorder is not configured: it was made without options")
-        return self._node
+        return self._running_node
 
     @property
     def node(self) -> RecorderNode:
         """The node."""
-        return self._configured()
+        return self._configured.node
 
-    def _on_key(self, key: str) -> None:
-        if key == SPACE and self._node is not None:
-            self._node.toggle_paused()
-
-    def _on_failure(self, error: BagError) -> None:
+    def _fail(self) -> None:
         self._failed = True
         self._cancelled.set()
 
@@ -100,32 +84,12 @@ class Recorder:
 
     def start_spin(self) -> None:
         """Run the node's callbacks in a thread."""
-        self._configured()
-        if self._thread is None:
-            self._thread = threading.Thread(target=self._spin, name="recorder", daemon=True)
-            self._thread.start()
-
-    def _spin(self) -> None:
-        assert self._executor is not None
-        try:
-            self._executor.spin()
-        except ExternalShutdownException:
-            return
-        except BaseException:
-            self._failed = True
-            self._cancelled.set()
-            raise
+        self._configured.start()
 
     def stop_spin(self) -> None:
         """Run no more callbacks, and leave the graph."""
-        self._configured()
-        if self._executor is not None and self._context is not None and self._node is not None:
-            self._executor.shutdown()
-            if self._thread is not None:
-                self._thread.join()
-            self._node.destroy_node()
-            self._context.destroy()
-            self._node = None
+        self._configured.close()
+        self._running_node = None
 
     def record(
         self,
@@ -144,22 +108,19 @@ class Recorder:
             self.stop_spin()
 
     def _begin(self) -> None:
-        node = self._configured()
+        running = self._configured
         self._cancelled.clear()
         Recorder._running.append(self)
-        if self._keyboard is not None:
-            node.get_logger().info("Press SPACE for pausing/resuming")
-            self._keyboard.start()
+        running.listen_to_keys("Press SPACE for pausing/resuming")
         try:
-            node.record()
+            running.node.record()
         except BaseException:
-            self._end_keyboard()
+            running.ignore_keys()
             Recorder._running.remove(self)
             raise
 
     def record_sync(self) -> None:
         """Record until `cancel` or Ctrl-C, and complete the bag."""
-        self._configured()
         self.start_spin()
         self._begin()
         try:
@@ -173,28 +134,24 @@ class Recorder:
 
     def stop(self) -> None:
         """Complete the bag."""
-        node = self._configured()
-        self._end_keyboard()
+        running = self._configured
+        running.ignore_keys()
         if self in Recorder._running:
             Recorder._running.remove(self)
-        node.stop()
+        running.node.stop()
         self._cancelled.set()
-
-    def _end_keyboard(self) -> None:
-        if self._keyboard is not None:
-            self._keyboard.stop()
 
     def pause(self) -> None:
         """Pass over what comes."""
-        self._configured().pause()
+        self.node.pause()
 
     def resume(self) -> None:
         """Record again."""
-        self._configured().resume()
+        self.node.resume()
 
     def is_paused(self) -> bool:
         """Tell whether what comes is passed over."""
-        return self._configured().is_paused
+        return self.node.is_paused
 
     @staticmethod
     def cancel() -> None:

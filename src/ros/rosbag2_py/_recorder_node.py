@@ -60,7 +60,7 @@ class RecorderNode(Node):
         options: RecordOptions,
         name: str,
         context: Context,
-        on_failure: Callable[[BagError], None],
+        on_failure: Callable[[], None],
     ) -> None:
         self._selection = options.selection()
         self._selection.check()
@@ -162,7 +162,7 @@ class RecorderNode(Node):
 
     def _fail(self, error: BagError) -> None:
         self.get_logger().error(str(error))
-        self._on_failure(error)
+        self._on_failure()
 
     # Control.
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from rosbag2_py._recorder_node import RecorderNode
-from rosbag2_py._services import serve
+from rosbag2_py._services import create_common_services, serve
 
 
 def create_services(recorder: RecorderNode) -> None:
@@ -25,13 +25,9 @@ def create_services(recorder: RecorderNode) -> None:
         recorder.start_discovery()
         return {}
 
+    create_common_services(recorder, recorder)
     for kind, name, work in (
-        (srv.IsPaused, "is_paused", lambda request: {"paused": recorder.is_paused}),
-        (srv.Pause, "pause", lambda request: recorder.pause()),
-        (srv.Resume, "resume", lambda request: recorder.resume()),
-        (srv.TogglePaused, "toggle_paused", lambda request: recorder.toggle_paused()),
         (srv.SplitBagfile, "split_bagfile", lambda request: recorder.split()),
-        (srv.Stop, "stop", lambda request: recorder.stop()),
         (srv.Record, "record", record),
         (srv.StartDiscovery, "start_discovery", start_discovery),
         (srv.StopDiscovery, "stop_discovery", lambda request: recorder.stop_discovery()),

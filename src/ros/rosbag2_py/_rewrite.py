@@ -87,8 +87,7 @@ def bag_rewrite(
     RuntimeError
         When a bag can not be read or written, or the file is not understood.
     """
-    inputs = [(Path(one.uri), one.storage_id) for one in input_options]
-    return convert(inputs, _outputs(Path(output_config_file)), progress)
+    return convert([(one.uri, one.storage_id) for one in input_options], _outputs(Path(output_config_file)), progress)
 
 
 def _outputs(path: Path) -> list[Output]:

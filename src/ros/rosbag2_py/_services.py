@@ -3,10 +3,39 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, Protocol
 
 from rclpy.callback_groups import CallbackGroup
 from rclpy.node import Node
+
+
+class Pausable(Protocol):
+    """What can be paused and stopped: a recorder or a player."""
+
+    @property
+    def is_paused(self) -> bool: ...
+
+    def pause(self) -> None: ...
+
+    def resume(self) -> None: ...
+
+    def toggle_paused(self) -> None: ...
+
+    def stop(self) -> None: ...
+
+
+def create_common_services(pausable: Pausable, node: Node, group: CallbackGroup | None = None) -> None:
+    """Let others pause, resume and stop a recorder or a player, which is the node."""
+    from rosbag2_interfaces import srv
+
+    for kind, name, work in (
+        (srv.IsPaused, "is_paused", lambda request: {"paused": pausable.is_paused}),
+        (srv.Pause, "pause", lambda request: pausable.pause()),
+        (srv.Resume, "resume", lambda request: pausable.resume()),
+        (srv.TogglePaused, "toggle_paused", lambda request: pausable.toggle_paused()),
+        (srv.Stop, "stop", lambda request: pausable.stop()),
+    ):
+        serve(node, kind, name, work, group)
 
 
 def serve(

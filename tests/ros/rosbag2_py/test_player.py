@@ -118,6 +118,19 @@ def test_the_clock(node, tmp_path):
     assert 5_000_000 < sorted(steps)[len(steps) // 2] < 20_000_000
 
 
+def test_several_bags_in_one_order(node, tmp_path):
+    first = write_chatter(tmp_path / "first", 20)
+    other = write_chatter(tmp_path / "other", 5, "sqlite3", period_ns=45_000_000)
+    heard = Heard(node)
+    player = Player([StorageOptions(first), StorageOptions(other)], PlayOptions(**QUIET, rate=10.0), "warn")
+    with spinning(node):
+        player.play_sync()
+        heard.wait_for(25)
+        player.stop_spin()
+    times = sorted([(k * 10, 0, k) for k in range(20)] + [(k * 45, 1, k) for k in range(5)])
+    assert heard.values == [number for _, _, number in times]
+
+
 def test_files_that_change_are_told(node, tmp_path):
     uri = write_chatter(tmp_path / "bag", 50, max_bagfile_duration=0.2)
     events = Heard(node, "/events/read_split", ReadSplitEvent, lambda one: (one.closed_file, one.opened_file))
@@ -293,8 +306,8 @@ def test_options_that_make_no_sense(graph, tmp_path):
             method()
     with pytest.raises(RuntimeError, match="not configured"):
         player.burst(1)
-    with pytest.raises(RuntimeError, match="Expected one bag to play, found 2"):
-        Player([StorageOptions(uri), StorageOptions(uri)], PlayOptions(**QUIET))
+    with pytest.raises(RuntimeError, match="Expected a bag to play, found none"):
+        Player([], PlayOptions(**QUIET))
 
 
 def call_events(folder):

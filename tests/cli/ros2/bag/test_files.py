@@ -88,6 +88,11 @@ def test_lists(bag):
         ("info text.db3", 1, "[ERROR] [ros2bag]: text.db3: no bag: it begins with 68 65 6c 6c 6f"),
         ("info folder", 1, "[ERROR] [ros2bag]: folder: no bag: it holds no file that ends in .mcap or .db3"),
         ("info broken", 1, "[ERROR] [ros2bag]: broken/metadata.yaml: no YAML: line 2, column 1"),
+        ("info old.bag", 1, "[ERROR] [ros2bag]: old.bag: this is a bag of ROS 1; 'rosbags-convert --src old.bag"),
+        ("play", 1, "[ERROR] [ros2bag]: Expected a bag to play: bag_path or --input"),
+        ("play a -i a", 1, "[ERROR] [ros2bag]: Only one of bag_path (with --storage) and --input may be given."),
+        ("play -i a -i nowhere mcap", 1, "[ERROR] [ros2bag]: Bag path 'nowhere' does not exist!"),
+        ("play -i a leveldb", 1, "Unknown storage ID 'leveldb', options are: mcap, sqlite3"),
         ("burst folder", 1, "[ERROR] [ros2bag]: folder: no bag"),
         ("reindex folder", 1, "[ERROR] [ros2bag]: folder: no bag"),
         ("reindex empty.mcap", 1, "[ERROR] [ros2bag]: Must specify a bag directory"),
@@ -124,6 +129,7 @@ def test_what_is_wrong_is_said_in_a_line(bag, tmp_path, words, status, fault):
     write_bag(tmp_path / "a", 1)
     (tmp_path / "empty.mcap").touch()
     (tmp_path / "text.db3").write_text("hello, this is no bag")
+    (tmp_path / "old.bag").write_text("#ROSBAG V2.0")
     (tmp_path / "folder").mkdir()
     (tmp_path / "broken").mkdir()
     (tmp_path / "broken" / "metadata.yaml").write_text("a: [\n")

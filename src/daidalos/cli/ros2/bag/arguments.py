@@ -6,13 +6,16 @@ import os
 import signal
 import sys
 import time
-from argparse import ArgumentParser, ArgumentTypeError
+from argparse import ArgumentParser, ArgumentTypeError, Namespace
 from collections.abc import Callable
 from types import FrameType
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self
 
 from daidalos.bags.storage import SUFFIXES
 from daidalos.cli.ros2.errors import CliError
+
+if TYPE_CHECKING:
+    from rosbag2_py import StorageOptions
 
 STORAGES = tuple(SUFFIXES)
 LOOK_S = 0.1
@@ -23,6 +26,10 @@ _SAME_PRESS_S = 0.5
 def add_bag_arguments(parser: ArgumentParser) -> None:
     """Declare the bag that is read."""
     parser.add_argument("bag_path", type=existing_bag, help="Bag to open: a folder, or one file of a bag")
+    _add_storage(parser)
+
+
+def _add_storage(parser: ArgumentParser) -> None:
     parser.add_argument(
         "-s",
         "--storage",
@@ -30,6 +37,52 @@ def add_bag_arguments(parser: ArgumentParser) -> None:
         choices=STORAGES,
         help="Storage implementation of the bag. By default it is found out.",
     )
+
+
+def add_bags_arguments(parser: ArgumentParser) -> None:
+    """Declare the bags that are played: one by its place, or several by an option."""
+    parser.add_argument("bag_path", type=existing_bag, nargs="?", help="Bag to open: a folder, or one file of a bag")
+    _add_storage(parser)
+    parser.add_argument(
+        "-i",
+        "--input",
+        action="append",
+        nargs="+",
+        default=[],
+        metavar=("uri", "storage_id"),
+        help="Path, and perhaps the storage, of a bag; may be given more than once: the messages of all bags are put "
+        f"in one order by time. Storages are: {', '.join(STORAGES)}",
+    )
+
+
+def bags_to_play(args: Namespace) -> list[StorageOptions]:
+    """Return the bags that `add_bags_arguments` declared; CliError where they contradict each other."""
+    from rosbag2_py import StorageOptions
+
+    if args.input and (args.bag_path or args.storage):
+        raise error("Only one of bag_path (with --storage) and --input may be given.")
+    if args.bag_path:
+        return [StorageOptions(args.bag_path, args.storage)]
+    if not args.input:
+        raise error("Expected a bag to play: bag_path or --input")
+    return input_bags(args.input)
+
+
+def input_bags(inputs: list[list[str]]) -> list[StorageOptions]:
+    """Return the bags that the words of several options `--input` mean; CliError where they make no sense."""
+    from rosbag2_py import StorageOptions
+
+    bags = []
+    for words in inputs:
+        if len(words) > 2:
+            raise error(f"--input expects 1 or 2 arguments, {len(words)} provided")
+        path, storage = (*words, "")[:2]
+        if storage and storage not in STORAGES:
+            raise error(f"Unknown storage ID '{storage}', options are: {', '.join(STORAGES)}")
+        if not os.path.exists(path):
+            raise error(f"Bag path '{path}' does not exist!")
+        bags.append(StorageOptions(path, storage))
+    return bags
 
 
 def add_topic_arguments(parser: ArgumentParser) -> None:

@@ -16,7 +16,7 @@ class BurstVerb(Verb):
 
     def add_arguments(self, parser: ArgumentParser, cli_name: str) -> None:
         """Declare the verb's arguments."""
-        common.add_bag_arguments(parser)
+        common.add_bags_arguments(parser)
         common.add_topic_arguments(parser)
         parser.add_argument(
             "--start-offset",
@@ -36,8 +36,9 @@ class BurstVerb(Verb):
 
     def main(self, *, args: Namespace) -> Status:
         """Burst, then let the keyboard and the services decide."""
-        from rosbag2_py import Player, PlayOptions, StorageOptions
+        from rosbag2_py import Player, PlayOptions
 
+        bags = common.bags_to_play(args)
         options = PlayOptions(
             read_ahead_queue_size=args.read_ahead_queue_size,
             topics_to_filter=args.topics,
@@ -48,7 +49,7 @@ class BurstVerb(Verb):
             start_offset=args.start_offset,
         )
         try:
-            player = Player(StorageOptions(args.bag_path, args.storage), options)
+            player = Player(bags, options)
         except (BagError, ValueError) as fault:
             raise common.error(str(fault)) from None
         return run(player, args.num_messages)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from argparse import ArgumentParser, Namespace
 
 from daidalos.bags.errors import BagError
-from daidalos.cli.ros2.bag.arguments import STORAGES, error, existing_file, warn
+from daidalos.cli.ros2.bag.arguments import STORAGES, error, existing_file, input_bags, warn
 from daidalos.cli.ros2.extension import Status, Verb
 
 
@@ -35,17 +35,9 @@ class ConvertVerb(Verb):
 
     def main(self, *, args: Namespace) -> Status:
         """Write the bags."""
-        from rosbag2_py import StorageOptions
         from rosbag2_py._rewrite import bag_rewrite
 
-        inputs = []
-        for words in args.input:
-            if len(words) > 2:
-                raise error(f"--input expects 1 or 2 arguments, {len(words)} provided")
-            path, storage = (*words, "")[:2]
-            if storage and storage not in STORAGES:
-                raise error(f"Unknown storage ID '{storage}', options are: {', '.join(STORAGES)}")
-            inputs.append(StorageOptions(path, storage))
+        inputs = input_bags(args.input)
         try:
             with _Bar() as bar:
                 notes = bag_rewrite(inputs, args.output_options, bar.show)

@@ -21,7 +21,7 @@ class PlayVerb(Verb):
 
     def add_arguments(self, parser: ArgumentParser, cli_name: str) -> None:
         """Declare the verb's arguments."""
-        common.add_bag_arguments(parser)
+        common.add_bags_arguments(parser)
         common.add_topic_arguments(parser)
         _add_selection(parser)
         _add_timing(parser)
@@ -64,11 +64,11 @@ class PlayVerb(Verb):
 
     def main(self, *, args: Namespace) -> Status:
         """Play to the end or Ctrl-C."""
-        from rosbag2_py import Player, StorageOptions
+        from rosbag2_py import Player
 
-        options = play_options(args)
+        bags, options = common.bags_to_play(args), play_options(args)
         try:
-            player = Player(StorageOptions(args.bag_path, args.storage), options, args.log_level)
+            player = Player(bags, options, args.log_level)
         except (BagError, ValueError) as fault:
             raise common.error(str(fault)) from None
         return run(player)
