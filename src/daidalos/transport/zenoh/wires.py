@@ -22,6 +22,7 @@ from daidalos.transport.backend import (
 )
 from daidalos.transport.graph import EndpointInfo
 from daidalos.transport.qos import History, Qos
+from daidalos.transport.zenoh.threads import on_lasting_thread
 
 _ATTACHMENT = struct.Struct("<qqB16s")
 """Sequence number, source time in ns, length of the gid, gid."""
@@ -132,14 +133,14 @@ class ZenohSubscription(_Wire, WireSubscription):
             self._subscriber: Any = ext.declare_advanced_subscriber(
                 session,
                 key,
-                Callback(accept, indirect=False),
+                Callback(on_lasting_thread(accept), indirect=False),
                 history=ext.HistoryConfig(detect_late_publishers=True, max_samples=_cache_size(qos)),
                 recovery=ext.RecoveryConfig(periodic_queries=None, heartbeat=True) if qos.reliable else None,
                 subscriber_detection=True,
             )
         else:
             self._subscriber = session.declare_subscriber(
-                key, Callback(on_sample, indirect=False), allowed_origin=zenoh.Locality.REMOTE
+                key, Callback(on_lasting_thread(on_sample), indirect=False), allowed_origin=zenoh.Locality.REMOTE
             )
 
     def data(self, sample: Any) -> bytes:
@@ -165,7 +166,10 @@ class ZenohService(_Wire, WireService):
         self._key = key
         self._queries: dict[RequestId, zenoh.Query] = {}
         self._queryable = session.declare_queryable(
-            key, Callback(on_request, indirect=False), complete=True, allowed_origin=zenoh.Locality.REMOTE
+            key,
+            Callback(on_lasting_thread(on_request), indirect=False),
+            complete=True,
+            allowed_origin=zenoh.Locality.REMOTE,
         )
 
     def request(self, item: Any) -> tuple[bytes, RequestId, int]:
@@ -203,7 +207,7 @@ class ZenohClient(_Wire, WireClient):
     ) -> None:
         super().__init__()
         self._gid = endpoint.gid
-        self._callback = Callback(on_response, indirect=False)
+        self._callback = Callback(on_lasting_thread(on_response), indirect=False)
         waits_for_result = endpoint.name.endswith("/_action/get_result")
         self._querier = session.declare_querier(
             key,
