@@ -25,6 +25,11 @@ def test_a_built_in_executable_is_started_as_a_module() -> None:
     assert "spawn_entity.py" in executables("gazebo_ros")
 
 
+def test_spawners_have_the_names_of_older_distributions_too() -> None:
+    assert find_executable("controller_manager", "spawner.py") == find_executable("controller_manager", "spawner")
+    assert executable_path("controller_manager", "unspawner.py").name == "unspawner.py"
+
+
 def test_modules_that_are_parts_are_no_executables() -> None:
     assert not [name for name in executables("gazebo_ros") if name.startswith("_")]
 
