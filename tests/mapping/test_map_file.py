@@ -7,6 +7,7 @@ import yaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import array_shapes, arrays
+from PIL import Image
 
 from daidalos.mapping.errors import MapFileError
 from daidalos.mapping.grid import OccupancyGrid
@@ -107,6 +108,38 @@ def test_numbers_may_have_an_exponent_without_a_dot(tmp_path: Path) -> None:
     assert (grid.resolution, grid.origin[1]) == (0.05, 1e-5)
 
 
+@pytest.mark.parametrize("image_format", ["pgm", "png", "bmp"])
+@pytest.mark.parametrize("mode", ["trinary", "raw"])
+def test_other_images_and_thresholds(tmp_path: Path, image_format: str, mode: str) -> None:
+    data = np.array([[0, 30, 70], [-1, 50, 100]], np.int8)
+    grid = OccupancyGrid(data, 0.05, (-1.0, 2.0, 0.0))
+    path, image = save_map(
+        grid, tmp_path / "room", mode, image_format=image_format, occupied_thresh=0.5, free_thresh=0.3
+    )
+    assert image.name == f"room.{image_format}"
+    expected = data if mode == "raw" else [[0, 0, 100], [-1, 100, 100]]
+    assert np.array_equal(load_map(path).data, expected)
+    with pytest.raises(MapFileError, match=r"free_thresh < occupied_thresh <= 1, found 0\.5 and 0\.5"):
+        save_map(grid, tmp_path / "room", occupied_thresh=0.5, free_thresh=0.5)
+
+
+def test_unknown_cells_of_a_scaled_map_are_transparent(tmp_path: Path) -> None:
+    data = np.array([[0, 30, 70], [-1, 50, 100]], np.int8)
+    path, image = save_map(OccupancyGrid(data, 0.05, (0.0, 0.0, 0.0)), tmp_path / "room", "scale", image_format="png")
+    assert np.abs(load_map(path).data - data).max() <= 1
+    assert load_map(path).data[1, 0] == -1
+    with Image.open(image) as read:
+        assert read.mode == "LA"
+        assert np.asarray(read)[0, :, 1].tolist() == [0, 255, 255]
+
+
+def test_colours_are_read_as_grey(tmp_path: Path) -> None:
+    pixels = np.array([[[255, 255, 255], [0, 0, 0]], [[0, 0, 0], [205, 205, 205]]], np.uint8)
+    path = write(tmp_path, GOOD.replace("room.pgm", "room.png"))
+    Image.fromarray(pixels).save(tmp_path / "room.png")
+    assert load_map(path).data.tolist() == [[100, -1], [0, 100]]
+
+
 def test_text_images_and_other_white_values_are_read(tmp_path: Path) -> None:
     image = b"P2 # by hand\n2 2\n# white\n100\n0 100\n80 40"
     assert load_map(write(tmp_path, image=image)).data.tolist() == [[-1, -1], [100, 0]]
@@ -138,7 +171,8 @@ def test_bad_fields_are_named(tmp_path: Path, old: str, new: str, message: str) 
 @pytest.mark.parametrize(
     ("image", "message"),
     [
-        (b"\x89PNG\r\n\x1a\n", "header: expected a PGM image"),
+        (b"\x89PNG\r\n\x1a\n", "header: expected a PGM, PNG or BMP image"),
+        (b"P5\n2 x\n255\n", "header: expected 'P5' or 'P2'"),
         (b"P5\n2 2\n65535\n", "header: expected a largest grey value from 1 to 255, found 65535"),
         (b"P5\n0 2\n255\n", "header: expected at least one pixel"),
         (b"P5\n2 2\n255\n\x00", "pixels: expected 2 x 2 = 4, found 1"),

@@ -1,8 +1,7 @@
-"""Map files of map_server: a YAML file that says what the grey values of a PGM image mean."""
+"""Map files of map_server: a YAML file that says what the grey values of an image mean."""
 
 import contextlib
 import math
-import re
 from pathlib import Path
 from typing import Any, Literal, get_args
 
@@ -11,9 +10,9 @@ from numpy.typing import NDArray
 
 from daidalos.mapping.errors import MapFileError
 from daidalos.mapping.grid import FREE, OCCUPIED, UNKNOWN, OccupancyGrid
+from daidalos.mapping.map_image import Format, Image, encode_image, read_image
 
 Mode = Literal["trinary", "scale", "raw"]
-Image = NDArray[np.uint8]
 
 OCCUPIED_THRESHOLD = 0.65
 FREE_THRESHOLD = 0.196
@@ -26,8 +25,8 @@ def load_map(path: str | Path) -> OccupancyGrid:
     """Read a map.
 
     In `trinary` mode a cell is occupied, free or unknown by the two thresholds; in `scale` mode what lies
-    between them becomes 0 to 100; in `raw` mode grey values 0 to 100 are taken as they are and others are
-    unknown.
+    between them becomes 0 to 100, and what is transparent is unknown; in `raw` mode grey values 0 to 100 are
+    taken as they are and others are unknown.
 
     Parameters
     ----------
@@ -58,22 +57,36 @@ def load_map(path: str | Path) -> OccupancyGrid:
             yaml_path, "free_thresh", f"expected less than occupied_thresh ({occupied:g}), found {free:g}"
         )
     origin = _origin(yaml_path, fields)
-    grey = np.flipud(_read_pgm(image_path))
+    grey, opaque = read_image(image_path)
     data = _to_occupancy(grey, mode, bool(negate), occupied, free)
-    return OccupancyGrid(np.ascontiguousarray(data), resolution, origin)
+    if mode == "scale" and opaque is not None:
+        data[~opaque] = UNKNOWN
+    return OccupancyGrid(np.ascontiguousarray(np.flipud(data)), resolution, origin)
 
 
-def save_map(grid: OccupancyGrid, stem: str | Path, mode: Mode = "trinary") -> tuple[Path, Path]:
-    """Write `stem`.pgm and `stem`.yaml; either both are replaced or neither.
+def save_map(
+    grid: OccupancyGrid,
+    stem: str | Path,
+    mode: Mode = "trinary",
+    *,
+    image_format: Format = "pgm",
+    occupied_thresh: float = OCCUPIED_THRESHOLD,
+    free_thresh: float = FREE_THRESHOLD,
+) -> tuple[Path, Path]:
+    """Write `stem`.yaml and the image beside it; either both are replaced or neither.
 
     Parameters
     ----------
     grid : OccupancyGrid
         The map.
     stem : str or Path
-        Path without extension; `.yaml` and `.pgm` are taken off.
+        Path without extension; `.yaml` and those of images are taken off.
     mode : {"trinary", "scale", "raw"}
-        What the grey values mean. `scale` holds no unknown cells, since a PGM image has no transparency.
+        What the grey values mean. `scale` needs a PNG image for unknown cells: they are transparent.
+    image_format : {"pgm", "png", "bmp"}
+        Format of the image, and its extension.
+    occupied_thresh, free_thresh : float
+        From which share of 1 on a cell is occupied, and up to which it is free.
 
     Returns
     -------
@@ -83,18 +96,30 @@ def save_map(grid: OccupancyGrid, stem: str | Path, mode: Mode = "trinary") -> t
     Raises
     ------
     MapFileError
-        When the folder can not be written to, or the mode can not hold the map.
+        When the folder can not be written to, the mode can not hold the map or the thresholds make no sense.
     """
     import yaml
 
     base = Path(stem)
-    if base.suffix in (".yaml", ".pgm"):
+    if base.suffix in (".yaml", *(f".{name}" for name in get_args(Format))):
         base = base.with_suffix("")
-    yaml_path, image_path = base.parent / f"{base.name}.yaml", base.parent / f"{base.name}.pgm"
+    yaml_path, image_path = base.parent / f"{base.name}.yaml", base.parent / f"{base.name}.{image_format}"
+    if not 0.0 <= free_thresh < occupied_thresh <= 1.0:
+        raise MapFileError(
+            yaml_path,
+            "free_thresh",
+            f"expected 0 <= free_thresh < occupied_thresh <= 1, found {free_thresh:g} and {occupied_thresh:g}",
+        )
     if grid.data.size == 0:
         raise MapFileError(image_path, None, "the map has no cells")
-    grey = np.flipud(_to_grey(grid.data, mode, image_path))
-    header = f"P5\n{grey.shape[1]} {grey.shape[0]}\n255\n".encode()
+    cells = np.flipud(grid.data)
+    known = (cells >= FREE) & (cells <= OCCUPIED)
+    if mode == "scale" and image_format != "png" and not known.all():
+        raise MapFileError(
+            image_path, "mode", f"scale can not hold unknown cells in a {image_format.upper()} image; use PNG"
+        )
+    grey = _to_grey(cells, known, mode, occupied_thresh, free_thresh)
+    image = encode_image(grey, known if mode == "scale" and image_format == "png" else None, image_format)
     description = yaml.safe_dump(
         {
             "image": image_path.name,
@@ -102,13 +127,13 @@ def save_map(grid: OccupancyGrid, stem: str | Path, mode: Mode = "trinary") -> t
             "resolution": float(grid.resolution),
             "origin": [float(value) for value in grid.origin],
             "negate": 0,
-            "occupied_thresh": OCCUPIED_THRESHOLD,
-            "free_thresh": FREE_THRESHOLD,
+            "occupied_thresh": occupied_thresh,
+            "free_thresh": free_thresh,
         },
         sort_keys=False,
         default_flow_style=None,
     )
-    _write_together({image_path: header + grey.tobytes(), yaml_path: description.encode()})
+    _write_together({image_path: image, yaml_path: description.encode()})
     return yaml_path, image_path
 
 
@@ -120,20 +145,23 @@ def _to_occupancy(grey: Image, mode: str, negate: bool, occupied: float, free: f
     return np.select([share > occupied, share < free], [OCCUPIED, FREE], middle).astype(np.int8)
 
 
-def _to_grey(data: NDArray[np.int8], mode: Mode, path: Path) -> Image:
-    known = (data >= FREE) & (data <= OCCUPIED)
+def _to_grey(data: NDArray[np.int8], known: NDArray[np.bool_], mode: Mode, occupied: float, free: float) -> Image:
     if mode == "raw":
         return np.where(known, data, 255).astype(np.uint8)
     if mode == "trinary":
-        occupied = known & (data >= 100 * OCCUPIED_THRESHOLD)
-        free = known & (data <= 100 * FREE_THRESHOLD)
-        return np.select([occupied, free], [OCCUPIED_GREY, FREE_GREY], UNKNOWN_GREY).astype(np.uint8)
-    if not known.all():
-        raise MapFileError(path, "mode", "scale can not hold unknown cells in a PGM image; use trinary or raw")
-    share = FREE_THRESHOLD + (OCCUPIED_THRESHOLD - FREE_THRESHOLD) * data / 100.0
-    share = np.select([data == FREE, data == OCCUPIED], [0.0, 1.0], share)
+        chosen = [known & (data >= 100 * occupied), known & (data <= 100 * free)]
+        return np.select(chosen, [OCCUPIED_GREY, FREE_GREY], _unknown_grey(occupied, free)).astype(np.uint8)
+    share = free + (occupied - free) * data / 100.0
+    share = np.select([data == FREE, data == OCCUPIED, ~known], [0.0, 1.0, 0.5], share)
     grey: Image = np.rint(255.0 * (1.0 - share)).astype(np.uint8)
     return grey
+
+
+def _unknown_grey(occupied: float, free: float) -> int:
+    """Return the grey value between the thresholds that is read as unknown: the usual one where it is."""
+    if free < 1.0 - UNKNOWN_GREY / 255.0 < occupied:
+        return UNKNOWN_GREY
+    return round(255.0 * (1.0 - (free + occupied) / 2.0))
 
 
 def _read_fields(path: Path) -> dict[str, Any]:
@@ -189,39 +217,6 @@ def _origin(path: Path, fields: dict[str, Any]) -> tuple[float, float, float]:
     named = {f"origin[{k}]": item for k, item in enumerate(value)}
     x, y, yaw = (_number(path, named, name) for name in named)
     return (x, y, yaw)
-
-
-def _read_pgm(path: Path) -> Image:
-    """Grey values 0 to 255, shape (rows, columns), the top row first."""
-    try:
-        content = path.read_bytes()
-    except OSError as error:
-        raise MapFileError(path, None, error.strerror or str(error)) from error
-    gap = rb"(?:\s|#[^\n]*\n)+"
-    header = re.match(rb"(P[25])" + (gap + rb"(\d{1,9})") * 3 + rb"\s", content)
-    if header is None:
-        raise MapFileError(path, "header", "expected a PGM image (P5 or P2); other formats are not read")
-    columns, rows, brightest = (int(header.group(k)) for k in (2, 3, 4))
-    if not 1 <= brightest <= 255:
-        raise MapFileError(path, "header", f"expected a largest grey value from 1 to 255, found {brightest}")
-    if rows == 0 or columns == 0:
-        raise MapFileError(path, "header", f"expected at least one pixel, found {columns} x {rows}")
-    body = content[header.end() :]
-    values = _read_text_pixels(path, body) if header.group(1) == b"P2" else np.frombuffer(body, np.uint8)
-    if values.size < rows * columns:
-        raise MapFileError(path, "pixels", f"expected {columns} x {rows} = {rows * columns}, found {values.size}")
-    grey = values[: rows * columns].reshape(rows, columns)
-    if brightest == 255:
-        return grey
-    return np.rint(np.minimum(grey, brightest) * (255.0 / brightest)).astype(np.uint8)
-
-
-def _read_text_pixels(path: Path, body: bytes) -> Image:
-    try:
-        values = [int(word) for word in re.sub(rb"#[^\n]*", b"", body).split()]
-        return np.array(values, dtype=np.uint8)
-    except (ValueError, OverflowError) as error:
-        raise MapFileError(path, "pixels", f"expected numbers from 0 to 255: {error}") from error
 
 
 def _write_together(contents: dict[Path, bytes]) -> None:
