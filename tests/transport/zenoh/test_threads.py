@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import multiprocessing
+import os
+import sys
 import threading
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
@@ -14,6 +16,9 @@ import pytest
 import zenoh
 from zenoh.handlers import Callback
 
+from daidalos.transport.environment import read_environment
+from daidalos.transport.session import Session
+from daidalos.transport.shared import make_backend
 from daidalos.transport.zenoh.threads import on_lasting_thread
 
 COUNT = 20
@@ -56,3 +61,25 @@ def test_a_thread_is_known_again(tmp_path: Path, lasts: bool):
     with ProcessPoolExecutor(1, multiprocessing.get_context("spawn")) as fresh:
         most = fresh.submit(most_calls_known, f"{tmp_path}/z", lasts).result(60)
     assert (most > 1) is lasts
+
+
+def threads_of_a_session(variable: str | None) -> tuple[set[str], str | None]:
+    """Open a session; return its threads' names and what the environment says of threads then."""
+    if variable is not None:
+        os.environ["ZENOH_RUNTIME"] = variable
+    session = Session(make_backend(read_environment()))
+    names = {Path(f"/proc/self/task/{task}/comm").read_text().strip() for task in os.listdir("/proc/self/task")}
+    session.close()
+    return names, os.environ.get("ZENOH_RUNTIME")
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="only Linux names threads in /proc")
+@pytest.mark.parametrize("own", [None, "(net: (worker_threads: 1))"])
+def test_links_are_read_where_they_are_waited_for(monkeypatch: pytest.MonkeyPatch, own: str | None):
+    monkeypatch.delenv("ZENOH_RUNTIME", raising=False)
+    monkeypatch.setenv("RMW_IMPLEMENTATION", "rmw_zenoh_cpp")
+    with ProcessPoolExecutor(1, multiprocessing.get_context("spawn")) as fresh:
+        names, after = fresh.submit(threads_of_a_session, own).result(60)
+    assert "net-0" in names
+    assert ("acc-0" in names) is (own is not None)
+    assert after == own

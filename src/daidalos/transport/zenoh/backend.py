@@ -29,6 +29,7 @@ from daidalos.transport.registry import Peer, Registry
 from daidalos.transport.zenoh import keys
 from daidalos.transport.zenoh.config import ROUTER_PORT, meets_all, reason_of, session_config
 from daidalos.transport.zenoh.numbers import Numbers
+from daidalos.transport.zenoh.threads import few_threads
 from daidalos.transport.zenoh.wires import (
     ZenohClient,
     ZenohPublisher,
@@ -239,7 +240,8 @@ class ZenohBackend(Backend):
 
 def _open(config: zenoh.Config) -> zenoh.Session:
     try:
-        return zenoh.open(config)
+        with few_threads():
+            return zenoh.open(config)
     except zenoh.ZError as error:
         raise EnvironmentVariableError(
             f"zenoh cannot open a session: {reason_of(error)}; look at ZENOH_SESSION_CONFIG_URI, ZENOH_CONFIG_OVERRIDE "
