@@ -37,6 +37,11 @@ def test_comments_may_come_before_the_declaration():
     assert (root.line, root.children[0].line) == (4, 5)
 
 
+def test_zeros_at_the_end_do_not_count():
+    assert parse_markup(b"<a/>\r\n\0").tag == "a"
+    assert parse_markup("<?xml version='1.0' encoding='utf-16'?><a/>".encode("utf-16")).tag == "a"
+
+
 def test_byte_order_mark_and_declared_encoding():
     assert parse_markup(b"\xef\xbb\xbf<a/>").tag == "a"
     assert parse_markup('<?xml version="1.0" encoding="latin-1"?><a b="ü"/>').attribute("b") == "ü"

@@ -51,7 +51,7 @@ def test_everything_in_a_robot_is_read():
         ('xyz="0 2 0"', 'xyz="0 0 0"', 13, "no direction"),
         ('xyz="0 2 0"', 'xyz="0 2"', 15, "should be 3 numbers"),
         ('<mass value="2"/>', '<mass value="two"/>', 7, "should be a number, got 'two'"),
-        ('<mass value="2"/>', "", 7, "<mass> is missing"),
+        ('<mass value="2"/>', '<mass value="-2"/>', 7, "mass should not be negative"),
         ('<box size="1 2 3"/>', '<bax size="1 2 3"/>', 5, "expected one of box"),
         ('<child link="thumb"/>', '<child link="finger"/>', 27, "child of more than one joint"),
         ('<link name="thumb"/>', '<link name="thumb"/><link name="lost"/>', 2, "nobody's child: base, lost"),
@@ -75,6 +75,16 @@ def test_a_mimic_of_nothing_is_noted():
     robot = urdf.parse(ARM.replace('<mimic joint="grip"', '<mimic joint="grap"'), "arm.urdf")
     assert robot.warnings == ("arm.urdf:27: joint 'grip_mirror' mimics 'grap', which does not exist",)
     assert robot.joints["grip_mirror"].mimic is None
+
+
+def test_what_the_kinematics_do_not_need_is_left_out_with_a_warning():
+    text = ARM.replace('<mass value="2"/>', "").replace(">50</mech", ">reduction</mech")
+    robot = urdf.parse(text, "arm.urdf")
+    assert [line.partition(": ")[2] for line in robot.warnings] == [
+        "<inertial>: <mass> is missing, the inertial is left out",
+        "<mechanicalReduction>: the text should be a number, got 'reduction'; the transmission is left out",
+    ]
+    assert not robot.transmissions
 
 
 def test_a_loop_is_no_tree():

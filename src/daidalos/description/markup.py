@@ -22,7 +22,8 @@ def parse_markup(text: str | bytes, source: str = "") -> Element:
     Parameters
     ----------
     text : str or bytes
-        The document. White space and comments before the XML declaration are tolerated, as by ROS's own parsers.
+        The document. White space and comments before the XML declaration and zeros at the end are tolerated,
+        as by ROS's own parsers.
     source : str
         Where it came from; errors name it.
 
@@ -40,6 +41,8 @@ def parse_markup(text: str | bytes, source: str = "") -> Element:
     if isinstance(text, str):
         text = text.encode()
     text = text.removeprefix(b"\xef\xbb\xbf")
+    if b"\0" not in text[:4]:  # which would be UTF-16
+        text = text.rstrip(b"\0 \t\r\n")
     body = text.lstrip()
     if not body:
         raise DescriptionError("the document is empty, expected XML", source)

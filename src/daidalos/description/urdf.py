@@ -18,13 +18,8 @@ from daidalos.description.link import Collision, Inertial, Link, Material, Visua
 from daidalos.description.markup import Element, parse_markup
 from daidalos.description.pose import Pose
 from daidalos.description.resolve import PackageResolver, default_model_path, resolve_uri
-from daidalos.description.robot import (
-    Actuator,
-    GazeboExtension,
-    Robot,
-    Transmission,
-    TransmissionJoint,
-)
+from daidalos.description.robot import GazeboExtension, Robot
+from daidalos.description.transmissions import read_transmissions
 
 _JOINT_TYPES = tuple(JointType)[:6]
 _AXIS_TYPES = (JointType.REVOLUTE, JointType.CONTINUOUS, JointType.PRISMATIC, JointType.PLANAR)
@@ -97,7 +92,7 @@ def read_robot(root: Element, resolve: PackageResolver | None = None) -> Robot:
         raise root.error("expected <robot> as the root element of a URDF")
     warnings: list[str] = []
     materials = _materials(root, resolve)
-    links = _links(root, materials, resolve)
+    links = _links(root, materials, resolve, warnings)
     joints = _joints(root, warnings)
     return Robot(
         name=root.name(),
@@ -105,7 +100,7 @@ def read_robot(root: Element, resolve: PackageResolver | None = None) -> Robot:
         joints=joints,
         root=_check_tree(root, links, joints),
         materials=materials,
-        transmissions=tuple(_transmission(element) for element in root.all("transmission")),
+        transmissions=read_transmissions(root, warnings),
         gazebo=tuple(GazeboExtension(e.attribute("reference", ""), e) for e in root.all("gazebo")),
         ros2_control=tuple(root.all("ros2_control")),
         source=root.source,
@@ -137,7 +132,9 @@ def _material(element: Element, resolve: PackageResolver | None) -> Material:
     )
 
 
-def _links(root: Element, materials: Mapping[str, Material], resolve: PackageResolver | None) -> dict[str, Link]:
+def _links(
+    root: Element, materials: Mapping[str, Material], resolve: PackageResolver | None, warnings: list[str]
+) -> dict[str, Link]:
     links: dict[str, Link] = {}
     for element in root.all("link"):
         name = element.name()
@@ -146,7 +143,7 @@ def _links(root: Element, materials: Mapping[str, Material], resolve: PackageRes
         inertial = element.first("inertial")
         links[name] = Link(
             name=name,
-            inertial=None if inertial is None else _inertial(inertial),
+            inertial=None if inertial is None else _inertial(inertial, warnings),
             visuals=tuple(_visual(child, materials, resolve) for child in element.all("visual")),
             collisions=tuple(_collision(child, resolve) for child in element.all("collision")),
             where=element.where,
@@ -158,8 +155,12 @@ def _links(root: Element, materials: Mapping[str, Material], resolve: PackageRes
     return links
 
 
-def _inertial(element: Element) -> Inertial:
-    mass = element.require("mass").number_attribute("value")
+def _inertial(element: Element, warnings: list[str]) -> Inertial | None:
+    weight = element.first("mass")
+    if weight is None:
+        warnings.append(f"{element.where}: {element.label}: <mass> is missing, the inertial is left out")
+        return None
+    mass = weight.number_attribute("value")
     if mass < 0:
         raise element.error(f"mass should not be negative, got {mass:g}")
     inertia = element.first("inertia")
@@ -342,37 +343,6 @@ def _calibration(element: Element | None) -> Calibration | None:
         return None
     edges = [element.number_attribute(key) if key in element.attributes else None for key in ("rising", "falling")]
     return Calibration(*edges)
-
-
-def _transmission(element: Element) -> Transmission:
-    joints = (
-        TransmissionJoint(
-            name=child.attribute("name", ""),
-            hardware_interfaces=_hardware_interfaces(child),
-            mechanical_reduction=child.number_of("mechanical_reduction", "mechanicalReduction", default=1.0),
-            offset=child.number_of("offset", default=0.0),
-            role=child.attribute("role", child.text_of("role")),
-        )
-        for child in element.all("joint")
-    )
-    actuators = (
-        Actuator(
-            name=child.attribute("name", ""),
-            mechanical_reduction=child.number_of("mechanical_reduction", "mechanicalReduction", default=1.0),
-            hardware_interfaces=_hardware_interfaces(child),
-        )
-        for child in element.all("actuator")
-    )
-    return Transmission(
-        name=element.attribute("name", ""),
-        type=element.text_of("type", "plugin", default=element.attribute("type", "")),
-        joints=tuple(joints),
-        actuators=tuple(actuators),
-    )
-
-
-def _hardware_interfaces(element: Element) -> tuple[str, ...]:
-    return tuple(child.text.strip() for child in element.all("hardwareInterface", "hardware_interface"))
 
 
 def _check_tree(root: Element, links: Mapping[str, Link], joints: Mapping[str, Joint]) -> str:
