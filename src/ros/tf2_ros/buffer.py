@@ -222,7 +222,7 @@ class Buffer(BufferCore, BufferInterface):
         asked = (target_frame, target_time, source_frame, source_time, fixed_frame)
         return self._future(lambda: self.lookup_transform_full_core(*asked))
 
-    def _future(self, look_up: Callable[[], TransformStamped]) -> Future:
+    def _future(self, look_up: Callable[[], TransformStamped | None]) -> Future:
         future = Future()
 
         def attempt() -> None:

@@ -13,7 +13,7 @@ from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackRet
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, qos_profile_sensor_data
 from rclpy.time import Time
-from tf2_ros import Buffer, TransformException, TransformListener
+from tf2_ros import TransformException, TransformListener
 
 from daidalos.mapping.grid import OccupancyGrid
 from daidalos.navigation.costmap.costmap import Costmap
@@ -42,6 +42,7 @@ from daidalos.nodes.conversions import (
 )
 from daidalos.nodes.cycles import Cycle
 from daidalos.nodes.parameters import declare_dataclass, declare_plugin
+from daidalos.nodes.transforms import PatientBuffer
 from daidalos.nodes.warming import warm_up_in_background
 
 _LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
@@ -102,7 +103,7 @@ class CostmapNode(LifecycleNode):
         self.declare_parameter("map_topic", "/map")
         self._parameters_of_grid = declare_dataclass(self, CostmapParameters)
         self.footprint = self._read_footprint()
-        self.buffer = Buffer(node=self)
+        self.buffer = PatientBuffer(node=self)
         self._listener = TransformListener(self.buffer, self)
         self._sensor_poses: dict[str, Any] = {}
         self._compiled = warm_up_in_background(_warm_up, self.get_logger())
@@ -225,7 +226,9 @@ class CostmapNode(LifecycleNode):
         async def take(scan: Any) -> None:
             sensor_pose = await self._sensor_pose(scan.header.frame_id)
             stamp = scan.header.stamp
-            found = await self.buffer.lookup_transform_async(self.global_frame, self.base_frame, stamp)
+            found = await self.buffer.transform_at(self.global_frame, self.base_frame, stamp)
+            if found is None:
+                return
             base = pose2_of_transform(found.transform)
             observation = Observation.from_scan(
                 scan_data(scan, sensor_pose), base, seconds(stamp), inf_is_valid=settings.inf_is_valid

@@ -44,7 +44,9 @@ class SlamToolbox(Node):
         from nav_msgs.srv import GetMap
         from sensor_msgs.msg import LaserScan
         from slam_toolbox.srv import Reset, SaveMap
-        from tf2_ros import Buffer, TransformBroadcaster, TransformListener
+        from tf2_ros import TransformBroadcaster, TransformListener
+
+        from daidalos.nodes.transforms import PatientBuffer
 
         self._config = declare_dataclass(self, SlamConfig, match_every_scan=True)
         self._map_frame = self.declare_parameter("map_frame", "map").value
@@ -62,7 +64,7 @@ class SlamToolbox(Node):
         self._scans = 0
         self._drawn_keys = -1
         self._map_to_odom: Any = None
-        self._buffer = Buffer()
+        self._buffer = PatientBuffer()
         self._listener = TransformListener(self._buffer, self)
         self._broadcaster = TransformBroadcaster(self)
         self._map_publisher = self.create_publisher(OccupancyGrid, "map", _LATCHED)
@@ -99,7 +101,9 @@ class SlamToolbox(Node):
             return
         sensor_pose = await self._sensor_pose(scan.header.frame_id)
         # Odometry comes a little later than the scan that it belongs to.
-        odometry = await self._buffer.lookup_transform_async(self._odom_frame, self._base_frame, scan.header.stamp)
+        odometry = await self._buffer.transform_at(self._odom_frame, self._base_frame, scan.header.stamp)
+        if odometry is None:
+            return
         stamp_ns = nanoseconds(scan.header.stamp)
         data = scan_data(scan, sensor_pose)
         with self._lock:

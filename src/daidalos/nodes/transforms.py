@@ -1,0 +1,50 @@
+"""Waiting for the transform that belongs to a message, but not for one that cannot come any more."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from rclpy.time import Time
+from tf2_py import TransformException
+from tf2_ros import Buffer
+
+from daidalos.nodes.conversions import nanoseconds
+
+if TYPE_CHECKING:
+    from geometry_msgs.msg import TransformStamped
+    from rclpy.task import Future
+
+_AHEAD_NS = 1_000_000_000
+"""So far ahead of the clock no message is stamped, unless the clock was set back after it was sent."""
+
+
+class PatientBuffer(Buffer):
+    """A buffer whose users may wait for the transform at a message's time without an end of their own."""
+
+    def transform_at(self, target_frame: str, source_frame: str, stamp: Any) -> Future:
+        """Return a future of the transform from one frame to another at a message's time.
+
+        Its result is None when the transform cannot come any more: only later ones are known, or the clock was set
+        back since. Who waits for it in a callback would otherwise keep out all messages to come.
+
+        Parameters
+        ----------
+        target_frame, source_frame
+            Names.
+        stamp
+            ``builtin_interfaces.msg.Time`` of the message.
+        """
+        stamp_ns = nanoseconds(stamp)
+
+        def look_up() -> TransformStamped | None:
+            try:
+                return self.lookup_transform_core(target_frame, source_frame, stamp)
+            except TransformException:
+                if 0 < self.clock.now().nanoseconds < stamp_ns - _AHEAD_NS:
+                    return None
+                newest = self.lookup_transform_core(target_frame, source_frame, Time())
+                if nanoseconds(newest.header.stamp) > stamp_ns:
+                    return None
+                raise
+
+        return self._future(look_up)
