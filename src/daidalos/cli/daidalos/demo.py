@@ -145,6 +145,8 @@ def _run_trial(
     try:
         while not task.done() and launch.poll() is None:
             executor.spin_until_future_complete(task, timeout_sec=0.5)
+            if not rclpy.ok():  # the interrupt that ended it reached code that could not pass it on
+                raise KeyboardInterrupt
         return task.result() if task.done() else None
     finally:
         node.destroy_node()
