@@ -10,8 +10,9 @@ from typing import Any
 import rclpy.logging
 from rclpy.callback_groups import CallbackGroup
 from rclpy.impl.entities import EndpointHandle
-from rclpy.impl.errors import UnsupportedEventTypeError
+from rclpy.impl.errors import UnsupportedEventTypeError as UnsupportedEventTypeError
 from rclpy.impl.events import (
+    EventSource,
     IncompatibleTypeStatus,
     LivelinessChangedStatus,
     LivelinessLostStatus,
@@ -56,18 +57,27 @@ class EventHandler(Waitable):
         self.callback = callback
         self.event_type = event_type
         self._rcl_hook = ReadyHook(self)
-        self._source = event_source(parent_impl, event_type, self._rcl_hook)
+        self._watched: list[tuple[EventSource, Callable[[Any], Any]]] = []
+        self._watch(parent_impl, event_type, callback)
+
+    def _watch(self, endpoint: EndpointHandle, event_type: IntEnum, callback: Callable[[Any], Any]) -> None:
+        """Call a function at an event; each after the first has no handler of its own in the endpoint's list."""
+        self._watched.append((event_source(endpoint, event_type, self._rcl_hook), callback))
 
     def _rcl_take(self) -> tuple[Callable[..., Any], tuple[Any, ...]] | None:
-        status = self._source.take()
-        return None if status is None else (self.callback, (status,))
+        for source, callback in self._watched:
+            status = source.take()
+            if status is not None:
+                return callback, (status,)
+        return None
 
     def _rcl_has_more(self) -> bool:
-        return False
+        return any(source.is_ready for source, _ in self._watched)
 
     def destroy(self) -> None:
         """Call no more."""
-        self._source.close()
+        for source, _ in self._watched:
+            source.close()
 
 
 class QoSEventHandler(EventHandler):
@@ -90,19 +100,19 @@ class _EventCallbacks:
         group: CallbackGroup,
         handle: EndpointHandle,
     ) -> list[EventHandler]:
-        handlers = []
-        for event_type, callback in callbacks.items():
-            wanted = callback or (defaults.get(event_type) if self.use_default_callbacks else None)
-            if wanted is None:
-                continue
-            try:
-                handlers.append(
-                    EventHandler(callback_group=group, callback=wanted, event_type=event_type, parent_impl=handle)
-                )
-            except UnsupportedEventTypeError:
-                if callback is not None:
-                    raise
-        return handlers
+        """Return a handler for every function; one for the defaults together, whose first must be wanted always."""
+        handlers: dict[IntEnum, EventHandler] = {}
+        chosen = {kind: callback for kind, callback in callbacks.items() if callback is not None}
+        if self.use_default_callbacks:
+            first, *others = defaults
+            chosen.setdefault(first, defaults[first])
+        for kind, callback in chosen.items():
+            handlers[kind] = EventHandler(callback_group=group, callback=callback, event_type=kind, parent_impl=handle)
+        if self.use_default_callbacks:
+            for kind in others:
+                if kind not in chosen:
+                    handlers[first]._watch(handle, kind, defaults[kind])
+        return list(handlers.values())
 
 
 class SubscriptionEventCallbacks(_EventCallbacks):
