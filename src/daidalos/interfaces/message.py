@@ -163,8 +163,11 @@ def check_string(name: str, value: object, bound: int | None = None) -> str:
 
 
 def check_message(name: str, value: Any, kind: type[Message]) -> Any:
-    """Return `value` when it is a message of class `kind`."""
-    if not isinstance(value, kind):
+    """Return `value` when it is a message of class `kind`, or of a class whose ``STANDS_FOR`` names that message.
+
+    Such an object is kept as it is, for who reads the message in the same program; it cannot be serialised.
+    """
+    if not isinstance(value, kind) and getattr(value, "STANDS_FOR", None) != kind._TYPE_NAME:
         raise AssertionError(f"The '{name}' field must be a sub message of type '{kind.__name__}', not {_kind(value)}")
     return value
 

@@ -108,6 +108,7 @@ class Parameter(Generic[T]):
     """
 
     Type = ParameterType
+    STANDS_FOR = "rcl_interfaces/msg/Parameter"
 
     def __init__(self, name: str, type_: ParameterType | None = None, value: Any = None) -> None:
         if type_ is None:
@@ -140,7 +141,8 @@ class Parameter(Generic[T]):
             return False
         return (self.name, self.type_, self.value) == (other.name, other.type_, other.value)
 
-    __hash__ = None  # type: ignore[assignment]
+    def __hash__(self) -> int:
+        return hash((self.name, self.type_))
 
     def __repr__(self) -> str:
         return f"Parameter(name={self._name!r}, type={self._type_.name}, value={self._value!r})"

@@ -6,7 +6,9 @@ from rclpy.context import Context
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.parameter_event_handler import ParameterEventHandler
+from rclpy.serialization import serialize_message
 
+from daidalos.interfaces.codec import CdrError
 from ros.rclpy.waiting import executor_of, run_ready
 
 
@@ -74,3 +76,13 @@ def test_only_some_nodes_may_be_of_interest(graph: Context) -> None:
     assert change() == ["/one", "/two"]
     assert handler.configure_nodes_filter()
     assert change() == ["/one", "/two", "/three"]
+
+
+def test_an_event_made_by_hand_may_hold_parameters() -> None:
+    speed, name = Parameter("speed", value=3), Parameter("name", value="r2")
+    event = ParameterEvent(node="/robot", new_parameters=[speed], changed_parameters=[name])
+    assert set(ParameterEventHandler.get_parameters_from_event(event)) == {speed, name}
+    with pytest.raises(CdrError, match=r"'new_parameters' field holds a 'rclpy\.parameter\.Parameter'"):
+        serialize_message(event)
+    with pytest.raises(AssertionError, match="sub message of type 'Parameter'"):
+        ParameterEvent(new_parameters=[3])
