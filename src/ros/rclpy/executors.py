@@ -11,6 +11,7 @@ import math
 import os
 import threading
 import time
+import warnings
 import weakref
 from collections import deque
 from collections.abc import Callable, Coroutine, Iterable, Iterator
@@ -208,9 +209,9 @@ class Executor(AbstractContextManager["Executor"]):
         future.on_wake(self.wake)
         deadline = _deadline(timeout_sec)
         while self._context.ok() and not future._pending_over() and not self._is_shutdown:
-            if deadline is not None and time.monotonic_ns() > deadline:
-                return
             self._spin_once(deadline, future._pending_over)
+            if deadline is not None and time.monotonic_ns() >= deadline:
+                return
 
     def _spin_once(self, deadline_ns: int | None, condition: Callable[[], bool] | None) -> None:
         """Run one callback, unless the deadline or the condition comes first."""
@@ -404,6 +405,12 @@ def _deadline(timeout_sec: float | TimeoutObject | None) -> int | None:
     return time.monotonic_ns() + int(timeout_sec * 1e9)
 
 
+def _processors() -> int:
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
 class SingleThreadedExecutor(Executor):
     """Runs callbacks one after the other in the thread that spins."""
 
@@ -431,7 +438,7 @@ class MultiThreadedExecutor(Executor):
     Parameters
     ----------
     num_threads
-        How many callbacks run at a time; as many as there are processors (at least 2) where None. Those that wait
+        How many callbacks run at a time; as many as it may use processors (at least 2) where None. Those that wait
         for a response do not count.
     context
         The default context where None.
@@ -441,7 +448,9 @@ class MultiThreadedExecutor(Executor):
 
     def __init__(self, num_threads: int | None = None, *, context: Context | None = None) -> None:
         super().__init__(context=context)
-        self._executor = ThreadPool(num_threads or max(os.cpu_count() or 2, 2))
+        if num_threads == 1:
+            warnings.warn("A MultiThreadedExecutor of one thread: use a SingleThreadedExecutor.", stacklevel=2)
+        self._executor = ThreadPool(num_threads or max(_processors(), 2))
         weakref.finalize(self, self._executor.close)
 
     @contextmanager

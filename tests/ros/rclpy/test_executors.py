@@ -401,3 +401,38 @@ def test_waiting_takes_no_processor_time(executor: Executor, node: Node) -> None
     before = time.process_time()
     executor.spin_until_future_complete(Future(), 0.3)
     assert time.process_time() - before < 0.1
+
+
+def test_a_timeout_of_zero_still_runs_what_is_ready(node: Node) -> None:
+    ran: list[str] = []
+    guards = [node.create_guard_condition(lambda name=name: ran.append(name)) for name in "abc"]
+    executor = SingleThreadedExecutor()
+    executor.add_node(node)
+    for guard in guards:
+        guard.trigger()
+    executor.spin_until_future_complete(Future(), 0)
+    assert ran == ["a"]
+    executor.shutdown()
+
+
+def test_the_events_executor_leaves_nothing_that_is_ready(node: Node) -> None:
+    ran: list[int] = []
+    follow = [node.create_guard_condition(lambda: ran.append(2)), node.create_guard_condition(lambda: ran.append(3))]
+
+    def first() -> None:
+        ran.append(1)
+        for guard in follow:
+            guard.trigger()
+
+    start = node.create_guard_condition(first)
+    executor = EventsExecutor()
+    executor.add_node(node)
+    start.trigger()
+    executor.spin_until_future_complete(Future(), 0)
+    assert ran == [1, 2, 3]
+    executor.shutdown()
+
+
+def test_several_threads_are_meant_to_be_several() -> None:
+    with pytest.warns(UserWarning, match="SingleThreadedExecutor"):
+        MultiThreadedExecutor(num_threads=1, context=Context()).shutdown()

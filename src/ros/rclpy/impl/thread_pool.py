@@ -13,7 +13,7 @@ class ThreadPool:
     """Carries out functions, at most `size` at a time; its threads end with `close`."""
 
     def __init__(self, size: int) -> None:
-        self._size = size
+        self._max_workers = size
         self._lock = threading.Lock()
         self._work: SimpleQueue[tuple[Callable[..., Any], tuple[Any, ...]] | None] = SimpleQueue()
         self._threads = 0  # those that are not blocked
@@ -29,7 +29,7 @@ class ThreadPool:
             self._grow()
 
     def _grow(self) -> None:
-        if self._threads < min(self._load, self._size) and not self._closed:
+        if self._threads < min(self._load, self._max_workers) and not self._closed:
             self._threads += 1
             threading.Thread(target=self._run, name="rclpy", daemon=True).start()
 
@@ -42,7 +42,7 @@ class ThreadPool:
             item = None  # what was carried out may be collected while the thread waits
             with self._lock:
                 self._load -= 1
-                if self._threads > self._size:
+                if self._threads > self._max_workers:
                     self._threads -= 1
                     return
 
