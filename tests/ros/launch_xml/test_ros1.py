@@ -323,7 +323,10 @@ def test_known_nodes(ran):
         "max_beams": 30,
         "base_frame_id": "base",
     }
-    assert nodes["nav2_map_server/map_server"][::2] == [[], {"yaml_filename": "/maps/arena.yaml"}]
+    assert nodes["nav2_map_server/map_server"][::2] == [
+        [],
+        {"autostart_node": True, "yaml_filename": "/maps/arena.yaml"},
+    ]
     assert nodes["tf2_ros/static_transform_publisher"][0] == shlex.split("1 2 3 0 0 0 a b")
     assert nodes["gazebo_ros/spawn_entity.py"][0] == shlex.split("-topic robot_description -entity waffle -x 1 -Y 2")
     for change in ("node amcl/amcl -> nav2_amcl/amcl", "parameter laser_max_beams -> max_beams"):

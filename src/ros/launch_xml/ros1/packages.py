@@ -54,9 +54,9 @@ class IncludeMapping:
 
 
 def _map_file(arguments: str) -> tuple[str, dict[str, str]]:
-    """Take `map_server`'s one argument for the parameter that it is today."""
+    """Take `map_server`'s argument for the parameter that it is today; nobody else activates the node."""
     words = _words(arguments)
-    return "", {"yaml_filename": words[0]} if words else {}
+    return "", {"autostart_node": "true", **({"yaml_filename": words[0]} if words else {})}
 
 
 def _without_period(arguments: str) -> tuple[str, dict[str, str]]:

@@ -184,8 +184,7 @@ class _Translator:
             attributes["command_line"] = self.text(arguments)
         node = _like(old, "ros1:node", attributes)
         node.extend(
-            _like(old, "param", {"name": name, "value": self.text(value), "type": "str"})
-            for name, value in parameters.items()
+            _like(old, "param", {"name": name, "value": self.text(value)}) for name, value in parameters.items()
         )
         for child in old:
             node.extend(self.translate_in_node(child, mapping))

@@ -1,0 +1,1 @@
+"""The server of map files, and the programs that save maps."""

@@ -1,0 +1,55 @@
+"""`map_saver_cli`: saves the map that is on a topic, once."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+
+from rclpy.node import Node
+from rclpy.utilities import remove_ros_args
+
+from daidalos.nodes.nav2_map_server._saving import FORMATS, MODES, Wish, declare_parameters, save
+from daidalos.nodes.runner import run_program
+
+
+def _parse() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(prog="map_saver_cli", description="Saves the map that is published on a topic")
+    add = parser.add_argument
+    add("-t", dest="topic", default="map", metavar="map_topic", help="topic of the map (default: %(default)s)")
+    add("-f", dest="stem", default="", metavar="mapname", help="path of the files, without extension")
+    add("--occ", type=float, default=0.0, metavar="threshold_occupied", help="cells above it are occupied (0 to 1)")
+    add("--free", type=float, default=0.0, metavar="threshold_free", help="cells below it are free (0 to 1)")
+    add("--fmt", default="", choices=FORMATS, help="format of the image (default: png in mode scale, else pgm)")
+    add("--mode", default="trinary", choices=MODES, help="what the grey values mean (default: %(default)s)")
+    return parser.parse_args(remove_ros_args(sys.argv)[1:])
+
+
+def _save(arguments: argparse.Namespace) -> bool:
+    import rclpy
+    from rclpy.executors import SingleThreadedExecutor
+
+    rclpy.init()
+    node = Node("map_saver")
+    try:
+        declare_parameters(node)
+        stem = arguments.stem or f"map_{node.get_clock().now().nanoseconds // 1_000_000_000}"
+        wish = Wish(arguments.topic, stem, arguments.mode, arguments.fmt, arguments.occ, arguments.free)
+        executor = SingleThreadedExecutor()
+        executor.add_node(node)
+        task = executor.create_task(save, node, wish)
+        executor.spin_until_future_complete(task)
+        return bool(task.result())
+    finally:
+        node.destroy_node()
+
+
+def main() -> int:
+    """Save the map; the exit status is 1 when that failed."""
+    arguments = _parse()
+    saved: list[bool] = []
+    status = run_program(lambda: saved.append(_save(arguments)), interrupted=1)
+    return status or int(saved != [True])
+
+
+if __name__ == "__main__":
+    sys.exit(main())

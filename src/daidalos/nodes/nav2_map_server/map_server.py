@@ -1,0 +1,154 @@
+"""`map_server`: publishes the map of a file."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Any
+
+from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
+from rclpy.qos import DurabilityPolicy, QoSProfile
+
+from daidalos.mapping.errors import MapFileError
+from daidalos.mapping.map_file import load_map
+from daidalos.nodes.conversions import grid_message, pose_message
+from daidalos.nodes.packages import package_share
+from daidalos.nodes.runner import run
+
+_LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+
+
+class MapServer(LifecycleNode):
+    """Publishes a map, latched, and serves ``~/map`` and ``~/load_map``.
+
+    Parameters of the node are Nav2's: ``yaml_filename``, ``topic_name``, ``frame_id``; with ``autostart_node`` it
+    needs nobody to configure and activate it.
+    """
+
+    def __init__(self, node_name: str = "map_server", **kwargs: Any) -> None:
+        super().__init__(node_name, **kwargs)
+        self.declare_parameter("yaml_filename", "")
+        self.declare_parameter("topic_name", "map")
+        self.declare_parameter("frame_id", "map")
+        self._active = False
+        self._map: Any = None
+        if self.declare_parameter("autostart_node", False).value:
+            self._start_timer = self.create_timer(0.0, self._autostart)
+
+    def _autostart(self) -> None:
+        self.destroy_timer(self._start_timer)
+        if self.trigger_configure() == TransitionCallbackReturn.SUCCESS:
+            self.trigger_activate()
+
+    def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Read the map and serve."""
+        from nav2_msgs.srv import LoadMap
+        from nav_msgs.msg import OccupancyGrid
+        from nav_msgs.srv import GetMap
+
+        file = self.get_parameter("yaml_filename").value
+        if file:
+            try:
+                self._map = self._load(file)
+            except MapFileError as error:
+                self.get_logger().error(f"Failed to load map yaml file: {error}")
+                return TransitionCallbackReturn.FAILURE
+        else:
+            self.get_logger().info("yaml_filename parameter is empty, set map through '~/load_map' service")
+        self._publisher = self.create_publisher(OccupancyGrid, self.get_parameter("topic_name").value, _LATCHED)
+        self._services = [
+            self.create_service(GetMap, "~/map", self._on_get_map),
+            self.create_service(LoadMap, "~/load_map", self._on_load_map),
+        ]
+        return super().on_configure(state)
+
+    def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Publish the map."""
+        self._active = True
+        self._publish()
+        return super().on_activate(state)
+
+    def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Answer nobody any more."""
+        self._active = False
+        return super().on_deactivate(state)
+
+    def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Forget the map."""
+        self.destroy_publisher(self._publisher)
+        for service in self._services:
+            self.destroy_service(service)
+        self._map = None
+        return super().on_cleanup(state)
+
+    def _load(self, url: str) -> Any:
+        """Return the message of a map file.
+
+        Raises
+        ------
+        MapFileError
+            When it can not be read.
+        """
+        grid = load_map(_path_of(url))
+        stamp = self.get_clock().now().to_msg()
+        frame = self.get_parameter("frame_id").value
+        message = grid_message(grid.data, grid.resolution, grid.origin[:2], frame, stamp)
+        message.info.origin = pose_message(grid.origin)
+        rows, columns = grid.data.shape
+        self.get_logger().info(f"Read map {url}: {columns} X {rows} map @ {grid.resolution:.3g} m/cell")
+        return message
+
+    def _publish(self) -> None:
+        if self._map is not None:
+            self._publisher.publish(self._map)
+
+    def _on_get_map(self, request: Any, response: Any) -> Any:
+        if not self._active:
+            self.get_logger().warning("Received GetMap request but not in ACTIVE state, ignoring!")
+        elif self._map is not None:
+            response.map = self._map
+        return response
+
+    def _on_load_map(self, request: Any, response: Any) -> Any:
+        if not self._active:
+            self.get_logger().warning("Received LoadMap request but not in ACTIVE state, ignoring!")
+            response.result = response.RESULT_UNDEFINED_FAILURE
+            return response
+        try:
+            self._map = self._load(request.map_url)
+        except MapFileError as error:
+            self.get_logger().error(f"Failed to load map: {error}")
+            of_yaml = error.path.suffix == ".yaml"
+            missing = of_yaml and not error.path.exists()
+            response.result = (
+                response.RESULT_MAP_DOES_NOT_EXIST
+                if missing
+                else response.RESULT_INVALID_MAP_METADATA
+                if of_yaml
+                else response.RESULT_INVALID_MAP_DATA
+            )
+            return response
+        self._publish()
+        response.map = self._map
+        response.result = response.RESULT_SUCCESS
+        return response
+
+
+def _path_of(url: str) -> Path:
+    """Return the file that a path or a URL with ``file://`` or ``package://`` names."""
+    if url.startswith("package://"):
+        package, _, rest = url.removeprefix("package://").partition("/")
+        share = package_share(package)
+        if share is None:
+            raise MapFileError(Path(url), None, f"there is no package '{package}'")
+        return Path(share) / rest
+    return Path(url.removeprefix("file://"))
+
+
+def main() -> int:
+    """Run the node."""
+    return run(MapServer)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
