@@ -35,6 +35,7 @@ def test_lines_are_kept():
 def test_comments_may_come_before_the_declaration():
     root = parse_markup("<!-- by\n ?> me --> <!-- -->\n<?xml version='1.0'?>\n<a>\n<b/></a>", "a.sdf")
     assert (root.line, root.children[0].line) == (4, 5)
+    assert parse_markup("<?xml verison='1.0'?>\n<a/>").line == 2
 
 
 def test_zeros_at_the_end_do_not_count():

@@ -87,6 +87,16 @@ def test_what_the_kinematics_do_not_need_is_left_out_with_a_warning():
     assert not robot.transmissions
 
 
+def test_a_joint_may_hang_on_the_world_without_a_link_of_that_name():
+    robot = urdf.parse(
+        "<robot name='r'><link name='a'/>\n<joint name='j' type='fixed'><parent link='world'/><child link='a'/>"
+        "</joint></robot>",
+        "r.urdf",
+    )
+    assert robot.root == "world"
+    assert "r.urdf:2: link 'world' does not exist and was added" in robot.warnings[0]
+
+
 def test_a_loop_is_no_tree():
     joints = "".join(
         f"<joint name='{p}{c}' type='fixed'><parent link='{p}'/><child link='{c}'/></joint>" for p, c in ("ab", "ba")

@@ -13,7 +13,7 @@ from daidalos.description.errors import DescriptionError
 _TRUE = frozenset({"true", "1", "yes", "on"})
 _FALSE = frozenset({"false", "0", "no", "off"})
 
-_LATE_DECLARATION = re.compile(rb"((?:<!--.*?-->\s*)+)(<\?xml\b[^>\n]*\?>)", re.DOTALL)
+_DECLARATION = re.compile(rb"((?:<!--.*?-->\s*)*)(<\?xml\b(\s+version\b)?[^>\n]*\?>)", re.DOTALL)
 
 
 def parse_markup(text: str | bytes, source: str = "") -> Element:
@@ -22,8 +22,8 @@ def parse_markup(text: str | bytes, source: str = "") -> Element:
     Parameters
     ----------
     text : str or bytes
-        The document. White space and comments before the XML declaration and zeros at the end are tolerated,
-        as by ROS's own parsers.
+        The document. White space and comments before the XML declaration, one without a version, and zeros at
+        the end are tolerated, as by ROS's own parsers.
     source : str
         Where it came from; errors name it.
 
@@ -47,10 +47,15 @@ def parse_markup(text: str | bytes, source: str = "") -> Element:
     if not body:
         raise DescriptionError("the document is empty, expected XML", source)
     skipped_lines = text[: len(text) - len(body)].count(b"\n")
-    late = _LATE_DECLARATION.match(body)
-    if late:
-        body = late[1] + b" " * len(late[2]) + body[late.end() :]
-    return _TreeBuilder(source, skipped_lines, encoding).build(body)
+    return _TreeBuilder(source, skipped_lines, encoding).build(_without_odd_declaration(body))
+
+
+def _without_odd_declaration(body: bytes) -> bytes:
+    """Blank an XML declaration that comes after comments or lacks the version."""
+    found = _DECLARATION.match(body)
+    if found is None or (not found[1] and found[3]):
+        return body
+    return found[1] + b" " * len(found[2]) + body[found.end() :]
 
 
 class Element:

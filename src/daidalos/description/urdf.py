@@ -1,7 +1,8 @@
 """URDF: reads a robot from text or a file (xacro when its name ends so).
 
 The elements and their rules are those of the ROS documentation's URDF/XML pages; what the reference
-parser refuses is refused here, except attributes that only controllers need.
+parser refuses is refused here, except what only controllers need, an inertial without mass and a joint to the
+world without a link ``world``: those are warned of.
 """
 
 from __future__ import annotations
@@ -94,6 +95,7 @@ def read_robot(root: Element, resolve: PackageResolver | None = None) -> Robot:
     materials = _materials(root, resolve)
     links = _links(root, materials, resolve, warnings)
     joints = _joints(root, warnings)
+    links |= _world(links, joints, warnings)
     return Robot(
         name=root.name(),
         links=links,
@@ -265,6 +267,15 @@ def _joints(root: Element, warnings: list[str]) -> dict[str, Joint]:
             warnings.append(f"{joint.where}: joint {name!r} mimics {joint.mimic.joint!r}, which does not exist")
             joints[name] = replace(joint, mimic=None)
     return joints
+
+
+def _world(links: Mapping[str, Link], joints: Mapping[str, Joint], warnings: list[str]) -> dict[str, Link]:
+    """Return the link ``world`` where joints hang on it although the robot has none, as some simulators allow."""
+    first = next((joint for joint in joints.values() if joint.parent == "world"), None)
+    if first is None or "world" in links:
+        return {}
+    warnings.append(f"{first.where}: link 'world' does not exist and was added, which ROS itself does not do")
+    return {"world": Link("world", where=first.where)}
 
 
 def _joint(element: Element, warnings: list[str]) -> Joint:

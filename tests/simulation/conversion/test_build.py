@@ -112,6 +112,9 @@ def test_mimics_follow():
     robot = urdf.parse(ANCHORED)
     simulation = Simulation(sdf.parse("<sdf version='1.9'><world name='w'><gravity>0 0 0</gravity></world></sdf>"))
     simulation.spawn(robot, "arm")
+    assert simulation.joint("arm", "grip_mirror").position == pytest.approx(0.01, abs=1e-9)
+    simulation.advance(SECOND // 10)
+    np.testing.assert_allclose(simulation.physics.data.qvel, 0, atol=1e-6)  # nothing begins with a blow
     simulation.physics.data.qvel[simulation.joint("arm", "grip").dof] = 0.05
     simulation.advance(SECOND)
     grip, mirror = simulation.joint("arm", "grip").position, simulation.joint("arm", "grip_mirror").position

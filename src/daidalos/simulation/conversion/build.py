@@ -19,7 +19,7 @@ from daidalos.simulation.conversion.contact import set_surface
 from daidalos.simulation.conversion.couplings import close_loop, couple
 from daidalos.simulation.conversion.geometry import add_geoms, add_wheel
 from daidalos.simulation.conversion.inertia import PrincipalInertia, principal_inertia, smallest_inertia
-from daidalos.simulation.conversion.joints import add_joints, start_position
+from daidalos.simulation.conversion.joints import add_joints, mimicked_start, start_position
 from daidalos.simulation.conversion.wheels import is_caster, is_wheel
 from daidalos.simulation.errors import UnknownNameError
 
@@ -392,6 +392,7 @@ class _Builder:
             leader = self._build.joints.get(joint.mimic.joint) if joint.mimic else None
             if joint.mimic and leader:
                 couple(self._build.spec, added[0], leader[0], joint.mimic.offset, joint.mimic.multiplier)
+                self._build.start[added[0]] = mimicked_start(joint, self._model.joints)
 
     def _mesh_gears(self, joint: Joint) -> None:
         """Tie the joints of two gears to each other: theta_2 = -ratio * theta_1 (SDF)."""

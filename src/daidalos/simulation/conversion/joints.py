@@ -6,7 +6,7 @@ MuJoCo's joints live in the child body, so that each is written in the child lin
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import mujoco
@@ -49,6 +49,17 @@ def start_position(axis: Axis) -> float:
     """Return the position nearest to zero that the limits allow."""
     lower, upper = limits_of(axis)
     return min(max(0.0, lower), upper)
+
+
+def mimicked_start(joint: Joint, joints: Mapping[str, Joint]) -> float:
+    """Return where a joint starts that follows another: else its coupling would begin with a blow."""
+    scale, offset, seen = 1.0, 0.0, {joint.name}
+    while joint.mimic is not None and joint.mimic.joint not in seen:
+        offset += scale * joint.mimic.offset
+        scale *= joint.mimic.multiplier
+        joint = joints[joint.mimic.joint]
+        seen.add(joint.name)
+    return offset + scale * start_position(joint.axis)
 
 
 def _add(body: Any, kind: Any, axis: Axis, joint: Joint, name: str) -> str:
