@@ -11,6 +11,7 @@ from daidalos.interfaces.codec import codec_of
 from daidalos.transport.backend import Backend
 from daidalos.transport.client import Client
 from daidalos.transport.graph import EndpointInfo, EndpointKind, Graph, NodeInfo
+from daidalos.transport.memory import keep_memory
 from daidalos.transport.publisher import Publisher
 from daidalos.transport.qos import Qos, incompatibilities
 from daidalos.transport.service import Service
@@ -52,6 +53,7 @@ class Session:
         self._closed = False
         self._closing: list[_thread.LockType] = []  # changed without a lock, as `abandon` may interrupt its holder
         self._stop_listening = self.graph.listen(self._on_graph_change)
+        keep_memory()
         backend.start(self.graph)
 
     def close(self) -> None:
