@@ -27,6 +27,13 @@ from . import packages
         ("python3-no-such-thing-pip", Answer.PYTHON, "no-such-thing"),
         ("rclcpp", Answer.COMPILED, ""),
         ("libopencv-dev", Answer.COMPILED, ""),
+        ("urdf", Answer.COMPILED, ""),
+        ("gazebo_plugins", Answer.HERE, ""),
+        ("rospy", Answer.HERE, ""),
+        ("roscpp", Answer.COMPILED, ""),
+        ("message_generation", Answer.HERE, ""),
+        ("map_server", Answer.HERE, ""),
+        ("tf", Answer.HERE, ""),
         ("no_such_package", Answer.UNKNOWN, ""),
     ],
 )

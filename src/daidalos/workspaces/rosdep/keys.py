@@ -12,14 +12,32 @@ _BUILD = re.compile(
     r"ament_.*|rosidl_.*|catkin|cmake|git|ros_environment|ros_workspace|python_cmake_module|"
     r"build-essential|pkg-config|colcon.*|rmw.*|rosidl|ros_(base|core)|ros_testing|desktop(_full)?|"
     r"ros2(cli|launch|run|topic|node|pkg|param|service|action|bag|interface|doctor|component|lifecycle|test|_control|_controllers).*|"
-    r"launch_testing_.*|rosbag2.*|domain_coordinator|osrf_.*|python3(-dev)?|python3-setuptools.*|python3-catkin-pkg.*"
+    r"launch_testing_.*|rosbag2.*|domain_coordinator|osrf_.*|python3(-dev)?|python3-setuptools.*|python3-catkin-pkg.*|"
+    r"message_(generation|runtime)|ros(bag|launch|lib|msg|node|param|service|test|topic|unit)"
 )
 _COMPILED = re.compile(
     r"rclcpp.*|pluginlib|class_loader|rcl|rcl_.*|rcutils|rcpputils|libstatistics_collector|eigen3?|eigen3_cmake_module|"
-    r"boost|lib[a-z].*|qt.*|pcl.*|tf2|tf2_eigen|tf2_kdl|kdl.*|orocos_kdl.*|urdfdom.*|image_transport|console_bridge.*|"
+    r"roscpp.*|nodelet.*|urdf|boost|lib[a-z].*|qt.*|pcl.*|tf2|tf2_eigen|tf2_kdl|kdl.*|orocos_kdl.*|urdfdom.*|image_transport|console_bridge.*|"
     r"spdlog.*|tinyxml.*|yaml[-_]cpp.*|rviz_(common|rendering|ogre_vendor)|controller_interface|hardware_interface|gtest|"
     r"nav2_(core|util|costmap_2d)|behaviortree_cpp.*|gazebo(_dev)?|resource_retriever|cv_bridge_cpp|ceres-solver"
 )
+_OF_ROS1 = {
+    "actionlib": "rclpy",
+    "actionlib_msgs": "action_msgs",
+    "amcl": "nav2_amcl",
+    "gmapping": "slam_toolbox",
+    "hector_mapping": "slam_toolbox",
+    "hector_slam": "slam_toolbox",
+    "map_server": "nav2_map_server",
+    "move_base": "nav2_bringup",
+    "move_base_msgs": "nav2_msgs",
+    "roscpp_tutorials": "demo_nodes_cpp",
+    "rospy": "rclpy",
+    "rospy_tutorials": "demo_nodes_py",
+    "rviz": "rviz2",
+    "tf": "tf2_ros",
+}
+"""Packages of ROS 1, and those that stand in for them."""
 _DISTRIBUTIONS = {
     "opencv": "opencv-python-headless",
     "yaml": "pyyaml",
@@ -73,6 +91,7 @@ class Resolution:
 
 def resolve(key: str) -> Resolution:
     """Tell what a dependency of a package is here."""
+    key = _OF_ROS1.get(key, key)
     if _is_package(key) or _BUILD.fullmatch(key):
         return Resolution(Answer.HERE)
     if key.startswith(("python-", "python3-")):
