@@ -27,6 +27,7 @@ from daidalos.transport.zenoh.threads import on_lasting_thread
 _ATTACHMENT = struct.Struct("<qqB16s")
 """Sequence number, source time in ns, length of the gid, gid."""
 _GID_LENGTH = 16
+_LARGE = 65536
 _HEARTBEAT_S = 0.5
 _QUERY_TIMEOUT_S = 600.0
 _UNLIMITED_S = 10 * 365 * 86400.0
@@ -145,8 +146,11 @@ class ZenohSubscription(_Wire, WireSubscription):
 
     def data(self, sample: Any) -> bytes:
         """Return the sample's bytes."""
-        payload: bytes = sample.payload.to_bytes()
-        return payload
+        payload = sample.payload
+        # `to_bytes` clears the memory that it then copies to; from shared memory it need not be.
+        shared = payload.as_shm() if len(payload) > _LARGE else None
+        data: bytes = payload.to_bytes() if shared is None else bytes(shared)
+        return data
 
     def info(self, sample: Any, received_ns: int) -> SampleInfo:
         """Return what the attachment says."""
