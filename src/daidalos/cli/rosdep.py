@@ -9,6 +9,7 @@ import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
+from daidalos.cli.ros2.suggestions import hint_line
 from daidalos.workspaces.errors import WorkspaceError
 from daidalos.workspaces.rosdep.keys import Answer, Resolution, resolve
 from daidalos.workspaces.rosdep.packages import TYPES, Needs, find
@@ -185,12 +186,16 @@ def _missing(needs: Sequence[Needs]) -> list[str]:
 
 
 def _report_unknown(unknown: dict[str, list[str]]) -> int:
+    from daidalos.cli.ros2.packages import package_names
+
     print(
         "ERROR: the following packages/stacks could not have their rosdep keys resolved\nto system dependencies:",
         file=sys.stderr,
     )
     for package, keys in unknown.items():
         print(f"{package}: Cannot locate rosdep definition for [{', '.join(keys)}]", file=sys.stderr)
+        for key in keys:
+            sys.stderr.write(hint_line(key, package_names()))
     return 1
 
 

@@ -19,6 +19,7 @@ node.create_timer(0.1, lambda: publisher.publish(String(data="hello")))
 rclpy.spin(node)
 """
 TWIST = "geometry_msgs/msg/Twist"
+_BRIEFLY = ["topic", "pub", "--once", "--max-wait-time-secs", "1.1"]
 
 
 @pytest.mark.parametrize(
@@ -65,6 +66,8 @@ def test_mistakes_about_the_graph(env, talker):
         (["param", "set", "/talker", "speed", "[1"], 0, ["Setting parameter failed", "no YAML: line 2, column 1"]),
         (["param", "load", "/talker", "missing.yaml"], 1, ["missing.yaml: No such file or directory"]),
         (["service", "info", "/add_two_int"], 1, ["Unknown service", "Did you mean '/add_two_ints'?"]),
+        ([*_BRIEFLY, "/cmd_vl", TWIST], 1, ["Did you mean '/cmd_vel'?"]),
+        ([*_BRIEFLY, "/cmd_vel", "std_msgs/msg/String"], 1, [f"'/cmd_vel' is listened to as {TWIST}"]),
     ):
         _check(ros2(*words, env=env), status, lines)
 
@@ -74,6 +77,7 @@ def test_mistakes_about_the_graph(env, talker):
     [
         ("{linear: [}", "The passed value is no YAML: line 1, column 11: "),
         ("{lnear: {x: 1}}", "Did you mean 'linear'?"),
+        ("{linear: {x:1.5}}", "Did you mean 'x: 1.5'? YAML wants a space after the colon"),
         ("{linear: {x: fast}}", "Failed to populate field: could not convert string to float: 'fast'"),
         ("3", "needs to be a dictionary in YAML format"),
     ],

@@ -121,6 +121,9 @@ def _near_fields(error: Exception) -> str:
     holder = getattr(error, "obj", None)
     if holder is None or not hasattr(holder, "get_fields_and_field_types"):
         return ""
+    field, colon, value = str(error.name).partition(":")  # type: ignore[attr-defined]
+    if colon and field in holder.get_fields_and_field_types():
+        return f"\nDid you mean '{field}: {value}'? YAML wants a space after the colon"
     return did_you_mean(error.name, holder.get_fields_and_field_types())  # type: ignore[attr-defined]
 
 

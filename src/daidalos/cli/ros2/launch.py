@@ -162,11 +162,13 @@ def find_launch_file(package: str, name: str) -> Path:
     from ament_index_python.packages import PackageNotFoundError, get_package_share_path
 
     from daidalos.cli.ros2.packages import package_names
+    from daidalos.cli.ros2.workspace_hints import unknown_package
 
     try:
         share = get_package_share_path(package)
     except (PackageNotFoundError, ValueError):
-        raise CliError(f"Package '{package}' not found{did_you_mean(package, package_names())}") from None
+        hint = unknown_package(package) or did_you_mean(package, package_names())
+        raise CliError(f"Package '{package}' not found{hint}") from None
     found = [
         path for path in sorted(share.rglob(Path(name).name)) if path.is_file() and path.as_posix().endswith(f"/{name}")
     ]

@@ -22,4 +22,6 @@ def package_prefix(name: str) -> Path:
     try:
         return Path(get_package_prefix(name))
     except (PackageNotFoundError, ValueError):
-        raise CliError(f"Package not found{did_you_mean(name, package_names())}") from None
+        from daidalos.cli.ros2.workspace_hints import unknown_package
+
+        raise CliError(f"Package not found{unknown_package(name) or did_you_mean(name, package_names())}") from None

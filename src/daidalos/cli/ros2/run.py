@@ -45,11 +45,14 @@ class RunCommand(Command):
 
 def _find(package: str, executable: str) -> list[str]:
     from daidalos.cli.ros2.packages import package_names
+    from daidalos.cli.ros2.workspace_hints import unknown_executable, unknown_package
     from daidalos.nodes.executables import ExecutableNotFound, executables, find_executable, is_known
 
     try:
         return find_executable(package, executable)
     except ExecutableNotFound:
         if is_known(package):
-            raise CliError(f"No executable found{did_you_mean(executable, executables(package))}") from None
-        raise CliError(f"Package '{package}' not found{did_you_mean(package, package_names())}") from None
+            hint = did_you_mean(executable, executables(package)) or unknown_executable(package, executable)
+            raise CliError(f"No executable found{hint}") from None
+        hint = unknown_package(package) or did_you_mean(package, package_names())
+        raise CliError(f"Package '{package}' not found{hint}") from None

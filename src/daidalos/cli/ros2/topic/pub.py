@@ -13,6 +13,7 @@ from daidalos.cli.ros2.errors import CliError
 from daidalos.cli.ros2.extension import Status, Verb
 from daidalos.cli.ros2.interfaces import fill, message_class, parse_values
 from daidalos.cli.ros2.qos import add_qos_arguments, profile_of, requested_qos
+from daidalos.cli.ros2.suggestions import hint_line
 from daidalos.cli.ros2.topic.echo import positive_float, unsigned_int
 from daidalos.cli.ros2.topics import spin
 
@@ -122,6 +123,7 @@ def _seconds(text: str) -> float:
 def _wait_for_subscriptions(node: Node, publisher: Publisher, wanted: int, limit_s: float | None) -> None:
     """Wait until so many subscriptions match, saying so every second."""
     deadline = None if limit_s is None else time.monotonic() + limit_s
+    hint = None
     while publisher.get_subscription_count() < wanted:
         left = 1.0 if deadline is None else min(1.0, deadline - time.monotonic())
         if left <= 0:
@@ -131,6 +133,26 @@ def _wait_for_subscriptions(node: Node, publisher: Publisher, wanted: int, limit
             )
         print(f"Waiting for at least {wanted} matching subscription(s)...")
         node.handle.graph.wait_for(lambda: publisher.get_subscription_count() >= wanted, left)
+        if hint is None and publisher.get_subscription_count() < wanted:
+            hint = _why_nobody_matches(node, publisher)
+            sys.stderr.write(hint)
+
+
+def _why_nobody_matches(node: Node, publisher: Publisher) -> str:
+    """Return a line about who listens to another type, or to a topic of a like name; empty when there is neither."""
+    listened = {
+        name: types
+        for name, types in node.get_topic_names_and_types()
+        if any(info.node_name != node.get_name() for info in node.get_subscriptions_info_by_topic(name))
+    }
+    others = {
+        info.topic_type
+        for info in node.get_subscriptions_info_by_topic(publisher.topic_name)
+        if info.node_name != node.get_name()
+    }
+    if others:
+        return f"'{publisher.topic_name}' is listened to as {' or '.join(sorted(others))}\n"
+    return hint_line(publisher.topic_name, listened)
 
 
 def _publish(node: Node, args: Namespace, publisher: Publisher, message: Any, stampers: list[Any], times: int) -> None:
