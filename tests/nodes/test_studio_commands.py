@@ -24,6 +24,8 @@ pytestmark = pytest.mark.slow
         (("rqt_plot", "rqt_plot"), "?panel=plot", "/rqt_gui_py_node_\\d+"),
         (("rqt_image_view", "rqt_image_view"), "?panel=image", "/rqt_gui_py_node_\\d+"),
         (("rqt_topic", "rqt_topic"), "?panel=topics", "/rqt_gui_py_node_\\d+"),
+        (("rqt_publisher", "rqt_publisher"), "?panel=publish", "/rqt_gui_py_node_\\d+"),
+        (("rqt_service_caller", "rqt_service_caller"), "?panel=service", "/rqt_gui_py_node_\\d+"),
         (("rqt_gui", "rqt_gui"), "", "/rqt_gui_py_node_\\d+"),
         (("rqt", "rqt", "-s", "rqt_graph.ros_graph.RosGraph"), "?panel=graph", "/rqt_gui_py_node_\\d+"),
         (("rviz2", "rviz2", "-f", "world"), "?panel=scene&fixed_frame=world", "/rviz"),

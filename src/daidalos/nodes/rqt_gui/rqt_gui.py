@@ -9,6 +9,8 @@ _PANELS = {
     "rqt_graph": "graph",
     "rqt_image_view": "image",
     "rqt_plot": "plot",
+    "rqt_publisher": "publish",
+    "rqt_service_caller": "service",
     "rqt_topic": "topics",
 }
 

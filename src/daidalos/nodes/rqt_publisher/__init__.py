@@ -1,0 +1,1 @@
+"""Publishing messages by hand, in the studio."""

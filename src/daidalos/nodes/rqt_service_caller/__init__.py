@@ -1,0 +1,1 @@
+"""Calling services by hand, in the studio."""

@@ -1,0 +1,18 @@
+"""`rqt_service_caller`: the studio, opened at its panel."""
+
+import sys
+
+from daidalos.nodes.studio_window import parse, rqt_node_name, run_studio, studio_parser
+
+
+def main() -> int:
+    """Serve the studio and open it."""
+    return run_studio(
+        rqt_node_name(),
+        "service",
+        parse(studio_parser("rqt_service_caller", "Calling services by hand, in the studio.")),
+    )
+
+
+if __name__ == "__main__":
+    sys.exit(main())
