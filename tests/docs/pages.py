@@ -12,7 +12,8 @@ A page is Markdown. These fenced blocks have a meaning for the tests:
 any other with a path as its title
     A file with this text, relative to the home folder; it is written when the reader gets there.
 
-``<!-- needs program -->`` names what a machine must have.
+``<!-- needs program -->`` names what a machine must have, ``<!-- continues page -->`` the page in whose home folder it
+goes on.
 """
 
 import re
@@ -23,6 +24,7 @@ _FENCE = re.compile(
     r"^(?P<indent> *)```(?P<language>\w+)(?: +title=\"(?P<title>[^\"]*)\")?[^\n]*\n(?P<body>.*?)^ *```$", re.M | re.S
 )
 _NEEDS = re.compile(r"<!-- needs (?P<program>\S+) -->")
+_CONTINUES = re.compile(r"<!-- continues (?P<page>\S+) -->")
 _TERMINAL = re.compile(r"terminal (\d+)", re.IGNORECASE)
 
 
@@ -55,11 +57,12 @@ class Block:
 
 @dataclass
 class Page:
-    """The blocks of a page, and a program that the machine must have."""
+    """The blocks of a page, a program that the machine must have, and the page that comes before it."""
 
     path: Path
     blocks: list[Block]
     needs: str | None
+    continues: str | None
 
 
 def read(path: Path) -> Page:
@@ -72,8 +75,8 @@ def read(path: Path) -> Page:
         if block is not None:
             blocks.append(block)
     _mark_ends(blocks)
-    needs = _NEEDS.search(text)
-    return Page(path, blocks, needs["program"] if needs else None)
+    needs, continues = _NEEDS.search(text), _CONTINUES.search(text)
+    return Page(path, blocks, needs["program"] if needs else None, continues["page"] if continues else None)
 
 
 def _mark_ends(blocks: list[Block]) -> None:

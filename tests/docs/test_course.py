@@ -17,7 +17,7 @@ pytestmark = [pytest.mark.slow, pytest.mark.timeout(_LONGEST_S)]
 
 @pytest.fixture
 def follow(tmp_path):
-    """Follows a page in a home folder with an empty workspace."""
+    """Follows pages, one after the other, in a home folder with an empty workspace."""
     pytest.importorskip("termios")
     from terminals import Terminal, environment
 
@@ -25,24 +25,34 @@ def follow(tmp_path):
 
     readers = []
 
-    def follow_page(name):
-        page = pages.read(COURSE / name)
-        if page.needs and not shutil.which(page.needs):
-            pytest.skip(f"there is no {page.needs}")
+    def follow_pages(names):
         domain = 1 + zlib.crc32(str(tmp_path).encode()) % 100
-        readers.append(Reader(tmp_path, lambda folder: Terminal(environment(domain, tmp_path), folder)))
-        readers[-1].follow(page)
-        mismatches = readers[-1].mismatches
-        readers[-1].close()
+        mismatches = []
+        for name in names:
+            page = pages.read(COURSE / name)
+            if page.needs and not shutil.which(page.needs):
+                pytest.skip(f"there is no {page.needs}")
+            readers.append(Reader(tmp_path, lambda folder: Terminal(environment(domain, tmp_path), folder)))
+            readers[-1].follow(page)
+            mismatches += readers[-1].mismatches
+            readers[-1].close()
         return mismatches
 
     (tmp_path / "ros2_ws" / "src").mkdir(parents=True)
-    yield follow_page
+    yield follow_pages
     for reader in readers:
         reader.close()
 
 
-@pytest.mark.parametrize("name", sorted(path.name for path in COURSE.glob("[0-9]*.md")))
-def test_page(name, follow):
-    mismatches = follow(name)
+def sequences():
+    """Return the course's pages, each with those that go on with its files."""
+    found = {}
+    for path in sorted(COURSE.glob("[0-9]*.md")):
+        found.setdefault(pages.read(path).continues or path.name, []).append(path.name)
+    return found.values()
+
+
+@pytest.mark.parametrize("names", sequences(), ids=" ".join)
+def test_page(names, follow):
+    mismatches = follow(names)
     assert not mismatches, "\n".join(["", *mismatches])
