@@ -152,11 +152,11 @@ class Chromium:
         for key in text:
             self.press(key)
 
-    def click(self, x: float, y: float) -> None:
+    def click(self, x: float, y: float, count: int = 1) -> None:
         """Press and release the left button at a place in the window."""
-        self.drag([(x, y)])
+        self.drag([(x, y)], count=count)
 
-    def click_on(self, selector: str) -> None:
+    def click_on(self, selector: str, count: int = 1) -> None:
         """Click the middle of an element."""
         box = self.wait_for(
             f"(() => {{ const e = document.querySelector({selector!r});"
@@ -164,21 +164,32 @@ class Chromium:
             " const b = e?.getBoundingClientRect();"
             " return b && b.width && { x: b.x + b.width / 2, y: b.y + b.height / 2 }; })()"
         )
-        self.click(box["x"], box["y"])
+        self.click(box["x"], box["y"], count)
+
+    def double_click_on(self, selector: str) -> None:
+        """Click the middle of an element twice."""
+        self.click_on(selector)
+        self.click_on(selector, count=2)
 
     def drag(
-        self, points: list[tuple[float, float]], button: str = "left", *, ctrl: bool = False, key: str = ""
+        self,
+        points: list[tuple[float, float]],
+        button: str = "left",
+        *,
+        ctrl: bool = False,
+        key: str = "",
+        count: int = 1,
     ) -> None:
         """Press at the first point, move through the others, press a key there if one is named, and release."""
         mouse: dict[str, Any] = {"button": button, "modifiers": CTRL if ctrl else 0}
         (x, y), *others = points
         self._mouse("mouseMoved", x, y)
-        self._mouse("mousePressed", x, y, buttons=1, clickCount=1, **mouse)
+        self._mouse("mousePressed", x, y, buttons=1, clickCount=count, **mouse)
         for x, y in others:
             self._mouse("mouseMoved", x, y, buttons=1, **mouse)
         if key:
             self.press(key)
-        self._mouse("mouseReleased", x, y, clickCount=1, **mouse)
+        self._mouse("mouseReleased", x, y, clickCount=count, **mouse)
 
     def hover(self, x: float, y: float) -> None:
         """Move the mouse to a place in the window."""

@@ -11,9 +11,12 @@ from pathlib import Path
 import aiohttp
 import pytest
 
+import daidalos
 from nodes.terminal import Terminal, until_shown
 
 pytestmark = pytest.mark.slow
+
+RVIZ = str(Path(daidalos.__file__).parent / "share/turtle_tf2_py/rviz/turtle_rviz.rviz")
 
 
 @pytest.mark.parametrize(
@@ -29,6 +32,7 @@ pytestmark = pytest.mark.slow
         (("rqt_gui", "rqt_gui"), "", "/rqt_gui_py_node_\\d+"),
         (("rqt", "rqt", "-s", "rqt_graph.ros_graph.RosGraph"), "?panel=graph", "/rqt_gui_py_node_\\d+"),
         (("rviz2", "rviz2", "-f", "world"), "?panel=scene&fixed_frame=world", "/rviz"),
+        (("rviz2", "rviz2", "-d", RVIZ), "?panel=scene&layout=turtle_rviz.rviz", "/rviz"),
         (("plotjuggler", "plotjuggler", "-n"), "?panel=plot", "/plotjuggler"),
     ],
 )
@@ -75,6 +79,8 @@ def test_a_browser_is_opened_where_there_is_one(domain: int, tmp_path: Path) -> 
     ("words", "complaint"),
     [
         (("rviz2", "rviz2", "-d", "missing.rviz"), "there is no file 'missing.rviz'"),
+        (("rviz2", "rviz2", "-d", __file__), "test_studio_commands.py:1: not YAML"),
+        (("plotjuggler", "plotjuggler", "-l", RVIZ), "turtle_rviz.rviz:1: not well-formed XML"),
         (("rqt", "rqt", "-s", "rqt_coffee"), "there is no plugin 'rqt_coffee'; there are: rqt_console, rqt_graph"),
     ],
 )

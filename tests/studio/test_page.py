@@ -10,6 +10,7 @@ import foxglove
 import pytest
 
 from browser.cdp import Chromium, require_chromium
+from daidalos.studio.arrangement import Arrangement, Curve, Display, Plot, Split, View
 from daidalos.studio.assets import AssetResolver
 from daidalos.studio.build import build, is_fresh
 from daidalos.studio.server import StudioServer
@@ -51,9 +52,9 @@ def robot(source: MemorySource) -> Iterator[DemoRobot]:
         yield robot
 
 
-def serve(source: MemorySource, port: int = 0) -> StudioServer:
+def serve(source: MemorySource, port: int = 0, arrangement: Arrangement | None = None) -> StudioServer:
     assets = AssetResolver(lambda package: SHARE / package if (SHARE / package).is_dir() else None)
-    return StudioServer(source, name="demo robot", port=port, assets=assets)
+    return StudioServer(source, name="demo robot", port=port, assets=assets, arrangement=arrangement)
 
 
 @pytest.fixture
@@ -143,11 +144,78 @@ def test_the_other_tools_publish_what_rviz_publishes(page, source):
     assert (point.x, point.y) == pytest.approx((-0.5, 0.25), abs=0.02)
 
 
+LEGEND = "[...document.querySelectorAll('.legend-name')].map((e) => e.textContent)"
+
+
+def test_numbers_are_plotted_zoomed_and_read_under_the_mouse(page):
+    page.click_on("[data-topic='/odom'] [data-test=fields]")
+    page.wait_for("document.querySelector('.topic-fields [data-path]')")
+    page.click_on("[data-path='/odom/pose/pose/position/x']")
+    page.double_click_on("[data-path='/odom/pose/pose/position/x']")
+    page.wait_for(f"{LEGEND}.length === 3 && {LEGEND}[2] === '/odom/pose/pose/position/x'")
+    area = page.evaluate(
+        "(() => { const b = document.querySelector('.u-over').getBoundingClientRect();"
+        " return { x: b.x, y: b.y, width: b.width, height: b.height }; })()"
+    )
+    x, y = area["x"] + area["width"] / 2, area["y"] + area["height"] / 2
+    page.hover(x, y)
+    page.wait_for("/^-15[.]\\d+ s/.test(document.querySelector('[data-test=cursor]').textContent)")
+    page.drag([(x, y), (x + 20, y + 20), (x + 0.4 * area["width"], y + 0.3 * area["height"])])
+    page.wait_for("document.querySelector('[data-test=hold]').classList.contains('active')")
+    page.hover(x, y)
+    page.wait_for("/^-9[.]\\d+ s/.test(document.querySelector('[data-test=cursor]').textContent)")
+    page.wheel(x, y, -100)
+    page.click_on("[data-test=hold]")
+    page.wait_for("!document.querySelector('[data-test=hold]').classList.contains('active')")
+
+    page.evaluate(
+        "(() => { const e = document.querySelector('[aria-label=Axes]'); e.value = 'xy';"
+        " e.dispatchEvent(new Event('change', { bubbles: true })); })()"
+    )
+    page.wait_for(f"{LEGEND}.length === 2 && {LEGEND}[1].endsWith('over /odom/twist/twist/linear/x')")
+
+
+def test_a_file_of_rviz_says_what_is_shown(browser, source, robot):
+    way = Display("Path", "Way", False, {"topic": "/plan"})
+    scan = Display("LaserScan", "Scan", True, {"topic": "/scan", "color": "#00ff00"})
+    view = View("top", (1.0, 2.0, 0.0), 20.0, 0.0, 1.57)
+    asked = Arrangement(fixed_frame="odom", displays=(scan, way), view=view)
+    with serve(source, arrangement=asked) as server:
+        show(browser, f"{server.url}?panel=scene&layout=robot.rviz")
+        browser.wait_for("daidalos.state().scanPoints > 700", 60)
+        state = browser.evaluate("daidalos.state()")
+        assert state["fixedFrame"] == "odom"
+        assert set(state["displays"]) == {"Scan"}, "nothing comes by itself, and what is off is off"
+        names = browser.evaluate("[...document.querySelectorAll('[data-panel=displays] section')].length")
+        assert names == 2
+        assert browser.evaluate("document.querySelector('[data-test=top-down]').ariaPressed") == "true"
+    assert [error for error in browser.errors if "WebSocket" not in error] == []
+
+
+def test_a_file_of_plotjuggler_says_what_is_plotted(browser, source, robot):
+    speed = Plot((Curve("/odom/twist/twist/linear/x", "#ff0000"), Curve("/odom/twist/twist/angular/z")))
+    way = Plot((Curve("/odom/pose/pose/position/y", "", "/odom/pose/pose/position/x"),))
+    asked = Arrangement(tabs=(("drive", Split(False, (0.3, 0.7), (speed, way))), ("more", speed)), span=10)
+    with serve(source, arrangement=asked) as server:
+        show(browser, f"{server.url}?panel=plot&layout=plots.xml")
+        heights = "[...document.querySelectorAll('[data-panel=plot]')].map((e) => e.getBoundingClientRect().height)"
+        upper, lower = browser.wait_for(f"{LEGEND}.length === 3 && {heights}.filter((height) => height > 0)")
+        assert upper / (upper + lower) == pytest.approx(0.3, abs=0.06)
+        assert browser.evaluate(LEGEND) == [
+            "/odom/twist/twist/linear/x",
+            "/odom/twist/twist/angular/z",
+            "/odom/pose/pose/position/yover /odom/pose/pose/position/x",
+        ]
+        assert browser.evaluate("document.querySelector('.swatch').value") == "#ff0000"
+        browser.wait_for("[...document.querySelectorAll('.legend .figures')].every((e) => e.textContent !== '–')")
+    assert [error for error in browser.errors if "WebSocket" not in error] == []
+
+
 def test_topics_messages_and_plots_are_alive(page):
     page.wait_for("/Hz/.test(document.querySelector('[data-topic=\"/odom\"]').textContent)")
     page.wait_for("document.querySelectorAll('.u-over').length > 0")
     page.wait_for("[...document.querySelectorAll('.legend .figures')].every((e) => e.textContent)")
-    page.click_on("[data-topic='/scan'] button")
+    page.click_on("[data-topic='/scan'] button.grow")
     page.wait_for("/angle_increment/.test(document.querySelector('[data-test=message]').textContent)")
     assert "820 items" in page.evaluate("document.querySelector('[data-test=message]').textContent")
 
@@ -321,7 +389,7 @@ def test_speaks_with_foxgloves_server(browser, source):
             show(browser, f"{ours.url}?connect=ws://127.0.0.1:{theirs.port}")
             browser.wait_for("daidalos.state().serverName === 'theirs'")
             browser.wait_for("daidalos.state().topics.includes('/clicked_point')")
-            browser.click_on("[data-topic='/clicked_point'] button")
+            browser.click_on("[data-topic='/clicked_point'] button.grow")
             # The list of topics subscribes as well, to measure: say it until the message panel listens.
             until = time.monotonic() + 30
             text = ""

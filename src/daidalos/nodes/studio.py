@@ -17,6 +17,7 @@ from rclpy.qos import DurabilityPolicy, QoSProfile
 from daidalos.description.resolve import default_model_path
 from daidalos.nodes.foxglove_bridge._graph_source import RosGraphSource
 from daidalos.nodes.packages import package_share
+from daidalos.studio.arrangement import Arrangement
 from daidalos.studio.assets import AssetResolver
 from daidalos.studio.server import DEFAULT_PORT, LOOPBACK, StudioServer
 from daidalos.transport.graph import EndpointInfo, EndpointKind, NodeInfo
@@ -35,6 +36,8 @@ class Studio:
         The port to listen on, or the next free one above.
     hosts
         Addresses to listen on.
+    arrangement
+        What the page shows when it opens; None leaves that to the page.
 
     Raises
     ------
@@ -42,7 +45,13 @@ class Studio:
         When no port can be opened.
     """
 
-    def __init__(self, node: Node, port: int = DEFAULT_PORT, hosts: Sequence[str] = LOOPBACK) -> None:
+    def __init__(
+        self,
+        node: Node,
+        port: int = DEFAULT_PORT,
+        hosts: Sequence[str] = LOOPBACK,
+        arrangement: Arrangement | None = None,
+    ) -> None:
         self._node = node
         self._graph = node.handle.graph
         self._assets = AssetResolver(_share_directory, default_model_path())
@@ -52,6 +61,7 @@ class Studio:
             port=port,
             hosts=hosts,
             assets=self._assets,
+            arrangement=arrangement,
             metadata={"ROS_DISTRO": os.environ.get("ROS_DISTRO", _DISTRIBUTION)},
         )
         self._server.start()

@@ -6,9 +6,11 @@ import argparse
 import os
 import sys
 from collections.abc import Callable, Mapping
+from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 from daidalos.nodes.runner import UserError, ignore_interrupts, run, run_program
+from daidalos.studio.arrangement import Arrangement, ArrangementError
 from daidalos.studio.ports import PortError
 
 if TYPE_CHECKING:
@@ -83,7 +85,9 @@ def show(url: str, *, open_it: bool = True) -> None:
         open_in_browser(url)
 
 
-def run_studio(name: str, panel: str, arguments: argparse.Namespace, **details: str) -> int:
+def run_studio(
+    name: str, panel: str, arguments: argparse.Namespace, arrangement: Arrangement | None = None, **details: str
+) -> int:
     """Serve the studio until the process is asked to end, and open it at a panel.
 
     Parameters
@@ -94,6 +98,8 @@ def run_studio(name: str, panel: str, arguments: argparse.Namespace, **details: 
         The panel, empty for the whole studio.
     arguments
         What a parser of `studio_parser` read.
+    arrangement
+        What the page shows when it opens; None leaves that to the page.
     **details
         What else the address says.
 
@@ -112,7 +118,7 @@ def run_studio(name: str, panel: str, arguments: argparse.Namespace, **details: 
         def __init__(self) -> None:
             super().__init__(name)
             try:
-                self._studio = Studio(self, arguments.port)
+                self._studio = Studio(self, arguments.port, arrangement=arrangement)
             except PortError as error:
                 super().destroy_node()
                 raise UserError(str(error)) from None
@@ -124,6 +130,31 @@ def run_studio(name: str, panel: str, arguments: argparse.Namespace, **details: 
             super().destroy_node()
 
     return run(Window)
+
+
+def read_arrangement(
+    path: str, read: Callable[[Path], Arrangement], parser: argparse.ArgumentParser
+) -> tuple[Arrangement, dict[str, str]]:
+    """Read a file that says what to show; a mistake in it ends the program.
+
+    Returns
+    -------
+    arrangement
+        What it says; what the studio does not have of it is named on the terminal.
+    details
+        For the page's address.
+    """
+    try:
+        arrangement = read(Path(path))
+    except FileNotFoundError:
+        parser.error(f"there is no file '{path}'")
+    except OSError as error:
+        parser.error(f"cannot read '{path}': {error.strerror}")
+    except ArrangementError as error:
+        parser.error(str(error))
+    if arrangement.left_out:
+        print(f"{parser.prog}: not in the studio, left out: {', '.join(arrangement.left_out)}", file=sys.stderr)
+    return arrangement, {"layout": Path(path).name}
 
 
 def rqt_node_name() -> str:

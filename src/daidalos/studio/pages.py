@@ -6,6 +6,8 @@ from pathlib import Path
 
 from aiohttp import web
 
+from daidalos.studio.arrangement import Arrangement
+
 STATIC = Path(__file__).parent / "static"
 
 # The registry of a system may name other types, which browsers refuse for modules and workers.
@@ -72,7 +74,16 @@ async def page(request: web.Request) -> web.StreamResponse:
     return response
 
 
+async def arrangement_of(request: web.Request) -> web.Response:
+    """Answer with what the page is to show when it opens, where the server was told."""
+    arrangement = request.app[ARRANGEMENT_KEY]
+    if arrangement is None:
+        return web.Response(status=404, text="the page arranges itself\n")
+    return web.json_response(arrangement.to_json(), headers={**HEADERS, "Cache-Control": ASK_FIRST})
+
+
 STATIC_KEY = web.AppKey("static", Path)
+ARRANGEMENT_KEY: web.AppKey[Arrangement | None] = web.AppKey("arrangement")
 
 
 def _find(static: Path, path: str) -> Path | None:

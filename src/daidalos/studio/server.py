@@ -17,10 +17,11 @@ from aiohttp.typedefs import Handler
 
 from daidalos.studio import protocol
 from daidalos.studio.access import AccessPolicy
+from daidalos.studio.arrangement import Arrangement
 from daidalos.studio.assets import AssetResolver
 from daidalos.studio.client import Client
 from daidalos.studio.hub import Changes, Hub
-from daidalos.studio.pages import HEADERS, STATIC, STATIC_KEY, page
+from daidalos.studio.pages import ARRANGEMENT_KEY, HEADERS, STATIC, STATIC_KEY, arrangement_of, page
 from daidalos.studio.ports import open_port
 from daidalos.studio.protocol import Level
 from daidalos.studio.source import GraphSource, Parameter, Topic
@@ -68,6 +69,7 @@ class StudioServer:
         assets: AssetResolver | None = None,
         static: Path = STATIC,
         metadata: Mapping[str, str] | None = None,
+        arrangement: Arrangement | None = None,
     ) -> None:
         self._source = source
         self._name = name
@@ -78,6 +80,7 @@ class StudioServer:
         self._assets = assets
         self._static = static
         self._metadata = dict(metadata or {})
+        self._arrangement = arrangement
         self._session = uuid.uuid4().hex
         self._hub = Hub(source)
         self._clients: set[Client] = set()
@@ -176,7 +179,9 @@ class StudioServer:
         self._stopping = asyncio.Event()
         app = web.Application(middlewares=[self._guard])
         app[STATIC_KEY] = self._static
+        app[ARRANGEMENT_KEY] = self._arrangement
         app.router.add_get("/", self._root)
+        app.router.add_get("/arrangement.json", arrangement_of)
         app.router.add_get("/{path:.*}", page)
         runner = web.AppRunner(app, access_log=None, handle_signals=False, shutdown_timeout=GOODBYE_S)
         observing = None

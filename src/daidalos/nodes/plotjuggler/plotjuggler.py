@@ -1,9 +1,10 @@
 """`plotjuggler`: the studio, opened at its plots."""
 
 import sys
-from pathlib import Path
 
-from daidalos.nodes.studio_window import parse, run_studio, studio_parser
+from daidalos.nodes.studio_window import parse, read_arrangement, run_studio, studio_parser
+from daidalos.studio.arrangement import Arrangement
+from daidalos.studio.plotjuggler_layout import read_plotjuggler
 
 
 def main() -> int:
@@ -13,11 +14,11 @@ def main() -> int:
     parser.add_argument("-n", "--nosplash", action="store_true", help="accepted, and not needed")
     parser.add_argument("-t", "--test", action="store_true", help="accepted, and without effect")
     arguments = parse(parser)
+    arrangement: Arrangement | None = None
+    details: dict[str, str] = {}
     if arguments.layout:
-        if not Path(arguments.layout).is_file():
-            parser.error(f"there is no file '{arguments.layout}'")
-        print(f"plotjuggler: curves of '{arguments.layout}' are not taken over", file=sys.stderr)
-    return run_studio("plotjuggler", "plot", arguments)
+        arrangement, details = read_arrangement(arguments.layout, read_plotjuggler, parser)
+    return run_studio("plotjuggler", "plot", arguments, arrangement, **details)
 
 
 if __name__ == "__main__":

@@ -1,9 +1,9 @@
 """`rviz2`: the studio, opened at its 3-D view."""
 
 import sys
-from pathlib import Path
 
-from daidalos.nodes.studio_window import parse, run_studio, studio_parser
+from daidalos.nodes.studio_window import parse, read_arrangement, run_studio, studio_parser
+from daidalos.studio.rviz_config import read_rviz
 
 
 def main() -> int:
@@ -15,13 +15,12 @@ def main() -> int:
     parser.add_argument("-s", "--splash-screen", metavar="FILE", help="accepted, and without effect")
     parser.add_argument("--fullscreen", action="store_true", help="accepted; browsers have a key for that")
     arguments = parse(parser)
-    config = arguments.display_config
-    if config:
-        if not Path(config).is_file():
-            parser.error(f"there is no file '{config}'")
-        print(f"rviz2: displays of '{config}' are not taken over; the studio shows what it finds", file=sys.stderr)
     details = {"fixed_frame": arguments.fixed_frame} if arguments.fixed_frame else {}
-    return run_studio("rviz", "scene", arguments, **details)
+    arrangement = None
+    if arguments.display_config:
+        arrangement, named = read_arrangement(arguments.display_config, read_rviz, parser)
+        details |= named
+    return run_studio("rviz", "scene", arguments, arrangement, **details)
 
 
 if __name__ == "__main__":

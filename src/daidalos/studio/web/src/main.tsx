@@ -12,6 +12,7 @@ import "./styles/graph.css";
 import "./styles/simulation.css";
 import "./styles/joints.css";
 import "./styles/call.css";
+import { fetchArrangement } from "./app/arrangement";
 import { Help } from "./app/help";
 import { Layout } from "./app/layout";
 import { readOpening } from "./app/opening";
@@ -28,7 +29,7 @@ function App({ studio }: { studio: Studio }) {
   const dock = useRef<HTMLDivElement>(null);
   useEffect(() => {
     layout = new Layout(dock.current as HTMLDivElement, studio, opening);
-    studio.openPanel = (id) => layout.openById(id);
+    studio.openPanel = (id, params, direction) => layout.openById(id, params, direction);
   }, []);
   return (
     <>
@@ -53,7 +54,8 @@ function sayWhatIsMissing(): void {
 }
 
 const worker = new Worker(new URL("./connection/worker.ts", import.meta.url), { type: "module" });
-const studio = new Studio(worker, opening?.details.fixed_frame);
+const arrangement = opening?.details.layout === undefined ? undefined : await fetchArrangement();
+const studio = new Studio(worker, arrangement, opening?.details.fixed_frame);
 installTestHooks(studio);
 listenToKeys(attachedWorld);
 sayWhatIsMissing();

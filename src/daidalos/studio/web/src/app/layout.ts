@@ -5,11 +5,13 @@ import {
   type DockviewApi,
   type GroupPanelPartInitParameters,
   type IContentRenderer,
+  type IDockviewPanel,
   type SerializedDockview,
 } from "dockview-core";
 import { h, render } from "preact";
 import { PANELS } from "../panels/registry";
 import type { PanelType } from "../panels/panel";
+import { allPlots, type Arrangement, firstPlot, isSplit, type Plot, type Split } from "./arrangement";
 import type { Opening } from "./opening";
 import { forget, isRecord, read, write } from "./stored";
 import type { Studio } from "./studio";
@@ -21,6 +23,7 @@ const NARROW_PX = 1200;
 /** Below this width, that of a phone, all panels lie behind the view. */
 const PHONE_PX = 640;
 const DISPLAYS_NARROW_PX = 250;
+const IMAGE_PX = 460;
 
 /** What stands beside a panel that is opened as a window of its own, and how wide. */
 const BESIDE: Readonly<Record<string, readonly [panel: string, width: number]>> = {
@@ -29,6 +32,12 @@ const BESIDE: Readonly<Record<string, readonly [panel: string, width: number]>> 
   message: ["topics", 330],
 };
 
+type Direction = "right" | "below";
+interface Position {
+  referencePanel: string;
+  direction: Direction | "within";
+}
+
 export class Layout {
   private readonly dock: DockviewApi;
   private readonly key: string;
@@ -36,7 +45,7 @@ export class Layout {
 
   constructor(
     private readonly element: HTMLElement,
-    studio: Studio,
+    private readonly studio: Studio,
     private readonly opening?: Opening,
   ) {
     // A panel that is opened as a window has an arrangement of its own, and leaves the other one alone.
@@ -52,18 +61,20 @@ export class Layout {
   }
 
   /** Show a panel: the one that is there, else a new one. */
-  open(type: PanelType, params: Record<string, unknown> = {}): void {
+  open(type: PanelType, params: Record<string, unknown> = {}, direction?: Direction): void {
     const present = this.dock.panels.find((panel) => panel.view.contentComponent === type.id);
     if (present && !type.many) {
       present.api.setActive();
       return;
     }
     const id = present ? `${type.id}-${crypto.getRandomValues(new Uint32Array(1)).join()}` : type.id;
-    this.dock.addPanel({ id, component: type.id, title: type.title, params });
+    const reference = direction && this.dock.activePanel;
+    const position = reference ? { position: { referencePanel: reference.id, direction } } : {};
+    this.dock.addPanel({ id, component: type.id, title: type.title, params, ...position });
   }
 
-  openById(id: string): void {
-    this.open(panelType(id));
+  openById(id: string, params?: Record<string, unknown>, direction?: Direction): void {
+    this.open(panelType(id), params, direction);
   }
 
   reset(): void {
@@ -113,6 +124,41 @@ export class Layout {
         .api.setSize({ width });
       main.api.setActive();
     }
+    if (this.studio.arrangement) {
+      this.arrangeAsAsked(this.studio.arrangement, main);
+    }
+  }
+
+  /** What a file of RViz or PlotJuggler has beside its first panel. */
+  private arrangeAsAsked({ images, tabs, span }: Arrangement, main: IDockviewPanel): void {
+    images.forEach((topic, i) => {
+      const position = i === 0 ? ({ referencePanel: main.id, direction: "right" } as const) : undefined;
+      const within = { referencePanel: "image-0", direction: "within" } as const;
+      const title = panelType("image").title;
+      const id = `image-${i}`;
+      const image = this.dock.addPanel({
+        id,
+        component: "image",
+        title,
+        params: { topic },
+        position: position ?? within,
+      });
+      if (i === 0) {
+        image.api.setSize({ width: Math.min(IMAGE_PX, 0.4 * this.element.clientWidth) });
+      }
+    });
+    const [first, ...others] = tabs;
+    if (first) {
+      const plots = new PlotPlaces(this.dock, span);
+      const panel = plots.add(first[0], firstPlot(first[1]), { referencePanel: main.id, direction: "within" });
+      this.dock.removePanel(main);
+      others.forEach(([title, content]) => {
+        for (const plot of allPlots(content)) {
+          plots.add(title, plot, { referencePanel: panel.id, direction: "within" }, true);
+        }
+      });
+      plots.fill(first[1], panel);
+    }
   }
 
   private arrangeRoom(): void {
@@ -155,7 +201,43 @@ export class Layout {
   }
 
   private save(): void {
+    if (this.studio.arrangement) {
+      return; // the file says it again next time
+    }
     write(this.key, this.dock.toJSON());
+  }
+}
+
+/** Puts the plots of a file where it has them. */
+class PlotPlaces {
+  private number = 0;
+
+  constructor(
+    private readonly dock: DockviewApi,
+    private readonly span: number,
+  ) {}
+
+  add(title: string, { curves }: Plot, position: Position, inactive = false): IDockviewPanel {
+    const id = `plot-${++this.number}`;
+    const params = { curves, ...(this.span ? { span: this.span } : {}) };
+    return this.dock.addPanel({ id, component: "plot", title, params, position, inactive });
+  }
+
+  /** Divide a panel that shows the first plot of a split, so that it becomes all of the split. */
+  fill(content: Plot | Split, panel: IDockviewPanel): void {
+    if (!isSplit(content)) {
+      return;
+    }
+    const [side, direction] = content.across ? (["width", "right"] as const) : (["height", "below"] as const);
+    const room = panel.api[side];
+    // First all parts beside each other, then what is within each: so that splits nest as they are written.
+    const placed = [panel];
+    for (const part of content.parts.slice(1)) {
+      const referencePanel = (placed.at(-1) as IDockviewPanel).id;
+      placed.push(this.add(panelType("plot").title, firstPlot(part), { referencePanel, direction }));
+    }
+    placed.forEach((each, i) => each.api.setSize({ [side]: (content.shares[i] ?? 0) * room }));
+    content.parts.forEach((part, i) => this.fill(part, placed[i] as IDockviewPanel));
   }
 }
 

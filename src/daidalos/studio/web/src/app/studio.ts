@@ -1,5 +1,6 @@
 // The application: one connection, one tree of frames, one clock, and the loop that drives all that moves.
 import { effect, signal } from "@preact/signals";
+import { type Arrangement, displaysOf } from "./arrangement";
 import { Session } from "../connection/session";
 import { DisplayList } from "../displays/list";
 import type { TFMessage } from "../ros/messages";
@@ -24,21 +25,29 @@ export class Studio {
   readonly tf = new TransformBuffer();
   readonly clock = new RobotClock();
   readonly fixedFrame: FixedFrame;
-  readonly displays = new DisplayList();
+  readonly displays: DisplayList;
   readonly assets: Assets;
   readonly reading = signal<TimeReading>({ time: undefined, factor: undefined });
   /** The topic that the message panel shows. */
   readonly selectedTopic = signal("");
   /** Shows a panel; set by the layout. */
-  openPanel: (id: string) => void = () => undefined;
+  openPanel: (id: string, params?: Record<string, unknown>, direction?: "right" | "below") => void = () => undefined;
+  /** Adds a field to the plot that was used last; undefined: there is no plot. */
+  readonly addToPlot = signal<((path: string) => void) | undefined>(undefined);
   /** Called when time was turned back or the server is another. */
   readonly onReset = new Set<() => void>();
 
   private readonly frames = new Set<(page: number) => void>();
   private readAt = 0;
 
-  constructor(worker: Worker, fixedFrame?: string) {
+  constructor(
+    worker: Worker,
+    /** What a file asks for, where one was named. */
+    readonly arrangement?: Arrangement,
+    fixedFrame = arrangement?.fixed_frame,
+  ) {
     this.fixedFrame = new FixedFrame(this.tf, fixedFrame);
+    this.displays = new DisplayList(arrangement && displaysOf(arrangement));
     this.session = new Session(worker);
     this.assets = new Assets(this.session);
     this.session.onClock = ({ robot, at, announced }) =>

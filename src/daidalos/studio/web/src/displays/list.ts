@@ -23,7 +23,13 @@ interface Saved {
 export class DisplayList {
   /** The displays that live in the scene, by id. */
   readonly live: Signal<ReadonlyMap<string, Display>> = signal(new Map());
-  private readonly saved = stored<Saved>(KEY, { configs: firstConfigs(), seen: [] }, isSaved);
+  private readonly saved: Signal<Saved>;
+
+  /** What a file asks for holds for this window only, and nothing comes to it by itself. */
+  constructor(private readonly asked?: readonly DisplayConfig[]) {
+    const first = { configs: [...(asked ?? firstConfigs())], seen: [] };
+    this.saved = asked ? signal<Saved>(first) : stored<Saved>(KEY, first, isSaved);
+  }
 
   get configs(): readonly DisplayConfig[] {
     return this.saved.value.configs;
@@ -51,12 +57,17 @@ export class DisplayList {
   }
 
   reset(): void {
-    forget(KEY);
-    this.saved.value = { configs: firstConfigs(), seen: [] };
+    if (!this.asked) {
+      forget(KEY);
+    }
+    this.saved.value = { configs: [...(this.asked ?? firstConfigs())], seen: [] };
   }
 
   /** Make displays for topics that nobody shows yet. */
   discover(topics: readonly TopicInfo[]): void {
+    if (this.asked) {
+      return;
+    }
     const { configs, seen } = this.saved.peek();
     const shown = new Set(configs.map(({ settings }) => settings.topic));
     const found = topics.flatMap(({ name, type }) => {

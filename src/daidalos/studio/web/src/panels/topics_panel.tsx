@@ -1,12 +1,13 @@
 // Topics: what there is, of which type, how often and how much.
 import { useSignal } from "@preact/signals";
-import { useEffect } from "preact/hooks";
+import { useEffect, useState } from "preact/hooks";
 import type { Studio } from "../app/studio";
 import type { TopicInfo, Traffic } from "../connection/boundary";
 import { displayFor } from "../displays/registry";
 import { Empty } from "../ui/empty";
 import { Icon } from "../ui/icons";
 import { SearchField } from "../ui/search";
+import { Fields } from "./message/fields";
 import type { PanelProps, PanelType } from "./panel";
 
 /** Listening only to measure would make a robot send what nobody looks at; these are large. */
@@ -16,6 +17,10 @@ const HEAVY = new Set([
   "sensor_msgs/msg/PointCloud2",
   "sensor_msgs/msg/PointCloud",
 ]);
+
+const REFRESH_MS = 150;
+/** Who opens a topic here looks for its numbers. */
+const UNFOLDED = 5;
 
 function TopicsPanel({ studio, visible }: PanelProps) {
   const filter = useSignal("");
@@ -54,46 +59,95 @@ function TopicsPanel({ studio, visible }: PanelProps) {
       </div>
       <div class="scroll" role="list">
         {topics.map((topic) => (
-          <TopicRow key={`${topic.name} ${topic.type}`} studio={studio} topic={topic} />
+          <TopicRow key={`${topic.name} ${topic.type}`} studio={studio} topic={topic} isVisible={visible.value} />
         ))}
       </div>
     </div>
   );
 }
 
-function TopicRow({ studio, topic }: { studio: Studio; topic: TopicInfo }) {
+function TopicRow({ studio, topic, isVisible }: { studio: Studio; topic: TopicInfo; isVisible: boolean }) {
   const traffic = studio.session.traffic.value[topic.name];
   const selected = studio.selectedTopic.value === topic.name;
   const display = displayFor(topic.type);
   const isShown = studio.displays.configs.some(({ settings }) => settings.topic === topic.name);
+  const [isOpen, setOpen] = useState(false);
   const select = () => {
     studio.selectedTopic.value = topic.name;
     studio.openPanel("message");
   };
   return (
-    <div class={`topic-row ${selected ? "selected" : ""}`} role="listitem" data-topic={topic.name}>
-      <button
-        class="bare grow"
-        onClick={select}
-        title={topic.known ? "Show its messages" : "Its definition is not known"}
-      >
-        <span class="topic-name ellipsis">{topic.name}</span>
-        <span class="topic-type ellipsis">{shortType(topic.type)}</span>
-      </button>
-      <span class="topic-traffic figures">
-        <span>{rate(traffic)}</span>
-        <span class="faint">{bandwidth(traffic)}</span>
-      </span>
-      {display && !isShown ? (
+    <>
+      <div class={`topic-row ${selected ? "selected" : ""}`} role="listitem" data-topic={topic.name}>
         <button
-          class="icon-button small"
-          title={`Show in 3D as ${display.type}`}
-          onClick={() => studio.displays.add(display, topic.name)}
+          class="turn"
+          aria-expanded={isOpen}
+          title={isOpen ? "Hide its fields" : "Show its fields"}
+          disabled={!topic.known}
+          data-test="fields"
+          onClick={() => setOpen(!isOpen)}
         >
-          <Icon name="add" size={14} />
+          <Icon name="chevron" size={11} />
         </button>
+        <button
+          class="bare grow"
+          onClick={select}
+          title={topic.known ? "Show its messages" : "Its definition is not known"}
+        >
+          <span class="topic-name ellipsis">{topic.name}</span>
+          <span class="topic-type ellipsis">{shortType(topic.type)}</span>
+        </button>
+        <span class="topic-traffic figures">
+          <span>{rate(traffic)}</span>
+          <span class="faint">{bandwidth(traffic)}</span>
+        </span>
+        {display && !isShown ? (
+          <button
+            class="icon-button small"
+            title={`Show in 3D as ${display.type}`}
+            onClick={() => studio.displays.add(display, topic.name)}
+          >
+            <Icon name="add" size={14} />
+          </button>
+        ) : (
+          <span class="icon-button small" />
+        )}
+      </div>
+      {isOpen && <TopicFields studio={studio} topic={topic.name} isVisible={isVisible} />}
+    </>
+  );
+}
+
+/** What the newest message says; before the first one, what a message is made of. */
+function TopicFields({ studio, topic, isVisible }: { studio: Studio; topic: string; isVisible: boolean }) {
+  const shown = useSignal<unknown>(undefined);
+  const { session } = studio;
+  useEffect(() => {
+    if (!isVisible) {
+      return undefined;
+    }
+    let newest: unknown;
+    const stop = session.subscribe(topic, 1, (message) => (newest = message));
+    void session.template("topic", topic).then(
+      (empty) => (shown.value ??= empty),
+      () => undefined,
+    );
+    const timer = setInterval(() => {
+      if (newest !== undefined && newest !== shown.peek()) {
+        shown.value = newest;
+      }
+    }, REFRESH_MS);
+    return () => {
+      stop();
+      clearInterval(timer);
+    };
+  }, [topic, isVisible]);
+  return (
+    <div class="tree topic-fields">
+      {shown.value === undefined ? (
+        <div class="tree-row faint">…</div>
       ) : (
-        <span class="icon-button small" />
+        <Fields studio={studio} value={shown.value} path={topic} depth={1} unfolded={UNFOLDED} />
       )}
     </div>
   );

@@ -1,7 +1,7 @@
 // The 3-D view put together: canvas, displays, tools and the camera that may follow the robot.
 import { effect, signal } from "@preact/signals";
 import { Group, Vector3 } from "three";
-import { isRecord, isString, read, stored, write } from "../app/stored";
+import { isRecord, isString, read, write } from "../app/stored";
 import type { Studio } from "../app/studio";
 import { theme } from "../app/theme";
 import { DisplayManager } from "../displays/manager";
@@ -12,12 +12,13 @@ import { HOME, type ViewKind, type ViewState } from "./view";
 import { Viewport } from "./viewport";
 
 const VIEW_KEY = "view";
+const FOLLOW_KEY = "follow";
 const SAVE_EVERY_S = 2;
 /** What the shadow follows, and what "follow" follows, by preference. */
 const ROBOT_FRAMES = ["base_footprint", "base_link", "base"];
 
 /** The frame that the camera moves along with; empty: none. */
-export const followed = stored("follow", "", isString);
+export const followed = signal("");
 
 export class World {
   readonly viewport: Viewport;
@@ -42,7 +43,9 @@ export class World {
     this.viewport = new Viewport(container);
     const { viewport } = this;
     viewport.scene.add(this.content, this.overlay);
-    const kept = read<ViewState | undefined>(VIEW_KEY, undefined, isViewState);
+    const { arrangement } = studio;
+    const kept = arrangement?.view ?? read<ViewState | undefined>(VIEW_KEY, undefined, isViewState);
+    followed.value = arrangement?.followed ?? read(FOLLOW_KEY, "", isString);
     viewport.view.restore(kept ?? HOME);
     viewport.view.isMoved = kept !== undefined;
     this.viewKind.value = viewport.view.kind;
@@ -72,6 +75,11 @@ export class World {
     this.stops.push(
       () => observer.disconnect(),
       () => studio.onReset.delete(reset),
+      effect(() => {
+        if (!arrangement) {
+          write(FOLLOW_KEY, followed.value);
+        }
+      }),
       effect(() => {
         viewport.lights.theme = theme.value;
         viewport.invalidate();
@@ -171,7 +179,7 @@ export class World {
   }
 
   private keepView(page: number): void {
-    if (page - this.savedAt > SAVE_EVERY_S) {
+    if (page - this.savedAt > SAVE_EVERY_S && !this.studio.arrangement) {
       this.savedAt = page;
       const view = this.viewport.view.state();
       const text = JSON.stringify(view);

@@ -48,3 +48,13 @@ it("is empty before the first value", () => {
   expect(new History().decimate(0, 1, 10)).toEqual({ times: [], values: [] });
   expect(new History().last).toBeUndefined();
 });
+
+it("tells the value at a time, and curves over each other", () => {
+  const history = filled(10, (i) => i * i);
+  expect(history.at(3)).toBe(9);
+  expect(history.at(3.5)).toBe(9);
+  expect(history.at(-1)).toBeUndefined();
+  expect(history.at(99)).toBe(81);
+  expect(filled(10).over(history, 2, 5, 100)).toEqual({ xs: [4, 9, 16], ys: [2, 3, 4] });
+  expect(filled(1000).over(filled(1000), 0, 1000, 100).xs.length).toBe(100);
+});

@@ -69,6 +69,29 @@ export class History {
     return { times, values };
   }
 
+  /** The newest value at a time; undefined before the first one. */
+  at(time: number): number | undefined {
+    const index = this.indexOf(time);
+    const is = index < this.end && this.times[index] === time;
+    const found = is ? index : index - 1;
+    return found >= this.start ? this.values[found] : undefined;
+  }
+
+  /** The values of this curve over those that another one had at the same times, thinned to at most `most`. */
+  over(other: History, from: number, to: number, most: number): { xs: number[]; ys: number[] } {
+    const [xs, ys]: [number[], number[]] = [[], []];
+    const [first, last] = [this.indexOf(from), this.indexOf(to)];
+    const step = Math.max(1, Math.ceil((last - first) / most));
+    for (let i = first; i < last; i += step) {
+      const x = other.at(this.times[i] as number);
+      if (x !== undefined) {
+        xs.push(x);
+        ys.push(this.values[i] as number);
+      }
+    }
+    return { xs, ys };
+  }
+
   /** The index of the first sample at or after a time. */
   private indexOf(time: number): number {
     let [low, high] = [this.start, this.end];

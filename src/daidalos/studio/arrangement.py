@@ -1,0 +1,131 @@
+"""What a page shows when it opens, where a file says so: fixed frame, displays, camera and plots."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any, Literal
+
+Value = str | float | bool
+
+
+class ArrangementError(Exception):
+    """A file that says what to show can not be read; the text names the file, the line and what is wrong."""
+
+    def __init__(self, path: Path | str, line: int | None, what: str) -> None:
+        super().__init__(f"{path}:{line}: {what}" if line else f"{path}: {what}")
+
+
+@dataclass(frozen=True)
+class Display:
+    """One display of the 3-D view.
+
+    Parameters
+    ----------
+    type : str
+        RViz's class without its package, e.g. ``LaserScan``.
+    name : str
+    enabled : bool
+    settings : dict
+        Values by the keys that the page's display of this type has, ``topic`` among them; what is left out is
+        as the page has it by default.
+    """
+
+    type: str
+    name: str
+    enabled: bool = True
+    settings: dict[str, Value] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class View:
+    """Where the camera is.
+
+    Parameters
+    ----------
+    kind : "orbit" or "top"
+    focus : tuple of 3 floats
+        The point in the fixed frame that it looks at [m].
+    distance : float
+        [m].
+    yaw, pitch : float
+        Of the camera as seen from the focus, about the vertical and above the horizon [rad].
+    """
+
+    kind: Literal["orbit", "top"]
+    focus: tuple[float, float, float]
+    distance: float
+    yaw: float = 0.0
+    pitch: float = 0.0
+
+
+@dataclass(frozen=True)
+class Curve:
+    """One curve of a plot: a field over time, or one field over another.
+
+    Parameters
+    ----------
+    path : str
+        Topic and fields, e.g. ``/odom/pose/pose/position/x``.
+    color : str
+        ``#rrggbb``; empty for one that is free.
+    over : str
+        Path of what is to the right; empty for time.
+    """
+
+    path: str
+    color: str = ""
+    over: str = ""
+
+
+@dataclass(frozen=True)
+class Plot:
+    """One plot."""
+
+    curves: tuple[Curve, ...]
+
+
+@dataclass(frozen=True)
+class Split:
+    """Parts beside each other or below each other, and the share of the room that each one has."""
+
+    across: bool
+    shares: tuple[float, ...]
+    parts: tuple[Plot | Split, ...]
+
+
+@dataclass(frozen=True)
+class Arrangement:
+    """All of it.
+
+    Parameters
+    ----------
+    fixed_frame : str
+        Empty: the page finds one.
+    displays : tuple of Display, or None
+        None leaves what the page shows by itself.
+    images : tuple of str
+        Topics of pictures to show beside the 3-D view.
+    view : View or None
+    followed : str
+        The frame that the camera moves along with; empty: none.
+    tabs : tuple of (str, Plot or Split)
+        Names and contents of the sheets with plots.
+    span : float
+        Seconds that plots over time show; 0: as the page has it.
+    left_out : tuple of str
+        What the file asks for and the studio does not have, in words for the user.
+    """
+
+    fixed_frame: str = ""
+    displays: tuple[Display, ...] | None = None
+    images: tuple[str, ...] = ()
+    view: View | None = None
+    followed: str = ""
+    tabs: tuple[tuple[str, Plot | Split], ...] = ()
+    span: float = 0.0
+    left_out: tuple[str, ...] = ()
+
+    def to_json(self) -> dict[str, Any]:
+        """Return what the page reads (``web/src/app/arrangement.ts``)."""
+        return asdict(self)

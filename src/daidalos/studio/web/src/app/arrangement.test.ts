@@ -1,0 +1,28 @@
+import { expect, it } from "vitest";
+import { type Arrangement, displaysOf, firstPlot } from "./arrangement";
+
+const NOTHING: Arrangement = {
+  fixed_frame: "",
+  displays: null,
+  images: [],
+  view: null,
+  followed: "",
+  tabs: [],
+  span: 0,
+};
+
+it("asks for displays, with what it leaves open as always", () => {
+  const path = { type: "Path", name: "Way", enabled: false, settings: { topic: "/way", alpha: 0.5 } };
+  const displays = displaysOf({ ...NOTHING, displays: [path, { ...path, type: "Unheard" }] });
+  expect(displays).toHaveLength(1);
+  expect(displays?.[0]).toMatchObject({ type: "Path", name: "Way", enabled: false });
+  expect(displays?.[0]?.settings).toMatchObject({ topic: "/way", alpha: 0.5, width: 3.5 });
+  expect(displaysOf(NOTHING)).toBeUndefined();
+});
+
+it("has a first plot, however it is split", () => {
+  const plot = { curves: [{ path: "/a", color: "", over: "" }] };
+  const split = { across: true, shares: [1, 1], parts: [plot, { curves: [] }] };
+  expect(firstPlot({ across: false, shares: [1], parts: [split] })).toBe(plot);
+  expect(firstPlot({ across: false, shares: [], parts: [] })).toEqual({ curves: [] });
+});

@@ -1,0 +1,56 @@
+// What the server says that the page shall show, as a file of RViz or PlotJuggler has it (studio/arrangement.py).
+import { displayType } from "../displays/registry";
+import type { DisplayConfig, Settings } from "../displays/settings";
+import type { Curve } from "../panels/plot/curves";
+import type { ViewState } from "../scene/view";
+
+export interface Plot {
+  curves: readonly Omit<Curve, "hidden">[];
+}
+
+export interface Split {
+  across: boolean;
+  shares: readonly number[];
+  parts: readonly (Plot | Split)[];
+}
+
+export interface Arrangement {
+  fixed_frame: string;
+  displays: readonly { type: string; name: string; enabled: boolean; settings: Settings }[] | null;
+  images: readonly string[];
+  view: ViewState | null;
+  followed: string;
+  tabs: readonly (readonly [name: string, content: Plot | Split])[];
+  /** Seconds; 0: as the page has it. */
+  span: number;
+}
+
+const ADDRESS = "arrangement.json";
+
+/** Ask the server; undefined where it has nothing to say. */
+export async function fetchArrangement(): Promise<Arrangement | undefined> {
+  const answer = await fetch(ADDRESS);
+  return answer.ok ? ((await answer.json()) as Arrangement) : undefined;
+}
+
+/** The displays that an arrangement asks for, with all that it leaves open as it is by default. */
+export function displaysOf({ displays }: Arrangement): DisplayConfig[] | undefined {
+  return displays?.flatMap(({ settings, ...display }, i) => {
+    const type = displayType(display.type);
+    return type ? [{ ...display, id: `arranged-${i}`, settings: { ...type.defaults, ...settings } }] : [];
+  });
+}
+
+export function isSplit(content: Plot | Split): content is Split {
+  return "parts" in content;
+}
+
+/** The first plot of a split, which stands for all of it while the others are not placed. */
+export function firstPlot(content: Plot | Split): Plot {
+  const [first] = isSplit(content) ? content.parts : [];
+  return isSplit(content) ? (first ? firstPlot(first) : { curves: [] }) : content;
+}
+
+export function allPlots(content: Plot | Split): readonly Plot[] {
+  return isSplit(content) ? content.parts.flatMap(allPlots) : [content];
+}
