@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from rclpy.impl.errors import InvalidHandle as InvalidHandle
+
 if TYPE_CHECKING:
     from rclpy.parameter import Parameter
 

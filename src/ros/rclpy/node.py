@@ -138,18 +138,16 @@ class Node(NodeParameters, NodeGraph):
             self._logger_service = LoggingService(self)
 
     def _rcl_overrides(self, given: list[Parameter[Any]] | None) -> dict[str, Parameter[Any]]:
-        """Return initial values: from files and the command line, outweighed by those given in code."""
+        """Return initial values: from files and the command line, the last outweighing, and in the end from code."""
         found: dict[str, Parameter[Any]] = {}
         entries = self.handle.parameter_overrides
         if entries:
             from rclpy.impl.parameter_file import node_matches
 
             full = self.handle.get_fully_qualified_name()
-            for wildcards in (True, False):  # what is said of a node by its name outweighs wildcards
-                for node, name, value in entries:
-                    by_name = node == self.handle.name or node_matches(node, full)
-                    if ("*" in node) is wildcards and by_name:
-                        found[name] = Parameter(name, value=value)
+            for node, name, value in entries:
+                if node_matches(node, full):
+                    found[name] = Parameter(name, value=value)
         found.update({parameter.name: parameter for parameter in given or ()})
         return found
 
@@ -609,15 +607,9 @@ class Node(NodeParameters, NodeGraph):
         return True
 
     def destroy_node(self) -> None:
-        """Leave the graph; everything the node made is destroyed with it.
-
-        Raises
-        ------
-        InvalidHandle
-            When that was done before.
-        """
-        with self.handle:
-            """Raises InvalidHandle."""
+        """Leave the graph; everything the node made is destroyed with it. Does nothing the second time."""
+        if self.handle.is_destroyed:
+            return
         self._time_source.detach_node()
         executor = self.executor
         if executor is not None:

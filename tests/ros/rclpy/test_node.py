@@ -180,7 +180,8 @@ def test_destroying_ends_everything_once(graph: Context) -> None:
     assert watcher.get_node_names() == ["watcher"]
     assert watcher.count_publishers("name") == watcher.count_clients("name") == 0
     assert not [*node.publishers, *node.subscriptions, *node.clients, *node.services, *node.timers, *node.waitables]
-    for use in (node.destroy_node, node.get_name, lambda: node.create_publisher(String, "name", 1)):
+    node.destroy_node()
+    for use in (node.get_name, lambda: node.create_publisher(String, "name", 1)):
         with pytest.raises(InvalidHandle):
             use()
 

@@ -40,7 +40,7 @@ FILE = """
 /ns/robot:
   ros__parameters: {which: full name, deep: {er: [1, 2]}}
 robot:
-  ros__parameters: {short: true}
+  ros__parameters: {elsewhere: true}
 other:
   ros__parameters: {which: not ours}
 """
@@ -112,12 +112,48 @@ def test_initial_values_come_from_files_arguments_and_code(graph: Context, file:
     arguments = ["--ros-args", "--params-file", str(file), "-p", "everywhere:=2", "-p", "other:speed:=9"]
     node = Node("robot", namespace="ns", cli_args=arguments, parameter_overrides=[Parameter("coded", value="code")])
     declared = {name: node.declare_parameter(name, initial).value for name, initial in (
-        ("everywhere", 0), ("which", ""), ("short", False), ("coded", ""), ("speed", 0), ("deep.er", [0]),
+        ("everywhere", 0), ("which", ""), ("elsewhere", False), ("coded", ""), ("speed", 0), ("deep.er", [0]),
     )}  # fmt: skip
     assert declared == {
-        "everywhere": 2, "which": "full name", "short": True, "coded": "code", "speed": 0, "deep.er": [1, 2],
+        "everywhere": 2, "which": "full name", "elsewhere": False, "coded": "code", "speed": 0, "deep.er": [1, 2],
     }  # fmt: skip
     assert {name: one.value for name, one in node.get_parameters_by_prefix("deep").items()} == {"er": [1, 2]}
+    node.destroy_node()
+
+
+ORDERED = """
+/**/robot:
+  ros__parameters: {first: 1, last: 1}
+/ns/robot:
+  ros__parameters: {second: 2, last: 2}
+/**/robot:
+  ros__parameters: {third: 3}
+/*:
+  robot:
+    ros__parameters: {last: 4}
+"""
+
+
+def test_of_what_a_file_says_of_a_node_the_last_counts(graph: Context, tmp_path: Path) -> None:
+    path = tmp_path / "ordered.yaml"
+    path.write_text(ORDERED)
+    node = Node(
+        "robot", namespace="/ns", cli_args=["--ros-args", "--params-file", str(path)],
+        automatically_declare_parameters_from_overrides=True,
+    )  # fmt: skip
+    values = {name: node.get_parameter(name).value for name in ("first", "second", "third", "last")}
+    assert values == {"first": 1, "second": 2, "third": 3, "last": 4}
+    node.destroy_node()
+
+
+def test_a_name_alone_is_warned_of_and_what_stands_without_its_namespace_serves(graph: Context) -> None:
+    node = Node("robot", parameter_overrides=[Parameter("kp", value=2.0), Parameter("left.kp", value=3.0)])
+    with pytest.warns(UserWarning, match="'bare' is declared by its name alone"):
+        assert node.declare_parameter("bare").value is None
+    assert [one.value for one in node.declare_parameters("left", [("kp", 0.0)])] == [3.0]
+    assert [one.value for one in node.declare_parameters("right", [("kp", 0.0)])] == [2.0]
+    refused = node.set_parameters([Parameter("left.kp", value="text")])[0]
+    assert refused.reason.startswith("Wrong parameter type, expected 'Type.DOUBLE' got 'Type.STRING'")
     node.destroy_node()
 
 
@@ -147,7 +183,7 @@ def test_declaring_needs_sense(node: Node) -> None:
         (("taken", 2), ParameterAlreadyDeclaredException),
         (("", 2), InvalidParameterException),
         ((1, 2), TypeError),
-        (("unset", ParameterValue()), TypeError),
+        (("unset", ParameterValue(), ParameterDescriptor()), ValueError),
         (("described", 1, ParameterValue()), TypeError),
         (("untyped", None, ParameterDescriptor()), ValueError),
         (("no type", Parameter.Type.NOT_SET), ValueError),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import math
+import warnings
 from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -83,9 +84,8 @@ class NodeParameters:
         """
         from rcl_interfaces.msg import ParameterDescriptor
 
-        if value is None and descriptor is None:
-            descriptor = ParameterDescriptor(dynamic_typing=True)
-        return self.declare_parameters("", [(name, value, descriptor or ParameterDescriptor())], ignore_override)[0]
+        entry = (name,) if value is None and descriptor is None else (name, value, descriptor or ParameterDescriptor())
+        return self.declare_parameters("", [entry], ignore_override)[0]
 
     def declare_parameters(
         self,
@@ -103,34 +103,29 @@ class NodeParameters:
             As in `declare_parameter`.
         """
         declared: list[Parameter[Any]] = []
+        taken: list[str] = []
         descriptors: dict[str, ParameterDescriptor] = {}
         for index, entry in enumerate(parameters):
             name, value, descriptor = _unpacked(index, entry)
+            bare = name
             if namespace:
                 name = f"{namespace}{PARAMETER_SEPARATOR_STRING}{name}"
             validate_parameter_name(name)
-            if not ignore_override and name in self._parameter_overrides:
-                parameter = self._rcl_overridden(name, value, descriptor)
+            if name in self._descriptors:
+                taken.append(name)
+                continue
+            overrides = self._parameter_overrides
+            override = overrides.get(name) or overrides.get(bare)  # the bare name serves too, as in ROS 2
+            if override is not None and not ignore_override:
+                parameter = _overridden(Parameter(name, override.type_, override.value), value, descriptor)
             else:
                 parameter = _initial(name, value, descriptor)
             declared.append(parameter)
             descriptors[name] = descriptor
-        taken = [parameter.name for parameter in declared if parameter.name in self._descriptors]
         if taken:
             raise ParameterAlreadyDeclaredException(taken)
         self._rcl_set_declared(declared, descriptors)
         return [self._parameters[parameter.name] for parameter in declared]
-
-    def _rcl_overridden(self, name: str, value: Any, descriptor: ParameterDescriptor) -> Parameter[Any]:
-        override = self._parameter_overrides[name]
-        if descriptor.dynamic_typing:
-            return override
-        expected = value if isinstance(value, ParameterType) else ParameterType.from_parameter_value(value)
-        if expected == ParameterType.NOT_SET:
-            expected = ParameterType(descriptor.type)
-        override = _fitting(override, expected)
-        descriptor.type = int(expected if expected != ParameterType.NOT_SET else override.type_)
-        return override
 
     def _rcl_set_declared(self, declared: list[Parameter[Any]], descriptors: dict[str, ParameterDescriptor]) -> None:
         for parameter in declared:
@@ -345,7 +340,8 @@ class NodeParameters:
         if parameter.type_ == ParameterType.NOT_SET:
             return SetParametersResult(successful=True)
         if not descriptor.dynamic_typing and expected not in (ParameterType.NOT_SET, parameter.type_):
-            return SetParametersResult(successful=False, reason=str(InvalidParameterTypeException(parameter, expected)))
+            reason = f"Wrong parameter type, expected 'Type.{expected.name}' got 'Type.{parameter.type_.name}'"
+            return SetParametersResult(successful=False, reason=reason)
         reason = ""
         if parameter.type_ == ParameterType.INTEGER and descriptor.integer_range:
             reason = _integer_fault(parameter, descriptor.integer_range[0])
@@ -500,17 +496,22 @@ def _unpacked(index: int, entry: Any) -> tuple[str, Any, Any]:
     if not isinstance(name, str):
         raise TypeError(f"First element {name} at index {index} in parameters list is not a str.")
     value = entry[1] if len(entry) > 1 else None
-    if type(value).__name__ == "ParameterValue":
+    is_message = type(value).__name__ == "ParameterValue"
+    if is_message:
         value = parameter_value_to_python(value)
-        if value is None:
-            raise TypeError(f"The value of parameter '{name}' is a ParameterValue that is not set.")
-    if len(entry) < 3:
-        return name, value, ParameterDescriptor(dynamic_typing=value is None)
-    descriptor = copy.deepcopy(entry[2])
+    descriptor = copy.deepcopy(entry[2]) if len(entry) > 2 else None
     if descriptor is None:
         descriptor = ParameterDescriptor(dynamic_typing=value is None)
     if not isinstance(descriptor, ParameterDescriptor):
         raise TypeError(f"Third element {descriptor} at index {index} in parameters list is not a ParameterDescriptor.")
+    if is_message and value is None and not descriptor.dynamic_typing:
+        raise ValueError(f"Cannot declare the statically typed parameter '{name}' with a value that is not set")
+    if len(entry) == 1:
+        warnings.warn(
+            f"Parameter '{name}' is declared by its name alone, which is deprecated: give it a default value, a type, "
+            "or a descriptor with dynamic_typing=True",
+            stacklevel=4,
+        )
     return name, value, descriptor
 
 
@@ -533,6 +534,18 @@ def _initial(name: str, value: Any, descriptor: ParameterDescriptor) -> Paramete
             return Parameter(name, ParameterType(descriptor.type), value)
         descriptor.type = int(parameter.type_)
     return parameter
+
+
+def _overridden(override: Parameter[Any], value: Any, descriptor: ParameterDescriptor) -> Parameter[Any]:
+    """Return a declared parameter with a value from outside; notes its type in the descriptor."""
+    if descriptor.dynamic_typing:
+        return override
+    expected = value if isinstance(value, ParameterType) else ParameterType.from_parameter_value(value)
+    if expected == ParameterType.NOT_SET:
+        expected = ParameterType(descriptor.type)
+    override = _fitting(override, expected)
+    descriptor.type = int(expected if expected != ParameterType.NOT_SET else override.type_)
+    return override
 
 
 def _fitting(parameter: Parameter[Any], expected: ParameterType) -> Parameter[Any]:

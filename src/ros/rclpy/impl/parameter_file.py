@@ -16,7 +16,30 @@ class ParameterFileError(ValueError):
 
 
 class _Loader(yaml.SafeLoader):
-    """YAML as rcl_yaml_param_parser reads it: 1e3 is a float, `on` and `yes` are booleans, dates are text."""
+    """YAML as rcl_yaml_param_parser reads it: 1e3 is a float, `on` and `yes` are booleans, dates are text.
+
+    A name that stands there twice adds to what it held.
+    """
+
+    def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
+        """Return the names and values of a mapping."""
+        before = {}
+        for key, value in node.value:
+            name = self.construct_object(key, deep=True)
+            before.setdefault(name, []).append(self.construct_object(value, deep=True))
+        return {name: _merged(values) for name, values in before.items()}
+
+
+def _merged(values: list[Any]) -> Any:
+    merged: Any = values[0]
+    for value in values[1:]:
+        if isinstance(merged, dict) and isinstance(value, dict):
+            merged = merged | {
+                name: _merged([merged[name], inner]) if name in merged else inner for name, inner in value.items()
+            }
+        else:
+            merged = value
+    return merged
 
 
 _Loader.yaml_implicit_resolvers = {
