@@ -13,13 +13,22 @@ from typing import Any
 
 import numpy as np
 
-from daidalos.simulation.rendering.compilation import compiled
+from daidalos.simulation.rendering.compilation import compiled, compiled_in_place
 
 NOTHING = -1
 """In a buffer of triangles: the background."""
 
+PROJECTED = 5
+"""Numbers kept for each vertex: its place in the camera's frame, and its pixel."""
+
 EDGES = 9
 """Numbers kept for each drawn triangle: slope in x, slope in y and offset of the three e over det."""
+
+_MARGIN = 1e-6
+"""Of the box around a triangle [pixels]: its edges decide, not the rounding of its corners."""
+
+_SHORT = 8
+"""Runs of fewer pixels than this are written one by one."""
 
 
 @compiled
@@ -59,16 +68,26 @@ def place_parts(part_body: Any, part_pose: Any, body_position: Any, body_rotatio
 
 
 @compiled
-def transform_vertices(first: Any, last: Any, pose: Any, vertices: Any, transformed: Any) -> None:
-    """Transform a range of points (n, 3) by a pose (3, 4)."""
+def project_vertices(first: Any, last: Any, pose: Any, lens: Any, vertices: Any, projected: Any) -> None:
+    """Transform a range of points (n, 3) by a pose (3, 4) and project them: x, y, z and pixels (n, 5).
+
+    The pixels of what lies behind the eye have no meaning.
+    """
     a, b, c, d = pose[0, 0], pose[0, 1], pose[0, 2], pose[0, 3]
     e, f, g, h = pose[1, 0], pose[1, 1], pose[1, 2], pose[1, 3]
     i, j, k, m = pose[2, 0], pose[2, 1], pose[2, 2], pose[2, 3]
+    fx, fy, cx, cy = lens[0], lens[1], lens[2], lens[3]
     for n in range(first, last):
-        x, y, z = vertices[n, 0], vertices[n, 1], vertices[n, 2]
-        transformed[n, 0] = a * x + b * y + c * z + d
-        transformed[n, 1] = e * x + f * y + g * z + h
-        transformed[n, 2] = i * x + j * y + k * z + m
+        px, py, pz = vertices[n, 0], vertices[n, 1], vertices[n, 2]
+        x = a * px + b * py + c * pz + d
+        y = e * px + f * py + g * pz + h
+        z = i * px + j * py + k * pz + m
+        nearness = 1.0 / z
+        projected[n, 0] = x
+        projected[n, 1] = y
+        projected[n, 2] = z
+        projected[n, 3] = fx * x * nearness + cx
+        projected[n, 4] = fy * y * nearness + cy
 
 
 @compiled
@@ -81,10 +100,11 @@ def draw(
     two_sided: Any,
     vertices: Any,
     faces: Any,
+    planes: Any,
     lens: Any,
     near: Any,
     far: Any,
-    transformed: Any,
+    projected: Any,
     edges: Any,
     flipped: Any,
     inverse: Any,
@@ -106,12 +126,14 @@ def draw(
         Whether triangles are seen from behind too.
     vertices : array (v, 3)
     faces : array (f, 3) of int
+    planes : array (f, 4)
+        Normal of each triangle, of any length, and its scalar product with the triangle's points, in the part's frame.
     lens : array (4,)
         Focal lengths and principal point [pixels].
     near, far : float
         What is nearer or further is not drawn [m].
-    transformed : array (v, 3)
-        Scratch: vertices in the camera's frame.
+    projected : array (v, 5)
+        Scratch: vertices in the camera's frame and in pixels.
     edges : array (f, 9)
         Written for every drawn triangle, see `EDGES`.
     flipped : array (f,) of bool
@@ -126,159 +148,164 @@ def draw(
     left, right = -cx / fx, (columns - 1 - cx) / fx
     top, bottom = -cy / fy, (rows - 1 - cy) / fy
     for part in range(len(wanted)):
-        if not wanted[part] or outside(placed[part], spheres[part], left, right, top, bottom, near, far):
+        pose = placed[part]
+        if not wanted[part] or outside(pose, spheres[part], left, right, top, bottom, near, far):
             continue
-        transform_vertices(vertex_ranges[part, 0], vertex_ranges[part, 1], placed[part], vertices, transformed)
+        project_vertices(vertex_ranges[part, 0], vertex_ranges[part, 1], pose, lens, vertices, projected)
+        # The eye in the part's frame: it tells which triangles turn towards it.
+        ex = -(pose[0, 0] * pose[0, 3] + pose[1, 0] * pose[1, 3] + pose[2, 0] * pose[2, 3])
+        ey = -(pose[0, 1] * pose[0, 3] + pose[1, 1] * pose[1, 3] + pose[2, 1] * pose[2, 3])
+        ez = -(pose[0, 2] * pose[0, 3] + pose[1, 2] * pose[1, 3] + pose[2, 2] * pose[2, 3])
+        both = two_sided[part]
         for face in range(face_ranges[part, 0], face_ranges[part, 1]):
+            if not both and planes[face, 0] * ex + planes[face, 1] * ey + planes[face, 2] * ez <= planes[face, 3]:
+                continue
             i, j, k = faces[face, 0], faces[face, 1], faces[face, 2]
-            x0, y0, z0 = transformed[i, 0], transformed[i, 1], transformed[i, 2]
-            x1, y1, z1 = transformed[j, 0], transformed[j, 1], transformed[j, 2]
-            x2, y2, z2 = transformed[k, 0], transformed[k, 1], transformed[k, 2]
+            z0, z1, z2 = projected[i, 2], projected[j, 2], projected[k, 2]
             if z0 < near and z1 < near and z2 < near:
                 continue
-            # Normals of the planes through the eye and each edge.
-            a0, b0, c0 = y1 * z2 - z1 * y2, z1 * x2 - x1 * z2, x1 * y2 - y1 * x2
-            det = x0 * a0 + y0 * b0 + z0 * c0
-            if det == 0.0 or (det > 0.0 and not two_sided[part]):
-                continue
-            a1, b1, c1 = y2 * z0 - z2 * y0, z2 * x0 - x2 * z0, x2 * y0 - y2 * x0
-            a2, b2, c2 = y0 * z1 - z0 * y1, z0 * x1 - x0 * z1, x0 * y1 - y0 * x1
             crosses = z0 < near or z1 < near or z2 < near
-            first_row, last_row, first_column, last_column = 0, rows - 1, 0, columns - 1
+            first_row, last_row, first_column, last_column = 0.0, rows - 1.0, 0.0, columns - 1.0
             if not crosses:
-                u0, u1, u2 = fx * x0 / z0 + cx, fx * x1 / z1 + cx, fx * x2 / z2 + cx
-                v0, v1, v2 = fy * y0 / z0 + cy, fy * y1 / z1 + cy, fy * y2 / z2 + cy
-                lowest, highest = min(u0, u1, u2), max(u0, u1, u2)
-                if highest < 0 or lowest > columns - 1:
-                    continue
-                first_column, last_column = max(0, math.ceil(lowest)), min(columns - 1, math.floor(highest))
-                lowest, highest = min(v0, v1, v2), max(v0, v1, v2)
-                if highest < 0 or lowest > rows - 1:
-                    continue
-                first_row, last_row = max(0, math.ceil(lowest)), min(rows - 1, math.floor(highest))
+                u0, u1, u2 = projected[i, 3], projected[j, 3], projected[k, 3]
+                v0, v1, v2 = projected[i, 4], projected[j, 4], projected[k, 4]
+                first_column = max(first_column, np.ceil(min(u0, u1, u2) - _MARGIN))
+                last_column = min(last_column, np.floor(max(u0, u1, u2) + _MARGIN))
+                first_row = max(first_row, np.ceil(min(v0, v1, v2) - _MARGIN))
+                last_row = min(last_row, np.floor(max(v0, v1, v2) + _MARGIN))
                 if first_row > last_row or first_column > last_column:
                     continue
-            # In pixels; turned so that the inside is positive from either side.
-            turn = -1.0 if det < 0 else 1.0
-            a0, b0, c0 = turn * a0 / fx, turn * b0 / fy, turn * c0
-            a1, b1, c1 = turn * a1 / fx, turn * b1 / fy, turn * c1
-            a2, b2, c2 = turn * a2 / fx, turn * b2 / fy, turn * c2
-            c0 -= a0 * cx + b0 * cy
-            c1 -= a1 * cx + b1 * cy
-            c2 -= a2 * cx + b2 * cy
-            scale = 1.0 / abs(det)
-            slope = (a0 + a1 + a2) * scale
-            drawn = False
-            for row in range(first_row, last_row + 1):
-                r0, r1, r2 = b0 * row + c0, b1 * row + c1, b2 * row + c2
-                begin, end = float(first_column), float(last_column + 1)
-                begin, end = narrow(a0, b0, r0, begin, end)
-                begin, end = narrow(a1, b1, r1, begin, end)
-                begin, end = narrow(a2, b2, r2, begin, end)
-                if begin >= end:
-                    continue
-                start, stop = int(begin), int(end)
-                value = np.float32((r0 + r1 + r2) * scale + slope * start)
-                change = np.float32(slope)
-                line, seen = inverse[row], triangles[row]
-                drawn = True
-                if crosses:
-                    nearest = np.float32(1.0 / near)
-                    for column in range(start, stop):
-                        here = value + change * np.float32(column - start)
-                        if line[column] < here <= nearest:
-                            line[column] = here
-                            seen[column] = face
-                else:
-                    for column in range(start, stop):
-                        here = value + change * np.float32(column - start)
-                        if here > line[column]:
-                            line[column] = here
-                            seen[column] = face
-            if drawn:
-                edges[face, 0], edges[face, 1], edges[face, 2] = a0 * scale, b0 * scale, c0 * scale
-                edges[face, 3], edges[face, 4], edges[face, 5] = a1 * scale, b1 * scale, c1 * scale
-                edges[face, 6], edges[face, 7], edges[face, 8] = a2 * scale, b2 * scale, c2 * scale
-                flipped[face] = det > 0.0
+            draw_face(
+                face, i, j, k, projected, first_row, last_row + 1.0, first_column, last_column + 1.0,
+                np.float32(1.0 / near if crosses else np.inf), both, lens, edges, flipped, inverse, triangles,
+            )  # fmt: skip
 
 
-@compiled
-def draw_flat(
-    wanted: Any,
-    placed: Any,
-    face_ranges: Any,
-    vertex_ranges: Any,
+@compiled_in_place
+def draw_face(
+    face: Any,
+    i: Any,
+    j: Any,
+    k: Any,
+    projected: Any,
+    first_row: Any,
+    end_row: Any,
+    first_column: Any,
+    end_column: Any,
+    nearest: Any,
     two_sided: Any,
-    vertices: Any,
-    faces: Any,
-    transformed: Any,
-    depths: Any,
-    box: Any,
+    lens: Any,
+    edges: Any,
+    flipped: Any,
+    inverse: Any,
+    triangles: Any,
 ) -> None:
-    """Draw the depths that a parallel light sees, keeping the nearest.
+    """Draw one triangle into a box of pixels, as far as its inverse depth is no more than `nearest`."""
+    fx, fy, cx, cy = lens[0], lens[1], lens[2], lens[3]
+    x0, y0, z0 = projected[i, 0], projected[i, 1], projected[i, 2]
+    x1, y1, z1 = projected[j, 0], projected[j, 1], projected[j, 2]
+    x2, y2, z2 = projected[k, 0], projected[k, 1], projected[k, 2]
+    # Normals of the planes through the eye and each edge.
+    a0, b0, c0 = y1 * z2 - z1 * y2, z1 * x2 - x1 * z2, x1 * y2 - y1 * x2
+    det = x0 * a0 + y0 * b0 + z0 * c0
+    if det == 0.0 or (det > 0.0 and not two_sided):
+        return
+    a1, b1, c1 = y2 * z0 - z2 * y0, z2 * x0 - x2 * z0, x2 * y0 - y2 * x0
+    a2, b2, c2 = y0 * z1 - z0 * y1, z0 * x1 - x0 * z1, x0 * y1 - y0 * x1
+    # In pixels; turned so that the inside is positive from either side.
+    turn = -1.0 if det < 0 else 1.0
+    across, down = turn / fx, turn / fy
+    a0, b0, c0 = across * a0, down * b0, turn * c0
+    a1, b1, c1 = across * a1, down * b1, turn * c1
+    a2, b2, c2 = across * a2, down * b2, turn * c2
+    c0 -= a0 * cx + b0 * cy
+    c1 -= a1 * cx + b1 * cy
+    c2 -= a2 * cx + b2 * cy
+    scale = 1.0 / abs(det)
+    slope_x, slope_y, offset = (a0 + a1 + a2) * scale, (b0 + b1 + b2) * scale, (c0 + c1 + c2) * scale
+    # Where each edge cuts a row is p * row + q: before the first pixels of the triangle, or behind the last.
+    p0, q0, s0, t0 = cut(a0, b0, c0)
+    p1, q1, s1, t1 = cut(a1, b1, c1)
+    p2, q2, s2, t2 = cut(a2, b2, c2)
+    first_row, end_row = rows_of(a0, b0, c0, first_row, end_row)
+    first_row, end_row = rows_of(a1, b1, c1, first_row, end_row)
+    first_row, end_row = rows_of(a2, b2, c2, first_row, end_row)
+    small = end_column - first_column <= _SHORT
+    drawn = False
+    for row in range(int(first_row), int(end_row)):
+        begin = max(first_column, p0 * row + q0, p1 * row + q1, p2 * row + q2)
+        end = min(end_column, s0 * row + t0, s1 * row + t1, s2 * row + t2)
+        value = slope_y * row + offset
+        if small:
+            # To ask each of a few pixels is quicker than to guess wrong how many there are.
+            for column in range(int(first_column), int(end_column)):
+                here = np.float32(value + slope_x * column)
+                inside = (begin <= column) & (column < end)
+                if inside & (inverse[row, column] < here) & (here <= nearest):
+                    inverse[row, column] = here
+                    triangles[row, column] = face
+                    drawn = True
+        elif np.ceil(begin) < end:
+            start = max(int(np.ceil(begin)), 0)
+            value += slope_x * start
+            fill(
+                inverse, triangles, row, start, int(np.ceil(end)), np.float32(value), np.float32(slope_x), face, nearest
+            )
+            drawn = True
+    if drawn:
+        edges[face, 0], edges[face, 1], edges[face, 2] = a0 * scale, b0 * scale, c0 * scale
+        edges[face, 3], edges[face, 4], edges[face, 5] = a1 * scale, b1 * scale, c1 * scale
+        edges[face, 6], edges[face, 7], edges[face, 8] = a2 * scale, b2 * scale, c2 * scale
+        flipped[face] = det > 0.0
 
-    Parameters
-    ----------
-    placed : array (p, 3, 4)
-        From each part to the map: x and y in pixels, z along the light [m].
-    depths : array (rows, columns) of float32
-        Along the light; begins with infinity.
-    box : array (4,) of int
-        First and last row and column that were drawn to; widened.
-    Others as in `draw`.
+
+@compiled_in_place
+def fill(
+    inverse: Any, triangles: Any, row: Any, start: Any, stop: Any, value: Any, change: Any, face: Any, nearest: Any
+) -> None:
+    """Write a triangle into a run of pixels where it is nearer than what is there."""
+    if stop - start < _SHORT:
+        for column in range(start, stop):
+            here = value + change * np.float32(column - start)
+            if inverse[row, column] < here <= nearest:
+                inverse[row, column] = here
+                triangles[row, column] = face
+        return
+    # From an offset that is known not to be negative the compiler makes vector instructions.
+    for offset in range(stop - start):
+        here = value + change * np.float32(offset)
+        if inverse[row, start + offset] < here <= nearest:
+            inverse[row, start + offset] = here
+            triangles[row, start + offset] = face
+
+
+@compiled_in_place
+def cut(slope_x: Any, slope_y: Any, offset: Any) -> Any:
+    """Return where slope_x * x + slope_y * row + offset becomes positive, and where it ends to be: two lines over rows.
+
+    Each line is p * row + q; minus and plus infinity where there is no such place. What lies exactly on an edge belongs
+    to the triangle on its right or, for a level edge, below it: triangles that share an edge neither overlap nor leave
+    a gap, since both compute the same line.
     """
-    rows, columns = depths.shape
-    for part in range(len(wanted)):
-        if not wanted[part]:
-            continue
-        transform_vertices(vertex_ranges[part, 0], vertex_ranges[part, 1], placed[part], vertices, transformed)
-        for face in range(face_ranges[part, 0], face_ranges[part, 1]):
-            i, j, k = faces[face, 0], faces[face, 1], faces[face, 2]
-            x0, y0, z0 = transformed[i, 0], transformed[i, 1], transformed[i, 2]
-            x1, y1, z1 = transformed[j, 0], transformed[j, 1], transformed[j, 2]
-            x2, y2, z2 = transformed[k, 0], transformed[k, 1], transformed[k, 2]
-            lowest, highest = min(x0, x1, x2), max(x0, x1, x2)
-            if highest < 0 or lowest > columns - 1:
-                continue
-            first_column, last_column = max(0, math.ceil(lowest)), min(columns - 1, math.floor(highest))
-            lowest, highest = min(y0, y1, y2), max(y0, y1, y2)
-            if highest < 0 or lowest > rows - 1:
-                continue
-            first_row, last_row = max(0, math.ceil(lowest)), min(rows - 1, math.floor(highest))
-            if first_row > last_row or first_column > last_column:
-                continue
-            # The same as in `draw` with every vertex at the depth 1.
-            a0, b0, c0 = y1 - y2, x2 - x1, x1 * y2 - y1 * x2
-            a1, b1, c1 = y2 - y0, x0 - x2, x2 * y0 - y2 * x0
-            a2, b2, c2 = y0 - y1, x1 - x0, x0 * y1 - y0 * x1
-            det = c0 + c1 + c2
-            # What a closed shape turns away from the light lies behind what it turns towards it.
-            if det == 0.0 or (det > 0.0 and not two_sided[part]):
-                continue
-            slope_x = (a0 * z0 + a1 * z1 + a2 * z2) / det
-            slope_y = (b0 * z0 + b1 * z1 + b2 * z2) / det
-            offset = (c0 * z0 + c1 * z1 + c2 * z2) / det
-            turn = -1.0 if det < 0 else 1.0
-            a0, b0, c0 = turn * a0, turn * b0, turn * c0
-            a1, b1, c1 = turn * a1, turn * b1, turn * c1
-            a2, b2, c2 = turn * a2, turn * b2, turn * c2
-            box[0], box[1] = min(box[0], first_row), max(box[1], last_row)
-            box[2], box[3] = min(box[2], first_column), max(box[3], last_column)
-            change = np.float32(slope_x)
-            for row in range(first_row, last_row + 1):
-                begin, end = float(first_column), float(last_column + 1)
-                begin, end = narrow(a0, b0, b0 * row + c0, begin, end)
-                begin, end = narrow(a1, b1, b1 * row + c1, begin, end)
-                begin, end = narrow(a2, b2, b2 * row + c2, begin, end)
-                if begin >= end:
-                    continue
-                start, stop = int(begin), int(end)
-                value = np.float32(slope_y * row + offset + slope_x * start)
-                line = depths[row]
-                for column in range(start, stop):
-                    here = value + change * np.float32(column - start)
-                    if here < line[column]:
-                        line[column] = here
+    scale = -1.0 / slope_x
+    if slope_x > 0.0:
+        return scale * slope_y, scale * offset, 0.0, np.inf
+    if slope_x < 0.0:
+        return 0.0, -np.inf, scale * slope_y, scale * offset
+    return 0.0, -np.inf, 0.0, np.inf
+
+
+@compiled_in_place
+def rows_of(slope_x: Any, slope_y: Any, offset: Any, first: Any, end: Any) -> Any:
+    """Narrow a range of rows to where a level edge leaves the inside; others leave all of them."""
+    if slope_x == 0.0:
+        if slope_y > 0.0:
+            first = max(first, np.ceil(min(-offset / slope_y, end)))
+        elif slope_y < 0.0:
+            end = min(end, np.ceil(max(-offset / slope_y, first)))
+        elif offset < 0.0:
+            end = first
+    return first, end
 
 
 @compiled
@@ -296,23 +323,3 @@ def outside(pose: Any, sphere: Any, left: Any, right: Any, top: Any, bottom: Any
         or y - top * z < -radius * math.hypot(1.0, top)
         or bottom * z - y < -radius * math.hypot(1.0, bottom)
     )
-
-
-@compiled
-def narrow(slope_x: Any, slope_y: Any, offset: Any, begin: Any, end: Any) -> Any:
-    """Narrow a span of pixels to where slope_x * x + offset is positive.
-
-    What lies exactly on an edge belongs to the triangle on its right or, for a level edge, below it: triangles
-    that share an edge neither overlap nor leave a gap.
-    """
-    if slope_x > 0.0:
-        crossing = -offset / slope_x
-        if crossing > begin:
-            begin = math.ceil(min(crossing, end))
-    elif slope_x < 0.0:
-        crossing = -offset / slope_x
-        if crossing < end:
-            end = math.ceil(max(crossing, begin))
-    elif offset < 0.0 or (offset == 0.0 and slope_y < 0.0):
-        end = begin
-    return begin, end

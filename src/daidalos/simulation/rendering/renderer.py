@@ -11,12 +11,13 @@ from numpy.typing import NDArray
 from daidalos.description.link import Light, Rgba
 from daidalos.description.pose import Pose, rotate
 from daidalos.simulation.rendering.film import depths_of
+from daidalos.simulation.rendering.lamps import DIRECTIONAL, LAMP, POINT, SPOT
 from daidalos.simulation.rendering.lighting import Lighting
 from daidalos.simulation.rendering.optics import OPTICAL, Pinhole
 from daidalos.simulation.rendering.pool import Pool
-from daidalos.simulation.rendering.raster import EDGES, NOTHING, draw, place_parts
+from daidalos.simulation.rendering.raster import EDGES, NOTHING, PROJECTED, draw, place_parts
 from daidalos.simulation.rendering.scene import Scene
-from daidalos.simulation.rendering.shading import DIRECTIONAL, LAMP, POINT, SPOT, shade
+from daidalos.simulation.rendering.shading import shade
 from daidalos.simulation.rendering.shadows import ShadowMap
 
 Array = NDArray[np.float64]
@@ -64,13 +65,13 @@ class _Buffers:
 
     scene: Scene
     placed: Array = field(init=False)
-    transformed: Array = field(init=False)
+    projected: Array = field(init=False)
     edges: Array = field(init=False)
     flipped: NDArray[np.bool_] = field(init=False)
 
     def __post_init__(self) -> None:
         self.placed = np.zeros((len(self.scene.body), 3, 4))
-        self.transformed = np.zeros_like(self.scene.vertices)
+        self.projected = np.zeros((len(self.scene.vertices), PROJECTED))
         self.edges = np.zeros((len(self.scene.faces), EDGES))
         self.flipped = np.zeros(len(self.scene.faces), dtype=np.bool_)
 
@@ -147,8 +148,8 @@ class Renderer:
         scene, buffers = self._buffers.scene, self._buffers
         draw(
             wanted, buffers.placed, scene.spheres, scene.face_ranges, scene.vertex_ranges, scene.two_sided,
-            scene.vertices, scene.faces, self.pinhole.lens, self.near, self.far, buffers.transformed, buffers.edges,
-            buffers.flipped, inverse, triangles,
+            scene.vertices, scene.faces, scene.planes, self.pinhole.lens, self.near, self.far, buffers.projected,
+            buffers.edges, buffers.flipped, inverse, triangles,
         )  # fmt: skip
 
     def _shadow(

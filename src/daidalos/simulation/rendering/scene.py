@@ -57,6 +57,8 @@ class Scene:
         In the parts' frames.
     uv : array (v, 2)
     faces : array (f, 3) of int32
+    planes : array (f, 4)
+        Normal of each triangle, of any length, and its scalar product with the triangle's points.
     face_part : array (f,) of int32
     body : array (n,) of int64
     pose : array (n, 3, 4)
@@ -78,6 +80,7 @@ class Scene:
     normals: Array
     uv: Array
     faces: NDArray[np.int32]
+    planes: Array
     face_part: NDArray[np.int32]
     body: NDArray[np.int64]
     pose: Array
@@ -123,11 +126,14 @@ def make_scene(items: Iterable[Item], warn: Callable[[str], None]) -> Scene:
     vertex_starts = np.concatenate(([0], vertex_ends[:-1])).astype(np.int64)[: len(pairs)]
     face_starts = np.concatenate(([0], face_ends[:-1])).astype(np.int64)[: len(pairs)]
     alphas = np.array([part.color[3] for _, part in pairs], dtype=np.float32)
+    vertices = _stack([part.vertices for _, part in pairs], 3)
+    faces = _stack([p.faces + start for (_, p), start in zip(pairs, vertex_starts, strict=True)], 3).astype(np.int32)
     return Scene(
-        vertices=_stack([part.vertices for _, part in pairs], 3),
+        vertices=vertices,
         normals=_stack([part.normals for _, part in pairs], 3),
         uv=_stack([np.zeros((len(p.vertices), 2)) if p.uv is None else p.uv for _, p in pairs], 2),
-        faces=_stack([p.faces + start for (_, p), start in zip(pairs, vertex_starts, strict=True)], 3).astype(np.int32),
+        faces=faces,
+        planes=planes_of(vertices[faces]),
         face_part=np.repeat(np.arange(len(pairs), dtype=np.int32), face_ends - face_starts),
         body=np.array([item.body for item, _ in pairs], dtype=np.int64),
         pose=np.array([item.visual.pose.matrix[:3] for item, _ in pairs]).reshape(-1, 3, 4),
@@ -187,6 +193,12 @@ def _is_closed(part: Part) -> bool:
     corners = part.vertices[part.faces].astype(np.float64)
     volume = np.einsum("ij,ij->i", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])).sum()
     return bool(np.array_equal(forward, backward) and volume > 0)
+
+
+def planes_of(corners: Array) -> Array:
+    """Return the planes (f, 4) of triangles (f, 3, 3)."""
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    return np.concatenate((normals, np.einsum("ij,ij->i", normals, corners[:, 0])[:, None]), axis=1)
 
 
 def _ball(vertices: NDArray[np.float32]) -> tuple[float, float, float, float]:

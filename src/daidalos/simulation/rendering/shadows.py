@@ -7,9 +7,10 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from daidalos.simulation.rendering.raster import draw_flat, place_parts
+from daidalos.simulation.rendering.flat_raster import draw_flat
+from daidalos.simulation.rendering.raster import place_parts
 from daidalos.simulation.rendering.scene import Scene
-from daidalos.simulation.rendering.shading import coarsen
+from daidalos.simulation.rendering.sunlight import BLOCK_BITS, coarsen
 
 Array = NDArray[np.float64]
 
@@ -40,11 +41,13 @@ class ShadowMap:
 
     def __init__(self, size: int = 1024) -> None:
         self.depths = np.full((size, size), np.inf, dtype=np.float32)
-        self.coarse = np.full((size // 16 + 1, size // 16 + 1), np.inf, dtype=np.float32)
+        self.coarse = np.full(((size >> BLOCK_BITS) + 1, (size >> BLOCK_BITS) + 1), np.inf, dtype=np.float32)
         self.to_map = np.zeros((3, 4))
         self.texel = 1.0
         self._still = self.depths.copy()
         self._scene: Scene | None = None
+        self._placed = np.empty((0, 3, 4))
+        self._scratch = np.empty((0, 3))
         self._light = np.zeros(3)
         self._corner = (math.nan, math.nan)
         self._dirty = _NEVER.copy()
@@ -68,12 +71,14 @@ class ShadowMap:
         """
         reach = min(_LARGEST_REACH, max(far, 0.5)) / 2
         moved = self._aim(light, eye + ahead * 0.8 * reach, 1.2 * reach)
-        placed = np.empty((len(scene.body), 3, 4))
-        place_parts(scene.body, scene.pose, positions, rotations, self.to_map, placed)
-        if moved or scene is not self._scene:
-            self._scene = scene
-            self._draw_still(scene, placed)
-        self._draw_moving(scene, placed)
+        if scene is not self._scene:
+            self._scene, moved = scene, True
+            self._placed = np.empty((len(scene.body), 3, 4))
+            self._scratch = np.empty_like(scene.vertices)
+        place_parts(scene.body, scene.pose, positions, rotations, self.to_map, self._placed)
+        if moved:
+            self._draw_still(scene)
+        self._draw_moving(scene)
 
     def _aim(self, light: Array, centre: Array, reach: float) -> bool:
         """Lay the square around a place, in steps so that it seldom moves; tell whether it did."""
@@ -95,21 +100,21 @@ class ShadowMap:
         self.to_map[0, 3], self.to_map[1, 3] = -corner[0] / texel, -corner[1] / texel
         return True
 
-    def _draw_still(self, scene: Scene, placed: Array) -> None:
+    def _draw_still(self, scene: Scene) -> None:
         self._still.fill(np.inf)
-        self._draw(scene, placed, scene.casts & scene.fixed, self._still, _NEVER.copy())
+        self._draw(scene, scene.casts & scene.fixed, self._still, _NEVER.copy())
         self.depths[:] = self._still
         size = len(self.depths)
         coarsen(self.depths, self.coarse, np.array((0, size - 1, 0, size - 1), dtype=np.int64))
         self._dirty = _NEVER.copy()
 
-    def _draw_moving(self, scene: Scene, placed: Array) -> None:
+    def _draw_moving(self, scene: Scene) -> None:
         old = self._dirty
         if old[1] >= old[0]:
             rows, columns = slice(old[0], old[1] + 1), slice(old[2], old[3] + 1)
             self.depths[rows, columns] = self._still[rows, columns]
         box = _NEVER.copy()
-        self._draw(scene, placed, scene.casts & ~scene.fixed, self.depths, box)
+        self._draw(scene, scene.casts & ~scene.fixed, self.depths, box)
         both = np.array(
             (min(box[0], old[0]), max(box[1], old[1]), min(box[2], old[2]), max(box[3], old[3])), dtype=np.int64
         )
@@ -120,21 +125,20 @@ class ShadowMap:
     def _draw(
         self,
         scene: Scene,
-        placed: Array,
         wanted: NDArray[np.bool_],
         depths: NDArray[np.float32],
         box: NDArray[np.int64],
     ) -> None:
-        scratch = np.empty_like(scene.vertices)
         draw_flat(
             wanted,
-            placed,
+            self._placed,
             scene.face_ranges,
             scene.vertex_ranges,
             scene.two_sided,
             scene.vertices,
             scene.faces,
-            scratch,
+            scene.planes,
+            self._scratch,
             depths,
             box,
         )
