@@ -83,5 +83,17 @@ def get_interface_path(interface_name: str) -> str:
     try:
         return str(interface_library().path("/".join(parts)))
     except InterfaceNotFound:
-        share = Path(str(interface_library().path_of_package(parts[0]) or BUILT_IN / parts[0]))
+        share = _share(parts[0])
+        if share is None:
+            raise LookupError(f"Unknown package '{parts[0]}'") from None
         raise LookupError(f"Could not find the interface '{share / kind / parts[2]}.idl'") from None
+
+
+def _share(package: str) -> Path | None:
+    """Return the share folder of a package, with or without interfaces; None where there is no such package."""
+    from ament_index_python.packages import PackageNotFoundError, get_package_share_path
+
+    try:
+        return Path(get_package_share_path(package))
+    except (PackageNotFoundError, ValueError):
+        return None

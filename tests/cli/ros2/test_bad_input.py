@@ -38,6 +38,7 @@ _BRIEFLY = ["topic", "pub", "--once", "--max-wait-time-secs", "1.1"]
             ["Could not find the interface", "Did you mean 'std_msgs/msg/String'"],
         ),
         ("interface show Twist", 1, ["Expected three parts", "Did you mean 'geometry_msgs/msg/Twist'?"]),
+        ("interface show std_msg/msg/String", 1, ["Unknown package 'std_msg'", "Did you mean 'std_msgs/msg/String'"]),
         ("interface package std_msg", 1, ["Unknown package 'std_msg'", "Did you mean 'std_msgs'"]),
         ("topic echo /foo std_msgs/msg/Strng", 1, ["message type is invalid", "Did you mean 'std_msgs/msg/String'"]),
         ("topic echo /foo my_msgs/msg/Num", 1, ["message type is invalid", "The package 'my_msgs' is not here."]),

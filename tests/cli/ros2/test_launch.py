@@ -51,8 +51,10 @@ def test_arguments_reach_the_file_and_the_last_one_wins(launch, tmp_path):
 
 
 def test_an_argument_is_missing(launch):
-    result = launch("echo.launch.xml")
+    result = launch("echo.launch.xml", "tims:=1", "other:=2")
     assert result.status == 1
+    assert "does not declare the argument 'tims'\nDid you mean 'times'?\n" in result.err
+    assert "'other'" not in result.err
     assert "echo.launch.xml:3: " in result.err + result.out
     assert "missing required argument 'times'" in result.err + result.out
 

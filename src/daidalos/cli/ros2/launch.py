@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import sys
 from argparse import ArgumentParser, Namespace
 from collections.abc import Iterable
 from pathlib import Path
@@ -112,7 +113,19 @@ class LaunchCommand(Command):
 
             print(LaunchIntrospector().format_launch_description(description))
             return 0
+        _warn_of_misspelt(arguments, description)
         return _launch(args, source, arguments, words)
+
+
+def _warn_of_misspelt(arguments: list[tuple[str, str]], description: LaunchDescription) -> None:
+    """Print a word about arguments that nobody declares when one that somebody declares is near."""
+    if not arguments:
+        return
+    declared = [argument.name for argument in description.get_launch_arguments()]
+    for name, _ in arguments:
+        hint = "" if name in declared else did_you_mean(name, declared)
+        if hint:
+            print(f"The launch file does not declare the argument '{name}'{hint}", file=sys.stderr, flush=True)
 
 
 def _launch(
