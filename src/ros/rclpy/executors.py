@@ -200,7 +200,7 @@ class Executor(AbstractContextManager["Executor"]):
         self._spins = True
         try:
             while self._context.ok() and not self._is_shutdown:
-                self._spin_once(None, None)
+                self._run_one(None, None)
         finally:
             self._spins = False
 
@@ -209,22 +209,33 @@ class Executor(AbstractContextManager["Executor"]):
         future.on_wake(self.wake)
         deadline = _deadline(timeout_sec)
         while self._context.ok() and not future._pending_over() and not self._is_shutdown:
-            self._spin_once(deadline, future._pending_over)
+            self._run_one(deadline, future._pending_over)
             if deadline is not None and time.monotonic_ns() >= deadline:
                 return
+
+    def _run_one(self, deadline_ns: int | None, condition: Callable[[], bool] | None) -> None:
+        """Run one callback, the way of a user's executor when it has one."""
+        if type(self).spin_once is Executor.spin_once:
+            self._spin_once(deadline_ns, condition)
+        else:
+            left = None if deadline_ns is None else max(0, deadline_ns - time.monotonic_ns()) * 1e-9
+            self.spin_once(timeout_sec=left)
 
     def _spin_once(self, deadline_ns: int | None, condition: Callable[[], bool] | None) -> None:
         """Run one callback, unless the deadline or the condition comes first."""
         raise NotImplementedError
 
     def spin_once(self, timeout_sec: float | None = None) -> None:
-        """Run one callback; wait for it at most `timeout_sec` seconds (None: however long it takes)."""
+        """Run one callback; wait for it at most `timeout_sec` seconds (None: however long it takes).
+
+        It is all that an executor of one's own has to replace; `wait_for_ready_callbacks` gives it work.
+        """
         self._spin_once(_deadline(timeout_sec), None)
 
     def spin_once_until_future_complete(self, future: Future, timeout_sec: float | TimeoutObject | None = None) -> None:
         """Run one callback unless the future is done or cancelled first."""
         future.on_wake(self.wake)
-        self._spin_once(_deadline(timeout_sec), future._pending_over)
+        self._run_one(_deadline(timeout_sec), future._pending_over)
 
     def can_execute(self, entity: Any) -> bool:
         """Tell whether the entity's callback group lets it run now."""
@@ -252,7 +263,8 @@ class Executor(AbstractContextManager["Executor"]):
                 raise item.error
             entity = self._begin(item)
             if entity is not None:
-                return Task(self._run_entity, (item, entity), executor=self), entity, entity._rcl_node
+                node = entity._rcl_node() if entity._rcl_node is not None else None
+                return Task(self._run_entity, (item, entity), executor=self), entity, node
 
     def _wait_for_ready_callbacks(self, *args: Any, **kwargs: Any) -> Iterator[tuple[Task, Any, Node | None]]:
         """Yield what `wait_for_ready_callbacks` returns, for ever."""

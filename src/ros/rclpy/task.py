@@ -12,7 +12,17 @@ from types import GenericAlias
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    import asyncio
+
     from rclpy.executors import Executor
+
+_stepping = threading.local()  # whether an executor runs a coroutine in this thread
+
+
+def _asyncio_loop() -> asyncio.AbstractEventLoop | None:
+    """Return the loop that runs in this thread; asyncio is not imported for that, as it takes a while."""
+    asyncio = sys.modules.get("asyncio")
+    return asyncio._get_running_loop() if asyncio is not None else None
 
 
 def _write_warning(error: BaseException) -> None:
@@ -44,10 +54,29 @@ class Future:
         if getattr(self, "_exception", None) is not None and not self._exception_fetched:
             _write_warning(self._exception)  # type: ignore[arg-type]
 
-    def __await__(self) -> Generator[Future, None, Any]:
+    def __await__(self) -> Generator[Any, None, Any]:
         while not self._pending_over():
-            yield self
+            loop = None if getattr(_stepping, "count", 0) else _asyncio_loop()
+            if loop is None:
+                yield self
+            else:
+                yield from self._in(loop)
         return self.result()
+
+    def _in(self, loop: asyncio.AbstractEventLoop) -> Generator[Any, None, None]:
+        """Wait as a coroutine that asyncio runs; somebody else, of this thread or another, has to spin."""
+        over = loop.create_future()
+
+        def release() -> None:
+            if not over.done():
+                over.set_result(None)
+
+        def wake() -> None:
+            if not loop.is_closed():
+                loop.call_soon_threadsafe(release)
+
+        self.on_wake(wake)
+        yield from over
 
     def _pending_over(self) -> bool:
         return self._done or self._cancelled
@@ -224,6 +253,7 @@ class Task(Future):
         if self._cancelled:
             self._handler.close()
             return
+        _stepping.count = getattr(_stepping, "count", 0) + 1
         try:
             waits_for = self._handler.send(None)
         except StopIteration as stop:
@@ -234,6 +264,8 @@ class Task(Future):
             self.set_exception(error)
             self._complete_task()
             return
+        finally:
+            _stepping.count -= 1
         requeue = self._requeue
         if requeue is None:
             return

@@ -436,3 +436,31 @@ def test_the_events_executor_leaves_nothing_that_is_ready(node: Node) -> None:
 def test_several_threads_are_meant_to_be_several() -> None:
     with pytest.warns(UserWarning, match="SingleThreadedExecutor"):
         MultiThreadedExecutor(num_threads=1, context=Context()).shutdown()
+
+
+class OneByOne(Executor):
+    """An executor of a user's: it only says how one callback is run."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.ran: list[str] = []
+
+    def spin_once(self, timeout_sec: float | None = None) -> None:
+        task, _, node = self.wait_for_ready_callbacks(timeout_sec=timeout_sec)
+        self.ran.append(node.get_name() if node is not None else "")
+        task()
+
+
+def test_an_executor_of_ones_own_replaces_spin_once_alone(node: Node) -> None:
+    executor = OneByOne()
+    executor.add_node(node)
+    future: Future = Future()
+    node.create_timer(0.001, lambda: future.set_result(7))
+    executor.spin_until_future_complete(future, LONG)
+    assert future.result() == 7
+    node.create_timer(0.001, lambda: rclpy.shutdown())
+    with pytest.raises(ExternalShutdownException):
+        executor.spin()
+    assert set(executor.ran) == {node.get_name()}
+    assert len(executor.ran) >= 2
+    executor.shutdown()

@@ -165,3 +165,40 @@ def test_waking_takes_no_executor() -> None:
 def test_futures_can_be_typed() -> None:
     assert Future[int].__origin__ is Future
     assert Future[int]().done() is False
+
+
+@pytest.mark.parametrize("end", [finish_with_result, finish_with_exception, cancel])
+def test_asyncio_can_await_what_another_thread_ends(end: Any) -> None:
+    async def wait() -> Any:
+        future = Future()
+        threading.Timer(0.01, end, (future,)).start()
+        return await asyncio.wait_for(_awaited(future), 10)
+
+    if end is finish_with_exception:
+        with pytest.raises(ZeroDivisionError):
+            asyncio.run(wait())
+    else:
+        assert asyncio.run(wait()) == (3 if end is finish_with_result else None)
+
+
+def test_asyncio_goes_on_while_a_coroutine_of_an_executor_runs_in_it() -> None:
+    first, second = Future(), Future()
+
+    async def callback() -> int:
+        return int(await first)
+
+    async def main() -> int:
+        task = Task(callback)
+        task()  # as an executor does, in the loop's thread
+        waiting = asyncio.ensure_future(_awaited(second))
+        await asyncio.sleep(0)
+        first.set_result(4)
+        task()
+        second.set_result(task.result())
+        return int(await waiting)
+
+    assert asyncio.run(main()) == 4
+
+
+async def _awaited(future: Future) -> Any:
+    return await future
