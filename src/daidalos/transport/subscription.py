@@ -16,6 +16,7 @@ from daidalos.transport.graph import EndpointInfo
 _LOGGER = logging.getLogger(__name__)
 _PATIENCE_S = 0.05
 _FAST_NS = 1_000_000
+_SLOW_NS = 10 * _FAST_NS
 
 
 class Subscription:
@@ -43,7 +44,8 @@ class Subscription:
         self._refused: frozenset[bytes] = frozenset()
         self._observers: tuple[Callable[[SampleInfo], None], ...] = ()
         self._last_take = 0
-        self._take_interval = _FAST_NS * 10
+        self._take_interval = 0
+        self._left_some = False
         self._space = threading.Event()
 
     def __len__(self) -> int:
@@ -121,12 +123,14 @@ class Subscription:
             observer(info)
 
     def _note_take(self) -> None:
-        """Measure how fast the queue is emptied, and let a waiting receiver go on."""
+        """Measure how fast the queue is emptied while there is something in it, and let a waiting receiver go on."""
         if self._limit is None:
             return
         now = time.monotonic_ns()
-        self._take_interval += (now - self._last_take - self._take_interval) >> 3
+        if self._left_some:  # a thread that lost its processor once is not slow yet
+            self._take_interval += (min(now - self._last_take, _SLOW_NS >> 1) - self._take_interval) >> 3
         self._last_take = now
+        self._left_some = bool(self._queue)
         if not self._space.is_set():
             self._space.set()
 
@@ -140,7 +144,7 @@ class Subscription:
             return
         self._space.clear()
         if len(self._queue) >= self._limit and not self._space.wait(_PATIENCE_S):  # type: ignore[operator]
-            self._take_interval = _FAST_NS * 10
+            self._take_interval = _SLOW_NS
 
     def close(self) -> None:
         """Leave the graph and drop what is queued."""

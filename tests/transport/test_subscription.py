@@ -1,0 +1,125 @@
+"""The queue between who receives and who takes: what is held back for it, and for whom nobody waits."""
+
+from __future__ import annotations
+
+import threading
+import time
+from typing import Any
+
+import pytest
+from std_msgs.msg import Int32
+
+from daidalos.interfaces.codec import codec_of
+from daidalos.transport import subscription as module
+from daidalos.transport.backend import SampleInfo, WireSubscription
+from daidalos.transport.graph import EndpointInfo, EndpointKind, NodeInfo
+from daidalos.transport.qos import Qos, Reliability
+from daidalos.transport.subscription import Subscription
+
+DEPTH = 5
+BURST = 60
+CODEC = codec_of(Int32)
+
+
+class Wire(WireSubscription):
+    """Samples are their bytes."""
+
+    def data(self, sample: Any) -> bytes:
+        data: bytes = sample
+        return data
+
+    def info(self, sample: Any, received_ns: int) -> SampleInfo:
+        return SampleInfo(0, received_ns, 0, bytes(16))
+
+    def close(self) -> None:
+        pass
+
+
+class Receiver:
+    """A subscription with a thread that hands it samples as fast as it takes them."""
+
+    def __init__(self, reliability: Reliability = Reliability.RELIABLE) -> None:
+        self.ready = threading.Semaphore(0)
+        qos = Qos(depth=DEPTH, reliability=reliability)
+        node = NodeInfo("key", "name", "/")
+        endpoint = EndpointInfo(EndpointKind.SUBSCRIPTION, node, "/a", "std_msgs/msg/Int32", "", qos, bytes(16))
+        self.subscription = Subscription(endpoint, CODEC, self.ready.release)
+        self.subscription.attach(Wire(), lambda: None)
+
+    def accept(self, count: int) -> None:
+        for number in range(count):
+            self.subscription.accept(CODEC.encode(Int32(data=number)))
+
+    def take_burst(self) -> list[int]:
+        """Take a burst that arrives meanwhile."""
+        sender = threading.Thread(target=self.accept, args=(BURST,))
+        sender.start()
+        taken: list[int] = []
+        while sender.is_alive() or len(self.subscription):
+            if self.ready.acquire(timeout=0.01) and (item := self.subscription.take()):
+                taken.append(item[0].data)
+        sender.join()
+        return taken
+
+
+@pytest.fixture
+def clock(monkeypatch: pytest.MonkeyPatch) -> list[int]:
+    """The time in nanoseconds, where the machine is never busy with anything else: every look at it takes 5 us."""
+    times = [0]
+
+    def look() -> int:
+        times[0] += 5_000
+        return times[0]
+
+    monkeypatch.setattr(module.time, "monotonic_ns", look)
+    monkeypatch.setattr(module, "_PATIENCE_S", 5.0)
+    return times
+
+
+def test_a_burst_is_held_back_from_the_first_on(clock: list[int]):
+    assert Receiver().take_burst() == list(range(BURST))
+
+
+def test_a_pause_before_a_burst_makes_nobody_slow(clock: list[int]):
+    receiver = Receiver()
+    receiver.take_burst()
+    clock[0] += 3_600_000_000_000
+    assert receiver.take_burst() == list(range(BURST))
+
+
+def test_who_stumbles_once_is_waited_for(clock: list[int]):
+    receiver = Receiver()
+    receiver.accept(DEPTH)
+    receiver.subscription.take()
+    clock[0] += 1_000_000_000
+    receiver.subscription.take()
+    assert receiver.take_burst()[-BURST:] == list(range(BURST))
+
+
+def test_who_does_not_take_is_waited_for_once():
+    receiver = Receiver()
+    begin = time.monotonic()
+    receiver.accept(DEPTH + BURST)
+    assert time.monotonic() - begin < 10 * module._PATIENCE_S
+    left = [receiver.subscription.take() for _ in range(DEPTH)]
+    assert [item[0].data for item in left if item] == list(range(BURST, DEPTH + BURST))
+
+
+def test_a_slow_callback_is_waited_for_no_more(clock: list[int]):
+    receiver = Receiver()
+    receiver.accept(DEPTH)
+    for _ in range(DEPTH - 1):
+        clock[0] += 20_000_000
+        receiver.subscription.take()
+    receiver.accept(DEPTH)
+    before = time.perf_counter()
+    receiver.accept(BURST)
+    assert time.perf_counter() - before < module._PATIENCE_S
+
+
+def test_best_effort_waits_for_nobody():
+    receiver = Receiver(Reliability.BEST_EFFORT)
+    before = time.perf_counter()
+    receiver.accept(BURST)
+    assert time.perf_counter() - before < module._PATIENCE_S
+    assert len(receiver.subscription) == DEPTH
