@@ -6,6 +6,7 @@ import copy
 from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Any
 
+from rcl_interfaces.msg import SetParametersResult
 from rclpy.duration import Duration
 from rclpy.exceptions import ParameterAlreadyDeclaredException
 from rclpy.parameter import Parameter
@@ -24,6 +25,7 @@ from rclpy.subscription import Subscription
 if TYPE_CHECKING:
     from rclpy.node import Node
 
+QosCallbackResult = SetParametersResult
 QosCallback = Callable[[QoSProfile], Any]
 
 _ENUMS: dict[QoSPolicyKind, type[QoSPolicyEnum]] = {

@@ -3,13 +3,12 @@
 from typing import Any
 
 import pytest
-from rcl_interfaces.msg import SetParametersResult
 from rclpy.context import Context
 from rclpy.duration import Duration
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSPolicyKind, QoSProfile, ReliabilityPolicy
-from rclpy.qos_overriding_options import InvalidQosOverridesError, QoSOverridingOptions
+from rclpy.qos_overriding_options import InvalidQosOverridesError, QosCallbackResult, QoSOverridingOptions
 from std_msgs.msg import String
 
 DEFAULT = QoSOverridingOptions.with_default_policies()
@@ -55,7 +54,7 @@ def test_parameters_outweigh_the_profile(graph: Context) -> None:
     node.destroy_node()
 
 
-@pytest.mark.parametrize("refusal", [False, SetParametersResult(successful=False, reason="too deep")])
+@pytest.mark.parametrize("refusal", [False, QosCallbackResult(successful=False, reason="too deep")])
 def test_the_callback_may_refuse(node: Node, refusal: Any) -> None:
     seen: list[QoSProfile] = []
 
