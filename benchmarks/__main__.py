@@ -20,7 +20,7 @@ from benchmarks.goals import Goal, goal_of
 
 FOLDER = Path(__file__).parent
 RESULTS = FOLDER / "results"
-NO_BENCHMARKS = {"__main__", "__init__", "goals"}
+NO_BENCHMARKS = {"__main__", "__init__", "goals", "floors", "messages", "processes"}
 ONE = "import json, sys; from benchmarks import {name} as b; print('\\n' + json.dumps(b.run()))"
 
 
@@ -63,12 +63,12 @@ def show(figures: dict[str, Any]) -> None:
     from rich.console import Console
     from rich.table import Table
 
-    table = Table("figure", "measured", "goal", "", "theirs")
-    for column in (1, 2, 4):
+    table = Table("figure", "measured", "goal", "", "theirs", "times bare")
+    for column in (1, 2, 4, 5):
         table.columns[column].justify = "right"
     for name, value in figures.items():
         goal = goal_of(name)
-        table.add_row(name, _text(value), *_comparison(goal, value))
+        table.add_row(name, _text(value), *_comparison(goal, value), _ratio(goal, value, figures))
     Console(width=max(110, Console().width)).print(table)
 
 
@@ -77,6 +77,12 @@ def _comparison(goal: Goal | None, value: Any) -> tuple[str, str, str]:
         return "", "", ""
     verdict = ("[green]yes" if goal.is_met(value) else "[red]no") if isinstance(value, int | float) else ""
     return str(goal), verdict, goal.theirs
+
+
+def _ratio(goal: Goal | None, value: Any, figures: dict[str, Any]) -> str:
+    """Return how many times a figure is what its floor is, measured beside it without any of ours."""
+    floor = figures.get(goal.floor) if goal is not None else None
+    return f"{value / floor:.2f}" if floor else ""
 
 
 def _text(value: Any) -> str:

@@ -1,40 +1,46 @@
 """What rclpy costs: messages as bytes, streams, round trips and calls between processes, timers, starting, memory.
 
 Set-ups are those by which the figures of ROS 2's own rclpy were taken: two processes, a single-threaded executor each.
+What crosses the machine is measured in turns with its floor (`benchmarks.floors`), and figures are medians of these.
 """
 
 from __future__ import annotations
 
-import array
 import itertools
-import json
 import os
 import resource
 import statistics
-import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Callable
+from contextlib import suppress
 from typing import Any
 
-STREAM_S = 5.0
+from benchmarks import floors
+from benchmarks.messages import MESSAGES
+from benchmarks.processes import middle_and_tail_us, report, result, running, say_ready, start
+
+STREAM_S = 3.0
 TIMER_S = 8.0
-ROUND_TRIPS = 5000
-CALLS = 3000
+ROUND_TRIPS = 2000
+CALLS = 1500
 WARM = 300
 STARTS = 7
+TURNS = 3
 DEPTHS = {"String": 1000, "Image": 10, "PointCloud2": 10}
+LARGE = ("Image", "PointCloud2")
+LATENCIES = {"round_trip": ("echo", "ping", "zenoh_ping"), "service_call": ("serve", "call", "zenoh_call")}
+"""Who answers, who asks, and what is the floor over zenoh."""
 DDS = "rmw_cyclonedds_cpp"
 
 
 def run() -> dict[str, float]:
     """Measure everything; times are medians."""
-    figures = measure_codecs() | measure_streams() | measure_latencies("") | measure_timer() | measure_start()
+    figures = measure_codecs() | measure_streams() | measure_latencies() | measure_timer() | measure_start()
     figures |= measure_memory()
     if _has_dds():
         os.environ["RMW_IMPLEMENTATION"] = DDS
-        figures |= measure_latencies("dds_")
+        figures |= measure_dds_latencies()
     return {f"rclpy.{name}": value for name, value in figures.items()}
 
 
@@ -45,92 +51,105 @@ def measure_codecs() -> dict[str, float]:
     for name in MESSAGES:
         message = MESSAGES[name]()
         data, kind = serialize_message(message), type(message)
-        figures[f"serialize_{name}_us"] = _median_us(lambda message=message: serialize_message(message))
-        figures[f"deserialize_{name}_us"] = _median_us(lambda data=data, kind=kind: deserialize_message(data, kind))
+        figures |= _medians_us(
+            {
+                f"serialize_{name}_us": lambda message=message: serialize_message(message),
+                f"deserialize_{name}_us": lambda data=data, kind=kind: deserialize_message(data, kind),
+                **({f"floor_copy_{name}_us": lambda data=data: bytearray(data)} if name in LARGE else {}),
+            }
+        )
     return figures
 
 
-def _median_us(function: Callable[[], Any], batches: int = 9) -> float:
-    function()
-    begin = time.perf_counter()
-    function()
-    count = max(int(0.02 / max(time.perf_counter() - begin, 1e-7)), 5)
-    times = []
-    for _ in range(batches):
+def _medians_us(functions: dict[str, Callable[[], Any]], batches: int = 9) -> dict[str, float]:
+    """Time functions in turns."""
+    counts, times = {}, {name: [] for name in functions}
+    for name, function in functions.items():
+        function()
         begin = time.perf_counter()
-        for _ in range(count):
-            function()
-        times.append((time.perf_counter() - begin) / count * 1e6)
-    return statistics.median(times)
+        function()
+        counts[name] = max(int(0.02 / max(time.perf_counter() - begin, 1e-7)), 5)
+    for _ in range(batches):
+        for name, function in functions.items():
+            begin = time.perf_counter()
+            for _ in range(counts[name]):
+                function()
+            times[name].append((time.perf_counter() - begin) / counts[name] * 1e6)
+    return {name: statistics.median(values) for name, values in times.items()}
 
 
 def measure_streams() -> dict[str, float]:
+    from rclpy.serialization import serialize_message
+
     figures = {}
     for name in DEPTHS:
-        with _role("receive_stream", name) as receiver:
-            sent = _result(_start("send_stream", name))
-            received = _result(receiver)
-        figures[f"{name}_received_per_s"] = received["count"] / received["seconds"]
-        figures[f"{name}_lost"] = sent["count"] - received["count"]
+        size = len(serialize_message(MESSAGES[name]()))
+        rates, bare, lost = [], [], 0
+        for _ in range(TURNS):
+            with running("rclpy", "receive_stream", name) as receiver:
+                sent = result(start("rclpy", "send_stream", name))
+                received = result(receiver)
+            rates.append(received["count"] / received["seconds"])
+            lost += sent["count"] - received["count"]
+            bare.append(floors.zenoh_stream(size))
+        figures[f"{name}_received_per_s"] = statistics.median(rates)
+        figures[f"{name}_lost"] = lost
+        figures[f"floor_{name}_received_per_s"] = statistics.median(bare)
     return figures
 
 
-def measure_latencies(prefix: str) -> dict[str, float]:
+def measure_latencies() -> dict[str, float]:
+    """Measure over zenoh."""
     figures = {}
-    for server, client, name in (("echo", "ping", "round_trip"), ("serve", "call", "service_call")):
-        with _role(server):
-            times = sorted(_result(_start(client))["times"])
-        figures[f"{prefix}{name}_p50_us"] = times[len(times) // 2] * 1e6
-        figures[f"{prefix}{name}_p99_us"] = times[len(times) * 99 // 100] * 1e6
+    for name, (answers, asks, floor) in LATENCIES.items():
+        ways = {
+            name: lambda pair=(answers, asks): _latency(*pair),
+            f"floor_{name}": lambda f=floor: floors.zenoh_latency(f),
+        }
+        figures |= _latencies_in_turns(ways)
     return figures
+
+
+def measure_dds_latencies() -> dict[str, float]:
+    """Measure over DDS, where a call is a message each way as well, and so has the same floor."""
+    ways: dict[str, Callable[[], tuple[float, float]]] = {
+        f"dds_{name}": lambda pair=(answers, asks): _latency(*pair) for name, (answers, asks, _) in LATENCIES.items()
+    }
+    return _latencies_in_turns({**ways, "floor_dds": floors.dds_latency})
+
+
+def _latencies_in_turns(ways: dict[str, Callable[[], tuple[float, float]]]) -> dict[str, float]:
+    measured: dict[str, list[tuple[float, float]]] = {name: [] for name in ways}
+    for _ in range(TURNS):
+        for name, way in ways.items():
+            measured[name].append(way())
+    return {
+        f"{name}_{part}_us": statistics.median(values)
+        for name, pairs in measured.items()
+        for part, values in zip(("p50", "p99"), zip(*pairs, strict=True), strict=True)
+    }
+
+
+def _latency(answers: str, asks: str) -> tuple[float, float]:
+    with running("rclpy", answers):
+        return middle_and_tail_us(result(start("rclpy", asks))["times"])
 
 
 def measure_timer() -> dict[str, float]:
-    result = _result(_start("tick"))
-    jitter = sorted(abs(after - before - 0.001) for before, after in itertools.pairwise(result["ticks"]))
+    measured = result(start("rclpy", "tick"))
+    jitter = sorted(abs(after - before - 0.001) for before, after in itertools.pairwise(measured["ticks"]))
     return {
-        "timer_1khz_cpu_percent": 100 * result["cpu"] / result["seconds"],
+        "timer_1khz_cpu_percent": 100 * measured["cpu"] / measured["seconds"],
         "timer_1khz_jitter_p99_us": jitter[len(jitter) * 99 // 100] * 1e6,
     }
 
 
 def measure_start() -> dict[str, float]:
-    return {"start_ms": statistics.median(_result(_start("begin"))["seconds"] for _ in range(STARTS)) * 1e3}
+    return {"start_ms": statistics.median(result(start("rclpy", "begin"))["seconds"] for _ in range(STARTS)) * 1e3}
 
 
 def measure_memory() -> dict[str, float]:
-    return {"one_publisher_mb": _result(_start("publish_slowly"))["peak_kb"] / 1024}
-
-
-# Processes.
-
-
-def _start(role: str, *arguments: str) -> subprocess.Popen[str]:
-    command = [sys.executable, "-m", "benchmarks.rclpy", role, *arguments]
-    return subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
-
-
-@contextmanager
-def _role(role: str, *arguments: str) -> Iterator[subprocess.Popen[str]]:
-    """Have a process meanwhile that has said that it is ready; it ends when its input does."""
-    process = _start(role, *arguments)
-    try:
-        assert process.stdout is not None
-        assert process.stdout.readline() == "ready\n"
-        yield process
-    finally:
-        with suppress(BrokenPipeError):
-            process.communicate(timeout=20)
-        process.kill()
-
-
-def _result(process: subprocess.Popen[str]) -> dict[str, Any]:
-    output, _ = process.communicate(timeout=180)
-    return dict(json.loads(output.splitlines()[-1]))
-
-
-def _report(**values: Any) -> None:
-    print(json.dumps(values), flush=True)
+    return {"one_publisher_mb": result(start("rclpy", "publish_slowly"))["peak_kb"] / 1024}
 
 
 def _cpu_s() -> float:
@@ -173,7 +192,7 @@ def _spin_while_input_lasts(executor: Any) -> None:
         executor.shutdown()
 
     threading.Thread(target=wait, daemon=True).start()
-    print("ready", flush=True)
+    say_ready()
     with suppress(ExternalShutdownException):
         executor.spin()
 
@@ -199,7 +218,7 @@ def receive_stream(name: str) -> None:
 
     node.create_subscription(type(MESSAGES[name]()), "stream", receive, DEPTHS[name])
     _spin_while_input_lasts(executor)
-    _report(count=count, seconds=max(last - first, 1e-9))
+    report(count=count, seconds=max(last - first, 1e-9))
 
 
 def send_stream(name: str) -> None:
@@ -212,7 +231,7 @@ def send_stream(name: str) -> None:
         publisher.publish(message)
         count += 1
     time.sleep(1.0)
-    _report(count=count)
+    report(count=count)
 
 
 def echo() -> None:
@@ -247,7 +266,7 @@ def ping() -> None:
     begin = time.perf_counter()
     publisher.publish(message)
     executor.spin_until_future_complete(done, 120)
-    _report(times=times[WARM:])
+    report(times=times[WARM:])
 
 
 def serve() -> None:
@@ -277,7 +296,7 @@ def call() -> None:
             executor.spin_once(timeout_sec=10)
         times.append(time.perf_counter() - begin)
         assert future.result().sum == number + 1
-    _report(times=times[WARM:])
+    report(times=times[WARM:])
 
 
 def tick() -> None:
@@ -294,7 +313,7 @@ def tick() -> None:
     ticks.clear()
     before = _cpu_s()
     spin(TIMER_S)
-    _report(ticks=ticks, cpu=_cpu_s() - before, seconds=TIMER_S)
+    report(ticks=ticks, cpu=_cpu_s() - before, seconds=TIMER_S)
 
 
 def begin() -> None:
@@ -305,7 +324,7 @@ def begin() -> None:
     node = rclpy.create_node("started")
     node.destroy_node()
     rclpy.shutdown()
-    _report(seconds=time.perf_counter() - started)
+    report(seconds=time.perf_counter() - started)
 
 
 def publish_slowly() -> None:
@@ -317,70 +336,9 @@ def publish_slowly() -> None:
     end = time.monotonic() + 2
     while time.monotonic() < end:
         executor.spin_once(timeout_sec=0.2)
-    _report(peak_kb=resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
+    report(peak_kb=resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
 
 
-# Messages.
-
-
-def _string() -> Any:
-    from std_msgs.msg import String
-
-    return String(data="x" * 64)
-
-
-def _joint_state() -> Any:
-    from sensor_msgs.msg import JointState
-
-    values = [0.1 * number for number in range(20)]
-    names = [f"joint_{number}" for number in range(20)]
-    return JointState(name=names, position=values, velocity=values, effort=values)
-
-
-def _laser_scan() -> Any:
-    from sensor_msgs.msg import LaserScan
-
-    return LaserScan(range_max=30.0, ranges=[0.01 * number for number in range(720)])
-
-
-def _image() -> Any:
-    from sensor_msgs.msg import Image
-
-    return Image(height=480, width=640, encoding="rgb8", step=1920, data=array.array("B", bytes(921600)))
-
-
-def _odometry() -> Any:
-    from nav_msgs.msg import Odometry
-
-    message = Odometry(child_frame_id="base_link")
-    message.header.frame_id = "odom"
-    return message
-
-
-def _tf_message() -> Any:
-    from geometry_msgs.msg import TransformStamped
-    from tf2_msgs.msg import TFMessage
-
-    return TFMessage(transforms=[TransformStamped(child_frame_id=f"link_{number}") for number in range(20)])
-
-
-def _point_cloud() -> Any:
-    from sensor_msgs.msg import PointCloud2, PointField
-
-    fields = [PointField(name=name, offset=4 * place, datatype=7, count=1) for place, name in enumerate("xyzi")]
-    data = array.array("B", bytes(1048576))
-    return PointCloud2(height=1, width=65536, point_step=16, row_step=1048576, fields=fields, data=data)
-
-
-MESSAGES: dict[str, Callable[[], Any]] = {
-    "String": _string,
-    "JointState": _joint_state,
-    "LaserScan": _laser_scan,
-    "Image": _image,
-    "Odometry": _odometry,
-    "TFMessage": _tf_message,
-    "PointCloud2": _point_cloud,
-}
 ROLES: dict[str, Callable[..., None]] = {
     role.__name__: role
     for role in (receive_stream, send_stream, echo, ping, serve, call, tick, begin, publish_slowly)

@@ -1,0 +1,222 @@
+"""What memory and the middlewares take bare, in Python: the floors of rclpy's figures, measured in the same minutes.
+
+A machine's clock and load change from hour to hour, and a figure with them; how far it lies above its floor does not.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+import threading
+import time
+from collections.abc import Callable
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from benchmarks.processes import middle_and_tail_us, report, result, running, say_ready, start
+
+ROUND_TRIPS = 2000
+WARM = 300
+STREAM_S = 2.0
+SMALL = b"x" * 69
+SETTLE_S = 0.5
+
+
+def zenoh_latency(role: str) -> tuple[float, float]:
+    """Return the median and the 99th percentile, in us, of what goes to another process and back over zenoh.
+
+    `role` is ``zenoh_ping`` for two topics or ``zenoh_call`` for a query and its reply.
+    """
+    with TemporaryDirectory(prefix="dd") as folder, running("floors", "zenoh_echo", folder):
+        return middle_and_tail_us(result(start("floors", role, folder))["times"])
+
+
+def dds_latency() -> tuple[float, float]:
+    """Return the same for two topics of the package cyclonedds."""
+    with running("floors", "dds_echo"):
+        return middle_and_tail_us(result(start("floors", "dds_ping"))["times"])
+
+
+def zenoh_stream(size: int) -> float:
+    """Return how many payloads a second another process gets over zenoh, and copies, without loss."""
+    with TemporaryDirectory(prefix="dd") as folder, running("floors", "zenoh_count", folder) as receiver:
+        result(start("floors", "zenoh_flood", folder, str(size)))
+        received = result(receiver)
+    return float(received["count"] / received["seconds"])
+
+
+# Roles.
+
+
+def _session(folder: str, how: str) -> Any:
+    import zenoh
+
+    config = zenoh.Config()
+    settings = {
+        "mode": "peer",
+        "listen/endpoints": [],
+        f"{how}/endpoints": [f"unixsock-stream/{Path(folder) / 'z'}"],
+        "scouting/multicast/enabled": False,
+        "transport/shared_memory/enabled": True,
+    }
+    for key, value in settings.items():
+        config.insert_json5(key, json.dumps(value))
+    return zenoh.open(config)
+
+
+def _publisher(session: Any, key: str) -> Any:
+    import zenoh
+
+    return session.declare_publisher(key, congestion_control=zenoh.CongestionControl.BLOCK)
+
+
+def _direct(function: Callable[[Any], None]) -> Any:
+    from zenoh.handlers import Callback
+
+    return Callback(function, indirect=False)
+
+
+def zenoh_echo(folder: str) -> None:
+    with _session(folder, "listen") as session:
+        pong = _publisher(session, "pong")
+
+        def reply(query: Any) -> None:
+            with query:
+                query.reply("call", query.payload)
+
+        kept = (
+            session.declare_subscriber("ping", _direct(lambda sample: pong.put(sample.payload))),
+            session.declare_queryable("call", _direct(reply), complete=True),
+        )
+        say_ready()
+        sys.stdin.read()
+        assert kept
+
+
+def zenoh_ping(folder: str) -> None:
+    with _session(folder, "connect") as session:
+        answered, ping = _Gate(), _publisher(session, "ping")
+        kept = session.declare_subscriber("pong", _direct(answered.open))
+        _repeat(lambda: ping.put(SMALL), answered)
+        assert kept
+
+
+def zenoh_call(folder: str) -> None:
+    with _session(folder, "connect") as session:
+        answered, querier = _Gate(), session.declare_querier("call")
+        on_reply = _direct(answered.open)
+        _repeat(lambda: querier.get(on_reply, payload=SMALL), answered)
+
+
+class _Gate:
+    """Lets one thread wait for another."""
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._lock.acquire()
+
+    def open(self, _: Any) -> None:
+        self._lock.release()
+
+    def wait(self) -> None:
+        self._lock.acquire()
+
+
+def _repeat(send: Callable[[], Any], answered: _Gate) -> None:
+    """Send and wait for the answer, many times, and report how long it took."""
+    time.sleep(SETTLE_S)
+    times = []
+    for _ in range(ROUND_TRIPS + WARM):
+        begin = time.perf_counter()
+        send()
+        answered.wait()
+        times.append(time.perf_counter() - begin)
+    report(times=times[WARM:])
+
+
+def zenoh_count(folder: str) -> None:
+    count, first, last = 0, 0.0, 0.0
+
+    def receive(sample: Any) -> None:
+        nonlocal count, first, last
+        sample.payload.to_bytes()
+        last = time.perf_counter()
+        first = first or last
+        count += 1
+
+    with _session(folder, "listen") as session:
+        kept = session.declare_subscriber("stream", _direct(receive))
+        say_ready()
+        sys.stdin.read()
+        assert kept
+    report(count=count, seconds=max(last - first, 1e-9))
+
+
+def zenoh_flood(folder: str, size: str) -> None:
+    with _session(folder, "connect") as session:
+        publisher, data = _publisher(session, "stream"), os.urandom(int(size))
+        time.sleep(SETTLE_S)
+        end = time.perf_counter() + STREAM_S
+        while time.perf_counter() < end:
+            publisher.put(data)
+        time.sleep(SETTLE_S)
+    report()
+
+
+def _dds(read: str, written: str) -> tuple[Any, Any, Callable[[], list[Any]]]:
+    """Return the class of a message, a writer, and what waits for messages and takes them."""
+    from dataclasses import make_dataclass
+
+    from cyclonedds.core import InstanceState, Policy, Qos, ReadCondition, SampleState, ViewState, WaitSet
+    from cyclonedds.domain import DomainParticipant
+    from cyclonedds.idl import IdlStruct
+    from cyclonedds.pub import DataWriter
+    from cyclonedds.sub import DataReader
+    from cyclonedds.topic import Topic
+
+    text = make_dataclass("Text", [("data", str)], bases=(IdlStruct,))
+    qos = Qos(Policy.Reliability.Reliable(10**9), Policy.History.KeepLast(10))
+    participant = DomainParticipant(int(os.environ.get("ROS_DOMAIN_ID", "0")))
+    reader = DataReader(participant, Topic(participant, read, text), qos=qos)
+    writer = DataWriter(participant, Topic(participant, written, text), qos=qos)
+    waitset = WaitSet(participant)
+    waitset.attach(ReadCondition(reader, SampleState.Any | ViewState.Any | InstanceState.Any))
+
+    def take() -> list[Any]:
+        waitset.wait(10**10)
+        return [sample for sample in reader.take(10) if isinstance(sample, text)]
+
+    return text, writer, take
+
+
+def dds_echo() -> None:
+    _, writer, take = _dds("floor_ping", "floor_pong")
+    threading.Thread(target=lambda: (sys.stdin.read(), os._exit(0)), daemon=True).start()
+    say_ready()
+    while True:
+        for sample in take():
+            writer.write(sample)
+
+
+def dds_ping() -> None:
+    text, writer, take = _dds("floor_pong", "floor_ping")
+    message, times = text(data="x" * 64), []
+    time.sleep(2 * SETTLE_S)
+    for _ in range(ROUND_TRIPS + WARM):
+        begin = time.perf_counter()
+        writer.write(message)
+        while not take():
+            """What came was no message."""
+        times.append(time.perf_counter() - begin)
+    report(times=times[WARM:])
+
+
+ROLES: dict[str, Callable[..., None]] = {
+    role.__name__: role
+    for role in (zenoh_echo, zenoh_ping, zenoh_call, zenoh_count, zenoh_flood, dds_echo, dds_ping)
+}  # fmt: skip
+
+if __name__ == "__main__":
+    ROLES[sys.argv[1]](*sys.argv[2:])
