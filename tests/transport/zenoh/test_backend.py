@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import json
-import os
 import shutil
 import struct
 import subprocess
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -34,29 +33,6 @@ TEXT = "std_msgs::msg::dds_::String_/RIHS01_df668c740482bbd48fb39d76a70dfd4bd59d
 ADD = (
     "example_interfaces::srv::dds_::AddTwoInts_/RIHS01_e118de6bf5eeb66a2491b5bda11202e7b68f198d6f67922cf30364858239c81a"
 )
-
-
-@pytest.fixture
-def session(domain: int) -> Iterator[Session]:
-    session = Session(make_backend(Environment(domain)))
-    yield session
-    session.close()
-
-
-@pytest.fixture
-def stranger(session: Session) -> Iterator[zenoh.Session]:
-    """A zenoh session that knows only where ours listens."""
-    folder = Path(os.environ["XDG_RUNTIME_DIR"]) / "daidalos" / "zenoh" / str(session.backend._domain)
-    endpoints = json.loads(next(folder.glob("*.json")).read_text())
-    config = zenoh.Config()
-    for key, value in {
-        "mode": "peer", "connect/endpoints": endpoints, "listen/endpoints": [], "timestamping/enabled": True,
-        "scouting/multicast/enabled": False,
-    }.items():  # fmt: skip
-        config.insert_json5(key, json.dumps(value))
-    stranger = zenoh.open(config)
-    yield stranger
-    stranger.close()
 
 
 def token(session: zenoh.Session, domain: int, kind: str, name: str, what: str) -> str:

@@ -28,6 +28,7 @@ from daidalos.transport.qos import Qos
 from daidalos.transport.registry import Peer, Registry
 from daidalos.transport.zenoh import keys
 from daidalos.transport.zenoh.config import ROUTER_PORT, meets_all, reason_of, session_config
+from daidalos.transport.zenoh.latched import Caches, LatchedPublisher, LatchedSubscription
 from daidalos.transport.zenoh.numbers import Numbers
 from daidalos.transport.zenoh.threads import few_threads
 from daidalos.transport.zenoh.wires import (
@@ -62,7 +63,8 @@ class ZenohBackend(Backend):
         self._numbers = Numbers()
         self._registry = Registry(self._domain)
         self._peers: set[str] = set()
-        self._own: set[bytes] = set()
+        self._latched: dict[str, set[LatchedSubscription]] = {}
+        self._lock = threading.Lock()
 
     def start(self, graph: Graph) -> None:
         """Open the session, known to and connected with every other on this machine."""
@@ -78,6 +80,8 @@ class ZenohBackend(Backend):
             if meets_all(config, listen):
                 self._peers = {peer.session for peer in peers}
                 self._registry.register(Peer(self._session_id, tuple(listen)))
+        self._caches = Caches(self._session)
+        graph.listen(self._on_graph_change)
         # Tokens arrive on a thread of their own: zenoh's must never wait for Python's lock while a peer goes away,
         # because undeclaring an advanced publisher waits for them while it holds that lock.
         self._tokens = self._session.liveliness().declare_subscriber(
@@ -200,8 +204,12 @@ class ZenohBackend(Backend):
 
     def declare_publisher(self, key: str, endpoint: EndpointInfo) -> WirePublisher:
         """Declare a publisher and its token."""
-        self._own.add(endpoint.gid)
-        wire = ZenohPublisher(self._session, self._data_key(endpoint), endpoint)
+        name = self._data_key(endpoint)
+        wire = (
+            LatchedPublisher(self._session, name, endpoint, self._caches)
+            if endpoint.qos.transient_local
+            else ZenohPublisher(self._session, name, endpoint)
+        )
         wire.on_close = self._closer(key, endpoint)
         return wire
 
@@ -209,9 +217,48 @@ class ZenohBackend(Backend):
         self, key: str, endpoint: EndpointInfo, on_sample: Callable[[Any], None]
     ) -> WireSubscription:
         """Declare a subscription and its token."""
-        wire = ZenohSubscription(self._session, self._data_key(endpoint), endpoint, on_sample, self._own)
+        if endpoint.qos.transient_local:
+            return self._declare_latched(key, endpoint, on_sample)
+        wire = ZenohSubscription(self._session, self._data_key(endpoint), endpoint, on_sample)
         wire.on_close = self._closer(key, endpoint)
         return wire
+
+    def _declare_latched(
+        self, key: str, endpoint: EndpointInfo, on_sample: Callable[[Any], None]
+    ) -> LatchedSubscription:
+        """Declare a subscription that has every publisher's history, whichever of the two comes first."""
+        wire = LatchedSubscription(self._session, self._data_key(endpoint), endpoint, on_sample)
+        forget = self._closer(key, endpoint)
+        with self._lock:
+            self._latched.setdefault(endpoint.name, set()).add(wire)
+
+        def close() -> None:
+            with self._lock:
+                members = self._latched[endpoint.name]
+                members.discard(wire)
+                if not members:
+                    del self._latched[endpoint.name]
+            forget()
+
+        wire.on_close = close
+        publishers = self._graph.endpoints(EndpointKind.PUBLISHER, name=endpoint.name)
+        for session in {keys.session_of(one.node.key) for one in publishers if one.qos.transient_local}:
+            self._ask(wire, session)
+        return wire
+
+    def _on_graph_change(self, added: bool, what: NodeInfo | EndpointInfo) -> None:
+        """Have subscriptions ask who comes with a history."""
+        if not (added and isinstance(what, EndpointInfo) and what.qos.transient_local):
+            return
+        if what.kind is EndpointKind.PUBLISHER:
+            with self._lock:
+                wires = tuple(self._latched.get(what.name, ()))
+            for wire in wires:
+                self._ask(wire, keys.session_of(what.node.key))
+
+    def _ask(self, wire: LatchedSubscription, session: str) -> None:
+        if session != self._session_id:  # who is in our session is served within the process
+            wire.ask(session)
 
     def declare_service(self, key: str, endpoint: EndpointInfo, on_request: Callable[[Any], None]) -> WireService:
         """Declare a queryable and its token."""
@@ -229,13 +276,7 @@ class ZenohBackend(Backend):
         """Declare an endpoint's token; return what takes it back."""
         one = endpoint
         what = (one.kind, one.node.key, one.name, one.type_name, one.type_hash, one.qos)
-        undeclare = self._declare_token(key, what)
-
-        def close() -> None:
-            self._own.discard(endpoint.gid)
-            undeclare()
-
-        return close
+        return self._declare_token(key, what)
 
 
 def _open(config: zenoh.Config) -> zenoh.Session:

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import contextlib
-import struct
 import threading
 from collections.abc import Callable
 from typing import Any
 
 import zenoh
-from zenoh import ext
 from zenoh.handlers import Callback
 
 from daidalos.transport.backend import (
@@ -21,29 +19,12 @@ from daidalos.transport.backend import (
     WireSubscription,
 )
 from daidalos.transport.graph import EndpointInfo
-from daidalos.transport.qos import History, Qos
+from daidalos.transport.zenoh import attachment
 from daidalos.transport.zenoh.threads import on_lasting_thread
 
-_ATTACHMENT = struct.Struct("<qqB16s")
-"""Sequence number, source time in ns, length of the gid, gid."""
-_GID_LENGTH = 16
 _LARGE = 65536
-_HEARTBEAT_S = 0.5
 _QUERY_TIMEOUT_S = 600.0
 _UNLIMITED_S = 10 * 365 * 86400.0
-
-
-def _attachment(sequence: int, stamp_ns: int, gid: bytes) -> bytes:
-    return _ATTACHMENT.pack(sequence, stamp_ns, _GID_LENGTH, gid)
-
-
-def _read_attachment(attachment: Any) -> tuple[int, int, bytes]:
-    """Return (sequence, source time, gid); zeros where a foreign sender attached none of ours."""
-    data = attachment.to_bytes() if attachment is not None else b""
-    if len(data) != _ATTACHMENT.size:
-        return 0, 0, bytes(_GID_LENGTH)
-    sequence, stamp, _, gid = _ATTACHMENT.unpack(data)
-    return sequence, stamp, gid
 
 
 class _Wire:
@@ -66,46 +47,27 @@ class _Wire:
 
 
 class ZenohPublisher(_Wire, WirePublisher):
-    """Puts samples; with transient-local durability through zenoh's advanced publisher, which keeps them."""
+    """Puts samples."""
 
-    def __init__(
-        self,
-        session: zenoh.Session,
-        key: str,
-        endpoint: EndpointInfo,
-    ) -> None:
+    def __init__(self, session: zenoh.Session, key: str, endpoint: EndpointInfo) -> None:
         super().__init__()
         self._gid = endpoint.gid
-        qos = endpoint.qos
+        reliable = endpoint.qos.reliable
         # Reliable means that nothing is lost on the way; best effort never waits.
-        congestion = zenoh.CongestionControl.BLOCK if qos.reliable else zenoh.CongestionControl.DROP
-        reliability = zenoh.Reliability.RELIABLE if qos.reliable else zenoh.Reliability.BEST_EFFORT
-        if qos.transient_local:
-            heartbeat = ext.MissDetectionConfig(heartbeat=None, sporadic_heartbeat=_HEARTBEAT_S)
-            self._publisher: Any = ext.declare_advanced_publisher(
-                session,
-                key,
-                congestion_control=congestion,
-                reliability=reliability,
-                cache=ext.CacheConfig(max_samples=_cache_size(qos)),
-                sample_miss_detection=heartbeat if qos.reliable else None,
-                publisher_detection=True,
-            )
-        else:
-            self._publisher = session.declare_publisher(
-                key,
-                congestion_control=congestion,
-                reliability=reliability,
-                allowed_destination=zenoh.Locality.REMOTE,
-            )
+        self._publisher: Any = session.declare_publisher(
+            key,
+            congestion_control=zenoh.CongestionControl.BLOCK if reliable else zenoh.CongestionControl.DROP,
+            reliability=zenoh.Reliability.RELIABLE if reliable else zenoh.Reliability.BEST_EFFORT,
+            allowed_destination=zenoh.Locality.REMOTE,
+        )
 
     def put(self, parts: list[Any], sequence: int, stamp_ns: int) -> None:
         """Send one sample."""
         data = parts[0] if len(parts) == 1 else b"".join(parts)
-        attachment = _attachment(sequence, stamp_ns, self._gid)
+        attached = attachment.pack(sequence, stamp_ns, self._gid)
         with self._lock:
             if not self._closed:
-                self._publisher.put(data, attachment=attachment)
+                self._publisher.put(data, attachment=attached)
 
     def close(self) -> None:
         """Undeclare."""
@@ -116,33 +78,12 @@ class ZenohSubscription(_Wire, WireSubscription):
     """Receives samples on zenoh's thread, which only queues them."""
 
     def __init__(
-        self,
-        session: zenoh.Session,
-        key: str,
-        endpoint: EndpointInfo,
-        on_sample: Callable[[Any], None],
-        own: set[bytes],
+        self, session: zenoh.Session, key: str, endpoint: EndpointInfo, on_sample: Callable[[Any], None]
     ) -> None:
         super().__init__()
-        qos = endpoint.qos
-        if qos.transient_local:
-
-            def accept(sample: zenoh.Sample) -> None:
-                if _read_attachment(sample.attachment)[2] not in own:  # ours were delivered within the process
-                    on_sample(sample)
-
-            self._subscriber: Any = ext.declare_advanced_subscriber(
-                session,
-                key,
-                Callback(on_lasting_thread(accept), indirect=False),
-                history=ext.HistoryConfig(detect_late_publishers=True, max_samples=_cache_size(qos)),
-                recovery=ext.RecoveryConfig(periodic_queries=None, heartbeat=True) if qos.reliable else None,
-                subscriber_detection=True,
-            )
-        else:
-            self._subscriber = session.declare_subscriber(
-                key, Callback(on_lasting_thread(on_sample), indirect=False), allowed_origin=zenoh.Locality.REMOTE
-            )
+        self._subscriber: Any = session.declare_subscriber(
+            key, Callback(on_lasting_thread(on_sample), indirect=False), allowed_origin=zenoh.Locality.REMOTE
+        )
 
     def data(self, sample: Any) -> bytes:
         """Return the sample's bytes."""
@@ -154,7 +95,7 @@ class ZenohSubscription(_Wire, WireSubscription):
 
     def info(self, sample: Any, received_ns: int) -> SampleInfo:
         """Return what the attachment says."""
-        sequence, stamp, gid = _read_attachment(sample.attachment)
+        sequence, stamp, gid = attachment.read(sample.attachment)
         return SampleInfo(stamp, received_ns, sequence, gid)
 
     def close(self) -> None:
@@ -178,7 +119,7 @@ class ZenohService(_Wire, WireService):
 
     def request(self, item: Any) -> tuple[bytes, RequestId, int]:
         """Return the request's bytes, its identity and its source stamp."""
-        sequence, stamp, gid = _read_attachment(item.attachment)
+        sequence, stamp, gid = attachment.read(item.attachment)
         identity = RequestId(gid, sequence)
         self._queries[identity] = item
         payload = item.payload
@@ -190,8 +131,8 @@ class ZenohService(_Wire, WireService):
         if query is None:
             return
         with contextlib.suppress(zenoh.ZError), query:  # the client may be gone
-            attachment = _attachment(request.sequence, _now_ns(), request.client)
-            query.reply(self._key, data, attachment=attachment)
+            attached = attachment.pack(request.sequence, _now_ns(), request.client)
+            query.reply(self._key, data, attachment=attached)
 
     def close(self) -> None:
         """Undeclare; requests that wait for an answer get none."""
@@ -224,26 +165,22 @@ class ZenohClient(_Wire, WireClient):
 
     def send(self, data: bytes, sequence: int, stamp_ns: int) -> None:
         """Send one request."""
-        attachment = _attachment(sequence, stamp_ns, self._gid)
+        attached = attachment.pack(sequence, stamp_ns, self._gid)
         with self._lock:
             if not self._closed:
-                self._querier.get(self._callback, payload=data, attachment=attachment)
+                self._querier.get(self._callback, payload=data, attachment=attached)
 
     def response(self, item: Any) -> tuple[bytes, int, int]:
         """Return the answer's bytes, its request's sequence number and its source stamp."""
         sample = item.ok
         if sample is None:
             return b"", 0, 0
-        sequence, stamp, _ = _read_attachment(sample.attachment)
+        sequence, stamp, _ = attachment.read(sample.attachment)
         return sample.payload.to_bytes(), sequence, stamp
 
     def close(self) -> None:
         """Undeclare."""
         self._close(self._querier)
-
-
-def _cache_size(qos: Qos) -> int:
-    return 2**31 if qos.history is History.KEEP_ALL else max(qos.depth, 1)
 
 
 def _now_ns() -> int:

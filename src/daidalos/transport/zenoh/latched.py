@@ -1,0 +1,301 @@
+"""Transient-local topics over zenoh: what publishers keep for who comes late, and asking for it.
+
+On the wire this is the protocol of zenoh's advanced publishers and subscribers, so that rmw_zenoh's nodes and ours
+have each other's histories. Zenoh's own leave something behind in every process, some kilobytes for each publisher
+that comes and goes, since its number becomes part of a key, and no number is given again. Here all publishers of a
+topic in a session share one key, as zenoh allows for those that order their samples by time stamps; and who is there
+to be asked, subscriptions learn from the graph.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import threading
+from collections import deque
+from collections.abc import Callable
+from typing import Any
+
+import zenoh
+from zenoh.handlers import Callback
+
+from daidalos.transport.graph import EndpointInfo
+from daidalos.transport.zenoh import attachment
+from daidalos.transport.zenoh.threads import on_lasting_thread
+from daidalos.transport.zenoh.wires import ZenohPublisher, ZenohSubscription
+
+_PATIENCE_S = 5.0
+"""How long a session may take to answer; then it is asked again, for as long as it can be reached."""
+_MOST_PUBLISHERS = 10_000
+"""Of so many publishers it is remembered what they last sent."""
+
+Kept = deque[tuple[bytes, bytes, zenoh.Timestamp]]
+"""A publisher's last samples: data, attachment and time stamp."""
+Identity = tuple[int, int, bytes]
+"""A sample's number and source time, and its publisher's gid."""
+
+
+class Caches:
+    """The caches of a session, one for each topic."""
+
+    def __init__(self, session: zenoh.Session) -> None:
+        self._session = session
+        self._lock = threading.Lock()
+        self._caches: dict[str, Cache] = {}
+
+    def enter(self, key: str, publisher: LatchedPublisher) -> Cache:
+        """Have a publisher's samples handed to who asks; returns the cache of its topic."""
+        with self._lock:
+            cache = self._caches.get(key)
+            if cache is None:
+                cache = self._caches[key] = Cache(self._session, key)
+            cache.publishers[publisher] = None
+            return cache
+
+    def leave(self, key: str, publisher: LatchedPublisher) -> None:
+        """Forget a publisher's samples."""
+        with self._lock:
+            cache = self._caches[key]
+            del cache.publishers[publisher]
+            if not cache.publishers:
+                del self._caches[key]
+                cache.close()
+
+
+class Cache:
+    """Answers who asks what the publishers of a topic have kept.
+
+    Attributes
+    ----------
+    publishers
+        Whose samples; in the order in which they came.
+    order
+        Held while a sample is stamped and sent: receivers take one with an earlier stamp than the last for old.
+    """
+
+    def __init__(self, session: zenoh.Session, key: str) -> None:
+        self.publishers: dict[LatchedPublisher, None] = {}
+        self.order = threading.RLock()
+        self._key = key
+        name = f"{key}/@adv/pub/{session.zid()}/uhlc/_"
+        answer = Callback(on_lasting_thread(self._answer), indirect=False)
+        self._queryable: Any = session.declare_queryable(name, answer, allowed_origin=zenoh.Locality.REMOTE)
+        self._token: Any = session.liveliness().declare_token(name)
+
+    def _answer(self, query: zenoh.Query) -> None:
+        most = query.parameters.get("_max")
+        count = int(most) if most is not None and most.isdecimal() else 0
+        with contextlib.suppress(zenoh.ZError), query:  # who asked may be gone
+            for publisher in tuple(self.publishers):
+                for data, attached, stamp in tuple(publisher.kept)[-count:]:
+                    query.reply(self._key, data, attachment=attached, timestamp=stamp)
+
+    def close(self) -> None:
+        """Answer no more."""
+        with contextlib.suppress(zenoh.ZError):  # the session may have been closed before
+            self._token.undeclare()
+            self._queryable.undeclare()
+
+
+class LatchedPublisher(ZenohPublisher):
+    """Puts samples, and keeps the last ones for who comes later.
+
+    Attributes
+    ----------
+    kept
+        The last samples.
+    """
+
+    def __init__(self, session: zenoh.Session, key: str, endpoint: EndpointInfo, caches: Caches) -> None:
+        super().__init__(session, key, endpoint)
+        self.kept: Kept = deque(maxlen=endpoint.qos.limit)
+        self._session = session
+        self._key = key
+        self._caches = caches
+        self._cache = caches.enter(key, self)
+
+    def put(self, parts: list[Any], sequence: int, stamp_ns: int) -> None:
+        """Send one sample."""
+        data = parts[0] if len(parts) == 1 else b"".join(parts)
+        attached = attachment.pack(sequence, stamp_ns, self._gid)
+        with self._lock, self._cache.order:
+            if not self._closed:
+                stamp = self._session.new_timestamp()
+                self.kept.append((bytes(data), attached, stamp))
+                self._publisher.put(data, attachment=attached, timestamp=stamp)
+
+    def close(self) -> None:
+        """Undeclare, and forget what was kept."""
+        super().close()
+        self._caches.leave(self._key, self)
+
+
+class LatchedSubscription(ZenohSubscription):
+    """Receives samples, those first that were sent before it came."""
+
+    def __init__(
+        self, session: zenoh.Session, key: str, endpoint: EndpointInfo, on_sample: Callable[[Any], None]
+    ) -> None:
+        self._history = History(session, key, endpoint.qos.limit, on_sample)
+        super().__init__(session, key, endpoint, self._history.accept)
+
+    def ask(self, session: str) -> None:
+        """Ask a session for what its publishers of the topic have kept, now that it has one more of them."""
+        self._history.ask(session)
+
+    def close(self) -> None:
+        """Undeclare."""
+        self._history.close()
+        super().close()
+
+
+class Question:
+    """One that was put to a session.
+
+    Attributes
+    ----------
+    samples
+        The answers so far, and what was received from the session meanwhile.
+    again
+        Whether to ask again: there is one more publisher, or not all answers came in time.
+    """
+
+    def __init__(self) -> None:
+        self.samples: list[Any] = []
+        self.again = False
+
+
+class History:
+    """Delivers what publishers have kept before what they send, and nothing twice.
+
+    Parameters
+    ----------
+    session, key
+        Of the subscription.
+    limit
+        So many of each publisher's samples are asked for; all where None.
+    deliver
+        Called with one sample after the other.
+    """
+
+    def __init__(
+        self, session: zenoh.Session, key: str, limit: int | None, deliver: Callable[[zenoh.Sample], None]
+    ) -> None:
+        self._session = session
+        self._key = key
+        self._parameters = "" if limit is None else f"?_max={limit}"
+        self._deliver = deliver
+        self._lock = threading.Lock()
+        self._closed = False
+        self._questions: dict[str, Question | None] = {}  # by session; None where one was answered
+        self._answered: dict[str, frozenset[Identity]] = {}
+        self._last: dict[bytes, tuple[int, int]] = {}
+        self._waiting: deque[zenoh.Sample] = deque()
+        self._delivering = False
+
+    def ask(self, session: str) -> None:
+        """Ask a session for what its publishers have kept."""
+        with self._lock:
+            question = self._questions.get(session)
+            if question is not None:
+                question.again = True
+                return
+            question = self._questions[session] = Question()
+        self._send(session, question)
+
+    def accept(self, sample: zenoh.Sample) -> None:
+        """Take a sample as it is received."""
+        stamp = sample.timestamp
+        session = str(stamp.get_id()) if stamp is not None else ""
+        unheard = None
+        with self._lock:
+            if session and session not in self._questions:  # it is here before its publisher is in the graph
+                unheard = self._questions[session] = Question()
+            question = self._questions.get(session)
+            if question is not None:
+                question.samples.append(sample)
+            elif (identity := _identity(sample)) not in self._answered.get(session, ()):
+                self._note(identity)
+                self._waiting.append(sample)
+        if unheard is not None:
+            self._send(session, unheard)
+        self._deliver_waiting()
+
+    def close(self) -> None:
+        """Deliver no more."""
+        with self._lock:
+            self._closed = True
+            self._waiting.clear()
+
+    def _send(self, session: str, question: Question) -> None:
+        def on_reply(reply: zenoh.Reply) -> None:
+            if reply.ok is not None:
+                question.samples.append(reply.ok)
+            else:
+                question.again = True
+
+        def on_end() -> None:
+            self._take_in(session, question)
+
+        if self._closed:
+            return
+        with contextlib.suppress(zenoh.ZError):  # the session may have been closed
+            self._session.get(
+                f"{self._key}/@adv/pub/{session}/**{self._parameters}",
+                Callback(on_reply, on_end, indirect=False),
+                target=zenoh.QueryTarget.ALL,
+                consolidation=zenoh.ConsolidationMode.NONE,
+                accept_replies=zenoh.ReplyKeyExpr.ANY,
+                timeout=_PATIENCE_S,
+                allowed_destination=zenoh.Locality.REMOTE,
+            )
+
+    def _take_in(self, session: str, question: Question) -> None:
+        """Put answers, and what came meanwhile, in order."""
+        with self._lock:
+            samples = {_identity(sample): sample for sample in question.samples}
+            self._answered[session] = frozenset(samples)
+            new = {one: sample for one, sample in samples.items() if self._is_news(one)}
+            for identity in sorted(new, key=_source_time):
+                self._note(identity)
+                self._waiting.append(new[identity])
+            following = self._questions[session] = Question() if question.again else None
+        self._deliver_waiting()
+        if following is not None:
+            self._send(session, following)
+
+    def _is_news(self, identity: Identity) -> bool:
+        """Tell whether a sample is none that was delivered before the question, nor older than that."""
+        number, stamp, gid = identity
+        last = self._last.get(gid)
+        return last is None or number > last[0] or stamp > last[1]  # a publisher that is made again counts from 1
+
+    def _note(self, identity: Identity) -> None:
+        number, stamp, gid = identity
+        if len(self._last) >= _MOST_PUBLISHERS and gid not in self._last:
+            del self._last[next(iter(self._last))]
+        self._last[gid] = (number, stamp)
+
+    def _deliver_waiting(self) -> None:
+        """Deliver, one thread at a time and with no lock held, as who receives may do anything."""
+        while True:
+            with self._lock:
+                if self._delivering or not self._waiting or self._closed:
+                    return
+                self._delivering = True
+                sample = self._waiting.popleft()
+            try:
+                self._deliver(sample)
+            finally:
+                self._delivering = False
+
+
+def _identity(sample: zenoh.Sample) -> Identity:
+    number, stamp_ns, gid = attachment.read(sample.attachment)
+    stamp = sample.timestamp
+    if not number and stamp is not None:  # a foreign sender's, known by zenoh's time stamp alone
+        return 0, stamp.get_time_as_ntp64(), bytes(stamp.get_id())
+    return number, stamp_ns, gid
+
+
+def _source_time(identity: Identity) -> tuple[int, int]:
+    return identity[1], identity[0]

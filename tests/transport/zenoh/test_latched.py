@@ -1,0 +1,251 @@
+"""Transient-local topics: with zenoh's own advanced publishers and subscribers, and in every order of events."""
+
+from __future__ import annotations
+
+import queue
+import time
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+import zenoh
+from std_msgs.msg import String
+from zenoh import ext
+from zenoh.handlers import Callback
+
+from daidalos.transport.qos import Durability, Qos
+from daidalos.transport.session import Session
+from daidalos.transport.zenoh import attachment
+from daidalos.transport.zenoh.keys import gid_of
+from daidalos.transport.zenoh.latched import History
+from transport.test_sessions import node_of, subscribe
+from transport.zenoh.test_backend import PATIENCE_S, TEXT, token
+
+LATCHED = Qos(durability=Durability.TRANSIENT_LOCAL, depth=2)
+TOPIC = "/kept"
+
+
+class Reader:
+    """Zenoh's own advanced subscriber, as rmw_zenoh has it."""
+
+    def __init__(self, session: zenoh.Session, domain: int) -> None:
+        self._heard: queue.SimpleQueue[str] = queue.SimpleQueue()
+        self._subscriber = ext.declare_advanced_subscriber(
+            session,
+            f"{domain}{TOPIC}/{TEXT}",
+            Callback(lambda sample: self._heard.put(_text(sample.payload.to_bytes())), indirect=False),
+            history=ext.HistoryConfig(detect_late_publishers=True, max_samples=2),
+            recovery=ext.RecoveryConfig(periodic_queries=None, heartbeat=True),
+            subscriber_detection=True,
+        )
+
+    def read(self, count: int) -> list[str]:
+        return [self._heard.get(timeout=PATIENCE_S) for _ in range(count)]
+
+
+class Writer:
+    """Zenoh's own advanced publisher, as rmw_zenoh has it."""
+
+    def __init__(self, session: zenoh.Session, domain: int) -> None:
+        name = token(session, domain, "MP", TOPIC, TEXT).replace("::,10:", ":1:,2:")
+        self._gid = gid_of(name)
+        self._count = 0
+        self._publisher = ext.declare_advanced_publisher(
+            session,
+            f"{domain}{TOPIC}/{TEXT}",
+            cache=ext.CacheConfig(max_samples=2),
+            sample_miss_detection=ext.MissDetectionConfig(heartbeat=None, sporadic_heartbeat=0.5),
+            publisher_detection=True,
+        )
+        self._token = session.liveliness().declare_token(name)
+
+    def write(self, *texts: str) -> None:
+        for text in texts:
+            self._count += 1
+            attached = attachment.pack(self._count, time.time_ns(), self._gid)
+            self._publisher.put(_cdr(text), attachment=attached)
+
+
+def _cdr(text: str) -> bytes:
+    return b"\0\1\0\0" + (len(text) + 1).to_bytes(4, "little") + text.encode() + b"\0"
+
+
+def _text(data: bytes) -> str:
+    return data[8:-1].decode()
+
+
+def say(publisher: Any, *texts: str) -> None:
+    for text in texts:
+        publisher.publish(String(data=text))
+
+
+def test_zenohs_subscriber_has_our_history_whichever_comes_first(session: Session, stranger, domain):
+    node = node_of(session, "me")
+    early = Reader(stranger, domain)
+    one = session.create_publisher(node, TOPIC, String, LATCHED)
+    deadline = time.monotonic() + PATIENCE_S
+    while not one._wire._publisher.matching_status.matching and time.monotonic() < deadline:
+        session.graph.wait_for(lambda: False, 0.01)
+    say(one, "a", "b", "c")
+    assert early.read(3) == ["a", "b", "c"]
+    late = Reader(stranger, domain)
+    assert late.read(2) == ["b", "c"]
+    other = session.create_publisher(node, TOPIC, String, LATCHED)
+    say(other, "d")
+    say(one, "e")
+    assert early.read(2) == late.read(2) == ["d", "e"]
+
+
+def test_we_have_the_history_of_zenohs_publisher_whichever_comes_first(session: Session, stranger, domain):
+    node = node_of(session, "me")
+    early = subscribe(session, node, TOPIC, String, LATCHED)
+    writer = Writer(stranger, domain)
+    writer.write("a", "b", "c")
+    assert [message.data for message, _ in early.wait(3, PATIENCE_S)][-2:] == ["b", "c"]
+    late = subscribe(session, node, TOPIC, String, LATCHED)
+    assert [message.data for message, _ in late.wait(2, PATIENCE_S)] == ["b", "c"]
+    writer.write("d")
+    assert [message.data for message, _ in late.wait(3, PATIENCE_S)] == ["b", "c", "d"]
+
+
+def test_publishers_that_come_and_go_leave_no_keys(session: Session, stranger, domain):
+    node = node_of(session, "me")
+
+    def kept() -> list[str]:
+        return [str(reply.ok.key_expr) for reply in stranger.liveliness().get("**/@adv/**") if reply.ok]
+
+    first = [session.create_publisher(node, TOPIC, String, LATCHED) for _ in range(2)]
+    assert session.graph.wait_for(lambda: bool(kept()), PATIENCE_S)
+    names = kept()
+    assert names == [f"{domain}{TOPIC}/{TEXT}/@adv/pub/{session.backend._session_id}/uhlc/_"]
+    first.pop().close()
+    assert kept() == names
+    first.pop().close()
+    deadline = time.monotonic() + PATIENCE_S
+    while kept() and time.monotonic() < deadline:
+        session.graph.wait_for(lambda: False, 0.01)
+    assert kept() == []
+    say(session.create_publisher(node, TOPIC, String, LATCHED), "again")
+    assert Reader(stranger, domain).read(1) == ["again"]
+
+
+# History alone, against questions that the test answers.
+
+
+class Oracle:
+    """Stands for a zenoh session: notes what it is asked, and answers when it is told to."""
+
+    def __init__(self) -> None:
+        self.asked: list[tuple[str, Any]] = []
+
+    def get(self, selector: str, handler: Any, **_: Any) -> None:
+        self.asked.append((selector, handler))
+
+    def answer(self, *samples: Any, in_time: bool = True) -> None:
+        _, handler = self.asked.pop(0)
+        for sample in samples:
+            handler.callback(SimpleNamespace(ok=sample))
+        if not in_time:
+            handler.callback(SimpleNamespace(ok=None))
+        handler.drop()
+
+
+def sample(number: int, stamp: int = 0, gid: bytes = b"g" * 16, session: str = "ab") -> Any:
+    attached = attachment.pack(number, stamp or number, gid)
+    return SimpleNamespace(
+        number=number,
+        attachment=SimpleNamespace(to_bytes=lambda: attached),
+        timestamp=SimpleNamespace(get_id=lambda: session, get_time_as_ntp64=lambda: stamp or number),
+    )
+
+
+@pytest.fixture
+def oracle() -> Oracle:
+    return Oracle()
+
+
+@pytest.fixture
+def heard() -> list[int]:
+    return []
+
+
+@pytest.fixture
+def history(oracle: Oracle, heard: list[int]) -> History:
+    return History(oracle, "0/kept/x", 3, lambda one: heard.append(one.number))
+
+
+def test_what_was_kept_comes_before_what_is_sent(history, oracle, heard):
+    history.ask("ab")
+    assert oracle.asked[0][0] == "0/kept/x/@adv/pub/ab/**?_max=3"
+    history.accept(sample(3))
+    history.accept(sample(4))
+    assert heard == []
+    oracle.answer(sample(2), sample(3), sample(1))
+    assert heard == [1, 2, 3, 4]
+    history.accept(sample(3))  # it was on its way when it was answered
+    history.accept(sample(5))
+    assert heard == [1, 2, 3, 4, 5]
+    assert oracle.asked == []
+
+
+def test_a_session_that_is_heard_before_it_is_known_is_asked(history, oracle, heard):
+    history.accept(sample(2))
+    history.accept(sample(9, session="cd"))
+    assert [selector for selector, _ in oracle.asked] == [
+        "0/kept/x/@adv/pub/ab/**?_max=3", "0/kept/x/@adv/pub/cd/**?_max=3",
+    ]  # fmt: skip
+    oracle.answer(sample(1))
+    assert heard == [1, 2]
+    oracle.answer()
+    assert heard == [1, 2, 9]
+
+
+def test_a_session_is_asked_again_for_a_further_publisher(history, oracle, heard):
+    other = b"o" * 16
+    history.ask("ab")
+    history.ask("ab")
+    oracle.answer(sample(1))
+    oracle.answer(sample(1), sample(7, gid=other))
+    assert heard == [1, 7]
+    history.ask("ab")  # as when a link was lost and came back
+    oracle.answer(sample(1), sample(2), sample(7, gid=other))
+    assert heard == [1, 7, 2]
+
+
+def test_a_session_that_does_not_answer_in_time_is_heard_and_asked_again(history, oracle, heard):
+    history.ask("ab")
+    history.accept(sample(2))
+    oracle.answer(in_time=False)
+    assert heard == [2]
+    history.accept(sample(3))
+    oracle.answer(sample(1), sample(2))
+    assert heard == [2, 3]  # what is older than what was heard is history
+    assert oracle.asked == []
+
+
+def test_a_publisher_that_is_made_again_counts_anew(history, oracle, heard):
+    history.accept(sample(5, stamp=50))
+    oracle.answer()
+    history.ask("ab")
+    oracle.answer(sample(1, stamp=60))
+    assert heard == [5, 1]
+
+
+def test_two_threads_deliver_in_order_and_who_is_closed_hears_nothing(oracle):
+    heard: list[int] = []
+
+    def deliver(one: Any) -> None:
+        heard.append(one.number)
+        if one.number == 1:
+            history.accept(sample(2))  # as if it came while the first is being delivered
+            heard.append(-1)
+
+    history = History(oracle, "0/kept/x", None, deliver)
+    history.ask("ab")
+    assert oracle.asked[0][0] == "0/kept/x/@adv/pub/ab/**"
+    oracle.answer(sample(1))
+    assert heard == [1, -1, 2]
+    history.close()
+    history.accept(sample(3))
+    history.ask("cd")
+    assert (heard, oracle.asked) == ([1, -1, 2], [])
