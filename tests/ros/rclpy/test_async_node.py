@@ -272,6 +272,20 @@ def test_timers_tick_and_can_be_stopped(graph: Context) -> None:
     run(program)
 
 
+def test_a_timer_that_is_always_due_lets_others_run(graph: Context) -> None:
+    async def program() -> None:
+        ticked = asyncio.Event()
+
+        async def tick() -> None:
+            ticked.set()
+
+        async with AsyncNode("ticker") as node:
+            node.create_timer(0.0, tick)
+            await ticked.wait()
+
+    run(program)
+
+
 def test_simulated_time_moves_timers_and_sleepers(graph: Context) -> None:
     async def program() -> None:
         async with AsyncNode("sleeper", parameter_overrides=SIM) as node:

@@ -102,6 +102,7 @@ class Dispatcher:
                     self._start(_call(callback, arguments))
                 else:
                     await _call(callback, arguments)
+                await asyncio.sleep(0)  # what is always ready lets others run
         finally:
             self._busy.discard(hook)
             if hook.queued:
