@@ -1,5 +1,11 @@
 """Transforming the messages of ``geometry_msgs``; importing it registers them with `tf2_ros`."""
 
+from geometry_msgs.msg import PointStamped as PointStamped
+from geometry_msgs.msg import PoseStamped as PoseStamped
+from geometry_msgs.msg import PoseWithCovarianceStamped as PoseWithCovarianceStamped
+from geometry_msgs.msg import Vector3Stamped as Vector3Stamped
+from geometry_msgs.msg import WrenchStamped as WrenchStamped
+
 from .tf2_geometry_msgs import do_transform_point as do_transform_point
 from .tf2_geometry_msgs import do_transform_polygon_stamped as do_transform_polygon_stamped
 from .tf2_geometry_msgs import do_transform_pose as do_transform_pose

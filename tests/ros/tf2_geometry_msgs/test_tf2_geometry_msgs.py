@@ -213,3 +213,9 @@ def test_buffers_transform_what_is_registered(kind: type) -> None:
         assert found.header == Header(stamp=stamp(2 * SECOND), frame_id="a")
     assert convert(message, kind) == message
     assert tf2_geometry_msgs.to_msg_msg(message) is tf2_geometry_msgs.from_msg_msg(message) is message
+
+
+def test_it_offers_the_messages_that_it_transforms() -> None:
+    assert tf2_geometry_msgs.PoseStamped is PoseStamped
+    assert tf2_geometry_msgs.PointStamped is PointStamped
+    assert tf2_geometry_msgs.Vector3Stamped is Vector3Stamped
