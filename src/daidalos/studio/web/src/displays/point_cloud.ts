@@ -32,13 +32,14 @@ class PointCloudDisplay extends PointsDisplay<PointCloud2> {
     for (let i = 0; i < total; i++) {
       const row = Math.floor(i / cloud.width);
       const offset = row * cloud.row_step + (i - row * cloud.width) * cloud.point_step;
-      const px = x(offset);
-      if (Number.isNaN(px)) {
+      const [px, py, pz] = [x(offset), y(offset), z(offset)];
+      // What was not hit is no number in the clouds of cameras, and infinitely far in those of lidars.
+      if (!Number.isFinite(px + py + pz)) {
         continue;
       }
       positions[3 * count] = px;
-      positions[3 * count + 1] = y(offset);
-      positions[3 * count + 2] = z(offset);
+      positions[3 * count + 1] = py;
+      positions[3 * count + 2] = pz;
       if (rgb) {
         const color = rgb(offset);
         colors[3 * count] = (color >> 16) & 255;
