@@ -59,10 +59,10 @@ class Writer:
         )
         self._token = session.liveliness().declare_token(name)
 
-    def write(self, *texts: str) -> None:
+    def write(self, *texts: str, attaching: bool = True) -> None:
         for text in texts:
             self._count += 1
-            attached = attachment.pack(self._count, time.time_ns(), self._gid)
+            attached = attachment.pack(self._count, time.time_ns(), self._gid) if attaching else None
             self._publisher.put(_cdr(text), attachment=attached)
 
 
@@ -106,6 +106,15 @@ def test_we_have_the_history_of_zenohs_publisher_whichever_comes_first(session: 
     assert [message.data for message, _ in late.wait(2, PATIENCE_S)] == ["b", "c"]
     writer.write("d")
     assert [message.data for message, _ in late.wait(3, PATIENCE_S)] == ["b", "c", "d"]
+
+
+def test_samples_without_attachments_are_told_apart(session: Session, stranger, domain):
+    writer = Writer(stranger, domain)
+    writer.write("a", "b", attaching=False)
+    inbox = subscribe(session, node_of(session, "me"), TOPIC, String, LATCHED)
+    assert [message.data for message, _ in inbox.wait(2, PATIENCE_S)] == ["a", "b"]
+    writer.write("c", attaching=False)
+    assert [message.data for message, _ in inbox.wait(3, PATIENCE_S)] == ["a", "b", "c"]
 
 
 def test_publishers_that_come_and_go_leave_no_keys(session: Session, stranger, domain):
@@ -155,7 +164,7 @@ def sample(number: int, stamp: int = 0, gid: bytes = b"g" * 16, session: str = "
     return SimpleNamespace(
         number=number,
         attachment=SimpleNamespace(to_bytes=lambda: attached),
-        timestamp=SimpleNamespace(get_id=lambda: session, get_time_as_ntp64=lambda: stamp or number),
+        timestamp=SimpleNamespace(get_id=lambda: session),
     )
 
 

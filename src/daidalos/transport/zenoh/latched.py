@@ -293,7 +293,7 @@ def _identity(sample: zenoh.Sample) -> Identity:
     number, stamp_ns, gid = attachment.read(sample.attachment)
     stamp = sample.timestamp
     if not number and stamp is not None:  # a foreign sender's, known by zenoh's time stamp alone
-        return 0, stamp.get_time_as_ntp64(), bytes(stamp.get_id())
+        return 0, stamp.get_time_as_ntp64().as_nanos(), bytes(stamp.get_id())
     return number, stamp_ns, gid
 
 
