@@ -74,13 +74,14 @@ def arena() -> Simulation:
 
 
 def with_boxes(simulation: Simulation, count: int) -> Simulation:
-    """Let boxes stand about."""
-    shape = "<collision name='c'><geometry><box><size>0.1 0.1 0.1</size></box></geometry></collision>"
+    """Let a wall of boxes stand in the room, where cameras see it."""
+    box = "<geometry><box><size>0.1 0.1 0.1</size></box></geometry>"
+    shape = f"<collision name='c'>{box}</collision><visual name='v'>{box}</visual>"
     inertia = "<inertia><ixx>1e-3</ixx><iyy>1e-3</iyy><izz>1e-3</izz></inertia>"
     link = f"<link name='l'><inertial><mass>0.5</mass>{inertia}</inertial>{shape}</link>"
     model = sdf.parse_model(f"<sdf version='1.9'><model name='box'>{link}</model></sdf>")
     for number in range(count):
-        simulation.spawn(model, f"box{number}", Pose((3.7, -0.5 + 0.15 * (number % 10), 0.05 + 0.1 * (number // 10))))
+        simulation.spawn(model, f"box{number}", Pose((1.7, -0.7 + 0.15 * (number % 10), 0.05 + 0.1 * (number // 10))))
     return simulation
 
 

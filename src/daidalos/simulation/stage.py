@@ -14,7 +14,6 @@ from daidalos.simulation.rendering.lighting import Lighting
 
 if TYPE_CHECKING:
     from daidalos.simulation.instance import Instance
-    from daidalos.simulation.physics import Physics
     from daidalos.simulation.rendering.scene import Item, Scene
 
 
@@ -140,13 +139,6 @@ class Stage:
         for owner, instance in enumerate(self._instances):
             for link in instance.model.links.values():
                 body = instance.link(link.name).body
-                fixed = _is_fixed(instance.physics, body)
                 for visual in link.visuals:
                     label = UNLABELLED if visual.label is None else visual.label
-                    yield Item(visual, body, fixed, owner, label)
-
-
-def _is_fixed(physics: Physics, body: int) -> bool:
-    """Tell whether a body never moves: it hangs on the world without joint."""
-    model = physics.model
-    return bool(model.body_weldid[body] == 0 and model.body_mocapid[model.body_rootid[body]] < 0)
+                    yield Item(visual, body, owner, label)

@@ -2,7 +2,12 @@ import numpy as np
 import pytest
 
 from daidalos.description import sdf
+from daidalos.description.geometry import Sphere
+from daidalos.description.link import Visual
+from daidalos.description.pose import Pose
 from daidalos.simulation import Simulation
+from daidalos.simulation.rendering.scene import Item, make_scene
+from daidalos.simulation.rendering.shadows import simplify
 from daidalos.simulation.samples import ImageSample
 
 SUN = (
@@ -64,3 +69,35 @@ def test_a_lamp_lights_what_is_near_it():
     assert ground(seen, 1.0, 0.0) == pytest.approx(255 * 0.9, abs=2)
     # Lambert: one metre aside of a lamp one metre up, the cosine is 1 / sqrt(2).
     assert ground(seen, 0.0, 0.0) == pytest.approx(ambient + 255 * 0.5 / np.sqrt(2), abs=2)
+
+
+def test_a_shadow_follows_what_moves_and_stays_when_it_rests():
+    simulation = Simulation(
+        sdf.parse(
+            f"<sdf version='1.9'><world name='w'>{FLOOR}{LOOKS_DOWN}{SUN.format(1)}{POLE.format('')}</world></sdf>"
+        )
+    )
+    for place in (0.0, -1.5, -1.5, 0.5):
+        simulation.set_pose("post", Pose((place, 0.0, 0.5)))
+        # Longer than it takes to count as standing.
+        samples = simulation.advance(900_000_000)
+        pictures = [sample.pixels for sample in samples if isinstance(sample, ImageSample)]
+        for seen in (pictures[0], pictures[-1]):
+            lit = ground(seen, place - 1.0, 0.0)
+            assert ground(seen, place + 0.8, 0.0) < lit - 60
+            assert ground(seen, place + 1.3, 0.0) == pytest.approx(lit, abs=3)
+
+
+def test_shapes_are_simplified_and_stay_closed():
+    balls = [Visual(Sphere(0.5)), Visual(Sphere(0.2))]
+    scene = make_scene([Item(ball, 0, number, 0) for number, ball in enumerate(balls)], pytest.fail)
+    shapes = simplify(scene, 0.1)
+    assert len(shapes.faces) < len(scene.faces) / 2
+    assert shapes.face_ranges[-1, 1] == len(shapes.faces)
+    for (first, last), (begin, end), radius in zip(shapes.face_ranges, shapes.vertex_ranges, (0.5, 0.2), strict=True):
+        faces = shapes.faces[first:last]
+        assert faces.min() >= begin
+        assert faces.max() < end
+        assert np.linalg.norm(shapes.vertices[begin:end], axis=1) == pytest.approx(radius, rel=1e-5)
+        edges = np.concatenate((faces[:, (0, 1)], faces[:, (1, 2)], faces[:, (2, 0)]))
+        assert sorted(map(tuple, edges.tolist())) == sorted(map(tuple, edges[:, ::-1].tolist()))

@@ -65,14 +65,14 @@ class _Buffers:
 
     scene: Scene
     placed: Array = field(init=False)
-    projected: Array = field(init=False)
-    edges: Array = field(init=False)
+    projected: NDArray[np.float32] = field(init=False)
+    edges: NDArray[np.float32] = field(init=False)
     flipped: NDArray[np.bool_] = field(init=False)
 
     def __post_init__(self) -> None:
         self.placed = np.zeros((len(self.scene.body), 3, 4))
-        self.projected = np.zeros((len(self.scene.vertices), PROJECTED))
-        self.edges = np.zeros((len(self.scene.faces), EDGES))
+        self.projected = np.zeros((len(self.scene.vertices), PROJECTED), dtype=np.float32)
+        self.edges = np.zeros((len(self.scene.faces), EDGES), dtype=np.float32)
         self.flipped = np.zeros(len(self.scene.faces), dtype=np.bool_)
 
 

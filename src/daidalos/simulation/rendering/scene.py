@@ -18,6 +18,7 @@ from daidalos.description.visuals import Part, visual_parts
 from daidalos.simulation.rendering.textures import TextureAtlas, make_atlas
 
 Array = NDArray[np.float64]
+Floats = NDArray[np.float32]
 
 UNLABELLED = 0
 _ALL = 0xFFFFFFFF
@@ -32,8 +33,6 @@ class Item:
     visual : Visual
     body : int
         The body in MuJoCo's arrays that carries it.
-    fixed : bool
-        Whether that body never moves.
     owner : int
         Number of its model.
     label : int
@@ -42,7 +41,6 @@ class Item:
 
     visual: Visual
     body: int
-    fixed: bool
     owner: int
     label: int
 
@@ -53,11 +51,11 @@ class Scene:
 
     Parameters
     ----------
-    vertices, normals : array (v, 3)
+    vertices, normals : array (v, 3) of float32
         In the parts' frames.
-    uv : array (v, 2)
+    uv : array (v, 2) of float32
     faces : array (f, 3) of int32
-    planes : array (f, 4)
+    planes : array (f, 4) of float32
         Normal of each triangle, of any length, and its scalar product with the triangle's points.
     face_part : array (f,) of int32
     body : array (n,) of int64
@@ -66,7 +64,7 @@ class Scene:
     spheres : array (n, 4)
         Centre and radius of a ball around each part, in its frame.
     face_ranges, vertex_ranges : array (n, 2) of int64
-    two_sided, opaque, visible, fixed, casts : array (n,) of bool
+    two_sided, opaque, visible, casts : array (n,) of bool
     colors, emissions : array (n, 3) of float32
     alphas : array (n,) of float32
     texture_of : array (n,) of int32
@@ -76,11 +74,11 @@ class Scene:
     atlas : TextureAtlas
     """
 
-    vertices: Array
-    normals: Array
-    uv: Array
+    vertices: Floats
+    normals: Floats
+    uv: Floats
     faces: NDArray[np.int32]
-    planes: Array
+    planes: Floats
     face_part: NDArray[np.int32]
     body: NDArray[np.int64]
     pose: Array
@@ -90,7 +88,6 @@ class Scene:
     two_sided: NDArray[np.bool_]
     opaque: NDArray[np.bool_]
     visible: NDArray[np.bool_]
-    fixed: NDArray[np.bool_]
     casts: NDArray[np.bool_]
     colors: NDArray[np.float32]
     emissions: NDArray[np.float32]
@@ -126,14 +123,14 @@ def make_scene(items: Iterable[Item], warn: Callable[[str], None]) -> Scene:
     vertex_starts = np.concatenate(([0], vertex_ends[:-1])).astype(np.int64)[: len(pairs)]
     face_starts = np.concatenate(([0], face_ends[:-1])).astype(np.int64)[: len(pairs)]
     alphas = np.array([part.color[3] for _, part in pairs], dtype=np.float32)
-    vertices = _stack([part.vertices for _, part in pairs], 3)
+    vertices = _stack([part.vertices for _, part in pairs], 3).astype(np.float32)
     faces = _stack([p.faces + start for (_, p), start in zip(pairs, vertex_starts, strict=True)], 3).astype(np.int32)
     return Scene(
         vertices=vertices,
-        normals=_stack([part.normals for _, part in pairs], 3),
-        uv=_stack([np.zeros((len(p.vertices), 2)) if p.uv is None else p.uv for _, p in pairs], 2),
+        normals=_stack([part.normals for _, part in pairs], 3).astype(np.float32),
+        uv=_stack([np.zeros((len(p.vertices), 2)) if p.uv is None else p.uv for _, p in pairs], 2).astype(np.float32),
         faces=faces,
-        planes=planes_of(vertices[faces]),
+        planes=planes_of(vertices[faces].astype(np.float64)).astype(np.float32),
         face_part=np.repeat(np.arange(len(pairs), dtype=np.int32), face_ends - face_starts),
         body=np.array([item.body for item, _ in pairs], dtype=np.int64),
         pose=np.array([item.visual.pose.matrix[:3] for item, _ in pairs]).reshape(-1, 3, 4),
@@ -143,7 +140,6 @@ def make_scene(items: Iterable[Item], warn: Callable[[str], None]) -> Scene:
         two_sided=np.array([_open(item, part) for item, part in pairs], dtype=np.bool_),
         opaque=alphas >= 1.0,
         visible=alphas > 0.0,
-        fixed=np.array([item.fixed for item, _ in pairs], dtype=np.bool_),
         casts=np.array([item.visual.cast_shadows for item, _ in pairs], dtype=np.bool_) & (alphas >= 1.0),
         colors=np.array([part.color[:3] for _, part in pairs], dtype=np.float32).reshape(-1, 3),
         emissions=np.array([_emission(item.visual) for item, _ in pairs], dtype=np.float32).reshape(-1, 3),
@@ -211,5 +207,5 @@ def _emission(visual: Visual) -> tuple[float, float, float]:
     return (0.0, 0.0, 0.0) if glow is None else (glow[0], glow[1], glow[2])
 
 
-def _stack(arrays: list[Any], width: int) -> Array:
-    return np.concatenate(arrays).astype(np.float64) if arrays else np.zeros((0, width))
+def _stack(arrays: list[Any], width: int) -> NDArray[Any]:
+    return np.concatenate(arrays) if arrays else np.zeros((0, width))

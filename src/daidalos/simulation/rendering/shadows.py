@@ -3,25 +3,33 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
 from daidalos.simulation.rendering.flat_raster import draw_flat
 from daidalos.simulation.rendering.raster import place_parts
-from daidalos.simulation.rendering.scene import Scene
+from daidalos.simulation.rendering.scene import Scene, planes_of
 from daidalos.simulation.rendering.sunlight import BLOCK_BITS, coarsen
 
 Array = NDArray[np.float64]
 
 _LARGEST_REACH = 16.0
+_LINGER = 30
+"""Pictures after which what came to rest counts as standing."""
+
+_SHIFT = 1e-5
+"""Change of a position [m] or of an axis below which a body stands."""
+
 _NEVER = np.array((1 << 30, -1, 1 << 30, -1), dtype=np.int64)
 
 
 class ShadowMap:
     """Depths along a light, of a square around a camera.
 
-    What never moves is drawn again only when the square moves on; what does is drawn over it each time.
+    What stands is drawn again only when the square moves on or something starts or stops to move; what moves is drawn
+    over it each time.
 
     Parameters
     ----------
@@ -48,9 +56,13 @@ class ShadowMap:
         self._scene: Scene | None = None
         self._placed = np.empty((0, 3, 4))
         self._scratch = np.empty((0, 3))
+        self._shapes = Shapes()
         self._light = np.zeros(3)
         self._corner = (math.nan, math.nan)
         self._dirty = _NEVER.copy()
+        self._poses = np.zeros((0, 12))
+        self._rest = np.zeros(0, dtype=np.int64)
+        self._moving = np.zeros(0, dtype=np.bool_)
 
     def update(
         self, scene: Scene, positions: Array, rotations: Array, light: Array, eye: Array, ahead: Array, far: float
@@ -73,12 +85,25 @@ class ShadowMap:
         moved = self._aim(light, eye + ahead * 0.8 * reach, 1.2 * reach)
         if scene is not self._scene:
             self._scene, moved = scene, True
+            self._shapes = simplify(scene, self.texel)
             self._placed = np.empty((len(scene.body), 3, 4))
-            self._scratch = np.empty_like(scene.vertices)
+            self._scratch = np.empty(self._shapes.vertices.shape)
+            self._poses = np.concatenate((positions, rotations), axis=1)
+            self._rest = np.full(len(positions), _LINGER)
         place_parts(scene.body, scene.pose, positions, rotations, self.to_map, self._placed)
-        if moved:
+        moving = self._find_moving(positions, rotations)[scene.body]
+        if moved or not np.array_equal(moving, self._moving):
+            self._moving = moving
             self._draw_still(scene)
         self._draw_moving(scene)
+
+    def _find_moving(self, positions: Array, rotations: Array) -> NDArray[np.bool_]:
+        """Tell for each body whether it moved of late."""
+        poses = np.concatenate((positions, rotations), axis=1)
+        shifted = (np.abs(poses - self._poses) > _SHIFT).any(axis=1)
+        self._poses[shifted] = poses[shifted]
+        self._rest = np.where(shifted, 0, self._rest + 1)
+        return self._rest < _LINGER
 
     def _aim(self, light: Array, centre: Array, reach: float) -> bool:
         """Lay the square around a place, in steps so that it seldom moves; tell whether it did."""
@@ -102,7 +127,7 @@ class ShadowMap:
 
     def _draw_still(self, scene: Scene) -> None:
         self._still.fill(np.inf)
-        self._draw(scene, scene.casts & scene.fixed, self._still, _NEVER.copy())
+        self._draw(scene, scene.casts & ~self._moving, self._still, _NEVER.copy())
         self.depths[:] = self._still
         size = len(self.depths)
         coarsen(self.depths, self.coarse, np.array((0, size - 1, 0, size - 1), dtype=np.int64))
@@ -114,7 +139,7 @@ class ShadowMap:
             rows, columns = slice(old[0], old[1] + 1), slice(old[2], old[3] + 1)
             self.depths[rows, columns] = self._still[rows, columns]
         box = _NEVER.copy()
-        self._draw(scene, scene.casts & ~scene.fixed, self.depths, box)
+        self._draw(scene, scene.casts & self._moving, self.depths, box)
         both = np.array(
             (min(box[0], old[0]), max(box[1], old[1]), min(box[2], old[2]), max(box[3], old[3])), dtype=np.int64
         )
@@ -129,16 +154,68 @@ class ShadowMap:
         depths: NDArray[np.float32],
         box: NDArray[np.int64],
     ) -> None:
+        shapes = self._shapes
         draw_flat(
             wanted,
             self._placed,
-            scene.face_ranges,
-            scene.vertex_ranges,
+            shapes.face_ranges,
+            shapes.vertex_ranges,
             scene.two_sided,
-            scene.vertices,
-            scene.faces,
-            scene.planes,
+            shapes.vertices,
+            shapes.faces,
+            shapes.planes,
             self._scratch,
             depths,
             box,
         )
+
+
+@dataclass(frozen=True, eq=False)
+class Shapes:
+    """What throws shadows: triangles of the parts of a scene, in arrays as there."""
+
+    vertices: NDArray[np.float32] = field(default_factory=lambda: np.zeros((0, 3), dtype=np.float32))
+    faces: NDArray[np.int32] = field(default_factory=lambda: np.zeros((0, 3), dtype=np.int32))
+    planes: NDArray[np.float32] = field(default_factory=lambda: np.zeros((0, 4), dtype=np.float32))
+    face_ranges: NDArray[np.int64] = field(default_factory=lambda: np.zeros((0, 2), dtype=np.int64))
+    vertex_ranges: NDArray[np.int64] = field(default_factory=lambda: np.zeros((0, 2), dtype=np.int64))
+
+
+def simplify(scene: Scene, cell: float) -> Shapes:
+    """Return the triangles of a scene with the vertices of each cube of a grid made one.
+
+    What is closed stays closed, and triangles that no longer have three corners are gone (Rossignac and Borrel,
+    "Multi-resolution 3D approximations for rendering complex scenes", 1993).
+
+    Parameters
+    ----------
+    scene : Scene
+    cell : float
+        Side of a cube [m].
+    """
+    part = np.repeat(np.arange(len(scene.body)), np.diff(scene.vertex_ranges, axis=1).ravel())
+    cubes = np.floor(scene.vertices / cell).astype(np.int64)
+    _, first, place = np.unique(_hash(part, *cubes.T), return_index=True, return_inverse=True)
+    # In the old order, so that parts lie behind one another still.
+    kept, rank = np.sort(first), np.empty(len(first), dtype=np.int32)
+    rank[np.argsort(first)] = np.arange(len(first), dtype=np.int32)
+    faces = rank[place.ravel()][scene.faces].reshape(-1, 3)
+    whole = (faces[:, 0] != faces[:, 1]) & (faces[:, 1] != faces[:, 2]) & (faces[:, 2] != faces[:, 0])
+    before = np.concatenate(([0], np.cumsum(whole)))
+    vertices = scene.vertices[kept]
+    return Shapes(
+        vertices,
+        faces[whole],
+        planes_of(vertices[faces[whole]].astype(np.float64)).astype(np.float32),
+        before[scene.face_ranges],
+        np.searchsorted(kept, scene.vertex_ranges),
+    )
+
+
+def _hash(*numbers: NDArray[np.int64]) -> NDArray[np.uint64]:
+    """Mix integers into one that is theirs alone, as good as certainly."""
+    mixed = np.zeros(len(numbers[0]), dtype=np.uint64)
+    for number in numbers:
+        mixed = (mixed ^ number.astype(np.uint64)) * np.uint64(0x9E3779B97F4A7C15)
+        mixed ^= mixed >> np.uint64(29)
+    return mixed

@@ -29,7 +29,7 @@ def warm_up(progress: Callable[[float, str], None] = lambda share, step: None) -
     renderer = Renderer(pinhole, 0.1, 10.0)
     red = Material("red", (1.0, 0.0, 0.0, 1.0))
     visuals = (Visual(Plane(size=(9.0, 9.0))), Visual(Box((1.0, 1.0, 1.0)), Pose((3.0, 0.0, 0.0)), red))
-    scene = make_scene([Item(visual, 0, i == 0, i, 0) for i, visual in enumerate(visuals)], lambda line: None)
+    scene = make_scene([Item(visual, 0, i, 0) for i, visual in enumerate(visuals)], lambda line: None)
     positions, rotations = np.zeros((1, 3)), np.eye(3).reshape(1, 9)
     view = renderer.render(scene, positions, rotations, Pose((0.0, 0.0, 1.0)))
     progress(0.4, "light and shadow")
