@@ -55,8 +55,19 @@ def publisher(text, **parameters):
     return RobotStatePublisher(parameter_overrides=[Parameter(name, value=value) for name, value in values.items()])
 
 
-def test_joint_states_become_transforms(node):  # noqa: F811
-    state_publisher = publisher(chain(2), frame_prefix="bot/")
+def chain_in_sdf(joints):
+    links = "".join(f"<link name='l{i}'><pose>0 0 {0.1 * i} 0 0 0</pose></link>" for i in range(joints + 1))
+    parts = "".join(
+        f"<joint name='j{i}' type='revolute'><parent>l{i}</parent><child>l{i + 1}</child>"
+        "<axis><xyz>0 1 0</xyz></axis></joint>"
+        for i in range(joints)
+    )
+    return f"<?xml version='1.0'?><sdf version='1.8'><model name='chain'>{links}{parts}</model></sdf>"
+
+
+@pytest.mark.parametrize("written", [chain, chain_in_sdf])
+def test_joint_states_become_transforms(node, written):  # noqa: F811
+    state_publisher = publisher(written(2), frame_prefix="bot/")
     heard = []
     done = threading.Event()
     node.create_subscription(TFMessage, "/tf", lambda message: (heard.append(message), done.set()), 10)
@@ -69,6 +80,7 @@ def test_joint_states_become_transforms(node):  # noqa: F811
     first, second = heard[0].transforms
     assert (first.header.frame_id, first.child_frame_id) == ("bot/l0", "bot/l1")
     assert first.transform.rotation.w == 1.0
+    assert first.transform.translation.z == pytest.approx(0.1)
     assert second.header.stamp.sec == 3
     assert (second.transform.rotation.y, second.transform.rotation.w) == pytest.approx((np.sqrt(0.5),) * 2)
     state_publisher.destroy_node()

@@ -1,10 +1,10 @@
-"""`robot_state_publisher`: transforms of all links from joint states and a URDF."""
+"""`robot_state_publisher`: transforms of all links from joint states and a URDF, or a model in SDF."""
 
 from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from rclpy.node import Node
@@ -20,6 +20,10 @@ from daidalos.nodes.description_files import read_description
 from daidalos.nodes.packages import package_share
 from daidalos.nodes.robot_state_publisher._transform_bytes import TransformBytes
 from daidalos.nodes.runner import UserError, run
+
+if TYPE_CHECKING:
+    from daidalos.description.robot import Robot
+    from daidalos.description.world import Model
 
 _LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
@@ -68,7 +72,7 @@ class RobotStatePublisher(Node):
         if not text:
             raise UserError("the parameter 'robot_description' must hold a URDF document, it is empty")
         try:
-            robot = urdf.parse(text, source, package_share)
+            robot = _parse(text, source)
         except DescriptionError as error:
             raise UserError(str(error)) from None
         self._tree = KinematicTree(robot)
@@ -160,6 +164,14 @@ class RobotStatePublisher(Node):
                 except UserError as error:
                     return SetParametersResult(successful=False, reason=str(error))
         return SetParametersResult(successful=True)
+
+
+def _parse(text: str, source: str) -> Robot | Model:
+    if "<sdf" in text[:2000]:
+        from daidalos.description import sdf
+
+        return sdf.parse_model(text, source, package_share)
+    return urdf.parse(text, source, package_share)
 
 
 def _from_file(path: str) -> RobotStatePublisher:
