@@ -365,8 +365,7 @@ class Engine:
             self._warn(line)
 
         def setting(name: str) -> Setting:
-            stream = partial(self._stream, f"{model.name}::{name}")
-            return Setting(model, model.name, namespace, self.world, stream, self._warn)
+            return self._setting(model, namespace, name)
 
         components = make_components(model, setting)
         if actor is not None:
@@ -436,6 +435,14 @@ class Engine:
         instance.build.remove()
         self._assets.release(instance.build.assets)
 
+    def _attach(self, component: Component, instance: Instance) -> None:
+        """Let a component act on a model that runs already; states saved before can not be restored."""
+        self._compilations += 1
+        instance.components.append(component)
+        component.bind(instance)
+        component.memory = component.start()
+        self._schedule.add(component, self.time_ns)
+
     def _components(self) -> list[Component]:
         return [component for instance in self._instances.values() for component in instance.components]
 
@@ -463,6 +470,10 @@ class Engine:
 
     def _is_heard(self, topic: str) -> bool:
         return self.heard is None or self.heard(topic)
+
+    def _setting(self, model: Model, namespace: str, name: str) -> Setting:
+        stream = partial(self._stream, f"{model.name}::{name}")
+        return Setting(model, model.name, namespace, self.world, stream, self._warn)
 
     def _stream(self, name: str) -> np.random.Generator:
         """Return random numbers that depend on the seed and a name alone."""

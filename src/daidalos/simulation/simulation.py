@@ -14,9 +14,11 @@ from daidalos.description.pose import Vector
 from daidalos.description.scaling import scaled
 from daidalos.simulation.conversion.contact import set_friction
 from daidalos.simulation.conversion.options import physics_step
+from daidalos.simulation.courses import Course, CourseFollower
 from daidalos.simulation.engine import Engine
 from daidalos.simulation.errors import SimulationError
 from daidalos.simulation.forces import JointPush, Push
+from daidalos.simulation.samples import TrajectoryCommand
 
 Array = NDArray[np.float64]
 
@@ -102,6 +104,26 @@ class Simulation(Engine):
         return start, math.inf if duration_ns is None else start + duration_ns
 
     # Models
+
+    def follow(self, model: str, course: TrajectoryCommand) -> None:
+        """Put joints where a trajectory says from now on, in every step until its end, without any force.
+
+        Raises
+        ------
+        UnknownNameError
+        ValueError
+            When it has no points, or its times do not rise.
+        """
+        instance = self.instance(model)
+        for name in course.joints:
+            instance.joint(name)
+        if not len(course.times) or (np.diff(course.times) <= 0).any():
+            raise ValueError("the trajectory should have points at times that rise")
+        follower = next((c for c in instance.components if isinstance(c, CourseFollower)), None)
+        if follower is None:
+            follower = CourseFollower(self._setting(instance.model, instance.namespace, "course"))
+            self._attach(follower, instance)
+        follower.memory = Course(course, self.time_ns)
 
     def set_joint_properties(
         self, model: str, joint: str, damping: float | None, limits: tuple[float, float] | None
@@ -215,7 +237,11 @@ class Simulation(Engine):
         Raises
         ------
         UnknownNameError
+        ValueError
+            When it is negative.
         """
+        if not friction >= 0:
+            raise ValueError(f"friction should not be negative, got {friction:g}")
         instance = self.instance(model)
         if link is not None:
             instance.link(link)

@@ -2,11 +2,13 @@
 
 import pytest
 from builtin_interfaces.msg import Duration
+from daidalos_msgs.srv import SetFriction
 from gazebo_msgs import srv
 from gazebo_msgs.msg import EntityState, ODEJointProperties
 from geometry_msgs.msg import Point, Pose, Twist, Vector3, Wrench
 from std_msgs.msg import ColorRGBA
 from std_srvs.srv import Empty, Trigger
+from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 from nodes.gazebo_ros.conftest import ARM, BOX
 
@@ -144,6 +146,39 @@ def test_joints_have_properties_and_take_efforts(shop):
     ).success
     joint = shop.call(srv.GetJointProperties, "/get_joint_properties", joint_name="j")
     assert (joint.damping[0], joint.position[0]) == (1.0, pytest.approx(0.7))
+
+
+def test_joints_follow_a_trajectory(shop):
+    spawn(shop, "arm", ARM)
+    points = [
+        JointTrajectoryPoint(positions=[angle], time_from_start=Duration(sec=second))
+        for second, angle in ((0, 0.0), (1, 0.8), (2, 0.2))
+    ]
+    course = JointTrajectory(joint_names=["j"], points=points)
+    asked = {"model_name": "arm", "joint_trajectory": course, "set_model_pose": True, "model_pose": at(1.0, z=2.0)}
+    assert shop.call(srv.SetJointTrajectory, "/gazebo/set_joint_trajectory", **asked).success
+    for milliseconds, angle in ((500, 0.4), (500, 0.8), (500, 0.5)):
+        step(shop, milliseconds)
+        joint = shop.call(srv.GetJointProperties, "/get_joint_properties", joint_name="j")
+        assert joint.position[0] == pytest.approx(angle, abs=0.002)
+    assert state(shop, "arm").state.pose.position.x == pytest.approx(1.0)
+    wrong = JointTrajectory(joint_names=["elbow"], points=points)
+    answer = shop.call(srv.SetJointTrajectory, "/set_joint_trajectory", model_name="arm", joint_trajectory=wrong)
+    assert not answer.success
+    assert "elbow" in answer.status_message
+
+
+def test_friction_is_changed_while_running(shop):
+    """A crate that slides stops after v^2 / (2 mu g), or not at all."""
+    spawn(shop, pose=at(0.0, 3.0))
+    for friction, way in ((0.1, 1.0**2 / (2 * 0.1 * 9.8)), (0.0, 1.5)):
+        assert shop.call(SetFriction, "/gazebo/set_friction", name="crate", friction=friction).success
+        start = EntityState(name="crate", pose=at(0.0, 3.0), twist=Twist(linear=Vector3(x=1.0)))
+        assert shop.call(srv.SetEntityState, "/set_entity_state", state=start).success
+        step(shop, 1500)
+        assert state(shop, "crate").state.pose.position.x == pytest.approx(way, rel=0.1)
+    assert not shop.call(SetFriction, "/gazebo/set_friction", name="crate", friction=-1.0).success
+    assert not shop.call(SetFriction, "/gazebo/set_friction", name="nobody", friction=1.0).success
 
 
 def test_models_and_links_have_properties(shop):

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 from daidalos.description.primitives import primitive
+from daidalos.nodes.gazebo_ros._entities import find_entity
 from daidalos.nodes.gazebo_ros._host import Host
 from daidalos.nodes.gazebo_ros._shapes import shape_markers
 from daidalos.nodes.gazebo_ros._states import color_of, pose_message, pose_of, vector_of
@@ -24,12 +25,13 @@ class EditingServices:
     """
 
     def __init__(self, node: Any, host: Host, group: Any) -> None:
-        from daidalos_msgs.srv import GetShapes, InsertShape, ScaleEntity
+        from daidalos_msgs.srv import GetShapes, InsertShape, ScaleEntity, SetFriction
 
         self._host = host
         node.create_service(InsertShape, "~/insert_shape", _told(self._insert), callback_group=group)
         node.create_service(GetShapes, "~/get_shapes", _told(self._shapes), callback_group=group)
         node.create_service(ScaleEntity, "~/scale_entity", _told(self._scale), callback_group=group)
+        node.create_service(SetFriction, "~/set_friction", _told(self._set_friction), callback_group=group)
 
     def _insert(self, request: Any, response: Any) -> None:
         color = color_of(request.color) if request.color.a > 0 else (0.6, 0.6, 0.6, 1.0)
@@ -38,6 +40,13 @@ class EditingServices:
 
     def _scale(self, request: Any, response: Any) -> None:
         self._host.scale(request.name, vector_of(request.factors))
+
+    def _set_friction(self, request: Any, response: Any) -> None:
+        def work(simulation: Simulation) -> None:
+            entity = find_entity(simulation, request.name)
+            simulation.set_friction(entity.model, request.friction, entity.link)
+
+        self._host.paced.call(work)
 
     def _shapes(self, request: Any, response: Any) -> None:
         def work(simulation: Simulation) -> None:

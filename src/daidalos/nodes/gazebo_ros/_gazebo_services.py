@@ -14,6 +14,7 @@ from daidalos.description.joint import JointType
 from daidalos.nodes.conversions import nanoseconds, time_message
 from daidalos.nodes.gazebo_ros._entities import Entity, find_entity, find_joint, motion_of, set_motion
 from daidalos.nodes.gazebo_ros._host import Host, state_namespaces
+from daidalos.nodes.gazebo_ros._messages import trajectory_of
 from daidalos.nodes.gazebo_ros._states import color_message, color_of, pose_message, pose_of, twist_message, vector_of
 from daidalos.simulation import Simulation
 from daidalos.simulation.errors import SimulationError
@@ -115,6 +116,7 @@ class GazeboServices:
             GetLinkState,
             GetModelState,
             SetEntityState,
+            SetJointTrajectory,
             SetLinkState,
             SetModelConfiguration,
             SetModelState,
@@ -134,6 +136,7 @@ class GazeboServices:
             SetLinkState, ("set_link_state",), lambda s, q, r: _set_state(s, q.link_state.link_name, q.link_state)
         )
         self._simulate(SetModelConfiguration, ("set_model_configuration",), _set_configuration)
+        self._simulate(SetJointTrajectory, ("set_joint_trajectory",), _follow)
 
     # Properties
 
@@ -281,6 +284,12 @@ def _set_configuration(simulation: Simulation, request: Any, response: Any) -> N
         simulation.joint(request.model_name, joint)
     for joint, position in zip(request.joint_names, request.joint_positions, strict=True):
         simulation.set_joint(request.model_name, joint, position)
+
+
+def _follow(simulation: Simulation, request: Any, response: Any) -> None:
+    if request.set_model_pose:
+        simulation.set_pose(request.model_name, pose_of(request.model_pose))
+    simulation.follow(request.model_name, trajectory_of(request.joint_trajectory))
 
 
 def _get_model_properties(simulation: Simulation, request: Any, response: Any) -> None:

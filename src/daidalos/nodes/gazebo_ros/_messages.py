@@ -126,7 +126,8 @@ def _number(message: Any) -> samples.NumberCommand:
     return samples.NumberCommand(float(message.data))
 
 
-def _trajectory(message: Any) -> samples.TrajectoryCommand:
+def trajectory_of(message: Any) -> samples.TrajectoryCommand:
+    """Return the points of a message that name every joint's position."""
     count = len(message.joint_names)
     points = [point for point in message.points if len(point.positions) == count]
     return samples.TrajectoryCommand(
@@ -149,7 +150,7 @@ INCOMING: dict[type, Incoming] = {
     samples.TwistCommand: Incoming(named("geometry_msgs", "Twist"), _twist),
     samples.WrenchCommand: Incoming(named("geometry_msgs", "Wrench"), _wrench),
     samples.NumberCommand: Incoming(named("std_msgs", "Float64"), _number),
-    samples.TrajectoryCommand: Incoming(_trajectory_type, _trajectory),
+    samples.TrajectoryCommand: Incoming(_trajectory_type, trajectory_of),
 }
 
 

@@ -3,25 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
-
-import numpy as np
 
 from daidalos.description.link import Plugin as Description
 from daidalos.simulation.component import Setting, Subscription
 from daidalos.simulation.conversion.build import ModelBuild
+from daidalos.simulation.courses import Course, place_joints
 from daidalos.simulation.instance import Instance
 from daidalos.simulation.plugins.base import Plugin
 from daidalos.simulation.samples import NumberCommand, Sample, TrajectoryCommand
 from daidalos.simulation.topics import absolute_topic
-
-
-@dataclass
-class Course:
-    """A trajectory that is being followed since a time."""
-
-    command: TrajectoryCommand
-    start_ns: int
 
 
 class JointPoseTrajectory(Plugin):
@@ -55,15 +45,7 @@ class JointPoseTrajectory(Plugin):
         course = self.memory
         if course is None:
             return ()
-        elapsed = (now_ns - course.start_ns) * 1e-9
-        times, positions = course.command.times, course.command.positions
-        data = self._instance.physics.data
-        for column, name in enumerate(course.command.joints):
-            joint = self._instance.joint(self.parameters.scoped(name))
-            data.qpos[joint.qpos] = np.interp(elapsed, times, positions[:, column])
-            data.qvel[joint.dof] = 0.0
-        self._instance.physics.changed()
-        if elapsed >= times[-1]:
+        if place_joints(self._instance, course, now_ns, self.parameters.scoped):
             self.memory = None
         return ()
 

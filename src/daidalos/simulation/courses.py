@@ -1,0 +1,74 @@
+"""Joints that are put where a trajectory says, without any force."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from daidalos.simulation.component import Component, Setting
+from daidalos.simulation.instance import Instance
+from daidalos.simulation.samples import Sample, TrajectoryCommand
+
+
+@dataclass
+class Course:
+    """A trajectory that is being followed since a time."""
+
+    command: TrajectoryCommand
+    start_ns: int
+
+
+class CourseFollower(Component):
+    """Puts the joints of a model where a course has them, in every step until its end.
+
+    Parameters
+    ----------
+    setting : Setting
+    """
+
+    memory: Course | None
+
+    def __init__(self, setting: Setting) -> None:
+        super().__init__(setting)
+        self.period = 0.0
+
+    def bind(self, instance: Instance) -> None:
+        """Note whose joints move."""
+        self._instance = instance
+
+    def update(self, now_ns: int) -> Iterable[Sample]:
+        """Put the joints where they should be now."""
+        if self.memory is not None and place_joints(self._instance, self.memory, now_ns):
+            self.memory = None
+        return ()
+
+
+def place_joints(
+    instance: Instance, course: Course, now_ns: int, joint_of: Callable[[str], str] = lambda name: name
+) -> bool:
+    """Put joints where a course has them: between two points in proportion to time.
+
+    Parameters
+    ----------
+    instance : Instance
+    course : Course
+    now_ns : int
+    joint_of : callable
+        Turns the course's names into the model's.
+
+    Returns
+    -------
+    bool
+        Whether the course is at its end.
+    """
+    elapsed = (now_ns - course.start_ns) * 1e-9
+    times, positions = course.command.times, course.command.positions
+    data = instance.physics.data
+    for column, name in enumerate(course.command.joints):
+        joint = instance.joint(joint_of(name))
+        data.qpos[joint.qpos] = np.interp(elapsed, times, positions[:, column])
+        data.qvel[joint.dof] = 0.0
+    instance.physics.changed()
+    return bool(elapsed >= times[-1])
