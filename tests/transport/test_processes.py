@@ -146,6 +146,23 @@ def test_a_stopped_process_does_not_stop_others(new_session: Callable[[], Sessio
     assert inbox.wait(1, 0.0) == []
 
 
+def test_acknowledgements_are_waited_for_where_there_are_any(new_session: Callable[[], Session], middleware: str):
+    session = new_session()
+    publisher = session.create_publisher(node_of(session, "me"), "/topic", Int32, Qos())
+    second = 10**9
+    with Peer("listen").ready() as listener:
+        assert session.graph.wait_for(lambda: publisher.is_heard, PATIENCE_S)
+        publisher.publish(Int32(data=1))
+        assert publisher.wait_for_acks(10 * second)
+        listener.process.send_signal(signal.SIGSTOP)
+        publisher.publish(Int32(data=2))
+        assert publisher.wait_for_acks(second // 5) is (middleware == "rmw_zenoh_cpp")
+        listener.process.send_signal(signal.SIGCONT)
+        assert publisher.wait_for_acks(None)
+    publisher.close()
+    assert publisher.wait_for_acks(None)
+
+
 def test_best_effort_never_waits(new_session: Callable[[], Session]):
     session = new_session()
     qos = Qos(reliability=Reliability.BEST_EFFORT, depth=5)

@@ -37,6 +37,13 @@ class WirePublisher(ABC):
     def put(self, parts: list[Any], sequence: int, stamp_ns: int) -> None:
         """Send one sample, given as buffers to be concatenated."""
 
+    def wait_for_acks(self, timeout_ns: int | None) -> bool:
+        """Wait until everyone has acknowledged what was sent; False when time ran out.
+
+        True at once where nobody acknowledges: that a sample was sent is all that there is to know.
+        """
+        return True
+
     @abstractmethod
     def close(self) -> None:
         """Stop publishing."""

@@ -86,6 +86,17 @@ class Publisher:
         for observer in self._observers:
             observer()
 
+    def wait_for_acks(self, timeout_ns: int | None) -> bool:
+        """Wait until every reliable subscription has acknowledged all messages; False when time ran out.
+
+        Parameters
+        ----------
+        timeout_ns
+            How long to wait; None for as long as it takes.
+        """
+        wire = self._wire
+        return wire is None or wire.wait_for_acks(timeout_ns)
+
     @property
     def is_heard(self) -> bool:
         """Whether a message would reach, or be kept for, anybody."""

@@ -82,9 +82,14 @@ class Publisher:
             self.__publisher.assert_liveliness()
 
     def wait_for_all_acked(self, timeout: Duration = Duration(nanoseconds=-1)) -> bool:  # noqa: B008
-        """Wait until every message was handed on; True at once where nobody acknowledges."""
-        with self.handle:
-            return True
+        """Wait until every reliable subscription has acknowledged all messages; False when time ran out.
+
+        A negative time-out means as long as it takes. It is True at once where nobody acknowledges: over zenoh, whose
+        links lose nothing, and where the publisher is best effort.
+        """
+        with self.handle as publisher:
+            limit = timeout.nanoseconds
+            return publisher.impl.wait_for_acks(limit if limit >= 0 else None)
 
     def __enter__(self) -> Self:
         return self

@@ -152,6 +152,7 @@ _BLOCKING: dict[str, tuple[Any, tuple[Any, ...]]] = {
     "dds_delete": (c.c_int32, (ENTITY,)),
     "dds_waitset_wait": (c.c_int32, (ENTITY, _PTR, c.c_size_t, DURATION)),
     "dds_writecdr": (c.c_int32, (ENTITY, _PTR)),
+    "dds_wait_for_acks": (c.c_int32, (ENTITY, DURATION)),
 }
 """Functions that may take their time: others may use the interpreter meanwhile."""
 

@@ -19,6 +19,7 @@ from daidalos.transport.backend import (
     WireSubscription,
 )
 from daidalos.transport.cyclonedds.library import (
+    INFINITE,
     PUBLICATION_MATCHED_STATUS,
     RETCODE_TIMEOUT,
     SERDATA_DATA,
@@ -81,6 +82,17 @@ class Writer:
         result = library.dds_writecdr(self.entity, serialised)
         self._congested_until = time.monotonic_ns() + BLOCKING_NS if result == RETCODE_TIMEOUT else 0
 
+    def wait_for_acks(self, timeout_ns: int | None) -> bool:
+        """Wait until all reliable readers have acknowledged what was written; False when time ran out."""
+        if self._closed:
+            return True
+        library = self._library
+        result = library.dds_wait_for_acks(self.entity, INFINITE if timeout_ns is None else timeout_ns)
+        if result == RETCODE_TIMEOUT:
+            return False
+        library.check(result, "wait for acknowledgements")
+        return True
+
     def close(self) -> None:
         """Delete the writer."""
         with self._lock:
@@ -120,6 +132,10 @@ class DdsPublisher(WirePublisher):
     def put(self, parts: list[Any], sequence: int, stamp_ns: int) -> None:
         """Send one sample."""
         self._writer.write(parts)
+
+    def wait_for_acks(self, timeout_ns: int | None) -> bool:
+        """Wait until all reliable readers have acknowledged what was written."""
+        return self._writer.wait_for_acks(timeout_ns)
 
     def close(self) -> None:
         """Delete the writer."""
