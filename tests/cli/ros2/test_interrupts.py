@@ -53,9 +53,15 @@ def test_ctrl_c_at_any_moment(env, tmp_path, name):
         assert process.returncode in (0, 2, -signal.SIGINT), f"at {moment} s"
 
 
-def test_the_status_is_that_of_ros2(env):
+@pytest.mark.parametrize("inherited", [signal.SIG_DFL, signal.SIG_IGN], ids=["terminal", "background of a script"])
+def test_the_status_is_that_of_ros2(env, inherited):
     process = subprocess.Popen(
-        [*ROS2, "topic", "hz", "/nothing"], env=env, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        [*ROS2, "topic", "hz", "/nothing"],
+        env=env,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, inherited),
     )
     assert process.stdout.readline().startswith("WARNING")
     process.send_signal(signal.SIGINT)

@@ -49,9 +49,8 @@ def run_interruptible(argv: list[str]) -> int:
     except KeyboardInterrupt:
         return _INTERRUPTED
     finally:
-        if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:
-            # While the interpreter tidies up, nobody is there to catch an exception.
-            signal.signal(signal.SIGINT, signal.SIG_DFL)
+        # While the interpreter tidies up, nobody is there to catch an exception.
+        signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
 def _run(argv: list[str]) -> int:
@@ -107,8 +106,8 @@ def _handle_interrupts() -> None:
             first = time.monotonic()
             raise KeyboardInterrupt
 
-    if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:
-        signal.signal(signal.SIGINT, on_interrupt)
+    # A shell's script makes what it puts in the background ignore Ctrl-C, but ends it by `kill -INT`.
+    signal.signal(signal.SIGINT, on_interrupt)
 
 
 def _fail(message: str, status: int) -> int:
