@@ -175,6 +175,19 @@ def test_numbers_are_plotted_zoomed_and_read_under_the_mouse(page):
     page.wait_for(f"{LEGEND}.length === 2 && {LEGEND}[1].endsWith('over /odom/twist/twist/linear/x')")
 
 
+def test_a_page_on_which_nothing_happens_draws_nothing(browser, source):
+    with serve(source) as server:
+        show(browser, f"{server.url}?panel=scene")
+        browser.wait_for("daidalos.state().drawn > 0")
+        still = "new Promise((done) => setTimeout(() => done(daidalos.state().drawn), 500))"
+        browser.wait_for(f"(async () => daidalos.state().drawn === await {still})()")
+        before = browser.evaluate("daidalos.state().drawn")
+        assert browser.evaluate(still) == before
+        browser.wheel(800, 400, 100)
+        browser.wait_for(f"daidalos.state().drawn > {before}")
+    assert [error for error in browser.errors if "WebSocket" not in error] == []
+
+
 def test_a_file_of_rviz_says_what_is_shown(browser, source, robot):
     way = Display("Path", "Way", False, {"topic": "/plan"})
     scan = Display("LaserScan", "Scan", True, {"topic": "/scan", "color": "#00ff00"})

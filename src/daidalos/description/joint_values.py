@@ -14,12 +14,13 @@ _VALUED = (JointType.REVOLUTE, JointType.CONTINUOUS, JointType.PRISMATIC)
 
 @dataclass(frozen=True)
 class JointRange:
-    """What a joint may do [rad, m]; `zero` is where it begins."""
+    """What a joint may do, in its `unit`, ``rad`` or ``m``; `zero` is where it begins."""
 
     name: str
     lower: float
     upper: float
     zero: float
+    unit: str = "rad"
 
 
 class JointValues:
@@ -95,4 +96,5 @@ def _range(joint: Joint, zeros: Mapping[str, float]) -> JointRange:
         lower, upper = max(lower, joint.safety.soft_lower_limit), min(upper, joint.safety.soft_upper_limit)
     middle = (lower + upper) / 2 if math.isfinite(lower + upper) else 0.0
     zero = zeros.get(joint.name, 0.0 if lower <= 0.0 <= upper else middle)
-    return JointRange(joint.name, lower, upper, zero)
+    unit = "m" if joint.type is JointType.PRISMATIC else "rad"
+    return JointRange(joint.name, lower, upper, zero, unit)

@@ -35,7 +35,8 @@ class JointStatePublisherGui(JointStatePublisher):
         values = self.values
         for each in values.ranges if values is not None else ():
             limits = [FloatingPointRange(from_value=each.lower, to_value=each.upper)]
-            descriptor = ParameterDescriptor(description=f"position of {each.name}", floating_point_range=limits)
+            words = f"position of {each.name} [{each.unit}]"
+            descriptor = ParameterDescriptor(description=words, floating_point_range=limits)
             name = _PREFIX + each.name
             if self.has_parameter(name):
                 self.undeclare_parameter(name)

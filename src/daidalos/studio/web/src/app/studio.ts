@@ -69,6 +69,7 @@ export class Studio {
 
   start(url: string): void {
     this.session.open(url);
+    document.addEventListener("visibilitychange", () => this.session.seen(!document.hidden));
     const loop = (milliseconds: number) => {
       requestAnimationFrame(loop);
       this.frame(milliseconds / 1000);

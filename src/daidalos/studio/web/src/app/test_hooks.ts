@@ -29,6 +29,8 @@ export interface PageState {
   /** The last message that the page published, by topic. */
   published: Record<string, unknown>;
   framesPerSecond: number;
+  /** How often the 3-D view was drawn. */
+  drawn: number;
 }
 
 export interface TestHooks {
@@ -115,6 +117,7 @@ function describe(studio: Studio): Omit<PageState, "published" | "framesPerSecon
     maps: {},
     displays: {},
     robotPose: robotPose(),
+    drawn: world?.viewport.drawn ?? 0,
     tool: world?.toolbox.active.value.id ?? "",
   };
   for (const { id, name } of displays.configs) {

@@ -58,6 +58,8 @@ export type LinkState = "connecting" | "connected" | "lost";
 export type ToWorker =
   | { kind: "open"; url: string }
   | { kind: "ready" }
+  /** Whether anybody sees the page: a hidden one hears seldom. */
+  | { kind: "seen"; seen: boolean }
   /** Also to change how many messages of a topic are kept; with 0 they are only counted. */
   | { kind: "subscribe"; topic: string; keep: number }
   | { kind: "unsubscribe"; topic: string }

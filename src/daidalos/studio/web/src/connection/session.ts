@@ -55,6 +55,11 @@ export class Session {
     worker.onmessage = (event: MessageEvent<FromWorker>) => this.receive(event.data);
   }
 
+  /** Tell whether anybody sees the page: what comes is gathered for longer while nobody does. */
+  seen(seen: boolean): void {
+    this.send({ kind: "seen", seen });
+  }
+
   open(url: string): void {
     this.send({ kind: "open", url });
   }

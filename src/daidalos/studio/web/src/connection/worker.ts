@@ -8,6 +8,7 @@ const RETRY_FIRST_MS = 300;
 const RETRY_LAST_MS = 4000;
 const MEASURE_MS = 1000;
 const TOGETHER_MS = 8;
+const TOGETHER_UNSEEN_MS = 1000;
 
 declare const self: DedicatedWorkerGlobalScope;
 
@@ -16,6 +17,7 @@ let retryMs = RETRY_FIRST_MS;
 let pageIsReady = true;
 let flushIsDue = false;
 let flushedAt = 0;
+let togetherMs = TOGETHER_MS;
 
 const link = new Link({
   toServer(frame) {
@@ -37,6 +39,9 @@ self.onmessage = (event: MessageEvent<ToWorker>) => {
   } else if (message.kind === "ready") {
     pageIsReady = true;
     flushSoon();
+  } else if (message.kind === "seen") {
+    togetherMs = message.seen ? TOGETHER_MS : TOGETHER_UNSEEN_MS;
+    flush();
   } else {
     link.receivePage(message);
   }
@@ -70,13 +75,13 @@ function flushSoon(): void {
   if (pageIsReady && !flushIsDue && link.hasNews) {
     flushIsDue = true;
     // What arrives together goes together: many small messages to the page would cost more than they say.
-    setTimeout(flush, flushedAt + TOGETHER_MS - performance.now());
+    setTimeout(flush, flushedAt + togetherMs - performance.now());
   }
 }
 
 function flush(): void {
   flushIsDue = false;
-  if (link.hasNews) {
+  if (link.hasNews && pageIsReady) {
     flushedAt = performance.now();
     pageIsReady = false;
     link.flush();

@@ -67,6 +67,8 @@ export abstract class Display {
 }
 
 const PLACE = new Transform();
+/** Who moves less than this since it was drawn, in metres or as a quaternion, stands still: wheels at rest tremble. */
+const STILL = 2e-5;
 
 /** Put an object where a frame is; false where that is not known. */
 export function place(
@@ -83,12 +85,18 @@ export function place(
     return false;
   }
   // A scene in which nothing moves is not drawn again.
-  if (!object.position.equals(PLACE.position) || !object.quaternion.equals(PLACE.rotation)) {
+  if (isElsewhere(object, PLACE)) {
     object.position.copy(PLACE.position);
     object.quaternion.copy(PLACE.rotation);
     context.invalidate();
   }
   return true;
+}
+
+/** Whether an object is drawn elsewhere than at a pose, by more than the trembling of what stands still. */
+export function isElsewhere({ position: p, quaternion: q }: Object3D, { position, rotation: r }: Transform): boolean {
+  const turned = Math.max(Math.abs(q.x - r.x), Math.abs(q.y - r.y), Math.abs(q.z - r.z), Math.abs(q.w - r.w));
+  return Math.max(Math.abs(p.x - position.x), Math.abs(p.y - position.y), Math.abs(p.z - position.z), turned) > STILL;
 }
 
 /** Free the graphics memory of an object and all below it. */

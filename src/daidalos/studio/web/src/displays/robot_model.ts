@@ -175,17 +175,30 @@ function paint(model: Object3D, material: Material): void {
   });
 }
 
+type Surface = Material & { color?: Color; emissive?: Color; map?: unknown; wireframe?: boolean };
+
+/** Most robots are nearly black, and would vanish on a dark floor: what is darker than this glows a little. */
+const DARK = 0.1;
+const GLOW = 0x4a525e;
+
+function luminance({ r, g, b }: Color): number {
+  return 0.2126 * r + 0.7152 * g + 0.0722 * b;
+}
+
 function styleMesh(object: Object3D, alpha: number, collides: boolean): void {
   if (!(object instanceof Mesh)) {
     return;
   }
   object.castShadow = !collides;
   object.userData.pickable = !collides;
-  for (const material of [object.material].flat() as (Material & { color?: Color; wireframe?: boolean })[]) {
+  for (const material of [object.material].flat() as Surface[]) {
     material.userData.opacity ??= material.opacity;
     material.opacity = (material.userData.opacity as number) * alpha;
     material.transparent = material.opacity < 1;
     material.depthWrite = material.opacity >= 1;
+    if (!collides && !material.map && material.color && luminance(material.color) < DARK) {
+      material.emissive?.set(GLOW);
+    }
     if (collides) {
       material.wireframe = true;
       material.color?.set(0xe2a355);

@@ -58,7 +58,7 @@ class TfDisplay extends Display {
     this.drawLinks(poses);
     this.drawLabels(poses, frame);
     const state = [...poses.values()]
-      .map(({ position: p, rotation: r }) => p.toArray().concat(r.toArray()).join())
+      .map(({ position: p, rotation: r }) => [...p.toArray(), ...r.toArray()].map((each) => each.toFixed(4)).join())
       .join();
     if (state !== this.before) {
       this.before = state;

@@ -103,7 +103,10 @@ function DisplayRow({ studio, config, open, onToggle }: RowProps) {
           <span class="turn">
             <Icon name="chevron" size={12} />
           </span>
-          <span class={`type-icon ${config.enabled ? status.level : "off"}`}>
+          <span
+            class={`type-icon ${config.enabled ? status.level : "off"}`}
+            style={config.enabled && status.level === "ok" ? { color: colorOf(config) } : {}}
+          >
             <Icon name={ICONS[config.type] ?? "cube"} size={15} />
           </span>
           <span class="ellipsis">{config.name}</span>
@@ -131,6 +134,15 @@ function DisplayRow({ studio, config, open, onToggle }: RowProps) {
       )}
     </section>
   );
+}
+
+/** The colour in which a display draws, so that the list is the picture's legend too. */
+function colorOf({ type, settings }: DisplayConfig): string {
+  if (type === "Map") {
+    return settings.scheme === "glow" || settings.scheme === "costmap" ? "#f47060" : "var(--text)";
+  }
+  const isPainted = settings.color !== undefined && type !== "Grid" && (settings.colorBy ?? "flat") === "flat";
+  return isPainted ? String(settings.color) : "var(--text-soft)";
 }
 
 function statusOf(studio: Studio, config: DisplayConfig): Status {

@@ -72,29 +72,34 @@ function Sliders({ studio, node, isVisible }: { studio: Studio; node: string; is
   );
 }
 
-function Slider({ joint: { name, lower, upper, value }, onChange }: { joint: Joint; onChange(value: number): void }) {
+function Slider({ joint, onChange }: { joint: Joint; onChange(value: number): void }) {
+  const { name, lower, upper, value, unit } = joint;
   const limit = (typed: number) => Math.min(upper, Math.max(lower, typed));
-  const share = upper > lower ? (100 * (value - lower)) / (upper - lower) : 0;
+  const share = (at: number) => (upper > lower ? (100 * (limit(at) - lower)) / (upper - lower) : 0);
+  const ends = [share(0), share(value)].sort((a, b) => a - b);
   return (
     <label class="joint" data-joint={name}>
       <span class="joint-name ellipsis" title={name}>
         {name}
       </span>
-      <input
-        class="field joint-value figures"
-        type="number"
-        aria-label={`Position of ${name}`}
-        step={0.01}
-        min={lower}
-        max={upper}
-        value={value.toFixed(3)}
-        onChange={(event) => {
-          const typed = Number(event.currentTarget.value);
-          if (event.currentTarget.value.trim() && Number.isFinite(typed)) {
-            onChange(limit(typed));
-          }
-        }}
-      />
+      <span class="field with-unit">
+        <input
+          class="joint-value figures"
+          type="number"
+          aria-label={`Position of ${name}`}
+          step={0.01}
+          min={lower}
+          max={upper}
+          value={value.toFixed(3)}
+          onChange={(event) => {
+            const typed = Number(event.currentTarget.value);
+            if (event.currentTarget.value.trim() && Number.isFinite(typed)) {
+              onChange(limit(typed));
+            }
+          }}
+        />
+        {unit && <span class="unit">{unit}</span>}
+      </span>
       <input
         class="slider"
         type="range"
@@ -102,7 +107,7 @@ function Slider({ joint: { name, lower, upper, value }, onChange }: { joint: Joi
         min={lower}
         max={upper}
         step="any"
-        style={`--share: ${share}%`}
+        style={`--from: ${ends[0]}%; --to: ${ends[1]}%`}
         value={value}
         onInput={(event) => onChange(limit(Number(event.currentTarget.value)))}
       />

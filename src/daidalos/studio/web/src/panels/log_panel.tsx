@@ -13,6 +13,7 @@ const KEEP = 256;
 const KEPT_LINES = 2000;
 const SHOWN_LINES = 300;
 const REFRESH_MS = 100;
+const TOGETHER_MS = 2000;
 
 const LEVELS = [
   [10, "debug"],
@@ -24,6 +25,8 @@ const LEVELS = [
 
 interface Line {
   key: number;
+  /** When it came, by the page's clock. */
+  at: number;
   log: Log;
 }
 
@@ -37,10 +40,12 @@ function LogPanel({ studio, visible }: PanelProps) {
     let pending: Line[] = [];
     let key = 0;
     // Also while hidden: what was said before one looks is what one looks for.
-    const stop = studio.session.subscribe<Log>("/rosout", KEEP, (log) => pending.push({ key: ++key, log }));
+    const stop = studio.session.subscribe<Log>("/rosout", KEEP, (log) =>
+      pending.push({ key: ++key, at: performance.now(), log }),
+    );
     const timer = setInterval(() => {
       if (pending.length) {
-        lines.value = [...lines.value, ...pending].slice(-KEPT_LINES);
+        lines.value = inOrder([...lines.value, ...pending].slice(-KEPT_LINES));
         pending = [];
       }
     }, REFRESH_MS);
@@ -95,15 +100,24 @@ function LogPanel({ studio, visible }: PanelProps) {
   );
 }
 
+/** What came at about the same time by when it was said: every node sends what it said before one listened. */
+function inOrder(lines: Line[]): Line[] {
+  const since = performance.now() - TOGETHER_MS;
+  const old = lines.filter(({ at }) => at < since);
+  const time = ({ log }: Line) => toSeconds(log.stamp);
+  return [...old, ...lines.slice(old.length).sort((a, b) => time(a) - time(b))];
+}
+
 function LogLine({ log }: { log: Log }) {
   const level = [...LEVELS].reverse().find(([least]) => log.level >= least)?.[1] ?? "debug";
   return (
     <div class={`log-line ${level}`} title={log.file && `${log.file}:${log.line} ${log.function}`}>
       <span class="log-time figures">{formatTime(toSeconds(log.stamp))}</span>
       <span class={`log-level ${level}`}>{level}</span>
-      <span class="log-text">
-        <span class="log-name">{log.name}</span> {log.msg}
+      <span class="log-name ellipsis" title={log.name}>
+        {log.name}
       </span>
+      <span class="log-text">{log.msg}</span>
     </div>
   );
 }

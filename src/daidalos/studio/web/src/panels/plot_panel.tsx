@@ -127,18 +127,20 @@ function PlotPanel({ studio, visible, params, remember }: PanelProps) {
     >
       <div class="bar">
         <PathField onAdd={takePath} />
-        <Choice
-          label="Axes"
-          value={xy ? "xy" : "time"}
-          options={[
-            ["time", "over time"],
-            ["xy", "x–y"],
-          ]}
-          onChange={(kind) => {
-            run();
-            change(turned(chosen.peek() ?? first, kind === "xy"));
-          }}
-        />
+        <span class="plot-axes">
+          <Choice
+            label="Axes"
+            value={xy ? "xy" : "time"}
+            options={[
+              ["time", "over time"],
+              ["xy", "x–y"],
+            ]}
+            onChange={(kind) => {
+              run();
+              change(turned(chosen.peek() ?? first, kind === "xy"));
+            }}
+          />
+        </span>
         <Choice
           label="Window"
           value={String(span.value)}

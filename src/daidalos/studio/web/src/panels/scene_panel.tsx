@@ -13,6 +13,8 @@ const MOUSE_HINT = {
   top: "Left: move · Shift + left: turn · Right or wheel: zoom",
 } as const;
 
+const INVITATION = "Send the robot somewhere: press g, then click on the map and drag to where it shall look";
+
 function ScenePanel({ studio, visible }: PanelProps) {
   const container = useRef<HTMLDivElement>(null);
   const world = useSignal<World | undefined>(undefined);
@@ -31,12 +33,14 @@ function ScenePanel({ studio, visible }: PanelProps) {
       return undefined;
     }
   }, []);
+  // A planner's map tells that somebody drives where the goal tool says.
+  const canNavigate = studio.session.topics.value.some(({ name }) => /\/(plan|global_costmap\/costmap)$/.test(name));
   return (
     <div class="scene">
       <div class="scene-canvas" ref={container} />
-      {world.value && <Toolbar world={world.value} />}
+      {world.value && <Toolbar world={world.value} canNavigate={canNavigate} />}
       {world.value && <ViewButtons world={world.value} />}
-      {world.value && <Hint world={world.value} />}
+      {world.value && <Hint world={world.value} canNavigate={canNavigate} />}
       {failure.value && (
         <div class="empty over">
           <Icon name="cube" size={28} />
@@ -49,14 +53,14 @@ function ScenePanel({ studio, visible }: PanelProps) {
   );
 }
 
-function Toolbar({ world }: { world: World }) {
+function Toolbar({ world, canNavigate }: { world: World; canNavigate: boolean }) {
   const { toolbox } = world;
   return (
     <div class="overlay-bar tools" role="toolbar" aria-label="Tools">
       {TOOLS.map((tool) => (
         <button
           key={tool.id}
-          class={`tool ${toolbox.active.value === tool ? "active" : ""}`}
+          class={`tool ${toolbox.active.value === tool ? "active" : ""} ${canNavigate && tool.id === "goal" ? "inviting" : ""}`}
           title={`${tool.title} (${tool.key})`}
           aria-pressed={toolbox.active.value === tool}
           data-tool={tool.id}
@@ -99,12 +103,13 @@ function ViewButtons({ world }: { world: World }) {
   );
 }
 
-function Hint({ world }: { world: World }) {
+function Hint({ world, canNavigate }: { world: World; canNavigate: boolean }) {
   const { toolbox } = world;
   const tool = toolbox.active.value;
+  const invitation = canNavigate && !toolbox.used.value.has("goal") ? INVITATION : "";
   return (
     <div class={`hint ${tool.create ? "busy" : ""}`} data-test="hint">
-      {toolbox.saying.value || tool.hint || MOUSE_HINT[world.viewKind.value]}
+      {toolbox.saying.value || tool.hint || invitation || MOUSE_HINT[world.viewKind.value]}
     </div>
   );
 }

@@ -18,12 +18,15 @@ const HEAVY = new Set([
   "sensor_msgs/msg/PointCloud",
 ]);
 
+/** What every node has for itself: for who looks for it, at the end. */
+const INNER = /\/(transition_event|parameter_events|rosout|bond)$/;
 const REFRESH_MS = 150;
 /** Who opens a topic here looks for its numbers. */
 const UNFOLDED = 5;
 
 function TopicsPanel({ studio, visible }: PanelProps) {
   const filter = useSignal("");
+  const showsInner = useSignal(false);
   const { session } = studio;
   const wanted = filter.value.toLowerCase();
   const topics = session.topics.value.filter(
@@ -31,7 +34,10 @@ function TopicsPanel({ studio, visible }: PanelProps) {
       (name.toLowerCase().includes(wanted) || type.toLowerCase().includes(wanted)) &&
       (wanted.includes("_") || !isHidden(name)),
   );
-  const measured = visible.value ? topics.filter(({ type }) => !HEAVY.has(type)).map(({ name }) => name) : [];
+  const inner = topics.filter(({ name }) => INNER.test(name));
+  const outer = topics.filter(({ name }) => !INNER.test(name));
+  const shown = showsInner.value || wanted !== "" ? topics : outer;
+  const measured = visible.value ? shown.filter(({ type }) => !HEAVY.has(type)).map(({ name }) => name) : [];
   useEffect(() => {
     const stops = measured.map((name) => session.subscribe(name, 0, () => undefined));
     return () => {
@@ -40,6 +46,10 @@ function TopicsPanel({ studio, visible }: PanelProps) {
       }
     };
   }, [measured.join()]);
+  const rows = (some: readonly TopicInfo[]) =>
+    some.map((topic) => (
+      <TopicRow key={`${topic.name} ${topic.type}`} studio={studio} topic={topic} isVisible={visible.value} />
+    ));
   if (session.topics.value.length === 0) {
     return (
       <Empty icon="topics" title="No topics yet">
@@ -58,9 +68,20 @@ function TopicsPanel({ studio, visible }: PanelProps) {
         <span class="faint figures">{topics.length}</span>
       </div>
       <div class="scroll" role="list">
-        {topics.map((topic) => (
-          <TopicRow key={`${topic.name} ${topic.type}`} studio={studio} topic={topic} isVisible={visible.value} />
-        ))}
+        {rows(outer)}
+        {inner.length > 0 && !wanted && (
+          <button
+            class="bare topics-inner"
+            aria-expanded={showsInner.value}
+            onClick={() => (showsInner.value = !showsInner.value)}
+          >
+            <span class="turn">
+              <Icon name="chevron" size={11} />
+            </span>
+            {inner.length} of the nodes’ own
+          </button>
+        )}
+        {(showsInner.value || wanted !== "") && rows(inner)}
       </div>
     </div>
   );

@@ -43,7 +43,7 @@ export function rawPalette(): Palette {
 /** A floor plan in the page's own colours: free is a quiet floor, occupied stands out, unknown is left open. */
 export function planPalette(dark: boolean): Palette {
   const palette = illegalValues();
-  const free = dark ? [45, 53, 65] : [255, 255, 255];
+  const free = dark ? [58, 67, 81] : [255, 255, 255];
   const wall = dark ? [214, 222, 232] : [38, 46, 58];
   for (let value = 0; value <= 100; value++) {
     const share = value / 100;

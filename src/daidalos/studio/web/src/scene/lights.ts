@@ -8,15 +8,16 @@ const SUN_OFFSET = [1.6, -2.2, 4.2] as const;
 
 export class Lights {
   readonly object = new Group();
-  private readonly sun = new DirectionalLight(0xffffff, 2.1);
-  private readonly sky = new HemisphereLight(0xf4f7ff, 0x7d828c, 1.9);
+  private readonly sun = new DirectionalLight(0xffffff);
+  private readonly sky = new HemisphereLight(0xf4f7ff, 0x7d828c);
+  private readonly fill = new DirectionalLight(0xbfd4ff);
   private readonly ground: Mesh;
   private readonly shade = new ShadowMaterial({ color: 0x05080d, opacity: 0.34, depthWrite: false });
 
   constructor() {
     this.sky.position.set(0, 0, 1);
-    const fill = new DirectionalLight(0xbfd4ff, 0.55);
-    fill.position.set(-3, 2, 1.5);
+    this.fill.position.set(-3, 2, 1.5);
+    this.theme = "dark";
     const { shadow } = this.sun;
     shadow.mapSize.set(1024, 1024);
     shadow.radius = 5;
@@ -33,7 +34,7 @@ export class Lights {
     this.ground = new Mesh(new PlaneGeometry(2 * SHADOW_RADIUS_M, 2 * SHADOW_RADIUS_M), this.shade);
     this.ground.receiveShadow = true;
     this.ground.renderOrder = Layer.SHADOW;
-    this.object.add(this.sky, fill, this.sun, this.sun.target, this.ground);
+    this.object.add(this.sky, this.fill, this.sun, this.sun.target, this.ground);
     this.follow({ x: 0, y: 0, z: 0 } as Vector3);
   }
 
@@ -43,7 +44,9 @@ export class Lights {
   }
 
   set theme(theme: "dark" | "light") {
-    this.shade.opacity = theme === "dark" ? 0.42 : 0.26;
+    const dark = theme === "dark";
+    this.shade.opacity = dark ? 0.42 : 0.26;
+    [this.sun.intensity, this.sky.intensity, this.fill.intensity] = dark ? [2.3, 2.1, 0.9] : [2.1, 1.9, 0.55];
   }
 
   /** Keep the shadow under what is looked at. */

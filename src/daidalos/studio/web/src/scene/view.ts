@@ -13,7 +13,7 @@ export interface ViewState {
   pitch: number;
 }
 
-export const HOME: ViewState = { kind: "orbit", focus: [0, 0, 0], distance: 8.5, yaw: -2.3, pitch: 0.8 };
+export const HOME: ViewState = { kind: "orbit", focus: [0, 0, 0], distance: 6.5, yaw: -2.3, pitch: 0.8 };
 
 export const FIELD_OF_VIEW_DEG = 45;
 const NEAR_M = 0.02;

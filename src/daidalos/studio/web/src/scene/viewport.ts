@@ -25,6 +25,8 @@ export class Viewport {
   readonly quality = new Quality();
   private readonly renderer: WebGLRenderer;
   private readonly raycaster = new Raycaster();
+  /** How often it was drawn. */
+  drawn = 0;
   private dirty = true;
   private size = new Vector2(1, 1);
 
@@ -138,6 +140,7 @@ export class Viewport {
 
   private render(): void {
     this.dirty = false;
+    this.drawn++;
     this.renderer.render(this.scene, this.view.camera);
   }
 }

@@ -6,6 +6,8 @@ const CORRECTION = 0.1;
 const RATE_WINDOW_S = 2.5;
 /** Without news for this long, robot time stands still (a paused simulation). */
 const STILL_S = 0.35;
+/** And seen so this many times: what waits behind a busy page is not overlooked. */
+const STILL_TICKS = 4;
 const DELAY_LEAST_S = 0.01;
 const DELAY_MOST_S = 0.3;
 
@@ -23,6 +25,7 @@ export class RobotClock {
   private estimate: Mark | undefined;
   private delay = 0.05;
   private drawn = -Infinity;
+  private stillTicks = 0;
 
   /** Hear of robot time; `page` is the page's own clock, in seconds. */
   hear(robot: number, page: number, announced: boolean): void {
@@ -55,7 +58,8 @@ export class RobotClock {
   /** Notice that robot time stands still. */
   tick(page: number): void {
     const last = this.marks.at(-1);
-    if (last && page - last.page > STILL_S && this.rate !== 0) {
+    this.stillTicks = last && page - last.page > STILL_S ? this.stillTicks + 1 : 0;
+    if (last && this.stillTicks >= STILL_TICKS && this.rate !== 0) {
       this.estimate = { page, robot: last.robot };
       this.marks = [];
       this.rate = 0;

@@ -6,6 +6,8 @@ import type { Pointer, Tool, ToolContext, ToolType } from "./tool";
 
 export class Toolbox {
   readonly active = signal<ToolType>(MOVE_CAMERA);
+  /** The tools that were in hand so far. */
+  readonly used = signal<ReadonlySet<string>>(new Set());
   /** What the tool has to say at the moment. */
   readonly saying = signal("");
   private tool: Tool | undefined;
@@ -33,6 +35,7 @@ export class Toolbox {
       finish: () => this.take(MOVE_CAMERA),
     });
     this.pressed = false;
+    this.used.value = new Set(this.used.peek()).add(this.active.peek().id);
     this.active.value = type;
     this.saying.value = "";
     this.viewport.view.leftButton = this.tool === undefined;

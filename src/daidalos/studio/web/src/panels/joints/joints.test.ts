@@ -20,7 +20,10 @@ beforeEach(async () => {
   const answers: Record<string, unknown> = {
     "/gui/list_parameters": { result: { names: ["joints.pan", "joints.tilt"] } },
     "/gui/describe_parameters": {
-      descriptors: [{ floating_point_range: [{ from_value: -1, to_value: 2 }] }, { floating_point_range: [] }],
+      descriptors: [
+        { description: "position of pan [rad]", floating_point_range: [{ from_value: -1, to_value: 2 }] },
+        { floating_point_range: [] },
+      ],
     },
     "/gui/get_parameters": { values: [{ double_value: 0.5 }, { double_value: 0 }] },
   };
@@ -41,8 +44,8 @@ beforeEach(async () => {
 
 it("reads the joints and their limits", () => {
   expect(joints.joints.value).toEqual([
-    { name: "pan", lower: -1, upper: 2, value: 0.5 },
-    { name: "tilt", lower: -Math.PI, upper: Math.PI, value: 0 },
+    { name: "pan", lower: -1, upper: 2, value: 0.5, unit: "rad" },
+    { name: "tilt", lower: -Math.PI, upper: Math.PI, value: 0, unit: "" },
   ]);
 });
 

@@ -5,12 +5,16 @@ import type { Session } from "../../connection/session";
 const PREFIX = "joints.";
 const DOUBLE = 3;
 const KEEP = 32;
+/** Descriptions of parameters end with the unit. */
+const UNIT = /\[(\w+)\]$/;
 
 export interface Joint {
   name: string;
   lower: number;
   upper: number;
   value: number;
+  /** Empty where the node does not tell. */
+  unit: string;
 }
 
 interface Value {
@@ -27,6 +31,7 @@ interface ParameterEvent {
 
 interface Descriptor {
   name: string;
+  description?: string;
   floating_point_range: ArrayLike<{ from_value: number; to_value: number }>;
 }
 
@@ -80,6 +85,7 @@ export class Joints {
           lower: range?.from_value ?? -Math.PI,
           upper: range?.to_value ?? Math.PI,
           value: got.values[i]?.double_value ?? 0,
+          unit: UNIT.exec(described.descriptors[i]?.description ?? "")?.[1] ?? "",
         };
       });
     });

@@ -4,7 +4,7 @@ export type Range = readonly [low: number, high: number];
 
 const MARGIN = 0.08;
 /** What differs less than this is the rounding of what stands still. */
-const NOISE = 1e-6;
+const NOISE = 1e-5;
 
 /** The least and the greatest value; undefined where there is none. */
 export function extent(values: Iterable<number>): Range | undefined {
