@@ -29,6 +29,7 @@ class Reader:
         self._home = home
         self._open = open_terminal
         self._terminals: dict[int, Terminal] = {}
+        self._interrupted: dict[Terminal, str] = {}
         self.mismatches: list[str] = []
 
     def follow(self, page: pages.Page) -> None:
@@ -66,7 +67,7 @@ class Reader:
             if not terminal.running:
                 self.mismatches.append(f"{where}: Ctrl-C, but nothing is running\n")
             else:
-                terminal.interrupt()
+                self._interrupted[terminal] = terminal.interrupt()
             return
         if command.text:
             terminal.start(command.text)
@@ -74,6 +75,10 @@ class Reader:
         if not more and command.text:
             printed = _lines(terminal.finish())
             self._compare(page, command, expected.fullmatch(printed), printed)
+            return
+        if not terminal.running:
+            printed = _lines(self._interrupted.get(terminal, ""))
+            self._compare(page, command, expected.search(printed), printed)
             return
         looks = expected.match if command.text else expected.search
         end = time.monotonic() + PATIENCE_S
