@@ -1,6 +1,7 @@
 import threading
 
 import rclpy
+from rclpy.qos import DurabilityPolicy, QoSProfile
 from std_msgs.msg import String
 
 from daidalos.nodes.ros_gz_bridge.parameter_bridge import ParameterBridge
@@ -8,11 +9,14 @@ from ros.graph import graph, node, spinning  # noqa: F401
 
 
 def test_a_topic_of_another_name_is_passed_on(node):  # noqa: F811
+    latched = ["-p", "qos_overrides./word.publisher.durability:=transient_local"]
     bridge = ParameterBridge(
-        ["/model/m/word@std_msgs/msg/String[gz.msgs.StringMsg"], cli_args=["--ros-args", "-r", "/model/m/word:=/word"]
+        ["/model/m/word@std_msgs/msg/String[gz.msgs.StringMsg"],
+        cli_args=["--ros-args", "-r", "/model/m/word:=/word", *latched],
     )
     heard = threading.Event()
-    node.create_subscription(String, "/word", lambda message: heard.set(), 10)
+    qos = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    node.create_subscription(String, "/word", lambda message: heard.set(), qos)
     publisher = node.create_publisher(String, "/model/m/word", 10)
     with spinning(node, bridge):
         publisher.publish(String(data="hello"))

@@ -9,6 +9,7 @@ from typing import Any
 
 import rclpy
 from rclpy.node import Node
+from rclpy.qos_overriding_options import QoSOverridingOptions
 from rclpy.utilities import remove_ros_args
 
 from daidalos.nodes.node_thread import NodeThread
@@ -58,12 +59,13 @@ class ParameterBridge(Node):
             return
         package, _, name = bridge.ros_type.partition("/msg/")
         kind = getattr(import_module(f"{package}.msg"), name)
+        overrides = QoSOverridingOptions.with_default_policies()
         if bridge.direction in ("GZ_TO_ROS", "BIDIRECTIONAL"):
-            outward = self.create_publisher(kind, bridge.ros_topic, 10)
+            outward = self.create_publisher(kind, bridge.ros_topic, 10, qos_overriding_options=overrides)
             self._gz_side.create_subscription(kind, gz, outward.publish, 10)
         if bridge.direction == "ROS_TO_GZ":
             inward = self._gz_side.create_publisher(kind, gz, 10)
-            self.create_subscription(kind, bridge.ros_topic, inward.publish, 10)
+            self.create_subscription(kind, bridge.ros_topic, inward.publish, 10, qos_overriding_options=overrides)
         self.get_logger().info(f"{gz} is {ros} ({bridge.ros_type}, {bridge.direction})")
 
     def destroy_node(self) -> None:
