@@ -30,6 +30,7 @@ from daidalos.transport.zenoh import keys
 from daidalos.transport.zenoh.config import ROUTER_PORT, meets_all, reason_of, session_config
 from daidalos.transport.zenoh.latched import Caches, LatchedPublisher, LatchedSubscription
 from daidalos.transport.zenoh.numbers import Numbers
+from daidalos.transport.zenoh.pool import Pool
 from daidalos.transport.zenoh.threads import few_threads
 from daidalos.transport.zenoh.wires import (
     ZenohClient,
@@ -75,6 +76,7 @@ class ZenohBackend(Backend):
             listen = self._listen_endpoints()
             endpoints = [endpoint for peer in peers for endpoint in peer.endpoints]
             config = session_config(self._environment, self._session_id, listen, endpoints)
+            self._pool = Pool(config.get_json("transport/shared_memory/enabled") == "true")
             self._session: Any = _open(config)
             self._session_id = str(self._session.zid())
             if meets_all(config, listen):
@@ -206,9 +208,9 @@ class ZenohBackend(Backend):
         """Declare a publisher and its token."""
         name = self._data_key(endpoint)
         wire = (
-            LatchedPublisher(self._session, name, endpoint, self._caches)
+            LatchedPublisher(self._session, name, endpoint, self._pool, self._caches)
             if endpoint.qos.transient_local
-            else ZenohPublisher(self._session, name, endpoint)
+            else ZenohPublisher(self._session, name, endpoint, self._pool)
         )
         wire.on_close = self._closer(key, endpoint)
         return wire

@@ -20,6 +20,7 @@ from zenoh.handlers import Callback
 
 from daidalos.transport.graph import EndpointInfo
 from daidalos.transport.zenoh import attachment
+from daidalos.transport.zenoh.pool import Pool
 from daidalos.transport.zenoh.threads import on_lasting_thread
 from daidalos.transport.zenoh.wires import ZenohPublisher, ZenohSubscription
 
@@ -105,8 +106,8 @@ class LatchedPublisher(ZenohPublisher):
         The last samples.
     """
 
-    def __init__(self, session: zenoh.Session, key: str, endpoint: EndpointInfo, caches: Caches) -> None:
-        super().__init__(session, key, endpoint)
+    def __init__(self, session: zenoh.Session, key: str, endpoint: EndpointInfo, pool: Pool, caches: Caches) -> None:
+        super().__init__(session, key, endpoint, pool)
         self.kept: Kept = deque(maxlen=endpoint.qos.limit)
         self._session = session
         self._key = key
@@ -121,7 +122,7 @@ class LatchedPublisher(ZenohPublisher):
             if not self._closed:
                 stamp = self._session.new_timestamp()
                 self.kept.append((bytes(data), attached, stamp))
-                self._publisher.put(data, attachment=attached, timestamp=stamp)
+                self._publisher.put(self._pool.place(data), attachment=attached, timestamp=stamp)
 
     def close(self) -> None:
         """Undeclare, and forget what was kept."""

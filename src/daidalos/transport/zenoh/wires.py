@@ -20,9 +20,9 @@ from daidalos.transport.backend import (
 )
 from daidalos.transport.graph import EndpointInfo
 from daidalos.transport.zenoh import attachment
+from daidalos.transport.zenoh.pool import LARGE, Pool
 from daidalos.transport.zenoh.threads import on_lasting_thread
 
-_LARGE = 65536
 _QUERY_TIMEOUT_S = 600.0
 _UNLIMITED_S = 10 * 365 * 86400.0
 
@@ -49,9 +49,10 @@ class _Wire:
 class ZenohPublisher(_Wire, WirePublisher):
     """Puts samples."""
 
-    def __init__(self, session: zenoh.Session, key: str, endpoint: EndpointInfo) -> None:
+    def __init__(self, session: zenoh.Session, key: str, endpoint: EndpointInfo, pool: Pool) -> None:
         super().__init__()
         self._gid = endpoint.gid
+        self._pool = pool
         reliable = endpoint.qos.reliable
         # Reliable means that nothing is lost on the way; best effort never waits.
         self._publisher: Any = session.declare_publisher(
@@ -63,7 +64,7 @@ class ZenohPublisher(_Wire, WirePublisher):
 
     def put(self, parts: list[Any], sequence: int, stamp_ns: int) -> None:
         """Send one sample."""
-        data = parts[0] if len(parts) == 1 else b"".join(parts)
+        data = self._pool.place(parts[0] if len(parts) == 1 else b"".join(parts))
         attached = attachment.pack(sequence, stamp_ns, self._gid)
         with self._lock:
             if not self._closed:
@@ -89,7 +90,7 @@ class ZenohSubscription(_Wire, WireSubscription):
         """Return the sample's bytes."""
         payload = sample.payload
         # `to_bytes` clears the memory that it then copies to; from shared memory it need not be.
-        shared = payload.as_shm() if len(payload) > _LARGE else None
+        shared = payload.as_shm() if len(payload) >= LARGE else None
         data: bytes = payload.to_bytes() if shared is None else bytes(shared)
         return data
 
