@@ -6,8 +6,8 @@ A page is Markdown. These fenced blocks have a meaning for the tests:
     Lines that begin with ``$`` are typed; what follows is what they print. ``title="Terminal 2"`` says where; without
     it, that is terminal 1. A line ``^C`` stands for Ctrl-C, a line ``...`` for any lines, and ``…`` for any text in
     a line. A command whose output ends with ``...`` may keep running, until Ctrl-C or another command in the same
-    terminal, which waits for its end. A block that begins without ``$`` shows what it has printed since then; lines after
-    ``^C``, what it has printed by its end.
+    terminal, which waits for its end. A block that begins without ``$`` shows what it has printed since then; lines
+    after ``^C``, what it has printed by its end.
 ``text title="Keys in terminal 2"``
     Keys that are pressed, one word each: a letter, or ``Up``, ``Down``, ``Left``, ``Right``, ``Space``.
 any other with a path as its title
