@@ -53,6 +53,17 @@ def test_relative_to_links_frames_and_joints():
     assert joint.origin.position == pytest.approx((2, 1, 1))
 
 
+def test_a_joint_may_name_models_for_their_canonical_links():
+    made = model(
+        """<model name="arm"><pose>1 0 0 0 0 0</pose><link name="l"/></model>
+        <link name="a"/><link name="b"/><link name="c"/>
+        <joint name="j" type="fixed"><parent>arm</parent><child>b</child></joint>
+        <joint name="k" type="fixed"><parent>__model__</parent><child>c</child></joint>"""
+    )
+    assert (made.joints["j"].parent, made.joints["j"].origin.position) == ("arm::l", (-1, 0, 0))
+    assert (made.joints["k"].parent, made.joints["k"].child) == ("a", "c")
+
+
 @pytest.mark.parametrize(
     ("body", "words"),
     [

@@ -92,6 +92,8 @@ class _ModelReader:
             self._nested.append((model, merged))
             place_nested(self._graph, model, pose, child)
             self._attached |= {f"{model.name}::{name}": f"{model.name}::{name}" for name in model.links}
+            if model.links:
+                self._attached[model.name] = f"{model.name}::{next(iter(model.links))}"
             if merged:
                 for name in model.frames:
                     self._graph.add(name, RelativePose(), f"{model.name}::{name}", child)
@@ -111,6 +113,9 @@ class _ModelReader:
             name = end.text.strip() or end.text_of("link_name")
             self._graph.add(child.name(), read_pose(child), name, child)
             self._attached[child.name()] = name
+        first = next((name for name, target in self._attached.items() if name == target), "")
+        own = [child.name() for child in self._element.all("link")]
+        self._attached[ROOT] = self._element.attribute("canonical_link", "") or (own[0] if own else first)
 
     def _settle_world(self) -> set[str]:
         """Return the links to leave out, since they are but another word for the world; rename others called so."""
