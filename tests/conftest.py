@@ -2,7 +2,11 @@
 
 import itertools
 import os
+import sys
+import tempfile
+from collections.abc import Iterator
 from pathlib import Path
+from typing import IO
 
 import pytest
 
@@ -23,7 +27,42 @@ def shared_data() -> Path:
     return folder
 
 
+@pytest.fixture(scope="session", autouse=True)
+def _runtime_folder_of_the_run() -> Iterator[None]:
+    """Keep the processes of this run, and those of others on this machine, from finding each other."""
+    with (
+        # Not pytest's own folder: the paths of sockets may not be long.
+        tempfile.TemporaryDirectory(prefix="dt-", ignore_cleanup_errors=True) as folder,
+        pytest.MonkeyPatch.context() as patch,
+    ):
+        patch.setenv("XDG_RUNTIME_DIR", folder)
+        yield
+
+
 @pytest.fixture
-def domain() -> int:
-    """A ROS domain in which most likely nobody else is."""
-    return 100 + next(_numbers) % 100
+def domain() -> Iterator[int]:
+    """A ROS domain that no other test of any run on this machine has at the same time."""
+    folder = Path(tempfile.gettempdir()) / "daidalos-test-domains"
+    folder.mkdir(exist_ok=True)
+    for number in (100 + next(_numbers) % 100 for _ in range(100)):
+        with (folder / str(number)).open("a") as file:
+            if _is_reserved(file):
+                yield number
+                return
+    pytest.fail("all of a hundred domains are taken")
+
+
+def _is_reserved(file: IO[str]) -> bool:
+    """Lock a file until it is closed; tell whether nobody else had."""
+    try:
+        if sys.platform == "win32":
+            import msvcrt
+
+            msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)
+        else:
+            import fcntl
+
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError:
+        return False
+    return True
