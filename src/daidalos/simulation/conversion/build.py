@@ -17,10 +17,10 @@ from daidalos.description.world import Model
 from daidalos.simulation.conversion.assets import Assets
 from daidalos.simulation.conversion.contact import set_surface
 from daidalos.simulation.conversion.couplings import close_loop, couple
-from daidalos.simulation.conversion.geometry import add_geoms, add_wheel
+from daidalos.simulation.conversion.geometry import add_geoms, add_rolling, only_seen
 from daidalos.simulation.conversion.inertia import PrincipalInertia, principal_inertia, smallest_inertia
 from daidalos.simulation.conversion.joints import add_joints, mimicked_start, start_position
-from daidalos.simulation.conversion.wheels import is_caster, is_wheel
+from daidalos.simulation.conversion.wheels import is_caster, wheel_disc
 from daidalos.simulation.errors import UnknownNameError
 
 ASSUMED_DENSITY = 200.0
@@ -340,11 +340,10 @@ class _Builder:
     def _add_collision(self, body: Any, link: Link, collision: Collision, index: int) -> None:
         joint = self._above.get(link.name)
         try:
-            if is_wheel(joint, collision):
-                geoms = add_wheel(body, collision.geometry, collision.pose)
-            else:
-                static = self._model.static
-                geoms = add_geoms(body, collision.geometry, collision.pose, self._assets, static)
+            disc = wheel_disc(joint, collision)
+            geoms = add_geoms(body, collision.geometry, collision.pose, self._assets, self._model.static)
+            if disc is not None:
+                geoms = [add_rolling(body, disc.radius, disc.width, disc.pose), *only_seen(self._build.spec, geoms)]
         except DescriptionError as problem:
             place = "" if problem.source else f"{collision.where}: "
             self._warn(f"{place}{problem}; the collision is left out")

@@ -79,18 +79,25 @@ def add_geoms(body: Any, geometry: Geometry, pose: Pose, assets: Assets, static:
     return _ADDERS[type(geometry)](body, geometry, pose)
 
 
-def add_wheel(body: Any, disc: Geometry, pose: Pose) -> list[Any]:
-    """Add a wheel along z: an ellipsoid touches the ground in one point, a cylinder is what one sees.
+def add_rolling(body: Any, radius: float, width: float, pose: Pose) -> Any:
+    """Add what a wheel along z rolls on: an ellipsoid, which touches the ground in one point.
 
     A cylinder touches with a line of points that rub against each other in a turn.
     """
-    if not isinstance(disc, Cylinder):
-        raise TypeError(f"a wheel is a cylinder, not a {type(disc).__name__}")
-    rolling = _add(body, _Type.mjGEOM_ELLIPSOID, (disc.radius, disc.radius, disc.length / 2), pose)
+    rolling = _add(body, _Type.mjGEOM_ELLIPSOID, (radius, radius, width / 2), pose)
     rolling.group = TOUCHED
-    seen = _add(body, _Type.mjGEOM_CYLINDER, (disc.radius, disc.length / 2, 0.0), pose)
-    _only_seen(seen)
-    return [rolling, seen]
+    return rolling
+
+
+def only_seen(spec: Any, geoms: list[Any]) -> list[Any]:
+    """Leave of a collision's geoms what rays see, which no longer collides; the others are deleted."""
+    for geom in geoms:
+        if geom.group == TOUCHED:
+            spec.delete(geom)
+    seen = [geom for geom in geoms if geom.group != TOUCHED]
+    for geom in seen:
+        _only_seen(geom)
+    return seen
 
 
 def _add(body: Any, kind: Any, size: tuple[float, float, float], pose: Pose) -> Any:

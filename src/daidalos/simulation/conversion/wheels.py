@@ -3,40 +3,108 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
-from daidalos.description.geometry import Cylinder
+import numpy as np
+from numpy.typing import NDArray
+
+from daidalos.description.geometry import Cylinder, Mesh, Polyline
 from daidalos.description.joint import Joint, JointType
 from daidalos.description.link import Collision, Link
-from daidalos.description.pose import rotate
+from daidalos.description.meshes import triangles_of
+from daidalos.description.pose import Pose, quaternion_between, rotate
 
 _ALONG = 0.999
+_OFF_CENTRE = 0.02
+"""Of the radius: how far a disc's axis may be from the joint's."""
+
+_OUT_OF_ROUND = 0.05
+"""Of the radius: by how much a mesh may reach further in one direction than in another. A dodecagon passes."""
+
+_DIRECTIONS = 48
 
 
-def is_wheel(joint: Joint | None, collision: Collision) -> bool:
-    """Tell whether a collision is a disc that turns about its own axis without end.
+@dataclass(frozen=True)
+class Disc:
+    """The round thing that a wheel rolls on.
+
+    Parameters
+    ----------
+    radius, width : float
+        [m].
+    pose : Pose
+        Of its middle in the link, with z along the axle.
+    """
+
+    radius: float
+    width: float
+    pose: Pose
+
+
+def wheel_disc(joint: Joint | None, collision: Collision) -> Disc | None:
+    """Return the disc of a collision that turns about its own axis without end; None when it is something else.
 
     Parameters
     ----------
     joint : Joint or None
         The joint above the collision's link.
     collision : Collision
+        A cylinder, or a mesh that is nearly a body of revolution about the joint's axis.
+
+    Raises
+    ------
+    DescriptionError
+        When its mesh can not be read.
     """
-    disc = collision.geometry
-    if joint is None or not isinstance(disc, Cylinder) or not 0 < disc.length <= 2 * disc.radius:
-        return False
-    if joint.type not in (JointType.CONTINUOUS, JointType.REVOLUTE) or math.isfinite(joint.axis.upper):
-        return False
-    axle = rotate(joint.anchor.orientation, joint.axis.xyz)
-    along = rotate(collision.pose.orientation, (0.0, 0.0, 1.0))
-    if abs(sum(a * b for a, b in zip(axle, along, strict=True))) < _ALONG:
-        return False
-    offset = [c - a for c, a in zip(collision.pose.position, joint.anchor.position, strict=True)]
-    sideways = sum(o * a for o, a in zip(offset, axle, strict=True))
-    distance = math.dist(offset, [sideways * a for a in axle])
-    return distance < 0.02 * disc.radius
+    if joint is None or joint.type not in (JointType.CONTINUOUS, JointType.REVOLUTE):
+        return None
+    if math.isfinite(joint.axis.upper):
+        return None
+    axle = np.array(rotate(joint.anchor.orientation, joint.axis.xyz))
+    centre = np.array(joint.anchor.position)
+    if isinstance(collision.geometry, Cylinder):
+        disc = _of_cylinder(collision.geometry, collision.pose, centre, axle)
+    elif isinstance(collision.geometry, Mesh | Polyline):
+        disc = _of_points(triangles_of(collision.geometry).vertices, collision.pose, centre, axle)
+    else:
+        return None
+    return disc if disc is not None and 0 < disc.width <= 2 * disc.radius else None
 
 
 def is_caster(joint: Joint | None, link: Link) -> bool:
     """Tell whether a link stands for a caster: fixed to the robot, it slides where a real one rolls."""
     name = link.name.lower()
     return joint is not None and joint.type is JointType.FIXED and ("caster" in name or "castor" in name)
+
+
+def _of_cylinder(cylinder: Cylinder, pose: Pose, centre: NDArray[np.float64], axle: NDArray[np.float64]) -> Disc | None:
+    if abs(axle @ rotate(pose.orientation, (0.0, 0.0, 1.0))) < _ALONG:
+        return None
+    offset = np.array(pose.position) - centre
+    if np.linalg.norm(offset - (offset @ axle) * axle) >= _OFF_CENTRE * cylinder.radius:
+        return None
+    return Disc(cylinder.radius, cylinder.length, pose)
+
+
+def _of_points(
+    points: NDArray[np.floating], pose: Pose, centre: NDArray[np.float64], axle: NDArray[np.float64]
+) -> Disc | None:
+    """Return the disc around points that reach equally far in all directions across the axle."""
+    matrix = pose.matrix
+    placed = points @ matrix[:3, :3].T + matrix[:3, 3] - centre
+    upright = quaternion_between((0.0, 0.0, 1.0), (float(axle[0]), float(axle[1]), float(axle[2])))
+    across, along = (np.array(rotate(upright, unit)) for unit in ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0)))
+    turns = np.arange(_DIRECTIONS) * (2 * math.pi / _DIRECTIONS)
+    directions = np.outer(np.cos(turns), across) + np.outer(np.sin(turns), along)
+    reaches = (placed @ directions.T).max(axis=0)
+    flat = placed - np.outer(placed @ axle, axle)
+    radius = float(np.linalg.norm(flat, axis=1).max())
+    if radius <= 0 or reaches.min() < (1 - _OUT_OF_ROUND) * radius:
+        return None
+    sideways = placed @ axle
+    middle = centre + axle * (sideways.max() + sideways.min()) / 2
+    return Disc(
+        radius,
+        float(np.ptp(sideways)),
+        Pose((float(middle[0]), float(middle[1]), float(middle[2])), upright),
+    )
