@@ -9,12 +9,15 @@ from typing import Any
 
 import rclpy
 from rclpy.node import Node
+from rclpy.qos import QoSPolicyKind
 from rclpy.qos_overriding_options import QoSOverridingOptions
 from rclpy.utilities import remove_ros_args
 
 from daidalos.nodes.node_thread import NodeThread
 from daidalos.nodes.ros_gz_bridge._mapping import Bridge, MappingError, parse_arguments, read_file
 from daidalos.nodes.runner import UserError, run
+
+_OVERRIDABLE = (QoSPolicyKind.DEPTH, QoSPolicyKind.DURABILITY, QoSPolicyKind.HISTORY, QoSPolicyKind.RELIABILITY)
 
 
 class ParameterBridge(Node):
@@ -59,7 +62,7 @@ class ParameterBridge(Node):
             return
         package, _, name = bridge.ros_type.partition("/msg/")
         kind = getattr(import_module(f"{package}.msg"), name)
-        overrides = QoSOverridingOptions.with_default_policies()
+        overrides = QoSOverridingOptions(_OVERRIDABLE)
         if bridge.direction in ("GZ_TO_ROS", "BIDIRECTIONAL"):
             outward = self.create_publisher(kind, bridge.ros_topic, 10, qos_overriding_options=overrides)
             self._gz_side.create_subscription(kind, gz, outward.publish, 10)
