@@ -19,8 +19,8 @@ from rclpy.impl.entities import ClientHandle, NodeHandle, PublisherHandle, Servi
 from rclpy.impl.errors import InvalidHandle
 from rclpy.impl.node_graph import NodeGraph, checked_name
 from rclpy.impl.node_parameters import NodeParameters
+from rclpy.impl.rcutils_logger import RcutilsLogger
 from rclpy.impl.rosout import rosout
-from rclpy.logging import get_logger
 from rclpy.parameter import PARAMETER_SEPARATOR_STRING, Parameter
 from rclpy.parameter_service import ParameterService
 from rclpy.publisher import Publisher
@@ -43,7 +43,6 @@ from rclpy.waitable import Waitable
 
 if TYPE_CHECKING:
     from rclpy.executors import Executor
-    from rclpy.impl.rcutils_logger import RcutilsLogger
     from rclpy.qos_overriding_options import QoSOverridingOptions
     from rclpy.subscription_content_filter_options import ContentFilterOptions
 
@@ -117,7 +116,7 @@ class Node(NodeParameters, NodeGraph):
         self._rcl_members: dict[str, list[Any]] = {kind: [] for kind in _KINDS}
         self._default_callback_group = MutuallyExclusiveCallbackGroup()
         self.__handle = NodeHandle(self._context.handle, node_name, absolute, cli_args, use_global_arguments)
-        self._logger = get_logger(self.__handle.logger_name())
+        self._logger = RcutilsLogger(self.__handle.logger_name(), owner=self)
         rosout_qos = _qos(rosout_qos_profile)
         self._rcl_rosout = rosout(self.__handle, enable_rosout, rosout_qos)
         self._rcl_init_parameters(self._rcl_overrides(parameter_overrides), allow_undeclared_parameters)

@@ -233,16 +233,20 @@ def parameter_dict_from_yaml_file(
 
     Raises
     ------
+    OSError
+        When the file cannot be opened.
     RuntimeError
-        When the file holds nothing for the targets, or cannot be read.
+        When the file holds nothing for the targets, or no parameters.
     """
     from rclpy.impl.parameter_file import ParameterFileError, read_file
 
+    with open(parameter_file, "rb"):
+        """Raises OSError."""
     try:
         entries = read_file(parameter_file)
     except ParameterFileError as error:
         raise RuntimeError(f"{parameter_file}: {error}") from None
-    targets = target_nodes or []
+    targets = [name if name.startswith("/") else f"/{name}" for name in target_nodes or ()]
     found: dict[str, Any] = {}
     for wildcards in (True, False):  # what is said of a node by its name outweighs wildcards
         found |= {
@@ -251,7 +255,7 @@ def parameter_dict_from_yaml_file(
             if ("*" in node) is wildcards and _is_wanted(node, targets, use_wildcard)
         }
     if targets and not found and not any(_is_wanted(node, targets, use_wildcard) for node, *_ in entries):
-        raise RuntimeError(f"Param file does not contain selected parameters for {', '.join(targets)}")
+        raise RuntimeError(f"Param file does not contain any valid parameters for {', '.join(targets)}")
     prefix = f"{namespace}{PARAMETER_SEPARATOR_STRING}" if namespace else ""
     return {prefix + name: Parameter(prefix + name, value=value).to_parameter_msg() for name, value in found.items()}
 

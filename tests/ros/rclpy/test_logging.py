@@ -1,5 +1,6 @@
 """Loggers: levels, filters, where messages go."""
 
+import gc
 from pathlib import Path
 
 import pytest
@@ -124,3 +125,14 @@ def rcl_level(name: str, level: int) -> object:
     from rcl_interfaces.msg import LoggerLevel
 
     return LoggerLevel(name=name, level=level)
+
+
+def test_the_logger_of_a_node_that_is_gone_has_no_children(graph: Context) -> None:
+    node = Node("gone")
+    logger = node.get_logger()
+    logger.get_child("part").debug("still there")
+    node.destroy_node()
+    del node
+    gc.collect()
+    with pytest.raises(RuntimeError, match="node is destroyed"):
+        logger.get_child("part")

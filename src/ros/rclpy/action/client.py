@@ -383,10 +383,8 @@ status_sub_qos_profile
         if self._destroyed:
             raise InvalidHandle("the action client was destroyed")
         services = (self._goal_client, self._cancel_client, self._result_client)
-        return all(client.service_server_is_available() for client in services) and all(
-            subscription.get_publisher_count()
-            for subscription in (self._feedback_subscription, self._status_subscription)
-        )
+        served = all(client.service_server_is_available() for client in services)
+        return served and bool(self._feedback_subscription.get_publisher_count())
 
     def wait_for_server(self, timeout_sec: float | None = None) -> bool:
         """Wait until the action is served; False when `timeout_sec` seconds pass, or at a shutdown."""

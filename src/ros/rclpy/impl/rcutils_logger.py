@@ -6,6 +6,7 @@ import inspect
 import os
 import sys
 import time
+import weakref
 from collections import namedtuple
 from types import CodeType, FrameType
 from typing import Any, ClassVar
@@ -172,8 +173,9 @@ class RcutilsLogger:
 
     _UNSET = LoggingSeverity.UNSET
 
-    def __init__(self, name: str = "") -> None:
+    def __init__(self, name: str = "", owner: Any = None) -> None:
         self.name = name
+        self._owner = weakref.ref(owner) if owner is not None else None
         self.contexts: dict[CallerId, dict[str, Any]] = {}
         self._places: dict[tuple[CodeType, int], tuple[str, LoggingSeverity]] = {}
 
@@ -184,9 +186,13 @@ class RcutilsLogger:
         ------
         ValueError
             For an empty name.
+        RuntimeError
+            When this is the logger of a node that is no more: nothing would reach ``/rosout``.
         """
         if not name:
             raise ValueError("Child logger name must not be empty.")
+        if self._owner is not None and self._owner() is None:
+            raise RuntimeError("Logger is already invalid because node is destroyed.")
         if self.name:
             name = f"{self.name}.{name}"
         return RcutilsLogger(name=name)

@@ -51,7 +51,10 @@ def _set_parameters(node: Node, args: Namespace, name: str) -> None:
     from rcl_interfaces.msg import Parameter
     from rclpy.parameter import get_parameter_value, parameter_dict_from_yaml_file
 
-    wanted = parameter_dict_from_yaml_file(args.param_file, use_wildcard=True, target_nodes=[absolute(name)])
+    try:
+        wanted = parameter_dict_from_yaml_file(args.param_file, use_wildcard=True, target_nodes=[absolute(name)])
+    except OSError as error:
+        raise CliError(f"{args.param_file}: {error.strerror}") from None
     parameters = [Parameter(name=f"{name}.params_file", value=get_parameter_value(args.param_file))]
     if "type" in wanted:
         parameters.append(Parameter(name=f"{name}.type", value=wanted["type"].value))

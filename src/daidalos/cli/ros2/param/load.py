@@ -5,6 +5,7 @@ from __future__ import annotations
 from argparse import ArgumentParser, Namespace
 
 from daidalos.cli.ros2.direct import add_graph_arguments, direct_node
+from daidalos.cli.ros2.errors import CliError
 from daidalos.cli.ros2.extension import Status, Verb
 from daidalos.cli.ros2.parameters import add_node_arguments, add_timeout_argument, find_node, report, set_parameters
 
@@ -30,9 +31,12 @@ class LoadVerb(Verb):
 
         with direct_node(args) as node:
             name = find_node(node, args)
-            parameters = parameter_dict_from_yaml_file(
-                args.parameter_file, use_wildcard=not args.no_use_wildcard, target_nodes=[name]
-            )
+            try:
+                parameters = parameter_dict_from_yaml_file(
+                    args.parameter_file, use_wildcard=not args.no_use_wildcard, target_nodes=[name]
+                )
+            except OSError as error:
+                raise CliError(f"{args.parameter_file}: {error.strerror}") from None
             results = set_parameters(node, name, list(parameters.values()))
         for parameter, result in zip(parameters, results, strict=True):
             report(result, f"Set parameter {parameter} successful", f"Set parameter {parameter} failed")
