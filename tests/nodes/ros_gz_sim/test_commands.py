@@ -1,10 +1,13 @@
 """gz's command lines."""
 
 import pytest
+from rclpy.node import Node
+from rclpy.parameter import Parameter
 
 from daidalos.nodes.gazebo_ros.spawn_model import translate
 from daidalos.nodes.ros_gz_sim import create, gz_sim
 from daidalos.nodes.runner import UserError
+from ros.graph import graph  # noqa: F401
 
 
 def test_gzs_arguments_may_come_in_one_word():
@@ -27,6 +30,22 @@ def test_create_takes_one_dash_or_two():
     arguments = create.parse(["-name", "bot", "--file", "a.sdf", "-x", "1.5", "-Y", "-2", "-allow_renaming", "true"])
     assert (arguments.name, arguments.file, arguments.x, arguments.Y) == ("bot", "a.sdf", 1.5, -2.0)
     assert arguments.allow_renaming == "true"
+
+
+def test_create_leaves_out_what_it_does_not_know(capsys):
+    assert create.parse(["-entity", "bot", "-topic", "robot_description"]).topic == "robot_description"
+    assert capsys.readouterr().err == "warning: create does not know -entity bot, left out\n"
+
+
+def test_create_takes_parameters_where_no_word_is_given(graph):  # noqa: F811
+    values = {"name": "bot", "z": 2, "x": 1.0, "allow_renaming": True}
+    overrides = [Parameter(name, value=value) for name, value in values.items()]
+    node = Node("create", parameter_overrides=overrides, automatically_declare_parameters_from_overrides=True)
+    arguments = create.parse(["-x", "3"])
+    create.take_parameters(arguments, node)
+    assert (arguments.name, arguments.x, arguments.y, arguments.z) == ("bot", 3.0, 0.0, 2.0)
+    assert arguments.allow_renaming.lower() == "true"
+    assert arguments.file == ""
 
 
 def test_ros1s_spawner_has_its_own_words():

@@ -18,18 +18,33 @@ _TEXTS = ("world", "file", "topic", "param", "string", "name")
 
 
 def parse(words: Sequence[str]) -> argparse.Namespace:
-    """Read the command line; one dash or two, a value after a space or an equals sign."""
-    parser = argparse.ArgumentParser(prog="create", description="Spawn an entity in the simulation.")
+    """Read the command line; one dash or two, a value after a space or an equals sign.
+
+    As in ROS, what is not known is left out; and what is not given is None, for parameters to say.
+    """
+    parser = argparse.ArgumentParser(
+        prog="create", description="Spawn an entity in the simulation.", allow_abbrev=False
+    )
     source = "the description: a file, a topic, a parameter of this node, or the text itself"
     for name in _TEXTS:
         text = {"world": "the world to spawn in", "name": "of the entity"}.get(name, source)
-        parser.add_argument(f"-{name}", f"--{name}", default="", help=text)
+        parser.add_argument(f"-{name}", f"--{name}", help=text)
     for name in _NUMBERS:
-        parser.add_argument(f"-{name}", f"--{name}", type=float, default=0.0, help="pose [m, rad]")
-    parser.add_argument(
-        "-allow_renaming", "--allow_renaming", nargs="?", const="true", default="false", help="if taken"
-    )
-    return parser.parse_args(list(words))
+        parser.add_argument(f"-{name}", f"--{name}", type=float, help="pose [m, rad]")
+    parser.add_argument("-allow_renaming", "--allow_renaming", nargs="?", const="true", help="if taken")
+    arguments, unknown = parser.parse_known_args(list(words))
+    if unknown:
+        print(f"warning: create does not know {' '.join(unknown)}, left out", file=sys.stderr)
+    return arguments
+
+
+def take_parameters(arguments: argparse.Namespace, node: Any) -> None:
+    """Fill in what the command line does not say from the node's parameters of the same names, or the default."""
+    defaults = dict.fromkeys(_TEXTS, "") | dict.fromkeys(_NUMBERS, 0.0) | {"allow_renaming": "false"}
+    for name, default in defaults.items():
+        if getattr(arguments, name) is None:
+            value = node.get_parameter(name).value if node.has_parameter(name) else default
+            setattr(arguments, name, type(default)(value))
 
 
 def find_service(node: Any, world: str, name: str, kind: str, timeout: float = _TIMEOUT) -> str:
@@ -60,7 +75,8 @@ def _description(arguments: argparse.Namespace, node: Any) -> str:
     if arguments.topic:
         return _from_topic(node, arguments.topic)
     if arguments.param:
-        node.declare_parameter(arguments.param, "")
+        if not node.has_parameter(arguments.param):
+            raise UserError(f"the parameter '{arguments.param}' is not set")
         return str(node.get_parameter(arguments.param).value)
     if arguments.file:
         return _from_file(arguments.file)
@@ -103,7 +119,8 @@ def _create(arguments: argparse.Namespace) -> None:
     from daidalos.nodes.gazebo_ros._states import pose_message
 
     rclpy.init()
-    node = rclpy.create_node("ros_gz_sim")
+    node = rclpy.create_node("ros_gz_sim", automatically_declare_parameters_from_overrides=True)
+    take_parameters(arguments, node)
     factory = EntityFactory(
         name=arguments.name,
         allow_renaming=arguments.allow_renaming.lower() in ("true", "1"),
