@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import os
 import pty
+import select
 import signal
 import sys
 import termios
@@ -64,6 +65,29 @@ def test_it_can_be_woken(screen: int) -> None:
         threading.Timer(0.05, keyboard.wake).start()
         assert keyboard.read() is None
         assert keyboard.read() is None
+
+
+def test_keys_that_ctrl_c_discards_are_not_waited_for(screen: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    wait = select.select
+    flushed = threading.Event()
+
+    def flush_once(*arguments: object) -> object:
+        ready = wait(*arguments)
+        if not flushed.is_set():
+            termios.tcflush(sys.stdin, termios.TCIFLUSH)  # as the terminal does at Ctrl-C
+            flushed.set()
+        return ready
+
+    with Keyboard() as keyboard:
+        os.write(screen, b"x")
+        monkeypatch.setattr(select, "select", flush_once)
+        read: list[str | None] = []
+        reader = threading.Thread(target=lambda: read.append(keyboard.read()), daemon=True)
+        reader.start()
+        assert flushed.wait(10.0)
+        keyboard.wake()
+        reader.join(10.0)
+        assert read == [None]
 
 
 def test_no_more_keys(screen: int) -> None:

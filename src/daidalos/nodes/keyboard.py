@@ -70,6 +70,8 @@ class Keyboard:
 
             wanted = termios.tcgetattr(sys.stdin)
             wanted[3] &= ~(termios.ICANON | termios.ECHO)  # Ctrl-C stays a signal
+            # Ctrl-C discards keys that `select` may have told of already: reading must not wait for others.
+            wanted[6][termios.VMIN] = wanted[6][termios.VTIME] = 0
             termios.tcsetattr(sys.stdin, termios.TCSADRAIN, wanted)
 
     def wake(self) -> None:
@@ -93,16 +95,18 @@ class Keyboard:
         import select
 
         assert self._pipe is not None, "read within the with block"
-        if self._woken.is_set():
-            return None
-        ready = select.select([sys.stdin, self._pipe[0]], [], [], timeout_s)[0]
-        if self._woken.is_set():
-            return None
-        if not ready:
-            return ""
-        character = self._character()
+        character: str | None = ""
+        while character == "":
+            if self._woken.is_set():
+                return None
+            ready = select.select([sys.stdin, self._pipe[0]], [], [], timeout_s)[0]
+            if self._woken.is_set():
+                return None
+            character = self._next_character() if ready else ""
+            if character == "" and timeout_s is not None:
+                return ""
         if character != "\x1b":
-            return character or None
+            return character
         sequence = ""
         while select.select([sys.stdin], [], [], _SEQUENCE_S)[0]:
             last = self._character()
@@ -111,10 +115,23 @@ class Keyboard:
                 break
         return _ARROWS.get(sequence[-1:], "") if sequence[:1] in ("[", "O") else character
 
+    def _next_character(self) -> str | None:
+        """Return one character, an empty text where there is none after all, None where the terminal is gone."""
+        import select
+
+        character = self._character()
+        if character or not select.select([sys.stdin], [], [], 0.0)[0]:
+            return character
+        return self._character() or None
+
     def _character(self) -> str:
         """Return one character; not through the buffer of `sys.stdin`, which `select` does not see."""
+        import select
+
         content = os.read(sys.stdin.fileno(), 1)
         while content and content[0] >= 0xC0 and not _is_whole(content):
+            if not select.select([sys.stdin], [], [], _SEQUENCE_S)[0]:
+                break
             content += os.read(sys.stdin.fileno(), 1)
         return content.decode(errors="replace")
 

@@ -76,13 +76,19 @@ class Keyboard:
         before = termios.tcgetattr(terminal)
         try:
             tty.setcbreak(terminal)
+            wanted = termios.tcgetattr(terminal)
+            # Ctrl-C discards keys that `select` may have told of already: reading must not wait for others.
+            wanted[6][termios.VMIN] = 0
+            termios.tcsetattr(terminal, termios.TCSANOW, wanted)
             while not self._ended.is_set():
                 ready, _, _ = select.select([terminal, self._wake], [], [])
                 if self._wake in ready:
                     return
                 pressed = os.read(terminal, 64)
-                if not pressed:
-                    return
+                if not pressed and select.select([terminal], [], [], 0.0)[0]:
+                    pressed = os.read(terminal, 64)
+                    if not pressed:
+                        return  # the terminal is gone
                 for key in split_keys(pressed):
                     self._on_key(key)
         finally:

@@ -1,5 +1,6 @@
 import os
 import pty
+import select
 import sys
 import threading
 
@@ -39,6 +40,33 @@ def test_keys_are_heard_and_the_terminal_is_as_before(monkeypatch):
         assert termios.tcgetattr(theirs) == before
     os.close(ours)
     assert heard == [SPACE, RIGHT, SPACE]
+
+
+def test_keys_that_ctrl_c_discards_are_not_waited_for(monkeypatch):
+    import termios
+
+    ours, theirs = pty.openpty()
+    wait, flushed = select.select, threading.Event()
+
+    def flush_once(*arguments):
+        ready = wait(*arguments)
+        if theirs in ready[0] and not flushed.is_set():
+            termios.tcflush(theirs, termios.TCIFLUSH)  # as the terminal does at Ctrl-C
+            flushed.set()
+        return ready
+
+    with os.fdopen(theirs, "r") as terminal:
+        monkeypatch.setattr(sys, "stdin", terminal)
+        monkeypatch.setattr(select, "select", flush_once)
+        keyboard = Keyboard(lambda key: None)
+        keyboard.start()
+        os.write(ours, b" ")
+        assert flushed.wait(20)
+        stopper = threading.Thread(target=keyboard.stop, daemon=True)
+        stopper.start()
+        stopper.join(20)
+        assert not stopper.is_alive()
+    os.close(ours)
 
 
 @pytest.mark.parametrize("stdin", [None, "file"])
