@@ -12,8 +12,9 @@ from pathlib import Path
 from daidalos.interfaces.definition import Interface, messages_of
 from daidalos.interfaces.description import Description, IndividualDescription, Lookup, describe
 from daidalos.interfaces.generator import write_package
+from daidalos.interfaces.idl import read_idl
 from daidalos.interfaces.library import BUILT_IN, InterfaceNotFound, Library
-from daidalos.interfaces.parser import InterfaceError, parse_file
+from daidalos.interfaces.parser import InterfaceError, parse, parse_file
 from daidalos.workspaces.errors import WorkspaceError
 from daidalos.workspaces.installation import Installation
 
@@ -28,7 +29,7 @@ def install_interfaces(
     package
         The package's name.
     files
-        Its .msg, .srv and .action files.
+        Its .msg, .srv, .action and .idl files.
     installation
         Where everything goes.
     python_folder
@@ -42,11 +43,15 @@ def install_interfaces(
         Naming the file and the line at fault.
     """
     try:
-        own = {_name(path, package): (path, parse_file(path, package)) for path in files}
+        read = {path: _read(path, package) for path in files}
     except InterfaceError as error:
         raise WorkspaceError(str(error)) from None
-    for name, (path, _) in own.items():
-        installation.put(path, f"share/{package}/{name.split('/')[1]}/{path.name}")
+    for path, (interface, text) in read.items():
+        kind = interface.name.split("/")[1]
+        installation.put(path, f"share/{package}/{kind}/{path.name}")
+        if text is not None:
+            installation.write(f"share/{package}/{kind}/{path.stem}.{kind}", text)
+    own = {interface.name: (path, interface) for path, (interface, _) in read.items()}
     prefixes = [installation.prefix, *prefixes]
     library = Library([*(prefix / "share" for prefix in prefixes), BUILT_IN])
     known = _known_messages(library)
@@ -62,8 +67,18 @@ def install_interfaces(
     installation.write(f"share/ament_index/resource_index/rosidl_interfaces/{package}", "\n".join(index))
 
 
-def _name(path: Path, package: str) -> str:
-    return f"{package}/{path.suffix[1:]}/{path.stem}"
+def _read(path: Path, package: str) -> tuple[Interface, str | None]:
+    """Return the interface of a file, and its text as .msg, .srv or .action where the file is of another kind."""
+    if path.suffix != ".idl":
+        return parse_file(path, package), None
+    try:
+        text = path.read_text(encoding="utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise InterfaceError(f"{path}: byte {error.start} is no UTF-8") from None
+    found = read_idl(text, path.stem, str(path))
+    if found.package != package:
+        raise InterfaceError(f"{path}: its module is '{found.package}', expected '{package}' as the package is called")
+    return parse(found.text, package, found.kind, found.name, str(path)), found.text
 
 
 def _suffixes(name: str) -> tuple[str, str]:

@@ -59,6 +59,7 @@ def bash(shell) -> Callable[[str], list[str]]:
         ("ros2 topic echo --onc", ["--once"]),
         ("ros2 run turtlesi", ["turtlesim"]),
         ("ros2 run turtlesim turtle_te", ["turtle_teleop_key"]),
+        ("ros2 launch turtlesim multi", ["multisim.launch.py"]),
         ("ros2 interface show geometry_msgs/msg/TwistSt", ["geometry_msgs/msg/TwistStamped"]),
         ("ros2 pkg prefix demo_nodes_p", ["demo_nodes_py"]),
         ("ros2 topic pub /x std_msgs/msg/Strin", ["std_msgs/msg/String"]),

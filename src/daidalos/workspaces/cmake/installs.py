@@ -187,15 +187,15 @@ def _generate_interfaces(run: Interpreter, call: Call) -> None:
     options = ("ADD_LINTER_TESTS", "SKIP_INSTALL", "SKIP_GROUP_MEMBERSHIP_CHECK")
     files = keywords(call.values, options, ("LIBRARY_NAME",), ("DEPENDENCIES",))[1][1:]
     if not files:
-        raise WorkspaceError(f"{call.where}: {call.name}() names no .msg, .srv or .action files")
+        raise WorkspaceError(f"{call.where}: {call.name}() names no .msg, .srv, .action or .idl files")
     paths = []
     for name in files:
         base, _, rest = name.rpartition(":")
         path = Path(base, rest) if base and not Path(name).is_absolute() else run.path(name)
         if not path.is_file():
             raise WorkspaceError(f"{call.where}: {call.name}(): there is no file '{name}'")
-        if path.suffix not in (".msg", ".srv", ".action"):
-            raise WorkspaceError(f"{call.where}: {call.name}(): '{name}' is no .msg, .srv or .action file")
+        if path.suffix not in (".msg", ".srv", ".action", ".idl"):
+            raise WorkspaceError(f"{call.where}: {call.name}(): '{name}' is no .msg, .srv, .action or .idl file")
         paths.append(path)
     before = run.contents.interfaces.files if run.contents.interfaces else []
     run.contents.interfaces = Interfaces(before + paths, call.where)
