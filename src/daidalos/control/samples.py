@@ -121,6 +121,8 @@ class TrajectorySample(Sample):
     ----------
     joints : tuple of n strings
     desired, actual, error, output : TrajectoryPoint
+    speed : float
+        Of the trajectory's time; 1 is as planned.
     """
 
     joints: tuple[str, ...]
@@ -128,6 +130,14 @@ class TrajectorySample(Sample):
     actual: TrajectoryPoint
     error: TrajectoryPoint
     output: TrajectoryPoint
+    speed: float = 1.0
+
+
+@dataclass(frozen=True)
+class SpeedCommand:
+    """How fast trajectories shall run: 1 is as planned, 0 stands still."""
+
+    factor: float
 
 
 @dataclass(frozen=True)

@@ -14,6 +14,7 @@ from daidalos.control.errors import ParameterError, StateError
 from daidalos.control.interfaces import Interfaces
 from daidalos.control.samples import (
     JointTolerance,
+    SpeedCommand,
     StateQuestion,
     TrajectoryCommand,
     TrajectoryPoint,
@@ -186,6 +187,30 @@ def test_velocities_alone_are_integrated_where_that_is_allowed() -> None:
     )
     rig.publish(TrajectoryCommand(JOINTS, points))
     assert rig.run(2.5)[-1, 0] == pytest.approx(1.0)
+
+
+def test_time_runs_as_fast_as_it_is_told() -> None:
+    rig = Rig(command_interfaces=["position", "velocity"], speed_scaling={"initial_scaling_factor": 0.5})
+    rig.publish(command((0.0, (0.0, 0.0, 0.0)), (2.0, (1.0, 1.0, 1.0))))
+    rows = rig.run(2.0)
+    assert rows[-1] == pytest.approx([0.5] * 3 + [0.25] * 3, abs=0.01)
+    speed = rig.controller.subscriptions["~/speed_scaling_input"].take
+    speed(SpeedCommand(0.0))
+    assert rig.run(1.0)[-1] == pytest.approx([0.5] * 3 + [0.0] * 3, abs=0.01)
+    speed(SpeedCommand(-1.0))
+    assert "-1" in rig.warnings[-1]
+    speed(SpeedCommand(2.0))
+    assert rig.run(0.45)[-1] == pytest.approx([0.95] * 3 + [1.0] * 3, abs=0.02)
+    assert rig.said[-1].speed == 2.0
+    rig.run(0.2)
+    assert rig.commands.values[:3] == pytest.approx([1.0] * 3)
+
+
+def test_the_hardware_may_tell_the_speed_and_be_told_it() -> None:
+    rig = Rig(speed_scaling={"state_interface": "scaling/factor", "command_interface": "scaling/wanted"})
+    assert "~/speed_scaling_input" not in rig.controller.subscriptions
+    assert rig.controller.state_names[-1] == "scaling/factor"
+    assert rig.controller.command_names[-1] == "scaling/wanted"
 
 
 def test_a_goal_gives_feedback_and_succeeds() -> None:

@@ -9,6 +9,7 @@ import pytest
 from builtin_interfaces.msg import Duration
 from control_msgs.action import FollowJointTrajectory, GripperCommand
 from controller_manager_msgs import srv
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from lifecycle_msgs.msg import State
 from rclpy.action import ActionClient
 from rclpy.context import Context
@@ -42,6 +43,28 @@ def test_a_controller_lives_by_services(graph: Context, tmp_path: Path) -> None:
         assert one.ask(srv.UnloadController, "unload_controller", name="it").ok
         assert one.states() == {}
         assert "it" not in one.user.get_node_names()
+
+
+def test_diagnostics_tell_what_is_active(graph: Context, tmp_path: Path) -> None:  # noqa: F811
+    file = parameter_file(tmp_path, "it", joints=["elbow"], interface_name="position")
+    values = {"it.type": FORWARD, "it.params_file": file, "diagnostic_updater.period": 0.05}
+    with rig(**values) as one:
+        said: list[DiagnosticArray] = []
+        one.user.create_subscription(DiagnosticArray, "/diagnostics", said.append, 10)
+        assert one.ask(srv.LoadController, "load_controller", name="it").ok
+
+        def report(name: str) -> tuple[bytes, str, dict[str, str]] | None:
+            found = (s for array in said[-1:] for s in array.status if s.name == f"controller_manager: {name}")
+            return next(((s.level, s.message, {v.key: v.value for v in s.values}) for s in found), None)
+
+        waiting = (DiagnosticStatus.WARN, "Not all controllers are active", {"it": "unconfigured"})
+        one.cycle_until(lambda: report("Controllers Activity") == waiting)
+        assert one.ask(srv.ConfigureController, "configure_controller", name="it").ok
+        assert one.switch(start=["it"]).ok
+        running = (DiagnosticStatus.OK, "All controllers are active", {"it": "active"})
+        one.cycle_until(lambda: report("Controllers Activity") == running)
+        hardware = (DiagnosticStatus.OK, "All hardware components are active", {"mock": "active"})
+        assert report("Hardware Components Activity") == hardware
 
 
 def test_hardware_and_interfaces_are_listed(graph: Context) -> None:  # noqa: F811

@@ -14,6 +14,7 @@ from daidalos.control.controllers.joint_trajectory_parameters import JointTrajec
 from daidalos.control.errors import StateError
 from daidalos.control.pid import Pid
 from daidalos.control.samples import (
+    SpeedCommand,
     StateAnswer,
     StateQuestion,
     TrajectoryCommand,
@@ -55,6 +56,10 @@ class JointTrajectoryController(Controller):
         self.command_names = interface_names(p.command_joints or p.joints, p.command_interfaces)
         self.state_names = interface_names(p.joints, [kind for kind in _ORDER if kind in p.state_interfaces])
         self._count = len(p.joints)
+        scaling = p.speed_scaling
+        self.command_names += (scaling.command_interface,) if scaling.command_interface else ()
+        self.state_names += (scaling.state_interface,) if scaling.state_interface else ()
+        self._speed = scaling.initial_scaling_factor
         robot = self.setting.robot
         self._endless = np.array(
             [
@@ -92,8 +97,11 @@ class JointTrajectoryController(Controller):
 
     @property
     def subscriptions(self) -> Mapping[str, Subscription]:
-        """Trajectories."""
-        return {"~/joint_trajectory": Subscription(TrajectoryCommand, self._take)}
+        """Trajectories, and how fast they run."""
+        taken = {"~/joint_trajectory": Subscription(TrajectoryCommand, self._take)}
+        if not self.p.speed_scaling.state_interface:
+            taken["~/speed_scaling_input"] = Subscription(SpeedCommand, self._take_speed)
+        return taken
 
     @property
     def services(self) -> Mapping[str, Service]:
@@ -112,6 +120,12 @@ class JointTrajectoryController(Controller):
             self.setting.warn(f"trajectory not accepted: {problem}")
             return
         self._replace(command, None)
+
+    def _take_speed(self, command: SpeedCommand) -> None:
+        if not (math.isfinite(command.factor) and command.factor >= 0.0):
+            self.setting.warn(f"speed scaling of {command.factor:g} not accepted: expected a number from 0 on")
+            return
+        self._speed = command.factor
 
     def _refuse(self, request: TrajectoryRequest) -> str:
         problem = problem_with(request.trajectory, self.p, self.now_ns)
@@ -159,13 +173,19 @@ class JointTrajectoryController(Controller):
         self._end_goal("aborted", ended)
         self._drop_pending(ended)
         if self.p.command_interfaces[0] in ("velocity", "effort"):
-            self.commands.write(np.zeros(len(self.command_names)))
+            self._write(np.zeros(len(self.p.command_interfaces) * len(self.p.command_joints or self.p.joints)))
 
     def update(self, now_ns: int, period: float) -> Iterable[Sample]:
         """Follow the trajectory."""
         if self._pending is not None and self._pending[0].start_ns <= now_ns:
             (command, goal), self._pending = self._pending, None
             self._begin(command, goal, self._desired_at(command.start_ns), command.start_ns)
+        if self.p.speed_scaling.state_interface:
+            told = float(self.states.read()[-1])
+            self._speed = told if math.isfinite(told) and told >= 0.0 else self._speed
+        if self._moving:
+            # What the trajectory's clock is slow by.
+            self._start_ns += round((1.0 - self._speed) * period * 1e9)
         actual = self._actual()
         desired = self._desired_at(now_ns)
         error = self._errors(desired, actual)
@@ -173,7 +193,7 @@ class JointTrajectoryController(Controller):
             desired = self._desired_at(now_ns)
             error = self._errors(desired, actual)
         output = self._command(desired, error, period)
-        self.commands.write(output)
+        self._write(output)
         if self.setting.heard("~/controller_state"):
             yield self._sample(now_ns, desired, actual, error, output)
 
@@ -235,7 +255,10 @@ class JointTrajectoryController(Controller):
         self._moving = False
 
     def _desired_at(self, time_ns: int) -> Motion:
-        return self._trajectory.sample((time_ns - self._start_ns) * 1e-9)
+        position, velocity, acceleration = self._trajectory.sample((time_ns - self._start_ns) * 1e-9)
+        if self._speed == 1.0:
+            return position, velocity, acceleration
+        return position, velocity * self._speed, acceleration * self._speed**2
 
     # Watching
 
@@ -287,7 +310,7 @@ class JointTrajectoryController(Controller):
     def _actual(self) -> Motion:
         """Return the state; NaN where nothing is measured."""
         values = np.full((3, self._count), np.nan)
-        measured = self.states.read().reshape(-1, self._count)
+        measured = self.states.read()[: len(self.p.state_interfaces) * self._count].reshape(-1, self._count)
         values[: len(measured)] = measured
         return values[0], values[1], values[2]
 
@@ -304,12 +327,15 @@ class JointTrajectoryController(Controller):
                 columns.append(self._feedforward * desired[1] + self._pid.update(error[0], period, rate))
             else:
                 columns.append(desired[_ORDER.index(interface)])
-        output = np.concatenate(columns)
-        wanted = len(self.command_names) // len(self.p.command_interfaces)
-        if wanted != self._count:  # some joints are only watched
-            chosen = [self._joints.index(name) for name in self.p.command_joints]
-            output = np.concatenate([column[chosen] for column in columns])
-        return output
+        commanded = self.p.command_joints or self._joints
+        if len(commanded) != self._count:  # some joints are only watched
+            chosen = [self._joints.index(name) for name in commanded]
+            columns = [column[chosen] for column in columns]
+        return np.concatenate(columns)
+
+    def _write(self, output: Array) -> None:
+        """Command the joints and, where it wants to know, tell the hardware the speed."""
+        self.commands.write(np.append(output, self._speed) if self.p.speed_scaling.command_interface else output)
 
     def _sample(self, now_ns: int, desired: Motion, actual: Motion, error: Motion, output: Array) -> TrajectorySample:
         elapsed = (now_ns - self._start_ns) * 1e-9
@@ -329,6 +355,7 @@ class JointTrajectoryController(Controller):
                 columns.get("acceleration"),
                 columns.get("effort"),
             ),
+            speed=self._speed,
         )
 
 

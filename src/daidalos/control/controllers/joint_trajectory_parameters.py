@@ -70,6 +70,25 @@ class JointConstraints:
 
 
 @dataclass(frozen=True)
+class SpeedScaling:
+    """How much slower than planned trajectories run.
+
+    Parameters
+    ----------
+    initial_scaling_factor : float
+        1 is as planned, 0 stands still.
+    state_interface : str
+        Where the hardware tells its factor; empty takes that of the topic ``~/speed_scaling_input``.
+    command_interface : str
+        Where the hardware is told the factor; empty for none.
+    """
+
+    initial_scaling_factor: float = parameter(1.0, at_least(0.0))
+    state_interface: str = parameter("", read_only=True)
+    command_interface: str = parameter("", read_only=True)
+
+
+@dataclass(frozen=True)
 class JointTrajectoryParameters:
     """Parameters, as ROS names them.
 
@@ -94,6 +113,7 @@ class JointTrajectoryParameters:
     allow_nonzero_velocity_at_trajectory_end : bool
     cmd_timeout : float
         How long after its end a trajectory from the topic is held before the joints stay where they are [s].
+    speed_scaling : SpeedScaling
     gains : mapping
         By joint, for velocity or effort commands.
     constraints : Constraints
@@ -119,6 +139,7 @@ class JointTrajectoryParameters:
     allow_nonzero_velocity_at_trajectory_end: bool = parameter(default=False)
     cmd_timeout: float = parameter(0.0, at_least(0.0))
     state_publish_rate: float = parameter(50.0)
+    speed_scaling: SpeedScaling = field(default_factory=SpeedScaling)
     gains: dict[str, JointGains] = field(default_factory=dict, metadata=per_name(JointGains, by="joints"))
     constraints: Constraints = field(default_factory=Constraints)
     joint_constraints: dict[str, JointConstraints] = field(

@@ -24,6 +24,7 @@ from daidalos.control.switching import Strictness
 from daidalos.description.robot import Robot
 from daidalos.description.world import Model
 from daidalos.nodes.controller_manager._controller_node import ControllerNode
+from daidalos.nodes.controller_manager._diagnostics import start_diagnostics
 from daidalos.nodes.controller_manager._reports import (
     activity_message,
     component_message,
@@ -91,6 +92,7 @@ class ControllerManagerNode(Node):
         self._activity = self.create_publisher(ControllerManagerActivity, "~/activity", _LATCHED)
         self._create_services()
         self._publish_activity()
+        start_diagnostics(self, self.manager, self.lock)
 
     def warn(self, line: str) -> None:
         """Log a line for the user."""

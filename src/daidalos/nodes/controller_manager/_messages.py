@@ -198,6 +198,10 @@ def _fill_answer(response: Any, answer: samples.Answer) -> Any:
     return response
 
 
+def _speed(message: Any) -> samples.SpeedCommand:
+    return samples.SpeedCommand(float(message.factor))
+
+
 OUTGOING: dict[type, Outgoing] = {
     **SIMULATED_OUTGOING,
     samples.DynamicJointSample: Outgoing(named("control_msgs", "DynamicJointState"), _dynamic_joint_state),
@@ -216,6 +220,7 @@ INCOMING: dict[type, Incoming] = {
     samples.ValuesCommand: Incoming(named("std_msgs", "Float64MultiArray"), _values),
     samples.DofCommand: Incoming(named("control_msgs", "MultiDOFCommand"), _dof_command),
     samples.WrenchCommand: Incoming(named("geometry_msgs", "WrenchStamped"), _wrench_command),
+    samples.SpeedCommand: Incoming(named("control_msgs", "SpeedScalingFactor"), _speed),
     samples.TrajectoryCommand: Incoming(named("trajectory_msgs", "JointTrajectory"), trajectory_command),
     samples.TrajectoryPoint: Incoming(named("trajectory_msgs", "JointTrajectoryPoint"), trajectory_point_command),
 }

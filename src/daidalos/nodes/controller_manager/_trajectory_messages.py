@@ -52,7 +52,7 @@ def trajectory_state(sample: samples.TrajectorySample) -> Any:
         feedback=_point(sample.actual),
         error=_point(sample.error),
         output=_point(sample.output),
-        speed_scaling_factor=1.0,
+        speed_scaling_factor=sample.speed,
     )
 
 
