@@ -90,6 +90,19 @@ REPORTER = """
     """
 
 
+AREA = """
+    #include "tutorial_interfaces/msg/Sphere.idl"
+    module tutorial_interfaces {
+      module msg {
+        struct Area {
+          sequence<tutorial_interfaces::msg::Sphere> parts;
+          @default (value=2.5) double size;
+        };
+      };
+    };
+    """
+
+
 @pytest.fixture(scope="module")
 def built(workspace, tmp_path_factory):
     """The workspace, built; what colcon printed is its second part."""
@@ -103,6 +116,7 @@ def built(workspace, tmp_path_factory):
         rosidl_generate_interfaces(${PROJECT_NAME}
           "msg/Num.msg"
           "msg/Sphere.msg"
+          "msg/Area.idl"
           "srv/AddThreeInts.srv"
           "action/Fibonacci.action"
           DEPENDENCIES geometry_msgs # Add packages that above messages depend on
@@ -110,6 +124,7 @@ def built(workspace, tmp_path_factory):
         """,
         {
             "msg/Num.msg": "int64 num\n",
+            "msg/Area.idl": AREA,
             "msg/Sphere.msg": "geometry_msgs/Point center\nfloat64 radius\n",
             "srv/AddThreeInts.srv": "int64 a\nint64 b\nint64 c\n---\nint64 sum\n",
             "action/Fibonacci.action": "int32 order\n---\nint32[] sequence\n---\nint32[] partial_sequence\n",
@@ -233,8 +248,11 @@ def test_own_interfaces_are_shown(sourced):
         "\tfloat64 z",
         "float64 radius",
     ]
+    shown = one.run("ros2 interface show tutorial_interfaces/msg/Area").splitlines()
+    assert (shown[0], shown[-1]) == ("tutorial_interfaces/Sphere[] parts", "float64 size 2.5")
     assert one.run("ros2 interface package tutorial_interfaces").split() == [
         "tutorial_interfaces/action/Fibonacci",
+        "tutorial_interfaces/msg/Area",
         "tutorial_interfaces/msg/Num",
         "tutorial_interfaces/msg/Sphere",
         "tutorial_interfaces/srv/AddThreeInts",
