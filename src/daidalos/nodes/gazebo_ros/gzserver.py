@@ -315,6 +315,17 @@ def _arguments(arguments: Sequence[str]) -> argparse.Namespace:
         metavar="PLUGIN",
         help="ignored: the ROS interface is built in",
     )
+    parser.add_argument("--seed", type=int, help="of all random numbers")
+    for names in (
+        ("-e", "--physics"),
+        ("-o", "--profile"),
+        ("-p", "--play"),
+        ("-g", "--gui-client-plugin"),
+        ("--iters",),
+    ):
+        parser.add_argument(*names, help="accepted, without effect")
+    for names in (("-r", "--record"), ("--lockstep",), ("--minimal_comms",)):
+        parser.add_argument(*names, action="store_true", help="accepted, without effect")
     return parser.parse_args(list(arguments))
 
 
@@ -340,7 +351,7 @@ def main() -> int:
     if world is not None and not world.is_file():
         print(f"error: there is no world file '{world}'", file=sys.stderr)
         return 2
-    return serve(world, arguments.pause)
+    return serve(world, arguments.pause, arguments.seed)
 
 
 if __name__ == "__main__":

@@ -11,7 +11,8 @@ from launch_ros.substitutions import FindPackageShare
 
 def simulator(context):
     """Make the nodes from arguments that are known by now."""
-    words = shlex.split(LaunchConfiguration("gz_args").perform(context))
+    given = [LaunchConfiguration(name).perform(context) for name in ("gz_args", "ign_args")]
+    words = shlex.split(given[0] or given[1])
     ends = LaunchConfiguration("on_exit_shutdown").perform(context).lower() in ("true", "1")
     server = Node(
         package="ros_gz_sim",
@@ -23,14 +24,17 @@ def simulator(context):
     view = IncludeLaunchDescription(
         PathJoinSubstitution([FindPackageShare("gazebo_ros"), "launch", "gzclient.launch.py"])
     )
+    if "-g" in words:
+        return [view]
     return [server] if "-s" in words else [server, view]
 
 
 def generate_launch_description():
-    accepted = ("gz_version", "ign_args", "ign_version", "debugger", "debug_env")
+    accepted = ("gz_version", "ign_version", "debugger", "debug_env")
     return LaunchDescription(
         [
             DeclareLaunchArgument("gz_args", default_value="", description="world, -r to run at once, -s without view"),
+            DeclareLaunchArgument("ign_args", default_value="", description="the older name of gz_args"),
             DeclareLaunchArgument("on_exit_shutdown", default_value="false", description="end when it ends"),
             *(
                 DeclareLaunchArgument(name, default_value="", description="accepted, without effect")
