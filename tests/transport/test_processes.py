@@ -54,15 +54,19 @@ def test_whichever_starts_first(new_session: Callable[[], Session]):
             second.wait_for("heard -5")
 
 
+def _size(session: Session) -> tuple[int, int]:
+    return len(session.graph.nodes()), len(session.graph.endpoints(EndpointKind.PUBLISHER))
+
+
 @pytest.mark.slow
 def test_a_large_graph_is_right_within_seconds(new_session: Callable[[], Session]):
     with Peer("crowd").ready():
         session = new_session()
         begin = time.monotonic()
         assert session.backend.settle(5.0)
-        assert len(session.graph.nodes()) == 200
-        assert len(session.graph.endpoints(EndpointKind.PUBLISHER)) == 3000
-        assert time.monotonic() - begin < 5.0
+        # What the other made last it may just be about to tell.
+        left = begin + 5.0 - time.monotonic()
+        assert session.graph.wait_for(lambda: _size(session) == (200, 3000), left), _size(session)
         with Peer("watch").ready() as watcher:
             watcher.wait_for("came node7")
     assert session.graph.wait_for(lambda: not session.graph.nodes() and not session.graph.endpoints(), PATIENCE_S)
