@@ -276,10 +276,11 @@ def test_comes_back_after_the_server_was_away(browser, source, robot):
         show(browser, server.url)
         browser.wait_for(SEES, 60)
     browser.wait_for("document.querySelector('[data-test=connection]').textContent.includes('Reconnecting')")
+    assert "Connection lost" in browser.evaluate("document.querySelector('[data-test=lost]').textContent")
     with serve(source, port) as server:
         assert server.port == port
         browser.wait_for(READY, 60)
-        browser.wait_for("daidalos.state().topics.length > 10")
+        browser.wait_for("daidalos.state().topics.length > 10 && !document.querySelector('[data-test=lost]')")
         browser.wait_for(f"{SEES} && daidalos.state().displays.Robot.level === 'ok'", 60)
 
 

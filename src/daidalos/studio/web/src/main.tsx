@@ -35,9 +35,23 @@ function App({ studio }: { studio: Studio }) {
     <>
       <TopBar studio={studio} layout={() => layout} />
       <main class="dock" ref={dock} />
+      <Lost studio={studio} />
       <Help />
     </>
   );
+}
+
+/** Said over whatever panels there are: none of them can know better. */
+function Lost({ studio }: { studio: Studio }) {
+  return studio.session.link.value === "lost" ? (
+    <div class="lost" role="alert" data-test="lost">
+      <span class="spinner" />
+      <span>
+        <strong>Connection lost.</strong> The program that serves this page has ended or can not be reached; trying
+        again…
+      </span>
+    </div>
+  ) : null;
 }
 
 /** The server that sent the page, unless the address names another: ?connect=ws://robot:8765 */

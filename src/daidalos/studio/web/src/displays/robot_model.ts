@@ -181,8 +181,9 @@ type Surface = Material & { color?: Color; emissive?: Color; map?: unknown; wire
 const DARK = 0.1;
 const GLOW = 0x4a525e;
 
-function luminance({ r, g, b }: Color): number {
-  return 0.2126 * r + 0.7152 * g + 0.0722 * b;
+/** Deep colours are not dark. */
+function brightness({ r, g, b }: Color): number {
+  return Math.max(r, g, b);
 }
 
 function styleMesh(object: Object3D, alpha: number, collides: boolean): void {
@@ -196,7 +197,7 @@ function styleMesh(object: Object3D, alpha: number, collides: boolean): void {
     material.opacity = (material.userData.opacity as number) * alpha;
     material.transparent = material.opacity < 1;
     material.depthWrite = material.opacity >= 1;
-    if (!collides && !material.map && material.color && luminance(material.color) < DARK) {
+    if (!collides && !material.map && material.color && brightness(material.color) < DARK) {
       material.emissive?.set(GLOW);
     }
     if (collides) {

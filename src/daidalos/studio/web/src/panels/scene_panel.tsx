@@ -55,12 +55,13 @@ function ScenePanel({ studio, visible }: PanelProps) {
 
 function Toolbar({ world, canNavigate }: { world: World; canNavigate: boolean }) {
   const { toolbox } = world;
+  const invites = canNavigate && !toolbox.used.value.has("goal");
   return (
     <div class="overlay-bar tools" role="toolbar" aria-label="Tools">
       {TOOLS.map((tool) => (
         <button
           key={tool.id}
-          class={`tool ${toolbox.active.value === tool ? "active" : ""} ${canNavigate && tool.id === "goal" ? "inviting" : ""}`}
+          class={`tool ${toolbox.active.value === tool ? "active" : ""} ${invites && tool.id === "goal" ? "inviting" : ""}`}
           title={`${tool.title} (${tool.key})`}
           aria-pressed={toolbox.active.value === tool}
           data-tool={tool.id}
@@ -124,12 +125,12 @@ function Note({ studio }: { studio: Studio }) {
       </div>
     ) : null;
   }
-  return (
+  return link.value === "connecting" ? (
     <div class="scene-note" role="status">
       <span class="spinner" />
-      {link.value === "connecting" ? "Connecting…" : "Connection lost, trying again…"}
+      Connecting…
     </div>
-  );
+  ) : null;
 }
 
 export const SCENE_PANEL: PanelType = { id: "scene", title: "3D", icon: "cube", component: ScenePanel };
