@@ -16,6 +16,14 @@ if TYPE_CHECKING:
     from rclpy.node import Node
 
 
+_UNTIL_GALACTIC = {"configure": "inactive", "start": "active"}
+
+
+def _state(word: str) -> str:
+    """Return a state that may be written as distributions until Galactic did."""
+    return _UNTIL_GALACTIC.get(word, word)
+
+
 class LoadControllerVerb(Verb):
     """Load a controller in a controller manager."""
 
@@ -25,7 +33,10 @@ class LoadControllerVerb(Verb):
         parser.add_argument("controller_name", help="Name of the controller")
         parser.add_argument("param_file", nargs="?", help="The YAML file with the controller parameters")
         parser.add_argument(
-            "--set-state", choices=("inactive", "active"), help="Set the state of the loaded controller"
+            "--set-state",
+            type=_state,
+            choices=("inactive", "active"),
+            help="Set the state of the loaded controller",
         )
         add_manager_arguments(parser)
 
