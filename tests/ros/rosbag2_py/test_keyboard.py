@@ -60,6 +60,8 @@ def test_keys_that_ctrl_c_discards_are_not_waited_for(monkeypatch):
         monkeypatch.setattr(select, "select", flush_once)
         keyboard = Keyboard(lambda key: None)
         keyboard.start()
+        while termios.tcgetattr(theirs)[6][termios.VMIN] != 0:  # the last of its settings
+            flushed.wait(0.01)
         os.write(ours, b" ")
         assert flushed.wait(20)
         stopper = threading.Thread(target=keyboard.stop, daemon=True)
