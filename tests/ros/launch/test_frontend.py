@@ -26,7 +26,7 @@ from launch.frontend.parse_substitution import (
     replace_escaped_characters,
 )
 from launch.frontend.type_utils import check_is_list_entity, get_data_type_from_identifier
-from launch.substitutions import EnvironmentVariable, LaunchConfiguration, TextSubstitution
+from launch.substitutions import EnvironmentVariable, LaunchConfiguration
 from launch.utilities.type_utils import extract_type
 
 
@@ -44,7 +44,9 @@ class Quoted(Substitution):
 def quoted(monkeypatch):
     """Expose `$(q ...)` for a while."""
     Parser.load_launch_extensions()
-    for register in ("substitution_parse_methods", "action_parse_methods"):
+    # Those of launch are registered when their modules are loaded: not into the copy, which is thrown away.
+    for register, package in (("substitution_parse_methods", "substitutions"), ("action_parse_methods", "actions")):
+        expose_module._look_up("", getattr(expose_module, register), f"launch.{package}")
         monkeypatch.setattr(expose_module, register, dict(getattr(expose_module, register)))
     expose_substitution("q")(lambda data: (Quoted, {"parts": data}))
 
@@ -74,7 +76,7 @@ def perform(text):
         ("$(q 'it\"s' \"it's\")", ["<it\"s><it's>"]),
         ("$(q $(var x))", ["<X>"]),
         ("$(q a$(var x)b$(var y))", ["<aXbY>"]),
-        ('$(q "a $(var x)" \'$(q "b c") d\')', ["<a X><<b c> d>"]),
+        ('$(q "a $(var x)" \'$(q "b c") d\')', ['<a X><<"b><c"> d>']),
         ('$(q "out $(q "in side")")', ["<out <in side>>"]),
         (r"\$(q a)", ["$(q a)"]),
         (r"$(q what/\$\(test asd\\\)) what", [r"<what/$(test><asd\)>", " what"]),
@@ -153,8 +155,9 @@ def test_if_substitutions():
     mixed = parse_if_substitutions(["$(var x)", 1])
     assert isinstance(mixed[0][0], LaunchConfiguration)
     assert mixed[1] == 1
+    assert parse_if_substitutions("plain") == "plain"
     texts = parse_if_substitutions(["a", "$(env b)"])
-    assert isinstance(texts[0][0], TextSubstitution)
+    assert texts[0] == "a"
     assert isinstance(texts[1][0], EnvironmentVariable)
     with pytest.raises(ValueError, match="one type"):
         parse_if_substitutions(["a", 1, 1.0])

@@ -201,3 +201,14 @@ def test_colour_on_a_terminal_only(monkeypatch):
     assert re.fullmatch(r"\033\[\d+m\[talker-1\]\033\[0m hello", prefix.format(line))
     monkeypatch.setenv("NO_COLOR", "1")
     assert level.format(record) == "[ERROR] [launch]: text"
+
+
+def test_a_reset_forgets_levels_and_handlers():
+    launch.logging.reset()
+    logger = launch.logging.get_logger("forgetful")
+    logger.addHandler(logging.NullHandler())
+    logger.setLevel(logging.ERROR)
+    launch.logging.launch_config.log_dir = None
+    launch.logging.reset()
+    assert logger.handlers == []
+    assert logger.getEffectiveLevel() == logging.INFO

@@ -6,8 +6,8 @@ r"""The substitutions in a text of a launch file: `prefix_$(name argument "anoth
     quoted        = "'" { escape | substitution | other } "'" | '"' { escape | substitution | other } '"'
     escape        = "\" any character
 
-Quotes only group inside of a substitution; outside they are ordinary characters. An escaped character
-stands for itself.
+Quotes only group inside of a substitution; outside they are ordinary characters, and so are those of the other
+kind inside of quotes. An escaped character stands for itself.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ def parse_substitution(string_value: str) -> list[Substitution]:
 
 
 def parse_if_substitutions(value: SomeValueType) -> NormalizedValueType:
-    """Return a value whose texts are replaced by the substitutions in them; numbers and truths stay.
+    """Return a value whose texts are replaced by the substitutions in them; numbers, truths and plain texts stay.
 
     Raises
     ------
@@ -52,13 +52,20 @@ def parse_if_substitutions(value: SomeValueType) -> NormalizedValueType:
         If a substitution is malformed, or if the items of a list are not of one type.
     """
     if isinstance(value, str):
-        return parse_substitution(value)
+        return _parse_if_any(value)
     if not isinstance(value, Iterable) or isinstance(value, Path | Substitution):
         return normalize_typed_substitution(value, None)
-    parsed: list[Any] = [parse_substitution(item) if isinstance(item, str) else item for item in value]
+    parsed: list[Any] = [_parse_if_any(item) if isinstance(item, str) else item for item in value]
     if not is_instance_of_valid_type([item for item in parsed if not isinstance(item, list)]):
         raise ValueError(f"the items of {value!r} are not of one type")
     return parsed
+
+
+def _parse_if_any(text: str) -> str | list[Substitution]:
+    parts = parse_substitution(text)
+    if len(parts) == 1 and isinstance(parts[0], TextSubstitution):
+        return parts[0].text
+    return parts
 
 
 def replace_escaped_characters(data: str) -> str:
@@ -72,6 +79,7 @@ class _Reader:
     def __init__(self, text: str) -> None:
         self.text = text
         self.at = 0
+        self.quotes = "'\""  # those that group here
 
     def read_until(self, end: str) -> list[Substitution]:
         """Read text and substitutions up to one of some characters, or to the end of the text."""
@@ -117,10 +125,12 @@ class _Reader:
         while self.peek() and not (depth == 0 and (self.peek().isspace() or self.peek() == ")")):
             if self.text.startswith("$(", self.at):
                 parts.add(self.read_substitution())
-            elif self.peek() in "'\"":
-                quote = self.peek()
+            elif self.peek() in self.quotes:
+                quote, outer = self.peek(), self.quotes
                 self.at += 1
+                self.quotes = quote
                 parts.extend(self.read_until(quote))
+                self.quotes = outer
                 if not self.peek():
                     raise self.error(start, f"the closing {quote} is missing")
                 self.at += 1

@@ -29,6 +29,11 @@ __all__ = [
 
 _get_logging_directory = get_logging_directory
 
+
+def _make_unique_log_dir(*, base_path: str) -> str:
+    return create_log_dir(base_path)
+
+
 _STANDARD_OUTPUTS: dict[str, dict[str, set[str]]] = {
     "screen": {"both": {"screen"}},
     "log": {"both": {"log"}, "stderr": {"screen"}},
@@ -69,11 +74,14 @@ class LaunchConfig:
     def log_dir(self) -> str:
         """The folder of the log files; it is made when first asked for."""
         if self._log_dir is None:
-            self._log_dir = create_log_dir()
+            self._log_dir = _make_unique_log_dir(base_path=get_logging_directory())
         return self._log_dir
 
     @log_dir.setter
-    def log_dir(self, new_log_dir: str) -> None:
+    def log_dir(self, new_log_dir: str | None) -> None:
+        if new_log_dir is None:  # another is made when it is asked for
+            self._log_dir = None
+            return
         folder = os.path.abspath(new_log_dir)
         if self._file_handlers:
             raise RuntimeError("the log folder can not be changed once log files were opened in it")
@@ -196,11 +204,13 @@ def get_output_loggers(
 
 
 def reset() -> None:
-    """Forget all loggers' handlers and go back to the default configuration."""
+    """Forget all loggers' handlers and levels and go back to the default configuration."""
     for logger in (*LaunchLogger.all_loggers, logging.root):
         for handler in list(logger.handlers):
-            if handler is launch_config._screen_handler or handler in launch_config._file_handlers.values():
+            ours = handler is launch_config._screen_handler or handler in launch_config._file_handlers.values()
+            if ours or isinstance(logger, LaunchLogger):
                 logger.removeHandler(handler)
+        logger.setLevel(logging.NOTSET)
     for handler in launch_config._file_handlers.values():
         handler.close()
     launch_config.reset()

@@ -17,9 +17,8 @@ def get_logging_directory() -> str:
     return os.path.normpath(os.path.expanduser(log_dir))
 
 
-def create_log_dir() -> str:
-    """Make the folder of this launch, let the link `latest` beside it point to it, and return its path."""
-    base = get_logging_directory()
+def create_log_dir(base: str) -> str:
+    """Make the folder of this launch below `base`, let the link `latest` beside it point to it; returns its path."""
     now = datetime.datetime.now().strftime("%Y-%m-%d-%H-%M-%S-%f")
     name = f"{now}-{socket.gethostname()}-{os.getpid()}"
     folder = os.path.join(base, name)
