@@ -44,7 +44,9 @@ def set_message_fields(
         if not hasattr(type(msg), name) or name not in msg.get_fields_and_field_types():
             fault = f"'{type(msg).__name__}' object has no attribute '{name}'"
             raise AttributeError(fault, name=str(name), obj=msg)
-        spec = next(field for field in msg._FIELDS if field[0] == name)
+        fields = (field for field in getattr(msg, "_FIELDS", ()) if field[0] == name)
+        # What is no generated message, but looks like one, tells its fields' types by what they hold.
+        spec = next(fields, None) or (name, type(getattr(msg, name)), "single", 0, None)
         _set(msg, spec, value, expand_header_auto, expand_time_now, stampers)
     return stampers
 
@@ -59,6 +61,8 @@ def _set(
         setattr(msg, name, _primitive(base, value))
     elif value is None:
         return
+    elif isinstance(value, base) or not issubclass(base, Message):
+        setattr(msg, name, value if isinstance(value, base) else base(value))
     else:
         field = getattr(msg, name)
         type_name = base._TYPE_NAME

@@ -43,17 +43,18 @@ class BufferClient(BufferInterface):
     check_frequency
         Kept for compatibility: nothing is checked periodically, answers are waited for.
     timeout_padding
-        How much longer than the time-out of a look-up to wait for the answer.
+        How much longer than the time-out of a look-up to wait for the answer; a number is in seconds.
     """
 
     def __init__(
-        self, node: Node, ns: str, check_frequency: float = 10.0, timeout_padding: Duration = _PADDING
+        self, node: Node, ns: str, check_frequency: float = 10.0, timeout_padding: Duration | float = _PADDING
     ) -> None:
         super().__init__()
         self.node = node
         self.action_client = ActionClient(node, LookupTransform, action_name=ns)
         self.check_frequency = check_frequency
-        self.timeout_padding = timeout_padding
+        given = isinstance(timeout_padding, Duration)
+        self.timeout_padding: Duration = timeout_padding if given else Duration(seconds=timeout_padding)
 
     def lookup_transform(
         self, target_frame: str, source_frame: str, time: Time, timeout: Duration = NO_WAIT

@@ -52,7 +52,7 @@ def buffer(graph: object) -> Iterator[Buffer]:
 
 @pytest.fixture
 def client(node: Node) -> Iterator[BufferClient]:
-    client = BufferClient(node, "lookup")
+    client = BufferClient(node, "lookup", timeout_padding=2.0)
     yield client
     client.destroy()
 
