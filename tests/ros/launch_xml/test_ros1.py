@@ -112,6 +112,14 @@ def test_node(ran):
     assert "is one of ROS 1 and was translated" in printed
 
 
+def test_rules_among_the_arguments(ran):
+    nodes, _ = ran('<launch><node pkg="p" type="t" name="n" args="x scan:=/s _rate:=5 __ns:=/up __log:=f y"/></launch>')
+    arguments, remaps, parameters = nodes["p/t"]
+    assert arguments == ["x", "y"]
+    assert remaps == ["scan:=/s", "__ns:=/up", "__node:=n"]
+    assert parameters == {"rate": 5}
+
+
 def test_required_nodes_end_the_launch(ran):
     _, printed = ran('<launch><node pkg="p" type="t" name="n" required="true"/></launch>')
     assert "was required: shutting down" in printed

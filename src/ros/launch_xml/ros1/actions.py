@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 # Launch configurations that are not arguments: namespaces, parameters and remappings.
 _CONDITIONS = ("if", "unless")
 _PARTS = ("param", "rosparam", "remap", "env")
+_SPECIAL_RULES = {"__name": "__node", "__ns": "__ns"}
 _INTERNAL = ("ros_namespace", "global_params", "ros_remaps")
 
 
@@ -72,11 +73,28 @@ def _node_class() -> type[Action]:
             self.__command_line = normalize_to_list_of_substitutions(command_line)
 
         def _perform_substitutions(self, context: LaunchContext) -> None:
-            words = shlex.split(perform_substitutions(context, self.__command_line))
+            words = _todays_words(shlex.split(perform_substitutions(context, self.__command_line)))
             self.process_description.cmd.extend(normalize_to_list_of_substitutions(word) for word in words)
             super()._perform_substitutions(context)
 
     return Ros1Node
+
+
+def _todays_words(words: list[str]) -> list[str]:
+    """Return the words of a command line with its rules, such as ``scan:=/scan`` and ``_rate:=5``, marked as those."""
+    rules: list[str] = []
+    for word in words:
+        name, sign, value = word.partition(":=")
+        if not sign:
+            continue
+        if name in _SPECIAL_RULES:
+            rules += ["-r", f"{_SPECIAL_RULES[name]}:={value}"]
+        elif name.startswith("_") and not name.startswith("__"):
+            rules += ["-p", f"{name[1:]}:={value}"]
+        elif not name.startswith("__"):
+            rules += ["-r", word]
+    others = [word for word in words if ":=" not in word]
+    return [*others, "--ros-args", *rules, "--"] if rules else others
 
 
 class _NodeWithConditions(Action):
