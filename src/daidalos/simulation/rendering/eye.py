@@ -12,9 +12,10 @@ from numpy.typing import NDArray
 from daidalos.description.pose import Pose
 from daidalos.simulation.noise import SILENT, Noise
 from daidalos.simulation.physics import Physics
+from daidalos.simulation.rendering.backends import make_renderer
 from daidalos.simulation.rendering.film import add_noise, bend, mosaic, pick
 from daidalos.simulation.rendering.optics import Pinhole
-from daidalos.simulation.rendering.renderer import Renderer, View
+from daidalos.simulation.rendering.renderer import View
 
 _NOISE_TABLE = 1 << 20
 _BAYER = {"rggb": ((0, 1), (1, 2)), "bggr": ((2, 1), (1, 0)), "gbrg": ((1, 2), (0, 1)), "grbg": ((1, 0), (2, 1))}
@@ -55,7 +56,7 @@ class Eye:
     def __init__(self, settings: EyeSettings, random: np.random.Generator) -> None:
         self.settings = settings
         self._random = random
-        self._renderer = Renderer(settings.pinhole.ideal, settings.near, settings.far, settings.mask)
+        self._renderer = make_renderer(settings.pinhole.ideal, settings.near, settings.far, settings.mask)
         self._view: View | None = None
 
     def look(self, physics: Physics, pose: Pose) -> None:

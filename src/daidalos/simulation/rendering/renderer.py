@@ -128,8 +128,8 @@ class Renderer:
         """Return the colours (rows, columns, 3) of what the last `render` saw; glass in front of it included."""
         assert self._buffers is not None
         scene = self._buffers.scene
-        sun, lamps = _sorted(lighting)
-        direction = np.array((0.0, 0.0, -1.0)) if sun is None else _shines(*sun)
+        sun, lamps = sort_lights(lighting)
+        direction = np.array((0.0, 0.0, -1.0)) if sun is None else shines(*sun)
         shadow = self._shadow(scene, positions, rotations, direction, lighting, sun)
         picture = self._pool.take((*self._triangles.shape, 3), np.uint8)
         self._shade(self._triangles, self._inverse, lighting, sun, direction, lamps, shadow, picture, blend=False)
@@ -187,20 +187,25 @@ class Renderer:
         eye = self._eye.matrix
         to_shadow = np.zeros((3, 4)) if shadow is None else shadow.to_map @ eye
         offset = np.zeros(2) if shadow is None else np.array((1.5, 1.0)) * shadow.texel
-        colors = _SKY if lighting.sky else (lighting.background, lighting.background)
+        colors = background_of(lighting)
         shade(
             triangles, inverse, buffers.edges, buffers.flipped, scene.face_part, scene.faces, scene.normals, scene.uv,
             buffers.placed, scene.colors, scene.emissions, scene.alphas, scene.texture_of, scene.atlas.texels,
             scene.atlas.textures, scene.atlas.levels, self.pinhole.lens,
             np.array([color[:3] for color in colors], dtype=np.float32), np.ascontiguousarray(eye[2, :3]),
             np.array(lighting.ambient[:3], dtype=np.float32), -(view[:, :3] @ direction),
-            np.zeros(3, dtype=np.float32) if sun is None else _strength(sun[0]), _lamp_table(lamps, view),
+            np.zeros(3, dtype=np.float32) if sun is None else strength(sun[0]), lamp_table(lamps, view),
             _NO_SHADOW if shadow is None else shadow.depths, _NO_SHADOW if shadow is None else shadow.coarse,
             to_shadow, offset, picture, blend,
         )  # fmt: skip
 
 
-def _sorted(lighting: Lighting) -> tuple[tuple[Light, Pose] | None, list[tuple[Light, Pose]]]:
+def background_of(lighting: Lighting) -> tuple[Rgba, Rgba]:
+    """Return the colours of the sky at the horizon and above."""
+    return _SKY if lighting.sky else (lighting.background, lighting.background)
+
+
+def sort_lights(lighting: Lighting) -> tuple[tuple[Light, Pose] | None, list[tuple[Light, Pose]]]:
     """Return the parallel light that shadows are drawn for, and all others."""
     shining = [pair for pair in lighting.lights if pair[0].on and pair[0].intensity > 0]
     parallel = [pair for pair in shining if pair[0].type == "directional"]
@@ -208,24 +213,26 @@ def _sorted(lighting: Lighting) -> tuple[tuple[Light, Pose] | None, list[tuple[L
     return sun, [pair for pair in shining if pair is not sun]
 
 
-def _shines(light: Light, pose: Pose) -> Array:
+def shines(light: Light, pose: Pose) -> Array:
     """Return the unit vector in which a light shines, in the world."""
     direction = np.array(rotate(pose.orientation, light.direction))
     length = float(np.linalg.norm(direction))
     return direction / length if length > 0 else np.array((0.0, 0.0, -1.0))
 
 
-def _strength(light: Light) -> NDArray[np.float32]:
+def strength(light: Light) -> NDArray[np.float32]:
+    """Return a light's colour (3,), times how bright it is."""
     return np.array(light.diffuse[:3], dtype=np.float32) * np.float32(light.intensity)
 
 
-def _lamp_table(lamps: list[tuple[Light, Pose]], view: Array) -> Array:
+def lamp_table(lamps: list[tuple[Light, Pose]], view: Array) -> Array:
+    """Return lamps in the camera's frame (n, LAMP), as `lamps` describes them."""
     table = np.zeros((len(lamps), LAMP))
     for row, (light, pose) in zip(table, lamps, strict=True):
         row[0] = _KINDS.get(light.type, POINT)
         row[1:4] = view[:, :3] @ pose.position + view[:, 3]
-        row[4:7] = view[:, :3] @ _shines(light, pose)
-        row[7:10] = _strength(light)
+        row[4:7] = view[:, :3] @ shines(light, pose)
+        row[7:10] = strength(light)
         row[10:14] = (
             light.attenuation_range,
             light.attenuation_constant,
