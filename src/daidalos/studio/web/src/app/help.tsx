@@ -12,10 +12,24 @@ const VIEW_KEYS = [
   ["?", "This card"],
 ] as const;
 
+const SIMULATION_KEYS = [
+  ["t  r  s", "Move, turn, scale a model"],
+  ["Ctrl", "In steps, while dragging"],
+  ["Del", "Delete what is selected"],
+  ["Ctrl+Z", "Undo"],
+] as const;
+
+const PLOT_MOUSE = [
+  ["Drag", "Zoom to a box"],
+  ["Wheel", "Zoom time (Shift: values)"],
+  ["Shift + drag", "Move"],
+  ["Double click", "All again, and go on"],
+] as const;
+
 const MOUSE = [
-  ["Left", "Turn (top-down: move)"],
-  ["Middle, Shift + left", "Move"],
-  ["Right, wheel", "Zoom"],
+  ["Left", "Turn"],
+  ["Middle", "Move (also Shift + left)"],
+  ["Wheel", "Zoom (also right)"],
 ] as const;
 
 export function Help() {
@@ -36,6 +50,8 @@ export function Help() {
           <Keys title="Tools" rows={TOOLS.map(({ key, title }) => [key, title] as const)} />
           <Keys title="View" rows={VIEW_KEYS} />
           <Keys title="Mouse" rows={MOUSE} />
+          <Keys title="Simulation" rows={SIMULATION_KEYS} />
+          <Keys title="Plot" rows={PLOT_MOUSE} />
         </div>
       </div>
     </div>

@@ -205,13 +205,12 @@ function mesh(marker: Marker, { assets, changed, complain }: MarkerContext): Obj
   assets
     .load(marker.mesh_resource)
     .then((model) => {
-      if (!marker.mesh_use_embedded_materials) {
-        model.traverse((object) => {
-          if (object instanceof Mesh) {
-            object.material = material(marker.color);
-          }
-        });
-      }
+      model.traverse((object) => {
+        object.userData.pickable = object instanceof Mesh;
+        if (object instanceof Mesh && !marker.mesh_use_embedded_materials) {
+          object.material = material(marker.color);
+        }
+      });
       holder.add(model);
       changed();
     })

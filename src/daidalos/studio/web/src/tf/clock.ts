@@ -6,7 +6,8 @@ const CORRECTION = 0.1;
 const RATE_WINDOW_S = 2.5;
 /** Without news for this long, robot time stands still (a paused simulation). */
 const STILL_S = 0.35;
-/** And seen so this many times: what waits behind a busy page is not overlooked. */
+/** Without news for this long, and seen so this many times, it is paused: what waits behind a busy page is news. */
+const PAUSED_S = 1;
 const STILL_TICKS = 4;
 const DELAY_LEAST_S = 0.01;
 const DELAY_MOST_S = 0.3;
@@ -58,7 +59,7 @@ export class RobotClock {
   /** Notice that robot time stands still. */
   tick(page: number): void {
     const last = this.marks.at(-1);
-    this.stillTicks = last && page - last.page > STILL_S ? this.stillTicks + 1 : 0;
+    this.stillTicks = last && page - last.page > PAUSED_S ? this.stillTicks + 1 : 0;
     if (last && this.stillTicks >= STILL_TICKS && this.rate !== 0) {
       this.estimate = { page, robot: last.robot };
       this.marks = [];
