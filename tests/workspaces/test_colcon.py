@@ -165,7 +165,8 @@ def built(workspace, tmp_path_factory):
         install(PROGRAMS scripts/reporter.py DESTINATION lib/${PROJECT_NAME})
         if(BUILD_TESTING)
           find_package(ament_cmake_pytest REQUIRED)
-          ament_add_pytest_test(words test/test_words.py TIMEOUT 60)
+          ament_add_pytest_test(words test/test_words.py TIMEOUT 60 ENV PLACE=mixed)
+          ament_add_pytest_test(elsewhere test/test_words.py WORKING_DIRECTORY test ENV PLACE=test)
         endif()
         """,
         {
@@ -175,7 +176,9 @@ def built(workspace, tmp_path_factory):
             "mixed/words.py": "def greeting(number):\n    return f'red is {number}'\n",
             "scripts/reporter.py": REPORTER,
             "test/test_words.py": (
-                "from mixed.words import greeting\n\n\ndef test_greeting():\n    assert greeting(3) == 'red is 3'\n"
+                "import os\nfrom mixed.words import greeting\n\n\ndef test_greeting():\n"
+                "    assert greeting(3) == 'red is 3'\n"
+                "    assert os.path.basename(os.getcwd()) == os.environ['PLACE']\n"
             ),
         },
     )
@@ -310,7 +313,7 @@ def test_tests_are_run_and_their_results_shown(built, terminal):
     assert "test_results/mixed/words.xunit.xml: 1 test, 0 errors, 0 failures, 0 skipped" in printed
     assert "build/py_pubsub/pytest.xml: 2 tests, 0 errors, 1 failure, 0 skipped" in printed
     assert "assert (2 + 2) == 5" in printed
-    assert "Summary: 3 tests, 0 errors, 1 failure, 0 skipped" in printed
+    assert "Summary: 4 tests, 0 errors, 1 failure, 0 skipped" in printed
 
 
 def test_rosdep_finds_everything(built, terminal):

@@ -39,6 +39,7 @@ def read_tests(build: Path) -> list[Test]:
             arguments=tuple(row["arguments"]),
             timeout=row["timeout"],
             environment=tuple((key, value) for key, value in row["environment"]),
+            folder=row["folder"],
         )
         for row in rows
     ]

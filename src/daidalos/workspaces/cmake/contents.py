@@ -60,7 +60,7 @@ class Target:
 
 @dataclass(frozen=True)
 class Test:
-    """A test of Python files; `kind` is ``pytest`` or ``launch``."""
+    """A test of Python files; `kind` is ``pytest`` or ``launch``, and it runs in `folder`, or the build folder."""
 
     name: str
     kind: str
@@ -68,6 +68,7 @@ class Test:
     arguments: tuple[str, ...] = ()
     timeout: float = 60.0
     environment: tuple[tuple[str, str], ...] = ()
+    folder: str = ""
 
 
 @dataclass

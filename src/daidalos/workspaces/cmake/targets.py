@@ -161,7 +161,8 @@ def _add_test(run: Interpreter, call: Call, name: str, kind: str, path: str, fou
         raise WorkspaceError(f"{call.where}: {call.name}(): TIMEOUT needs a number of seconds") from None
     pairs = [item.partition("=") for item in found.get("ENV", [])]
     environment = tuple((key, value) for key, _, value in pairs)
-    run.contents.tests.append(Test(name, kind, where, tuple(found.get("ARGS", [])), timeout, environment))
+    folder = str(run.path(found["WORKING_DIRECTORY"][0])) if "WORKING_DIRECTORY" in found else ""
+    run.contents.tests.append(Test(name, kind, where, tuple(found.get("ARGS", [])), timeout, environment, folder))
 
 
 def _compiled_test(run: Interpreter, call: Call) -> None:

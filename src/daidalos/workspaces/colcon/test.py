@@ -50,6 +50,6 @@ class CmakePackageTestTask(TaskExtensionPoint):  # type: ignore[misc]
         result.unlink(missing_ok=True)
         environment = {**environment, **dict(test.environment), "PYTHONDONTWRITEBYTECODE": "1"}
         words = command(test, package, result, Path(args.build_base))
-        completed = await run(self.context, words, cwd=args.path, env=environment)
+        completed = await run(self.context, words, cwd=test.folder or args.build_base, env=environment)
         complete_result(result, package, test, completed.returncode)
         return int(completed.returncode)
