@@ -63,6 +63,25 @@ def test_gzs_pose_publisher_tells_links_and_model():
     assert link.translation == pytest.approx((0, 0, 0), abs=1e-9)
 
 
+def test_gzs_pose_publisher_keeps_what_no_joint_moves_apart():
+    link = "<link name='{}'><pose>{} 0 0.5 0 0 0</pose></link>"
+    joint = (
+        "<joint name='{0}{1}' type='{2}'><parent>{0}</parent><child>{1}</child><axis><xyz>0 0 1</xyz></axis></joint>"
+    )
+    links = link.format("a", 0) + link.format("wheel", 1) + link.format("eye", 2)
+    joints = joint.format("a", "wheel", "revolute") + joint.format("a", "eye", "fixed")
+    model = f"<model name='m'>{links}{joints}</model>"
+    parameters = "<static_publisher>true</static_publisher><static_update_frequency>10</static_update_frequency>"
+    parameters += "<update_frequency>50</update_frequency>"
+    samples = Simulation(world(with_plugin(model, "gz-sim-pose-publisher-system", parameters))).advance(SECOND)
+    moving = [sample for sample in samples if sample.topic == "/model/m/pose"]
+    fixed = [sample for sample in samples if sample.topic == "/model/m/pose_static"]
+    assert {sample.child_frame_id for sample in moving} == {"m/wheel"}
+    assert {sample.child_frame_id for sample in fixed} == {"m/a", "m/eye"}
+    assert (len(moving), len(fixed)) == (50, 20)
+    assert fixed[-1].translation == pytest.approx((2, 0, 0.5), abs=1e-6)
+
+
 def test_a_force_lasts_until_the_next_command():
     simulation = Simulation(
         world(with_plugin(box("b", "0 0 9 0 0 0"), "libgazebo_ros_force.so", "<link_name>link</link_name>"))

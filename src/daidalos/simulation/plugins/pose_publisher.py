@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping
 
 import numpy as np
 
+from daidalos.description.joint import JointType
 from daidalos.description.link import Plugin as Description
 from daidalos.description.pose import Pose
 from daidalos.simulation.component import Setting
@@ -16,7 +17,10 @@ from daidalos.simulation.topics import absolute_topic
 
 
 class PosePublisher(Plugin):
-    """gz's PosePublisher system: links in the model's frame, and the model in the world where that is wanted."""
+    """gz's PosePublisher system: links in the model's frame, and the model in the world where that is wanted.
+
+    With ``static_publisher`` what no joint moves has a topic and a rate of its own.
+    """
 
     names = ("gz-sim-pose-publisher-system",)
 
@@ -30,29 +34,44 @@ class PosePublisher(Plugin):
         )
         rate = element.number_of("update_frequency", default=-1.0)
         self.period = 1.0 / rate if rate > 0 else 0.0
+        self.static_topic = f"{self.topic}_static" if element.flag_of("static_publisher", default=False) else ""
+        static_rate = element.number_of("static_update_frequency", default=rate)
+        self._static_period_ns = round(1e9 / static_rate) if static_rate > 0 else 0
+        self._static_ns = -self._static_period_ns
 
     @property
     def publications(self) -> Mapping[str, type[Sample]]:
-        """One topic."""
-        return {self.topic: TransformSample}
+        """One topic, or two."""
+        return {topic: TransformSample for topic in (self.topic, self.static_topic) if topic}
 
     def bind(self, instance: Instance) -> None:
         """Take the model."""
         self._instance = instance
+        moved = {joint.child for joint in instance.model.joints.values() if joint.type is not JointType.FIXED}
+        self._topics = {
+            link: self.static_topic if self.static_topic and link not in moved else self.topic
+            for link in instance.model.links
+        }
 
     def update(self, now_ns: int) -> Iterable[Sample]:
         """Say where everything is."""
         instance = self._instance
-        if not instance.heard(self.topic):
+        due = {topic for topic in (self.topic, self.static_topic) if topic and instance.heard(topic)}
+        if 0 <= now_ns - self._static_ns < self._static_period_ns:
+            due.discard(self.static_topic)
+        if self.static_topic in due:
+            self._static_ns = now_ns
+        if not due:
             return
         pose = instance.pose
-        if self.model:
-            yield self._transform(now_ns, self.setting.world.name, instance.name, pose)
+        if self.model and self.topic in due:
+            yield self._transform(now_ns, self.topic, self.setting.world.name, instance.name, pose)
         if self.links:
             back = pose.inverse
-            for link in instance.model.links:
-                child = f"{instance.name}/{link.replace('::', '/')}"
-                yield self._transform(now_ns, instance.name, child, back @ instance.link(link).pose)
+            for link, topic in self._topics.items():
+                if topic in due:
+                    child = f"{instance.name}/{link.replace('::', '/')}"
+                    yield self._transform(now_ns, topic, instance.name, child, back @ instance.link(link).pose)
 
-    def _transform(self, now_ns: int, parent: str, child: str, pose: Pose) -> TransformSample:
-        return TransformSample(now_ns, self.topic, parent, child, np.array(pose.position), np.array(pose.orientation))
+    def _transform(self, now_ns: int, topic: str, parent: str, child: str, pose: Pose) -> TransformSample:
+        return TransformSample(now_ns, topic, parent, child, np.array(pose.position), np.array(pose.orientation))
