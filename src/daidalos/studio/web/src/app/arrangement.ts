@@ -27,10 +27,10 @@ export interface Arrangement {
 
 const ADDRESS = "arrangement.json";
 
-/** Ask the server; undefined where it has nothing to say. */
+/** Ask the server; undefined where it has nothing to say, or has gone: the page goes on and waits for it. */
 export async function fetchArrangement(): Promise<Arrangement | undefined> {
-  const answer = await fetch(ADDRESS);
-  return answer.ok ? ((await answer.json()) as Arrangement) : undefined;
+  const answer = await fetch(ADDRESS).catch(() => undefined);
+  return answer?.ok ? ((await answer.json()) as Arrangement) : undefined;
 }
 
 /** The displays that an arrangement asks for, with all that it leaves open as it is by default. */
