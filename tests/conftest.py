@@ -8,12 +8,17 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import IO
 
+import hypothesis
 import pytest
 
 from places import REPOSITORY
 
 # Options meant for this run are not for the pytest that a test starts, which may know other plugins.
 os.environ.pop("PYTEST_ADDOPTS", None)
+
+# How long an example takes says more of the machine's other work than of the code; slowness has its own tests.
+hypothesis.settings.register_profile("daidalos", deadline=None)
+hypothesis.settings.load_profile("daidalos")
 
 _numbers = itertools.count(os.getpid())
 

@@ -50,7 +50,7 @@ def test_a_file_that_was_cut_off_is_read_up_to_its_last_whole_chunk(file, tmp_pa
     assert len(found) > 5
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(st.data())
 def test_damage_is_told_and_never_breaks_the_reader(file, tmp_path_factory, data):
     whole = bytearray(file.read_bytes())

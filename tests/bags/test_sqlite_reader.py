@@ -45,7 +45,7 @@ def test_a_file_that_was_cut_off_is_told(file, tmp_path):
         assert str(path) in found
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(st.data())
 def test_damage_never_breaks_the_reader(file, tmp_path_factory, data):
     whole = bytearray(file.read_bytes())

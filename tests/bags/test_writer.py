@@ -191,7 +191,7 @@ def test_an_empty_bag(tmp_path, storage):
         assert (bag.metadata.message_count, bag.metadata.start_ns, bag.metadata.duration_ns) == (0, 0, 0)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(
     st.lists(st.tuples(st.booleans(), st.binary(max_size=300), st.integers(0, 2**62)), max_size=60),
     st.sampled_from(WAYS),

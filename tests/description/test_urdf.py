@@ -154,7 +154,7 @@ def test_the_turtlebots_load(name):
     assert not robot.warnings
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 @given(st.data())
 def test_damaged_robots_give_robots_or_descriptions_errors(data):
     """Change one attribute or drop one element: either it still is a robot or the error has a place."""

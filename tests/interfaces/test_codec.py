@@ -26,9 +26,7 @@ from daidalos.interfaces.codec._text import Variant
 from daidalos.interfaces.message import Message
 from interfaces.messages import NAMES, PACKAGES, class_of, from_plain, messages, to_plain
 
-QUICK = settings(
-    max_examples=15, deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large]
-)
+QUICK = settings(max_examples=15, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
 WIDTHS = (2, 4)
 STORE = get_typestore(Stores.ROS2_JAZZY)
 # rosbags takes an empty message for nothing at all.

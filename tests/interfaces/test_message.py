@@ -48,7 +48,7 @@ def test_every_class_has_the_members_of_rosidls(package):
 
 
 @pytest.mark.parametrize("package", PACKAGES)
-@settings(max_examples=20, deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
+@settings(max_examples=20, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
 @given(data=st.data())
 def test_messages_are_equal_to_their_copies(package, data):
     kind = class_of(data.draw(st.sampled_from(names_of(package))))

@@ -20,7 +20,6 @@ from daidalos.localization.particles import (
 )
 
 
-@settings(deadline=None)
 @given(
     weights=st.lists(st.floats(0.0, 1.0), min_size=1, max_size=60).filter(lambda w: sum(w) > 1e-3),
     count=st.integers(1, 200),
@@ -51,7 +50,7 @@ def test_bins_go_round_with_the_yaw():
     assert np.unique(bins_of(np.array([[-0.1, 0.0, 0.0], [0.0, -0.1, 0.0], [0.0, 0.0, -0.1]]))).size == 3
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(seed=st.integers(0, 10_000))
 def test_the_heaviest_cluster_is_that_of_a_graph_of_touching_bins(seed):
     generator = np.random.default_rng(seed)

@@ -36,7 +36,7 @@ def test_a_beam_that_is_too_long_only_frees() -> None:
     assert states(grid, min_pass_through=1) == {(0, 0): FREE, (0, 1): FREE, (0, 2): FREE}
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 @given(st.tuples(coordinate, coordinate), st.tuples(coordinate, coordinate), st.floats(-4.0, 4.0))
 def test_the_cells_of_a_beam_are_those_that_its_line_crosses(
     origin: tuple[float, float], end: tuple[float, float], yaw: float

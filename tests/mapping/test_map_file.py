@@ -4,7 +4,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import yaml
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import array_shapes, arrays
 from PIL import Image
@@ -35,7 +35,6 @@ def write(folder: Path, fields: str = GOOD, image: bytes = b"P5\n2 2\n255\n\x00\
     return path
 
 
-@settings(deadline=None)
 @given(arrays(np.int8, shapes, elements=st.sampled_from([-1, 0, 100])), st.floats(1e-3, 10.0), origins)
 def test_trinary_maps_survive(
     tmp_path_factory: pytest.TempPathFactory, data: np.ndarray, resolution: float, origin: tuple[float, float, float]
@@ -47,21 +46,18 @@ def test_trinary_maps_survive(
     assert (loaded.resolution, loaded.origin) == (resolution, origin)
 
 
-@settings(deadline=None)
 @given(arrays(np.int8, shapes, elements=st.integers(-1, 100)))
 def test_raw_maps_survive(tmp_path_factory: pytest.TempPathFactory, data: np.ndarray) -> None:
     path, _ = save_map(OccupancyGrid(data, 0.05, (0, 0, 0)), tmp_path_factory.mktemp("map") / "room", "raw")
     assert np.array_equal(load_map(path).data, data)
 
 
-@settings(deadline=None)
 @given(arrays(np.int8, shapes, elements=st.integers(0, 100)))
 def test_scaled_maps_survive(tmp_path_factory: pytest.TempPathFactory, data: np.ndarray) -> None:
     path, _ = save_map(OccupancyGrid(data, 0.05, (0, 0, 0)), tmp_path_factory.mktemp("map") / "room", "scale")
     assert np.abs(load_map(path).data - data.astype(int)).max() <= 1
 
 
-@settings(deadline=None)
 @given(st.binary(max_size=60))
 def test_no_bytes_crash_the_image_reader(tmp_path_factory: pytest.TempPathFactory, image: bytes) -> None:
     path = write(tmp_path_factory.mktemp("map"), image=b"P5\n" + image)
@@ -69,7 +65,6 @@ def test_no_bytes_crash_the_image_reader(tmp_path_factory: pytest.TempPathFactor
         assert load_map(path).data.ndim == 2
 
 
-@settings(deadline=None)
 @given(st.text(max_size=80))
 def test_no_text_crashes_the_yaml_reader(tmp_path_factory: pytest.TempPathFactory, text: str) -> None:
     path = tmp_path_factory.mktemp("map") / "room.yaml"

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from daidalos.navigation.errors import NavigationError
@@ -11,7 +11,6 @@ from daidalos.navigation.velocity_smoother import VelocitySmoother, VelocitySmoo
 component = st.floats(-5.0, 5.0)
 
 
-@settings(deadline=None)
 @given(st.lists(st.tuples(component, component, component), min_size=1, max_size=30), st.booleans())
 def test_limits_hold_whatever_is_commanded(commands, scale):
     parameters = VelocitySmootherParameters(

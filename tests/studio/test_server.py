@@ -369,7 +369,6 @@ FRAMES = st.binary(max_size=40) | st.builds(
 
 @settings(
     max_examples=30,
-    deadline=None,
     suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],
 )
 @given(st.lists(FRAMES, max_size=20))

@@ -188,7 +188,7 @@ def test_a_file_without_project_is_named(tmp_path):
 
 
 @given(st.text(alphabet='abif(){}$;"\\#[]= \n', max_size=60))
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=300)
 def test_any_text_is_read_or_refused(text):
     with contextlib.suppress(WorkspaceError):
         parse(text, "CMakeLists.txt")

@@ -41,8 +41,9 @@ def parse_markup(text: str | bytes, source: str = "") -> Element:
     if isinstance(text, str):
         text = text.encode()
     text = text.removeprefix(b"\xef\xbb\xbf")
-    if b"\0" not in text[:4]:  # which would be UTF-16
-        text = text.rstrip(b"\0 \t\r\n")
+    end = len(text.rstrip(b"\0 \t\r\n"))
+    if b"\0" not in text[:4] and b"\0" in text[end:]:  # zeros at the beginning would be UTF-16
+        text = text[:end]
     body = text.lstrip()
     if not body:
         raise DescriptionError("the document is empty, expected XML", source)

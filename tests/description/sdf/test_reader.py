@@ -322,7 +322,7 @@ def test_our_worlds_load(name):
     assert not world.warnings
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 @given(st.data())
 def test_damaged_worlds_give_worlds_or_descriptions_errors(data):
     root = parse_markup(WORLD)

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from daidalos.localization.config import AmclConfig
@@ -16,7 +16,6 @@ QUIET = AmclConfig(alpha1=0.0, alpha2=0.0, alpha3=0.0, alpha4=0.0, alpha5=0.0)
 poses = st.tuples(st.floats(-5.0, 5.0), st.floats(-5.0, 5.0), st.floats(-3.1, 3.1)).map(np.array)
 
 
-@settings(deadline=None)
 @given(particle=poses, before=poses, after=poses)
 @pytest.mark.parametrize("model", [DifferentialMotionModel, OmniMotionModel])
 def test_without_noise_particles_move_as_odometry_did(model, particle, before, after):

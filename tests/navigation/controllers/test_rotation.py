@@ -1,13 +1,12 @@
 """Turning on the spot: fast, and without overshoot."""
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from daidalos.navigation.controllers.rotation import rotation_speed
 
 
-@settings(deadline=None)
 @given(
     angle=st.floats(-6.0, 6.0),
     speed=st.floats(-0.5, 0.5),

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from daidalos.navigation.costmap.costmap import (
@@ -45,7 +45,6 @@ def test_costs_must_be_bytes():
         Costmap(np.zeros((2, 2), dtype=np.int8), 0.1, (0.0, 0.0))
 
 
-@settings(deadline=None)
 @given(right=st.integers(-6, 6), up=st.integers(-6, 6), width=st.integers(1, 9), height=st.integers(1, 9))
 def test_cells_keep_their_place_when_the_grid_moves(right, up, width, height):
     generator = np.random.default_rng(0)

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from shapely import Point, Polygon
 
@@ -53,7 +53,6 @@ def test_a_radius_must_be_a_length(radius):
         Footprint.circle(radius)
 
 
-@settings(deadline=None)
 @given(x=st.floats(0.5, 2.5), y=st.floats(0.5, 2.5), yaw=st.floats(-math.pi, math.pi), seed=st.integers(0, 50))
 def test_the_outline_sees_what_a_dense_walk_along_it_sees(x, y, yaw, seed):
     generator = np.random.default_rng(seed)
@@ -74,7 +73,6 @@ def test_the_outline_sees_what_a_dense_walk_along_it_sees(x, y, yaw, seed):
         assert np.mean(np.array(walk) == 254) < 0.05
 
 
-@settings(deadline=None)
 @given(x=st.floats(0.6, 2.4), y=st.floats(0.6, 2.4), yaw=st.floats(-math.pi, math.pi))
 def test_filled_cells_are_those_whose_centres_are_inside(x, y, yaw):
     costmap = Costmap.filled(30, 30, 0.1, (0.0, 0.0))

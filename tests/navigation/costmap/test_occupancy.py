@@ -1,7 +1,7 @@
 """Costs as Nav2 publishes them, and costs of maps."""
 
 import numpy as np
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from daidalos.navigation.costmap.occupancy import from_occupancy, to_occupancy
@@ -13,7 +13,6 @@ def test_the_marked_costs_have_nav2s_values():
     assert to_occupancy(costs).dtype == np.int8
 
 
-@settings(deadline=None)
 @given(st.integers(1, 251))
 def test_costs_in_between_grow(cost):
     low, high = to_occupancy(np.array([cost, cost + 1], dtype=np.uint8))

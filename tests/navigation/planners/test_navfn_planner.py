@@ -56,7 +56,7 @@ def test_a_goal_in_the_cell_of_the_robot():
     assert np.allclose(path[-1], [1.01, 1.01, 0.5])
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(seed=st.integers(0, 10_000), allow_unknown=st.booleans())
 def test_dijkstra_and_a_star_find_ways_of_the_same_cost(seed, allow_unknown):
     costmap, generator = cluttered(seed)

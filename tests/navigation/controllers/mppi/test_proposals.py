@@ -3,7 +3,7 @@
 import math
 
 import numpy as np
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from daidalos.navigation.controllers.mppi.proposals import turn_then_drive
@@ -13,7 +13,6 @@ REST = np.zeros(3)
 LIMITS = Limits(-0.2, 0.5, 1.8, -2.5, 2.5, 3.2)
 
 
-@settings(deadline=None)
 @given(
     x=st.floats(-3.0, 3.0),
     y=st.floats(-3.0, 3.0),

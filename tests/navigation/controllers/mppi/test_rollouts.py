@@ -31,7 +31,7 @@ def twin(pose, velocity, controls, noise, step):
     return np.array(states)
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(seed=st.integers(0, 10_000))
 def test_samples_are_driven_as_plain_arithmetic_drives_them(seed):
     generator = np.random.default_rng(seed)

@@ -27,7 +27,7 @@ def twin(costs, resolution, inscribed, radius, factor):
     return inflated
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(
     seed=st.integers(0, 10_000),
     share=st.sampled_from([0.0, 0.002, 0.02, 0.2]),
@@ -45,7 +45,7 @@ def test_costs_follow_the_exact_distance(seed, share, shape, radius, factor):
     assert np.array_equal(costmap.costs, expected)
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(seed=st.integers(0, 10_000), left=st.integers(0, 30), bottom=st.integers(0, 30))
 def test_a_window_gets_what_the_whole_gets(seed, left, bottom):
     generator = np.random.default_rng(seed)

@@ -175,7 +175,7 @@ def cells_by_sampling(start, end, hit, min_range, max_range, resolution=0.1):
     return {(c, r) for c, r in cells if 0 <= c < 20 and 0 <= r < 20}
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(
     start=st.tuples(off_borders(100, 1900), off_borders(100, 1900)),
     end=st.tuples(off_borders(-1000, 3000), off_borders(-1000, 3000)),
