@@ -14,7 +14,9 @@ from daidalos.transport.backend import SampleInfo, WireSubscription
 from daidalos.transport.graph import EndpointInfo
 
 _LOGGER = logging.getLogger(__name__)
-_PATIENCE_S = 0.05
+_PATIENCE_S = 0.25
+_SHORT_PATIENCE_S = 0.05
+_SHORT_FOR_NS = 2_000_000_000
 _FAST_NS = 1_000_000
 _SLOW_NS = 10 * _FAST_NS
 
@@ -32,6 +34,9 @@ class Subscription:
     on_ready
         Called after a sample was queued, on the thread that queued it.
     """
+
+    _gave_up_at = -_SHORT_FOR_NS
+    """When one of the process last stopped holding its sender back."""
 
     def __init__(self, endpoint: EndpointInfo, codec: Codec, on_ready: Callable[[], None]) -> None:
         self.endpoint = endpoint
@@ -137,14 +142,20 @@ class Subscription:
     def _wait_for_space(self) -> None:
         """Hold the sender back for a moment when the queue is full but is being emptied fast.
 
-        This is what makes a reliable stream lose nothing at full speed. A slow callback, however, must not
-        hold up other topics of the same peer: then the oldest sample is dropped, as ROS 2 does.
+        This is what makes a reliable stream lose nothing at full speed, on a busy machine as well, where a thread may
+        get no processor for a tenth of a second. A slow callback, however, must not hold up other topics of the same
+        peer: then the oldest sample is dropped, as ROS 2 does. Where one callback stalls many topics, all but the
+        first are held up for less: zenoh gives up a peer that takes nothing for a second.
         """
         if self._take_interval > _FAST_NS:
             return
         self._space.clear()
-        if len(self._queue) >= self._limit and not self._space.wait(_PATIENCE_S):  # type: ignore[operator]
+        if len(self._queue) < self._limit:  # type: ignore[operator]
+            return
+        stalled = time.monotonic_ns() - Subscription._gave_up_at < _SHORT_FOR_NS
+        if not self._space.wait(_SHORT_PATIENCE_S if stalled else _PATIENCE_S):
             self._take_interval = _SLOW_NS
+            Subscription._gave_up_at = time.monotonic_ns()
 
     def close(self) -> None:
         """Leave the graph and drop what is queued."""
