@@ -1,5 +1,7 @@
 """True odometry, forces, grippers, joints that follow topics, and plugins that nobody knows."""
 
+import math
+
 import numpy as np
 import pytest
 
@@ -7,6 +9,7 @@ from daidalos.description.errors import DescriptionError
 from daidalos.simulation import Simulation
 from daidalos.simulation.samples import (
     FlagSample,
+    NavSatSample,
     NumberCommand,
     OdometrySample,
     TrajectoryCommand,
@@ -153,10 +156,17 @@ ARM = (
 )
 
 
-def test_joints_follow_a_trajectory():
-    simulation = Simulation(world(with_plugin(ARM, "libgazebo_ros_joint_pose_trajectory.so")))
+@pytest.mark.parametrize(
+    ("library", "topic"),
+    [
+        ("libgazebo_ros_joint_pose_trajectory.so", "/set_joint_trajectory"),
+        ("gz-sim-joint-trajectory-controller-system", "/model/arm/joint_trajectory"),
+    ],
+)
+def test_joints_follow_a_trajectory(library, topic):
+    simulation = Simulation(world(with_plugin(ARM, library)))
     command = TrajectoryCommand(("j",), np.array((0.0, 1.0, 2.0)), np.array(((0.0,), (1.0,), (0.5,))))
-    simulation.command("/set_joint_trajectory", command)
+    assert simulation.command(topic, command) == 1
     simulation.advance(SECOND // 2)
     assert simulation.joint("arm", "j").position == pytest.approx(0.5, abs=0.01)
     simulation.advance(2 * SECOND)
@@ -196,3 +206,18 @@ def test_an_unknown_plugin_is_named_and_the_rest_runs():
         "plugin 'odd' (libnobody_knows.so) is not known, left out",
         "plugin 'p' (libnor_this.so) is not known, left out",
     ]
+
+
+def test_ros_1s_gps_tells_where_the_model_is_by_its_own_reference():
+    """A hundred metres along x are a hundred metres in the direction of the heading, here east."""
+    values = "<bodyName>link</bodyName><updateRate>10</updateRate><topicName>gps/fix</topicName><frameId>gps</frameId>"
+    values += "<referenceLatitude>48</referenceLatitude><referenceLongitude>11</referenceLongitude>"
+    values += "<referenceAltitude>500</referenceAltitude><referenceHeading>90</referenceHeading>"
+    text = with_plugin(box("car", "100 10 0.1 0 0 0", "0.2 0.2 0.2"), "libhector_gazebo_ros_gps.so", values)
+    fix = last(Simulation(world(text)).advance(SECOND // 5), NavSatSample)
+    assert (fix.topic, fix.frame_id) == ("/gps/fix", "gps")
+    # Radii of curvature of WGS 84 at 48 degrees.
+    across, along = 6378137.0 / math.sqrt(1 - 0.00669438 * math.sin(math.radians(48)) ** 2), 6370_000.0
+    assert fix.longitude - 11 == pytest.approx(math.degrees(100 / (across * math.cos(math.radians(48)))), rel=1e-3)
+    assert fix.latitude - 48 == pytest.approx(math.degrees(10 / along), rel=2e-3)
+    assert fix.altitude == pytest.approx(500.1, abs=0.01)

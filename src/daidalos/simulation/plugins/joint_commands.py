@@ -15,16 +15,23 @@ from daidalos.simulation.topics import absolute_topic
 
 
 class JointPoseTrajectory(Plugin):
-    """``libgazebo_ros_joint_pose_trajectory.so``: puts joints where a trajectory says, without any force."""
+    """``libgazebo_ros_joint_pose_trajectory.so``: puts joints where a trajectory says, without any force.
 
-    names = ("gazebo_ros_joint_pose_trajectory",)
+    gz's JointTrajectoryController is taken for the same; its gains are not needed.
+    """
+
+    names = ("gazebo_ros_joint_pose_trajectory", "gz-sim-joint-trajectory-controller-system")
     memory: Course | None
 
     def __init__(self, description: Description, setting: Setting) -> None:
         super().__init__(description, setting)
         element = description.element
-        name = element.text_of("topicName", "topic_name", default="set_joint_trajectory")
-        self.topic = self.parameters.topic(name)
+        if self.parameters.library.startswith("gz-"):
+            topic = element.text_of("topic", default=f"/model/{setting.model_name}/joint_trajectory")
+            self.topic = absolute_topic(topic, setting.namespace)
+        else:
+            name = element.text_of("topicName", "topic_name", default="set_joint_trajectory")
+            self.topic = self.parameters.topic(name)
         rate = element.number_of("updateRate", "update_rate", default=0.0)
         self.period = 1.0 / rate if rate > 0 else 0.0
         self._now_ns = 0
