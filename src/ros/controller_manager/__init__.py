@@ -1,0 +1,1 @@
+"""What launch files import to start controllers."""
