@@ -36,12 +36,15 @@ def run_with_keyboard(make_node: Callable[[], NodeT], steer: Callable[[NodeT, Ke
     """
     import rclpy
     from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+    from rclpy.impl.signal_watch import start as start_watching
+    from rclpy.impl.signal_watch import watched
     from rclpy.signals import SignalHandlerOptions
 
     def body() -> None:
         keyboard = Keyboard()
         for number in (signal.SIGINT, signal.SIGTERM):
-            signal.signal(number, lambda *_: keyboard.wake())
+            signal.signal(number, watched(lambda *_: keyboard.wake()))
+        start_watching()
         rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
         try:
             node = make_node()

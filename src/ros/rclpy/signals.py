@@ -15,6 +15,7 @@ from typing import Any
 from rclpy.context import Context
 from rclpy.exceptions import ExternalShutdownException, ROSInterruptException
 from rclpy.guard_condition import GuardCondition
+from rclpy.impl import signal_watch
 from rclpy.impl.interrupts import is_uninterrupted
 
 
@@ -49,6 +50,8 @@ def install_signal_handlers(options: SignalHandlerOptions = SignalHandlerOptions
             _previous_hook, sys.excepthook = sys.excepthook, _quiet_excepthook
             threading.excepthook = _quiet_thread_excepthook
         _installed |= options
+        if _installed != SignalHandlerOptions.NO:
+            signal_watch.start()
 
 
 def uninstall_signal_handlers() -> None:
@@ -62,6 +65,7 @@ def uninstall_signal_handlers() -> None:
                 signal.signal(number, handler if handler is not None else signal.SIG_DFL)
         _previous.clear()
         _installed = SignalHandlerOptions.NO
+        signal_watch.stop()
 
 
 def get_current_signal_handlers_options() -> SignalHandlerOptions:
@@ -78,6 +82,7 @@ _SAME_WISH_S = 0.5
 _last_signal_s = -math.inf
 
 
+@signal_watch.watched
 def _on_signal(number: int, frame: FrameType | None) -> None:
     global _last_signal_s
     now = time.monotonic()

@@ -1,6 +1,9 @@
 """Signals: what is asked twice at once is one wish, what is asked again is another."""
 
+import os
 import signal
+import subprocess
+import sys
 import threading
 from collections.abc import Iterator
 from types import FrameType
@@ -9,6 +12,7 @@ import pytest
 import rclpy
 from rclpy import signals
 from rclpy.context import Context
+from rclpy.impl import signal_watch
 from rclpy.impl.interrupts import uninterrupted
 from rclpy.signals import SignalHandlerGuardCondition, SignalHandlerOptions
 
@@ -104,3 +108,48 @@ def _executor(node: rclpy.node.Node) -> rclpy.executors.Executor:
     executor = rclpy.executors.SingleThreadedExecutor()
     executor.add_node(node)
     return executor
+
+
+UNHEARD = """
+import os, signal, sys, threading, time
+import rclpy
+rclpy.init()
+node = rclpy.create_node("waiting")
+executor = rclpy.executors.SingleThreadedExecutor()
+executor.add_node(node)
+
+def raise_here():
+    while not executor._ready._waiting_thread:
+        time.sleep(0.01)
+    time.sleep(0.3)  # the main thread waits now, and nothing else wakes it
+    signal.pthread_kill(threading.get_ident(), signal.SIGINT)
+
+threading.Thread(target=raise_here).start()
+try:
+    executor.spin()
+except (KeyboardInterrupt, rclpy.executors.ExternalShutdownException):
+    print("heard", flush=True)
+"""
+
+
+@pytest.mark.skipif(not hasattr(signal, "pthread_kill"), reason="signals between threads are POSIX's")
+def test_a_signal_is_heard_although_another_thread_got_it() -> None:
+    environment = os.environ | {"RMW_IMPLEMENTATION": "rmw_daidalos_inprocess"}
+    done = subprocess.run(
+        [sys.executable, "-c", UNHEARD], env=environment, capture_output=True, text=True, timeout=40, check=False
+    )
+    assert (done.stdout, done.stderr) == ("heard\n", "")
+
+
+def test_others_may_be_told_of_signals(raised: list[int]) -> None:
+    reader, writer = os.pipe()
+    os.set_blocking(writer, False)
+    signal_watch.stop()
+    signal.set_wakeup_fd(writer)
+    try:
+        signal_watch.start()
+        assert signal.set_wakeup_fd(writer) == writer
+    finally:
+        signal.set_wakeup_fd(-1)
+        os.close(reader)
+        os.close(writer)

@@ -1,0 +1,89 @@
+"""Seeing to it that the handler of a signal runs.
+
+Python runs handlers in the main thread. A signal that comes just before that thread begins to wait, or that the system
+hands to another thread, does not wake it: the handler would run when something else does, perhaps never. So another
+thread is told of every signal (`signal.set_wakeup_fd`) and sends it to the main thread again if nothing has happened.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import threading
+import time
+import weakref
+from collections.abc import Callable
+from types import FrameType
+from typing import Any
+
+_PATIENCE_S = 0.1
+_runs = 0
+_writer: int | None = None
+_watched: weakref.WeakSet[Any] = weakref.WeakSet()
+
+
+def watched(handler: Callable[[int, FrameType | None], Any]) -> Callable[[int, FrameType | None], Any]:
+    """Return a handler that is seen to run, for `signal.signal`."""
+
+    def run(number: int, frame: FrameType | None) -> Any:
+        global _runs
+        _runs += 1
+        return handler(number, frame)
+
+    _watched.add(run)
+    return run
+
+
+def start() -> None:
+    """Watch from now on, unless somebody else, such as asyncio, is told of signals; only the main thread can."""
+    global _writer
+    if _writer is not None or not hasattr(signal, "pthread_kill"):
+        return
+    reader, writer = os.pipe()
+    os.set_blocking(writer, False)
+    other = signal.set_wakeup_fd(writer, warn_on_full_buffer=False)
+    if other != -1:
+        signal.set_wakeup_fd(other)
+        os.close(reader)
+        os.close(writer)
+        return
+    _writer = writer
+    threading.Thread(target=_watch, args=(reader,), name="signals", daemon=True).start()
+
+
+def stop() -> None:
+    """Watch no more; only the main thread can."""
+    global _writer
+    if _writer is None:
+        return
+    present = signal.set_wakeup_fd(-1)
+    if present not in (-1, _writer):
+        signal.set_wakeup_fd(present)
+    os.close(_writer)
+    _writer = None
+
+
+def _watch(reader: int) -> None:
+    main = threading.main_thread()
+    seen, resent = _runs, 0
+    while numbers := os.read(reader, 64):
+        fresh, resent = numbers[resent:], max(resent - len(numbers), 0)
+        if fresh:
+            time.sleep(_PATIENCE_S)
+            if main.ident is not None and _runs == seen and signal.getsignal(fresh[-1]) in _watched:
+                resent += 1
+                signal.pthread_kill(main.ident, fresh[-1])
+        seen = _runs
+    os.close(reader)
+
+
+def _forget() -> None:
+    """Tell nobody of the signals of a forked process: the thread is not there, the other process's is."""
+    global _writer
+    if _writer is not None:
+        signal.set_wakeup_fd(-1)
+        _writer = None
+
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_forget)
