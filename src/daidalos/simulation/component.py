@@ -12,7 +12,7 @@ from daidalos.description.world import Model, World
 from daidalos.simulation.samples import Sample
 
 if TYPE_CHECKING:
-    from daidalos.simulation.conversion.build import ModelBuild
+    from daidalos.simulation.conversion.model_build import ModelBuild
     from daidalos.simulation.instance import Instance
 
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import copy
 import hashlib
 import logging
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterable
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -29,29 +29,18 @@ from daidalos.simulation.conversion.build import add_model
 from daidalos.simulation.conversion.couplings import close_loop
 from daidalos.simulation.conversion.options import physics_step, set_options
 from daidalos.simulation.errors import NameTakenError, SimulationError, UnknownNameError
-from daidalos.simulation.forces import Forces, JointPush, Push
+from daidalos.simulation.forces import Forces
 from daidalos.simulation.instance import Instance, JointView
 from daidalos.simulation.physics import Physics
 from daidalos.simulation.samples import Sample
 from daidalos.simulation.schedule import Schedule
 from daidalos.simulation.stage import Stage
+from daidalos.simulation.state import State, memories_of, remember
 
 Array = NDArray[np.float64]
 
 _log = logging.getLogger(__name__)
 _MONITOR_PERIOD_NS = 10_000_000
-
-
-@dataclass(frozen=True, eq=False)
-class State:
-    """All that a simulation needs to go on from an instant; made by `Engine.save`."""
-
-    time_ns: int
-    physics: Any
-    compilation: int
-    clocks: Mapping[int, tuple[int, int, int]]
-    memories: tuple[tuple[Any, Any], ...]
-    pushes: tuple[Push | JointPush, ...]
 
 
 class Engine:
@@ -309,9 +298,7 @@ class Engine:
 
     def save(self) -> State:
         """Return the state; it can be restored as long as the same models are there."""
-        memories = tuple(
-            (copy.deepcopy(c.memory), copy.deepcopy(c.random.bit_generator.state)) for c in self._components()
-        )
+        memories = memories_of(self._components())
         # All of MuJoCo's data, since sleeping models are no part of its smaller states.
         physics = copy.copy(self._physics.data)
         return State(self.time_ns, physics, self._compilations, self._schedule.save(), memories, self.forces.pushes)
@@ -327,9 +314,7 @@ class Engine:
         if state.compilation != self._compilations:
             raise SimulationError("models came or went since the state was saved")
         mujoco.mj_copyData(self._physics.data, self._physics.model, state.physics)
-        for component, (memory, random) in zip(self._components(), state.memories, strict=True):
-            component.memory = copy.deepcopy(memory)
-            component.random.bit_generator.state = copy.deepcopy(random)
+        remember(self._components(), state.memories)
         self._schedule.restore(dict(state.clocks))
         self.time_ns = self._goal_ns = state.time_ns
         self.forces.clear(keep=state.pushes)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from daidalos.description.pose import Pose
 from daidalos.description.world import Model
-from daidalos.simulation.conversion.build import ModelBuild
+from daidalos.simulation.conversion.model_build import ModelBuild
 from daidalos.simulation.errors import SimulationError, UnknownNameError
 from daidalos.simulation.physics import Physics
 

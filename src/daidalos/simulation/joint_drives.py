@@ -15,7 +15,7 @@ from daidalos.description.pose import rotation_matrix
 from daidalos.simulation.errors import UnknownNameError
 
 if TYPE_CHECKING:
-    from daidalos.simulation.conversion.build import ModelBuild
+    from daidalos.simulation.conversion.model_build import ModelBuild
     from daidalos.simulation.instance import Instance
 
 Array = NDArray[np.float64]

@@ -8,7 +8,7 @@ from typing import Any
 
 import mujoco
 
-from daidalos.simulation.conversion.build import GeomInfo
+from daidalos.simulation.conversion.model_build import GeomInfo
 from daidalos.simulation.errors import SimulationError
 from daidalos.simulation.forces import Forces
 from daidalos.simulation.stage import Stage

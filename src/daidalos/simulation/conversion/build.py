@@ -4,163 +4,25 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from typing import Any
-
-import mujoco
 
 from daidalos.description.errors import DescriptionError
 from daidalos.description.joint import Joint, JointType
-from daidalos.description.link import Collision, Inertial, Link, Surface
+from daidalos.description.link import Collision, Link, Surface
 from daidalos.description.pose import Pose
 from daidalos.description.world import Model
 from daidalos.simulation.conversion.assets import Assets
 from daidalos.simulation.conversion.contact import set_surface
 from daidalos.simulation.conversion.couplings import close_loop, couple
 from daidalos.simulation.conversion.geometry import add_geoms, add_rolling, only_seen
-from daidalos.simulation.conversion.inertia import PrincipalInertia, principal_inertia, smallest_inertia
+from daidalos.simulation.conversion.inertia import principal_inertia, smallest_inertia
 from daidalos.simulation.conversion.joints import add_joints, mimicked_start, start_position
+from daidalos.simulation.conversion.model_build import GeomInfo, ModelBuild, apply_inertia
 from daidalos.simulation.conversion.wheels import is_caster, wheel_disc
-from daidalos.simulation.errors import UnknownNameError
 
 ASSUMED_DENSITY = 200.0
 """Of links that should move but have no mass [kg/m^3]."""
-
-
-@dataclass(frozen=True)
-class GeomInfo:
-    """What a geom stands for."""
-
-    link: str
-    collision: str
-    laser_retro: float
-
-
-@dataclass(eq=False)
-class ModelBuild:
-    """A model while it is put together; plugins add what they need to it.
-
-    Attributes
-    ----------
-    spec : MjSpec
-    model : Model
-    name : str
-        The model's name in the simulation.
-    bodies : dict
-        Link to body (MjsBody).
-    roots : list
-        Bodies to delete when the model goes.
-    joints : dict
-        Joint to the names of MuJoCo's joints.
-    start : dict
-        MuJoCo's joints that can not start at zero, with where they do.
-    free : dict
-        Link to the name of its free joint.
-    base : MjsBody or None
-        What does not move of the model, in the world.
-    trees : list
-        Bodies that move by themselves, with all that hangs on them.
-    geoms : dict
-        Name of a geom to what it stands for.
-    assets : tuple of str
-        Meshes to release when the model goes.
-    """
-
-    spec: Any
-    model: Model
-    name: str
-    bodies: dict[str, Any] = field(default_factory=dict)
-    roots: list[Any] = field(default_factory=list)
-    joints: dict[str, list[str]] = field(default_factory=dict)
-    start: dict[str, float] = field(default_factory=dict)
-    free: dict[str, str] = field(default_factory=dict)
-    base: Any = None
-    trees: list[Any] = field(default_factory=list)
-    geoms: dict[str, GeomInfo] = field(default_factory=dict)
-    assets: tuple[str, ...] = ()
-
-    def scoped(self, name: str) -> str:
-        """Return the simulation's name for a link or joint of the model."""
-        return f"{self.name}::{name}"
-
-    def add_velocity_servo(self, joint: str, gain: float, torque: float, rotor: float = 0.0) -> str:
-        """Add an actuator that holds a joint's speed, and return its name.
-
-        Parameters
-        ----------
-        joint : str
-        gain : float
-            Torque per error of speed [N m s/rad].
-        torque : float
-            Largest torque [N m]; infinite for no limit.
-        rotor : float
-            Inertia of the motor's rotor, seen from the joint [kg m^2]. The contact solver does not know
-            of the implicit part of a servo: without a rotor as heavy as what a wheel drives, the wheel
-            would slip while the speed changes.
-        """
-        if not self.joints.get(joint):
-            raise UnknownNameError("movable joint", joint, [n for n, added in self.joints.items() if added])
-        self.spec.joint(self.joints[joint][0]).armature = rotor
-        actuator = self.spec.add_actuator(
-            name=f"{self.scoped(joint)}::velocity",
-            trntype=mujoco.mjtTrn.mjTRN_JOINT,
-            target=self.joints[joint][0],
-        )
-        actuator.set_to_velocity(kv=gain)
-        if torque != float("inf"):
-            actuator.forcelimited = mujoco.mjtLimited.mjLIMITED_TRUE
-            actuator.forcerange = [-torque, torque]
-        return str(actuator.name)
-
-    def add_position_servo(self, joint: str, stiffness: float, damping: float, effort: float) -> str:
-        """Add an actuator that holds a joint's position, and return its name.
-
-        Parameters
-        ----------
-        joint : str
-        stiffness, damping : float
-            Effort per error of position and of speed.
-        effort : float
-            The largest; infinite for no limit.
-        """
-        if not self.joints.get(joint):
-            raise UnknownNameError("movable joint", joint, [n for n, added in self.joints.items() if added])
-        actuator = self.spec.add_actuator(
-            name=f"{self.scoped(joint)}::position",
-            trntype=mujoco.mjtTrn.mjTRN_JOINT,
-            target=self.joints[joint][0],
-        )
-        actuator.set_to_position(kp=stiffness, kv=damping)
-        if effort != float("inf"):
-            actuator.forcelimited = mujoco.mjtLimited.mjLIMITED_TRUE
-            actuator.forcerange = [-effort, effort]
-        return str(actuator.name)
-
-    def keep_awake(self) -> None:
-        """Simulate the model even while it rests, since somebody measures it."""
-        for body in self.trees:
-            body.sleep = mujoco.mjtSleepPolicy.mjSLEEP_NEVER
-
-    def set_inertial(self, link: str, inertial: Inertial, gravity: bool) -> None:
-        """Change what a link weighs, for the next compilation."""
-        _apply(self.bodies[link], principal_inertia(inertial))
-        self.bodies[link].gravcomp = 0.0 if gravity else 1.0
-        self.model = replace(
-            self.model,
-            links={**self.model.links, link: replace(self.model.links[link], inertial=inertial, gravity=gravity)},
-        )
-
-    def place_base(self, pose: Pose) -> None:
-        """Put the part that does not move somewhere else, for the next compilation."""
-        if self.base is not None:
-            x, y, z, w = pose.orientation
-            self.base.pos, self.base.quat = list(pose.position), [w, x, y, z]
-
-    def remove(self) -> None:
-        """Take the model out of the specification; what refers to its bodies goes with them."""
-        for body in self.roots:
-            self.spec.delete(body)
-        self.roots.clear()
 
 
 def add_model(
@@ -289,7 +151,7 @@ class _Builder:
         for index, collision in enumerate(link.collisions):
             self._add_collision(body, link, collision, index)
         if link.name in self._solid_without_mass and not body.geoms:
-            _apply(body, smallest_inertia())
+            apply_inertia(body, smallest_inertia())
         return body
 
     def _body(self, parent: Any, name: str, pose: Pose) -> Any:
@@ -307,7 +169,7 @@ class _Builder:
             return
         if inertia.changed:
             self._warn(f"{link.where}: link {link.name!r}: {inertia.changed}")
-        _apply(body, inertia)
+        apply_inertia(body, inertia)
 
     def _find_weightless(self) -> None:
         """Find the links that move although neither they nor what is fixed to them has any mass."""
@@ -409,12 +271,3 @@ class _Builder:
         child = self._build.bodies[joint.child]
         name = self._build.scoped(joint.name)
         self._build.joints[joint.name] = close_loop(self._build.spec, parent, child, joint, name)
-
-
-def _apply(body: Any, inertia: PrincipalInertia) -> None:
-    x, y, z, w = inertia.orientation
-    body.explicitinertial = True
-    body.mass = inertia.mass
-    body.ipos = list(inertia.position)
-    body.iquat = [w, x, y, z]
-    body.inertia = list(inertia.moments)

@@ -13,7 +13,7 @@ from daidalos.description.geometry import Cylinder, Sphere
 from daidalos.description.link import Plugin as Description
 from daidalos.description.world import Model
 from daidalos.simulation.component import Setting, Subscription
-from daidalos.simulation.conversion.build import ModelBuild
+from daidalos.simulation.conversion.model_build import ModelBuild
 from daidalos.simulation.instance import Instance
 from daidalos.simulation.odometry import PlanarPose, planar_covariance, transform_of, yaw_quaternion
 from daidalos.simulation.plugins.ackermann_settings import Settings, read_settings

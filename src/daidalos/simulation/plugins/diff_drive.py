@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from daidalos.description.link import Plugin as Description
 from daidalos.simulation.component import Setting, Subscription
-from daidalos.simulation.conversion.build import ModelBuild
+from daidalos.simulation.conversion.model_build import ModelBuild
 from daidalos.simulation.instance import Instance, JointView, LinkView
 from daidalos.simulation.odometry import (
     PlanarPose,

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 
 from daidalos.description.link import Plugin as Description
 from daidalos.simulation.component import Setting, Subscription
-from daidalos.simulation.conversion.build import ModelBuild
+from daidalos.simulation.conversion.model_build import ModelBuild
 from daidalos.simulation.courses import Course, place_joints
 from daidalos.simulation.instance import Instance
 from daidalos.simulation.plugins.base import Plugin

@@ -14,7 +14,7 @@ from daidalos.description.link import Plugin as Description
 from daidalos.description.markup import Element
 from daidalos.description.ros2_control import ComponentInfo, read_hardware
 from daidalos.simulation.component import Component, Setting
-from daidalos.simulation.conversion.build import ModelBuild
+from daidalos.simulation.conversion.model_build import ModelBuild
 from daidalos.simulation.instance import Instance
 from daidalos.simulation.joint_drives import DriveState, JointDrives
 from daidalos.simulation.plugins.base import Plugin

@@ -15,8 +15,8 @@ from daidalos.description.link import Plugin as Description
 from daidalos.description.markup import Element
 from daidalos.description.pose import rotate
 from daidalos.simulation.component import Setting
-from daidalos.simulation.conversion.build import ModelBuild
 from daidalos.simulation.conversion.contact import DEFAULT_FRICTION, set_friction
+from daidalos.simulation.conversion.model_build import ModelBuild
 from daidalos.simulation.instance import Instance, JointView, LinkView
 from daidalos.simulation.plugins.base import Plugin
 from daidalos.simulation.samples import Sample, WheelSlipSample
