@@ -288,7 +288,8 @@ def test_the_graph_is_the_same_from_both_sides(two):
     assert found.qos == qos
     assert (found.node.full_name, found.node.enclave) == ("/cell/arm", "/welding")
     meet(there, 1, EndpointKind.SERVICE, name="/cell/add")
-    assert [one.full_name for one in there.graph.nodes()] == ["/cell/arm"]
+    # A link that is new may tell of endpoints before it tells of their node.
+    assert there.graph.wait_for(lambda: [one.full_name for one in there.graph.nodes()] == ["/cell/arm"], PATIENCE_S)
     of_node = there.graph.endpoints_of(there.graph.nodes()[0])
     assert names_and_types(of_node) == [
         ("/cell/add", ["example_interfaces/srv/AddTwoInts"]), ("/cell/state", ["std_msgs/msg/String"])

@@ -166,7 +166,8 @@ class Oracle:
 
 
 def sample(number: int, stamp: int = 0, gid: bytes = b"g" * 16, session: str = "ab") -> Any:
-    attached = attachment.pack(number, stamp or number, gid)
+    """Return a sample; without a stamp, one that is sent later than now."""
+    attached = attachment.pack(number, stamp or 2**62 + number, gid)
     return SimpleNamespace(
         number=number,
         attachment=SimpleNamespace(to_bytes=lambda: attached),
@@ -201,6 +202,17 @@ def test_what_was_kept_comes_before_what_is_sent(history, oracle, heard):
     history.accept(sample(5))
     assert heard == [1, 2, 3, 4, 5]
     assert oracle.asked == []
+
+
+def test_no_more_are_delivered_than_are_kept(history, oracle, heard):
+    other = b"o" * 16
+    history.ask("ab")
+    for number in range(1, 6):
+        history.accept(sample(number, stamp=number))
+    history.accept(sample(6))
+    history.accept(sample(8, gid=other))
+    oracle.answer(sample(3, stamp=3), sample(4, stamp=4), sample(5, stamp=5))
+    assert heard == [4, 5, 6, 8]
 
 
 def test_a_session_that_is_heard_before_it_is_known_is_asked(history, oracle, heard):

@@ -13,7 +13,7 @@ from collections.abc import Callable, Hashable
 from typing import Any
 
 import zenoh
-from zenoh.handlers import FifoChannel
+from zenoh.handlers import Callback, FifoChannel
 
 from daidalos.transport.backend import (
     Backend,
@@ -31,7 +31,7 @@ from daidalos.transport.zenoh.config import ROUTER_PORT, meets_all, reason_of, s
 from daidalos.transport.zenoh.latched import Caches, LatchedPublisher, LatchedSubscription
 from daidalos.transport.zenoh.numbers import Numbers
 from daidalos.transport.zenoh.pool import Pool
-from daidalos.transport.zenoh.threads import few_threads
+from daidalos.transport.zenoh.threads import few_threads, on_lasting_thread
 from daidalos.transport.zenoh.wires import (
     ZenohClient,
     ZenohPublisher,
@@ -82,6 +82,11 @@ class ZenohBackend(Backend):
             if meets_all(config, listen):
                 self._peers = {peer.session for peer in peers}
                 self._registry.register(Peer(self._session_id, tuple(listen)))
+        # Who has been answered by us has been told of everything before. (Zenoh's own space for such questions would
+        # keep a file open for every session that there ever was.)
+        place = keys.answers(self._session_id)
+        answer = Callback(on_lasting_thread(lambda query: _answer(query, place)), indirect=False)
+        self._session.declare_queryable(place, answer, complete=True, allowed_origin=zenoh.Locality.REMOTE)
         self._caches = Caches(self._session)
         graph.listen(self._on_graph_change)
         # Tokens arrive on a thread of their own: zenoh's must never wait for Python's lock while a peer goes away,
@@ -116,7 +121,7 @@ class ZenohBackend(Backend):
         self._session.close()
         self._reader.join(_CLOSING_S)
         self._registry.remove_socket(self._session_id)
-        del self._session, self._tokens  # zenoh keeps files open as long as these live
+        del self._session, self._tokens, self._caches  # zenoh keeps files open as long as these live
 
     def settle(self, timeout_s: float) -> bool:
         """Wait until the sessions that were alive at our start are connected and have told of themselves."""
@@ -145,7 +150,7 @@ class ZenohBackend(Backend):
         silent = self._alive()
         while silent and (left := deadline - time.monotonic()) > 0:
             for peer in list(silent):
-                replies = list(self._session.get(f"@/{peer}/peer", timeout=left))
+                replies = list(self._session.get(keys.answers(peer), timeout=left))
                 if any(reply.ok is not None for reply in replies):
                     silent.discard(peer)
             if silent:
@@ -303,6 +308,11 @@ def _port_answers(port: int) -> bool:
     with socket.socket() as probe:
         probe.settimeout(0.2)
         return probe.connect_ex(("127.0.0.1", port)) == 0
+
+
+def _answer(query: zenoh.Query, place: str) -> None:
+    with contextlib.suppress(zenoh.ZError), query:  # who asked may be gone
+        query.reply(place, b"")
 
 
 def _undeclare(entity: Any) -> None:

@@ -155,8 +155,6 @@ def _transport_settings() -> dict[str, Any]:
         # peer up; this much, the most it takes, holds some six thousand.
         "transport/link/tx/queue/size/control": 16,
         "transport/shared_memory/enabled": shared_memory_usable(),
-        # Peers answer for themselves: who has been answered has been told of everything before.
-        "adminspace/enabled": True,
     }
 
 

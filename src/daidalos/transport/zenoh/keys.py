@@ -36,6 +36,11 @@ def tokens(domain: int) -> str:
     return f"{_ADMIN}/{domain}/**"
 
 
+def answers(session: str) -> str:
+    """Return the key on which a session of ours answers that it is there."""
+    return f"@daidalos/{session}"
+
+
 def data_key(domain: int, name: str, type_name: str, type_hash: str) -> str:
     """Return the key on which samples, requests and replies travel."""
     return f"{domain}/{name.strip('/')}/{dds_type(type_name)}/{type_hash or _NO_HASH}"

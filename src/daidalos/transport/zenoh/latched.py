@@ -11,8 +11,9 @@ from __future__ import annotations
 
 import contextlib
 import threading
-from collections import deque
-from collections.abc import Callable
+import time
+from collections import Counter, deque
+from collections.abc import Callable, Iterable
 from typing import Any
 
 import zenoh
@@ -183,6 +184,8 @@ class History:
     ) -> None:
         self._session = session
         self._key = key
+        self._limit = limit
+        self._begin_ns = time.time_ns()
         self._parameters = "" if limit is None else f"?_max={limit}"
         self._deliver = deliver
         self._lock = threading.Lock()
@@ -255,14 +258,27 @@ class History:
         with self._lock:
             samples = {_identity(sample): sample for sample in question.samples}
             self._answered[session] = frozenset(samples)
-            new = {one: sample for one, sample in samples.items() if self._is_news(one)}
-            for identity in sorted(new, key=_source_time):
+            for identity in self._wanted(filter(self._is_news, samples)):
                 self._note(identity)
-                self._waiting.append(new[identity])
+                self._waiting.append(samples[identity])
             following = self._questions[session] = Question() if question.again else None
         self._deliver_waiting()
         if following is not None:
             self._send(session, following)
+
+    def _wanted(self, identities: Iterable[Identity]) -> list[Identity]:
+        """Return samples in the order in which they were sent, of those before our time only as many as are kept.
+
+        While a link is new, zenoh sends even what nobody has subscribed to yet.
+        """
+        ordered = sorted(identities, key=_source_time)
+        later: Counter[bytes] = Counter(gid for _, _, gid in ordered)
+        wanted = []
+        for number, stamp, gid in ordered:
+            later[gid] -= 1
+            if stamp >= self._begin_ns or self._limit is None or later[gid] < self._limit:
+                wanted.append((number, stamp, gid))
+        return wanted
 
     def _is_news(self, identity: Identity) -> bool:
         """Tell whether a sample is none that was delivered before the question, nor older than that."""
