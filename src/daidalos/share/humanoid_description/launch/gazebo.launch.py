@@ -2,16 +2,21 @@
 
 from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument, IncludeLaunchDescription
-from launch.substitutions import Command, FindExecutable, LaunchConfiguration, PathJoinSubstitution
-from launch_ros.actions import Node
-from launch_ros.parameter_descriptions import ParameterValue
+from launch.substitutions import LaunchConfiguration, PathJoinSubstitution
 from launch_ros.substitutions import FindPackageShare
 
 
 def generate_launch_description():
     here = FindPackageShare("humanoid_description")
-    model = PathJoinSubstitution([here, "urdf", "humanoid.urdf.xacro"])
-    description = ParameterValue(Command([FindExecutable(name="xacro"), " ", model]), value_type=str)
+    controlled = PathJoinSubstitution([FindPackageShare("humanoid_description"), "launch", "controlled.launch.py"])
+    robot = {
+        "model": PathJoinSubstitution([here, "urdf", "humanoid.urdf.xacro"]),
+        "name": "humanoid",
+        "z": "0",
+        "controllers": "joint_state_broadcaster joint_trajectory_controller",
+        "world": LaunchConfiguration("world"),
+        "gui": LaunchConfiguration("gui"),
+    }
     return LaunchDescription(
         [
             DeclareLaunchArgument(
@@ -20,25 +25,6 @@ def generate_launch_description():
                 description="SDF world to simulate",
             ),
             DeclareLaunchArgument("gui", default_value="true", description="whether to serve the studio"),
-            IncludeLaunchDescription(
-                PathJoinSubstitution([FindPackageShare("gazebo_ros"), "launch", "gazebo.launch.py"]),
-                launch_arguments={"world": LaunchConfiguration("world"), "gui": LaunchConfiguration("gui")}.items(),
-            ),
-            Node(
-                package="robot_state_publisher",
-                executable="robot_state_publisher",
-                parameters=[{"robot_description": description, "use_sim_time": True}],
-                output="screen",
-            ),
-            Node(
-                package="gazebo_ros",
-                executable="spawn_entity.py",
-                arguments=["-topic", "robot_description", "-entity", "humanoid", "-z", "0"],
-                output="screen",
-            ),
-            *(
-                Node(package="controller_manager", executable="spawner", arguments=[controller], output="screen")
-                for controller in ("joint_state_broadcaster", "joint_trajectory_controller")
-            ),
+            IncludeLaunchDescription(controlled, launch_arguments=robot.items()),
         ]
     )
