@@ -141,6 +141,24 @@ def test_a_signal_is_heard_although_another_thread_got_it() -> None:
     assert (done.stdout, done.stderr) == ("heard\n", "")
 
 
+@pytest.mark.skipif(not hasattr(signal, "pthread_kill"), reason="signals between threads are POSIX's")
+def test_handlers_of_others_are_seen_to_run_for_a_while(raised: list[int]) -> None:
+    gate = threading.Lock()
+    gate.acquire()
+
+    def open_gate(number: int, frame: FrameType | None) -> None:
+        gate.release()
+
+    signal.signal(signal.SIGINT, open_gate)
+    with signal_watch.watching(signal.SIGINT):
+        here = threading.Timer(0.2, lambda: signal.pthread_kill(threading.get_ident(), signal.SIGINT))
+        here.start()
+        assert gate.acquire(timeout=20.0)
+        here.join()
+    assert signal.getsignal(signal.SIGINT) is open_gate
+    assert signal.set_wakeup_fd(-1) == -1
+
+
 def test_others_may_be_told_of_signals(raised: list[int]) -> None:
     reader, writer = os.pipe()
     os.set_blocking(writer, False)

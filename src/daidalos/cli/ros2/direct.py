@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import os
+import signal
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
@@ -50,6 +51,7 @@ def direct_node(args: argparse.Namespace, name: str | None = None, **options: An
         For `rclpy.create_node`.
     """
     import rclpy
+    from rclpy.impl.signal_watch import watching
     from rclpy.parameter import Parameter
 
     ros_args = getattr(args, "ros_args", [])
@@ -62,8 +64,9 @@ def direct_node(args: argparse.Namespace, name: str | None = None, **options: An
         options = {"start_parameter_services": False, "parameter_overrides": overrides, **options}
         node = rclpy.create_node(name or f"{NODE_NAME_PREFIX}_{os.getpid()}", **options)
         try:
-            wait_for_discovery(node, getattr(args, "spin_time", None))
-            yield node
+            with watching(signal.SIGINT):
+                wait_for_discovery(node, getattr(args, "spin_time", None))
+                yield node
         finally:
             node.destroy_node()
     finally:

@@ -12,7 +12,8 @@ import signal
 import threading
 import time
 import weakref
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from types import FrameType
 from typing import Any
 
@@ -61,6 +62,24 @@ def stop() -> None:
         signal.set_wakeup_fd(present)
     os.close(_writer)
     _writer = None
+
+
+@contextmanager
+def watching(number: int) -> Iterator[None]:
+    """Watch a signal that somebody handles already, as long as the ``with`` block lasts."""
+    handler = signal.getsignal(number)
+    if not callable(handler) or threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    seen = watched(handler)
+    signal.signal(number, seen)
+    start()
+    try:
+        yield
+    finally:
+        stop()
+        if signal.getsignal(number) is seen:
+            signal.signal(number, handler)
 
 
 def _watch(reader: int) -> None:
