@@ -190,6 +190,16 @@ class Node(NodeEntities, NodeParameters, NodeGraph):
         """The node's context."""
         return self._context
 
+    if not TYPE_CHECKING:  # for a type checker, a class with this method has every attribute
+
+        def __getattr__(self, name: str) -> Any:
+            """Say what is missing in a class whose ``__init__`` forgot this one's."""
+            kind = type(self).__name__
+            text = f"'{kind}' object has no attribute '{name}'"
+            if "_default_callback_group" not in self.__dict__:
+                text = f"'{kind}' is no node yet: its __init__ has to call super().__init__('its_name') first"
+            raise AttributeError(text, name=name, obj=self)
+
     @property
     def default_callback_group(self) -> CallbackGroup:
         """The group of entities that are given none: mutually exclusive."""

@@ -107,6 +107,17 @@ def test_arguments_that_cannot_be_read_are_named(graph: Context) -> None:
         rclpy.init(context=Context(), args=["program", "Ragnar\udcc3\udcb6k"])
 
 
+def test_a_class_that_forgot_its_nodes_init_is_told(node: Node) -> None:
+    class Forgetful(Node):
+        def __init__(self) -> None:
+            self.create_publisher(String, "chatter", 10)
+
+    with pytest.raises(AttributeError, match=r"'Forgetful' is no node yet: its __init__ has to call super\(\)"):
+        Forgetful()
+    with pytest.raises(AttributeError, match="'Node' object has no attribute 'get_nam'"):
+        node.get_nam()  # type: ignore[attr-defined]
+
+
 def test_questions_about_the_graph_need_names(node: Node) -> None:
     for ask in (
         node.get_publishers_info_by_topic,
