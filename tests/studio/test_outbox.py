@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from daidalos.studio import outbox as module
-from daidalos.studio.outbox import BACKLOG, LATCHED_BACKLOG, Outbox
+from daidalos.studio.outbox import BACKLOG, LIGHT_BYTES, LONG_BACKLOG, Outbox
 
 
 def make_outbox():
@@ -30,9 +30,17 @@ def test_keeps_the_newest_messages_of_a_topic_in_order():
     outbox, _ = make_outbox()
     outbox.open(1, latched=False)
     for stamp in range(100):
-        outbox.put_message(1, stamp, b"x")
+        outbox.put_message(1, stamp, bytes(LIGHT_BYTES))
     assert [message(frame)[1] for frame in drain(outbox)] == list(range(100 - BACKLOG, 100))
     assert outbox.dropped == 100 - BACKLOG
+
+
+def test_small_messages_of_many_frames_wait_longer_but_not_for_ever():
+    outbox, _ = make_outbox()
+    outbox.open(1, latched=False)
+    for stamp in range(2 * LONG_BACKLOG):
+        outbox.put_message(1, stamp, b"x")
+    assert [message(frame)[1] for frame in drain(outbox)] == list(range(LONG_BACKLOG, 2 * LONG_BACKLOG))
 
 
 def test_latched_topics_keep_what_many_publishers_said():
@@ -40,7 +48,7 @@ def test_latched_topics_keep_what_many_publishers_said():
     outbox.open(1, latched=True)
     for stamp in range(300):
         outbox.put_message(1, stamp, b"x")
-    assert len(drain(outbox)) == min(300, LATCHED_BACKLOG)
+    assert len(drain(outbox)) == min(300, LONG_BACKLOG)
 
 
 def test_topics_take_turns():

@@ -2,7 +2,7 @@
 
 A client that reads slowly must neither hold up who publishes nor fill the memory. So each subscription
 keeps a few of its newest messages and the subscriptions take turns; what is dropped is always the oldest
-of the same topic, which the next message replaces anyway.
+of the same topic. Small ones are kept longer: no transform, line of the log or value of a curve replaces another.
 """
 
 from __future__ import annotations
@@ -15,8 +15,11 @@ from daidalos.studio.protocol import message_frame, time_frame
 
 BACKLOG = 16
 """Messages that wait per subscription; more only adds latency to a client that is late already."""
-LATCHED_BACKLOG = 1024
-"""Latched topics hold state, not a stream: many publishers of /tf_static each send one message at once."""
+LIGHT_BYTES = 64 << 10
+"""Messages are small as long as all of a subscription that wait have no more bytes."""
+LONG_BACKLOG = 1024
+"""Small messages that wait per subscription, and latched ones: these hold state, not a stream, and many
+publishers of /tf_static each send one at once."""
 MESSAGE_BYTES = 64 << 20
 """Bytes of messages that wait per client; beyond, the fattest subscription loses its oldest."""
 REPLY_BYTES = 64 << 20
@@ -52,7 +55,7 @@ class Outbox:
     def open(self, subscription: int, latched: bool) -> None:
         """Make room for a subscription's messages."""
         with self._lock:
-            self._queues[subscription] = _Queue(subscription, LATCHED_BACKLOG if latched else BACKLOG)
+            self._queues[subscription] = _Queue(subscription, LONG_BACKLOG if latched else BACKLOG)
 
     def close(self, subscription: int) -> None:
         """Forget a subscription and what waits for it."""
@@ -71,7 +74,7 @@ class Outbox:
             if not queue.waiting:
                 self._turns.append(queue)
             self._message_bytes += queue.push(nanoseconds, payload)
-            if len(queue.waiting) > queue.limit:
+            if len(queue.waiting) > (queue.limit if queue.bytes > LIGHT_BYTES else LONG_BACKLOG):
                 self._drop_oldest(queue)
             while self._message_bytes > MESSAGE_BYTES:
                 fattest = max(self._queues.values(), key=_Queue.spare_bytes)
