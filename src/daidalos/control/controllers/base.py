@@ -9,6 +9,7 @@ from typing import Any, ClassVar
 from daidalos.control.interfaces import Interfaces, Loan
 from daidalos.description.robot import Robot
 from daidalos.description.world import Model
+from daidalos.simulation.component import Subscription as Subscription
 from daidalos.simulation.samples import Sample
 
 
@@ -49,14 +50,6 @@ class ControllerSetting:
     state_names: tuple[str, ...] = ()
     heard: Callable[[str], bool] = _always
     warn: Callable[[str], None] = _ignore
-
-
-@dataclass(frozen=True)
-class Subscription:
-    """A topic that a controller listens to: the command's class and who takes it."""
-
-    type: type
-    take: Callable[[Any], None]
 
 
 @dataclass(frozen=True)
