@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -31,6 +32,8 @@ from daidalos.nodes.parameters import declare_plugin
 from daidalos.nodes.runner import run
 
 _LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+_PATIENCE_S = 10.0
+"""How long a goal waits for the robot's place and the costmap, which come soon after the start if all is well."""
 
 
 @dataclass(frozen=True)
@@ -132,6 +135,10 @@ class BehaviorServer(LifecycleNode):
         async def execute(goal_handle: Any) -> Any:
             result = action.Result()
             begun = self.get_clock().now()
+            await self._until_known(goal_handle)
+            if goal_handle.is_cancel_requested:
+                goal_handle.canceled()
+                return result
             try:
                 behavior.start(kind.command(goal_handle.request), self._pose(), self._now())
                 with Cycle(self, self._frequency) as cycle:
@@ -148,6 +155,16 @@ class BehaviorServer(LifecycleNode):
             return result
 
         return execute
+
+    async def _until_known(self, goal_handle: Any) -> None:
+        """Wait for the robot's place and for what is around it: the first goal may come before they do."""
+        begun = time.monotonic()
+        with Cycle(self, self._frequency) as cycle:
+            while not goal_handle.is_cancel_requested and time.monotonic() - begun < _PATIENCE_S:
+                known = self._buffer.can_transform(self._frame, self._base_frame, Time())
+                if self._costmap is not None and known:
+                    return
+                await cycle.next()
 
     async def _go_on(self, behavior: Behavior[Any], kind: _Kind, action: Any, goal_handle: Any) -> bool:
         """Make one cycle; False when the behaviour is done or cancelled."""
