@@ -4,6 +4,7 @@ import asyncio
 import os
 import signal
 import threading
+import time
 
 import pytest
 from launch.utilities import AsyncSafeSignalManager
@@ -63,6 +64,21 @@ def test_handlers_can_be_changed_inside(loop, plain):
         manager.handle(ONE, None)
         os.kill(os.getpid(), ONE)
         assert plain == [ONE]
+
+
+def test_a_signal_wakes_the_loop_although_another_thread_got_it(loop, plain):
+    manager = AsyncSafeSignalManager(loop)
+    got = loop.create_future()
+    manager.handle(ONE, got.set_result)
+    begun = time.monotonic()
+    other = threading.Timer(0.2, lambda: signal.pthread_kill(threading.get_ident(), ONE))
+    with manager:
+        other.start()
+        loop.run_until_complete(asyncio.wait([got], timeout=60))
+    assert got.done()
+    assert time.monotonic() - begun < 30
+    other.join()
+    assert signal.set_wakeup_fd(-1) == -1
 
 
 def test_other_signals_are_left_alone(loop, plain):

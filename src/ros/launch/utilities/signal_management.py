@@ -4,10 +4,14 @@ from __future__ import annotations
 
 import asyncio
 import signal
+import socket
+import sys
 import threading
 from collections.abc import Callable
 from types import FrameType, TracebackType
 from typing import Any, ClassVar
+
+_AT_ONCE = 4096
 
 
 class AsyncSafeSignalManager:
@@ -32,6 +36,8 @@ class AsyncSafeSignalManager:
         self.__replaced: dict[int, Any] = {}
         self.__parent: AsyncSafeSignalManager | None = None
         self.__active = False
+        self.__waker: tuple[socket.socket, socket.socket] | None = None
+        self.__told_before = -1
 
     def __enter__(self) -> AsyncSafeSignalManager:
         if self.__active:
@@ -41,6 +47,7 @@ class AsyncSafeSignalManager:
         self.__parent = AsyncSafeSignalManager.__current
         AsyncSafeSignalManager.__current = self
         self.__active = True
+        self.__wake_with_signals()
         for signum in self.__handlers:
             self.__install(signum)
         return self
@@ -50,9 +57,34 @@ class AsyncSafeSignalManager:
     ) -> None:
         for signum in list(self.__replaced):
             self.__uninstall(signum)
+        self.__wake_no_more()
         self.__active = False
         AsyncSafeSignalManager.__current = self.__parent
         self.__parent = None
+
+    def __wake_with_signals(self) -> None:
+        """Wake the loop with every signal: one that comes just before the loop begins to wait would not."""
+        if sys.platform == "win32":
+            return  # the loop sees to it by itself there
+        reader, writer = self.__waker = socket.socketpair()
+        for end in self.__waker:
+            end.setblocking(False)
+        self.__loop.add_reader(reader, reader.recv, _AT_ONCE)
+        self.__told_before = signal.set_wakeup_fd(writer.fileno(), warn_on_full_buffer=False)
+
+    def __wake_no_more(self) -> None:
+        if self.__waker is None:
+            return
+        try:
+            signal.set_wakeup_fd(self.__told_before)
+        except (OSError, ValueError):  # who was told before has gone meanwhile
+            signal.set_wakeup_fd(-1)
+        reader, writer = self.__waker
+        self.__waker = None
+        if not self.__loop.is_closed():
+            self.__loop.remove_reader(reader)
+        reader.close()
+        writer.close()
 
     def handle(
         self, signum: signal.Signals | int, handler: Callable[[int], None] | None
