@@ -11,7 +11,7 @@ from daidalos.description.markup import Element
 from daidalos.description.pose import Pose, Quaternion, multiply, rotation_matrix
 from daidalos.simulation.noise import Noise, read_noise
 from daidalos.simulation.samples import ImuSample, Sample
-from daidalos.simulation.sensors.noisy import NoisySensor, noise_of_axes
+from daidalos.simulation.sensors.noisy import Biases, NoisySensor, noise_of_axes
 
 Array = NDArray[np.float64]
 
@@ -54,9 +54,23 @@ class Imu(NoisySensor):
         """Of turn rate and acceleration."""
         return (*self.rate_noise, *self.acceleration_noise)
 
+    def start(self) -> Biases:
+        """Draw the biases, and work out what stays the same from measurement to measurement."""
+        biases = super().start()
+        self._arm = np.array(self.pose.position) if any(self.pose.position) else None
+        self._into_sensor = rotation_matrix(self.pose.orientation).T
+        self._from_reference = Pose(orientation=self.reference).inverse.orientation
+        self._covariances = (
+            np.zeros(9) if self.with_orientation else -np.eye(3).ravel(),
+            np.diag(self.variance[:3]).ravel(),
+            np.diag(self.variance[3:]).ravel(),
+        )
+        return biases
+
     def measure(self, now_ns: int) -> Iterable[Sample]:
         """Measure the motion of the sensor's own point."""
         measured = self.disturb(self._motion(), now_ns)
+        of_orientation, of_rate, of_acceleration = self._covariances
         yield ImuSample(
             stamp_ns=now_ns,
             topic=self.topic,
@@ -64,22 +78,20 @@ class Imu(NoisySensor):
             orientation=self._orientation(),
             angular_velocity=measured[:3],
             linear_acceleration=measured[3:],
-            orientation_covariance=np.zeros(9) if self.with_orientation else -np.eye(3).ravel(),
-            angular_velocity_covariance=np.diag(self.variance[:3]).ravel(),
-            linear_acceleration_covariance=np.diag(self.variance[3:]).ravel(),
+            orientation_covariance=of_orientation,
+            angular_velocity_covariance=of_rate,
+            linear_acceleration_covariance=of_acceleration,
         )
 
     def _motion(self) -> Array:
         """Return true turn rate and specific force (6,) at the sensor, in its axes."""
         rate, force, spin_up = self.link.inertial_motion()
-        arm = np.array(self.pose.position)
-        if arm.any():
-            force = force + np.cross(spin_up, arm) + np.cross(rate, np.cross(rate, arm))
-        into_sensor = rotation_matrix(self.pose.orientation).T
-        return np.concatenate((into_sensor @ rate, into_sensor @ force))
+        if self._arm is not None:
+            force = force + np.cross(spin_up, self._arm) + np.cross(rate, np.cross(rate, self._arm))
+        return np.concatenate((self._into_sensor @ rate, self._into_sensor @ force))
 
     def _orientation(self) -> Array:
         if not self.with_orientation:
             return np.array((0.0, 0.0, 0.0, 1.0))
-        mount = self.link.pose @ self.pose
-        return np.array(multiply(Pose(orientation=self.reference).inverse.orientation, mount.orientation))
+        mount = multiply(self.link.pose.orientation, self.pose.orientation)
+        return np.array(multiply(self._from_reference, mount))
