@@ -137,7 +137,10 @@ class AsyncParameterClient:
     def load_parameter_file(
         self, parameter_file: str, use_wildcard: bool = False, callback: Callback | None = None
     ) -> Future:
-        """Set the values that a file holds for the node; see `rclpy.parameter.parameter_dict_from_yaml_file`."""
+        """Set the values that a file holds for the node, or all of them when it holds none for it.
+
+        See `rclpy.parameter.parameter_dict_from_yaml_file`.
+        """
         return self.set_parameters(self._from_file(parameter_file, use_wildcard), callback)
 
     def load_parameter_file_atomically(
@@ -147,7 +150,10 @@ class AsyncParameterClient:
         return self.set_parameters_atomically(self._from_file(parameter_file, use_wildcard), callback)
 
     def _from_file(self, path: str, use_wildcard: bool) -> list[Any]:
-        found = parameter_dict_from_yaml_file(path, use_wildcard, target_nodes=[self.remote_node_name])
+        try:
+            found = parameter_dict_from_yaml_file(path, use_wildcard, target_nodes=[self.remote_node_name])
+        except RuntimeError:  # nothing for the node: rclpy then sets what the file says of any
+            found = parameter_dict_from_yaml_file(path, use_wildcard)
         return list(found.values())
 
     def on_parameter_event(

@@ -148,6 +148,16 @@ def test_a_goal_may_be_carried_out_elsewhere(node: Node) -> None:
     assert list(pair.wait(future).result.sequence) == [7]
 
 
+def test_a_goal_executed_without_an_executor_waits_for_one(node: Node) -> None:
+    goals: list[Any] = []
+    pair = Pair(node, handle_accepted_callback=goals.append)
+    goal = pair.send()
+    pair.executor.remove_node(node)
+    goals[0].execute()
+    pair.executor.add_node(node)
+    assert pair.wait(goal.get_result_async()).status == GoalStatus.STATUS_SUCCEEDED
+
+
 def test_the_same_goal_is_accepted_once(node: Node) -> None:
     pair = Pair(node)
     first = pair.send()

@@ -357,3 +357,7 @@ def test_parameters_of_another_node(graph: Context, file: Path) -> None:
     assert other.get_parameter("everywhere").value == 1
     run_ready(executor)
     assert len(called) == 1
+    elsewhere = file.with_name("elsewhere.yaml")
+    elsewhere.write_text("elsewhere: {ros__parameters: {count: 7}}")
+    assert result(client.load_parameter_file(str(elsewhere))).results[0].successful
+    assert other.get_parameter("count").value == 7

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 import traceback
+from collections import deque
 from collections.abc import Callable
 from enum import Enum
 from types import GenericAlias, TracebackType
@@ -265,6 +266,7 @@ status_pub_qos_profile
             (self._result_service, self._execute_get_result_request),
         )
         self._rcl_serves = frozenset(service.name for service, _ in self._services)
+        self._waiting_goals: deque[tuple[ServerGoalHandle, Callable[[ServerGoalHandle], Any]]] = deque()
         self._expiry = _Expiry(self, node)
         for service, _ in self._services:
             service.set_on_ready(self._rcl_hook)
@@ -278,6 +280,8 @@ status_pub_qos_profile
     # The executor's side.
 
     def _rcl_take(self) -> tuple[Callable[..., Any], tuple[Any, ...]] | None:
+        if self._waiting_goals:
+            return self.notify_execute, self._waiting_goals.popleft()
         for service, callback in self._services:
             taken = service.take_request()
             if taken is not None:
@@ -285,7 +289,7 @@ status_pub_qos_profile
         return None
 
     def _rcl_has_more(self) -> bool:
-        return any(len(service.impl) for service, _ in self._services)
+        return bool(self._waiting_goals) or any(len(service.impl) for service, _ in self._services)
 
     def get_num_entities(self) -> NumberOfEntities:
         """Return three services and a timer."""
@@ -368,7 +372,7 @@ status_pub_qos_profile
     def notify_execute(
         self, goal_handle: ServerGoalHandle, execute_callback: Callable[[ServerGoalHandle], Any] | None
     ) -> None:
-        """Have a goal carried out by the node's executor."""
+        """Have a goal carried out by the node's executor, or by the next one that runs the node."""
         callback = execute_callback or self._execute_callback
         if callback is None:
             raise RuntimeError("the action server has no execute_callback, and none was given")
@@ -376,7 +380,8 @@ status_pub_qos_profile
         if executor is not None:
             executor.create_task(self._execute_goal, callback, goal_handle)
         else:
-            self._logger.error("Failed to execute goal: the node is in no executor")
+            self._waiting_goals.append((goal_handle, callback))
+            self._rcl_hook()
 
     def notify_goal_done(self) -> None:
         """Note that a goal is over: its result is kept for a while from now."""
