@@ -1,6 +1,5 @@
 """The executor that later distributions add; ours are all driven by events."""
 
-
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.task import Future
 
