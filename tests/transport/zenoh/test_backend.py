@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import json
 import shutil
 import struct
@@ -19,7 +20,7 @@ from std_msgs.msg import String
 
 from daidalos.transport.environment import DiscoveryRange, Environment, EnvironmentVariableError
 from daidalos.transport.graph import EndpointKind
-from daidalos.transport.qos import Qos
+from daidalos.transport.qos import Durability, Qos
 from daidalos.transport.session import Session
 from daidalos.transport.shared import make_backend
 from daidalos.transport.zenoh import config as configuration
@@ -138,6 +139,23 @@ def test_a_path_that_is_too_long_for_a_socket_is_no_obstacle(domain, tmp_path, m
         other.close()
     left = {path.name for path in (folder / "daidalos" / "zenoh" / str(domain)).iterdir()}
     assert left == {"registry.lock"}
+
+
+@pytest.mark.skipif(not Path("/proc/self/fd").is_dir(), reason="looks where Linux lists open files")
+def test_sessions_that_were_closed_keep_no_files_open(domain):
+    def open_files() -> int:
+        return len(list(Path("/proc/self/fd").iterdir()))
+
+    counts = []
+    for _ in range(4):
+        session = Session(make_backend(Environment(domain)))
+        node, leave = session.create_node("me", "/")
+        session.create_publisher(node, "/kept", String, Qos(durability=Durability.TRANSIENT_LOCAL))
+        session.close()
+        del session, leave
+        gc.collect()
+        counts.append(open_files())
+    assert counts[1:] == counts[:1] * 3
 
 
 def settings_of(environment: Environment, **variables: str) -> Callable[[str], Any]:
