@@ -1,3 +1,5 @@
+import re
+
 import pytest
 
 from daidalos.simulation import Simulation, registry
@@ -6,6 +8,7 @@ from daidalos.simulation.plugins.diff_drive import DiffDrive
 from daidalos.simulation.samples import TransformSample
 from daidalos.simulation.sensors.base import Sensor
 from daidalos.simulation.sensors.lidar import Lidar
+from places import REPOSITORY
 from simulation.models import box, world
 
 
@@ -53,9 +56,18 @@ class Entry:
         self.load = lambda: target
 
 
+def documented_plugin():
+    """The class that the documentation shows."""
+    page = (REPOSITORY / "docs" / "simulation.md").read_text()
+    names = {}
+    exec(re.search(r"```python\n(.*?)```", page, re.DOTALL)[1], names)
+    return names["Wind"]
+
+
 @pytest.fixture
 def entries(monkeypatch):
-    groups = {"daidalos.plugins": [Entry("greeter", Greeter)], "daidalos.sensors": [Entry("nose", Nose)]}
+    plugins = [Entry("greeter", Greeter), Entry("my_wind", documented_plugin())]
+    groups = {"daidalos.plugins": plugins, "daidalos.sensors": [Entry("nose", Nose)]}
     monkeypatch.setattr(registry, "entry_points", lambda group: groups[group])
     registry._plugins.cache_clear()
     registry._sensors.cache_clear()
@@ -77,3 +89,11 @@ def test_the_users_own_come_by_entry_point():
     ]
     assert samples[1].translation[0] == 2
     assert not simulation.warnings
+
+
+@pytest.mark.usefixtures("entries")
+def test_the_documented_plugin_blows():
+    wind = "<plugin name='w' filename='libmy_wind.so'><link_name>link</link_name><force>3 0 0</force></plugin>"
+    simulation = Simulation(world(box("b", pose="0 0 9 0 0 0", mass=2).replace("</model>", f"{wind}</model>")))
+    simulation.advance(1_000_000_000)
+    assert simulation.pose("b").position[0] == pytest.approx(0.75, rel=0.01)  # a t^2 / 2
