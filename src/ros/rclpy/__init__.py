@@ -27,6 +27,7 @@ from rclpy.utilities import shutdown as _shutdown
 if TYPE_CHECKING:
     from rclpy.executors import Executor
     from rclpy.node import Node
+    from rclpy.qos import QoSProfile
 
 __all__ = [
     "Context",
@@ -157,6 +158,7 @@ def create_node(
     namespace: str | None = None,
     use_global_arguments: bool = True,
     enable_rosout: bool = True,
+    rosout_qos_profile: QoSProfile | int | None = None,
     start_parameter_services: bool = True,
     parameter_overrides: list[Parameter[Any]] | None = None,
     allow_undeclared_parameters: bool = False,
@@ -165,6 +167,7 @@ def create_node(
 ) -> Node:
     """Return a new node; see `rclpy.node.Node`."""
     from rclpy.node import Node
+    from rclpy.qos import qos_profile_rosout_default
 
     return Node(
         node_name,
@@ -173,6 +176,7 @@ def create_node(
         namespace=namespace,
         use_global_arguments=use_global_arguments,
         enable_rosout=enable_rosout,
+        rosout_qos_profile=qos_profile_rosout_default if rosout_qos_profile is None else rosout_qos_profile,
         start_parameter_services=start_parameter_services,
         parameter_overrides=parameter_overrides,
         allow_undeclared_parameters=allow_undeclared_parameters,

@@ -11,6 +11,7 @@ from rclpy.context import Context
 from rclpy.impl.log_output import OUTPUT
 from rclpy.logging import LoggingSeverity, get_logger
 from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy
 
 from ros.rclpy.waiting import executor_of, run_ready
 
@@ -98,6 +99,15 @@ def test_rosout_gets_messages_where_both_want_it(
         assert (message.name, message.msg, message.level) == ("ns.tested.part", "it hurts", 40)
         assert message.file == __file__
         assert message.function == "test_rosout_gets_messages_where_both_want_it"
+
+
+def test_rosout_has_the_qos_asked_for(graph: Context) -> None:
+    node = rclpy.create_node("tested", context=graph, rosout_qos_profile=7)
+    (topic,) = node.get_publishers_info_by_topic("/rosout")
+    assert topic.qos_profile.durability == DurabilityPolicy.VOLATILE
+    default = rclpy.create_node("other", context=graph)
+    found = {one.node_name: one.qos_profile for one in default.get_publishers_info_by_topic("/rosout")}
+    assert found["other"].durability == DurabilityPolicy.TRANSIENT_LOCAL
 
 
 def test_levels_can_be_set_from_elsewhere(graph: Context) -> None:
