@@ -187,6 +187,10 @@ def _call(callback: Callable[[Future], Any], future: Future) -> None:
         warnings.warn(f"Unhandled exception in done callback: {error}", RuntimeWarning, stacklevel=2)
 
 
+_NOTHING = object()
+"""What a coroutine waits for that yields None."""
+
+
 class Task(Future):
     """A function or a coroutine that an executor carries out; it is the future of its own result.
 
@@ -223,49 +227,53 @@ class Task(Future):
         """Go on until it is done, or until it waits for something."""
         if self._done or self._executing or not self._task_lock.acquire(blocking=False):
             return
+        waits_for = None
         try:
             if self._done:
                 return
             self._executing = True
-            if inspect.iscoroutine(self._handler):
-                self._step()
-            else:
-                self._run()
+            waits_for = self._step() if inspect.iscoroutine(self._handler) else self._run()
         finally:
             self._executing = False
             self._task_lock.release()
+        # Not before the release: who wakes the task may be another thread, and has to find it free.
+        if waits_for is not None:
+            self._be_woken_by(waits_for)
 
-    def _run(self) -> None:
+    def _run(self) -> Any:
+        """Call the function; return what the coroutine that it returned waits for, or None."""
         try:
             result = self._handler(*self._args, **self._kwargs)
         except Exception as error:
             self.set_exception(error)
-            return
+            return None
         if inspect.iscoroutine(result):
             self._handler = result
-            self._step()
-            return
+            return self._step()
         self.set_result(result)
         self._complete_task()
+        return None
 
-    def _step(self) -> None:
-        """Run the coroutine until it waits; what it waits for will queue the task again."""
+    def _step(self) -> Any:
+        """Run the coroutine until it waits; return for what, or None at its end."""
         if self._cancelled:
             self._handler.close()
-            return
+            return None
         _stepping.count = getattr(_stepping, "count", 0) + 1
         try:
             waits_for = self._handler.send(None)
+            return _NOTHING if waits_for is None else waits_for
         except StopIteration as stop:
             self.set_result(stop.value)
-            self._complete_task()
-            return
         except Exception as error:
             self.set_exception(error)
-            self._complete_task()
-            return
         finally:
             _stepping.count -= 1
+        self._complete_task()
+        return None
+
+    def _be_woken_by(self, waits_for: Any) -> None:
+        """Have the task queued again when it can go on."""
         requeue = self._requeue
         if requeue is None:
             return

@@ -202,3 +202,21 @@ def test_asyncio_goes_on_while_a_coroutine_of_an_executor_runs_in_it() -> None:
 
 async def _awaited(future: Future) -> Any:
     return await future
+
+
+def test_a_task_that_is_woken_by_another_thread_while_it_begins_to_wait_goes_on():
+    class Quick(Future):
+        def on_wake(self, wake):
+            self.set_result("now")
+            thread = threading.Thread(target=wake)
+            thread.start()
+            thread.join()
+
+    async def wait():
+        return await Quick()
+
+    task = Task(wait)
+    task._requeue = lambda woken: woken()
+    task()
+    assert task.done()
+    assert task.result() == "now"
