@@ -48,10 +48,28 @@ def _pose(browser: Chromium) -> tuple[float, float, float, float]:
 
 
 def _wait_for_pose(browser: Chromium, condition: str) -> tuple[float, float, float, float]:
-    """Wait until x, y, z and yaw of the selected model fulfil a condition, and return them."""
+    """Wait until the selected model rests where x, y, z and yaw fulfil a condition; return them."""
     numbers = rf"{_POSE}.match(/-?\d+([.]\d+)?/g).map(Number)"
+    _let_rest(browser)
     browser.wait_for(f"(([x, y, z, yaw]) => {condition})({numbers})")
+    _let_rest(browser)
     return _pose(browser)
+
+
+def _let_rest(browser: Chromium) -> None:
+    """Wait until all that was done has reached the simulator, and the selected model is shown where it rests."""
+    browser.evaluate(
+        f"""new Promise((done) => {{
+            let [shown, since] = ["", performance.now()];
+            const look = () => {{
+                const now = {_POSE};
+                if (now !== shown || daidalos.editing()) [shown, since] = [now, performance.now()];
+                if (performance.now() - since > 400) done();
+                else requestAnimationFrame(look);
+            }};
+            look();
+        }})"""
+    )
 
 
 def _handle(browser: Chromium, axis: str) -> tuple[float, float]:

@@ -40,6 +40,8 @@ export interface TestHooks {
   takeTool(id: string): void;
   /** Where a model of the simulation is in the window. */
   simulated(name: string): { x: number; y: number } | null;
+  /** Whether the simulator has still to answer what was done in the Simulation panel. */
+  editing(): boolean;
   /** Where the handle of the selected model in the simulation is in the window. */
   handle(axis: "x" | "y" | "z"): { x: number; y: number } | null;
 }
@@ -98,6 +100,7 @@ export function installTestHooks(studio: Studio): void {
     },
     takeTool: (id) => world?.toolbox.takeById(id),
     simulated: (name) => editor?.modelAt(name) ?? null,
+    editing: () => editor?.isBusy ?? false,
     handle: (axis) => editor?.handleAt(axis) ?? null,
   };
 }

@@ -52,7 +52,9 @@ export class Editor {
   private hold: Hold | undefined;
   private pressed: { x: number; y: number } | undefined;
   private inserted = 0;
-  private isTelling = false;
+  /** The last move of the hand, until the simulator has answered. */
+  private telling: Promise<void> | undefined;
+  private doing = 0;
   private readonly listening = new AbortController();
 
   constructor(
@@ -99,16 +101,25 @@ export class Editor {
     }
   }
 
+  /** Whether the simulator has still to answer. */
+  get isBusy(): boolean {
+    return this.doing > 0 || this.telling !== undefined;
+  }
+
   /** Do something with the simulator, say what went wrong, and look again. */
   async do(work: () => Promise<unknown>): Promise<boolean> {
     this.complaint.value = "";
+    this.doing++;
     try {
+      await this.telling; // answers may overtake each other: the last word is to be the last
       await work();
       this.stage.show(await this.simulator.look());
       return true;
     } catch (error) {
       this.complaint.value = error instanceof Error ? error.message : String(error);
       return false;
+    } finally {
+      this.doing--;
     }
   }
 
@@ -206,7 +217,7 @@ export class Editor {
       }
     }
     stage.preview(hold.name, hold.motion);
-    void this.tell(hold);
+    this.tell(hold);
   }
 
   private hover(x: number, y: number, isPressed: boolean): void {
@@ -320,18 +331,18 @@ export class Editor {
   }
 
   /** Let the model follow the hand in the simulation too, as fast as that answers. */
-  private async tell(hold: Hold): Promise<void> {
-    if (this.isTelling || hold.mode === "scale") {
+  private tell(hold: Hold): void {
+    if (this.telling || hold.mode === "scale") {
       return;
     }
-    this.isTelling = true;
-    try {
-      await this.simulator.move(hold.name, movedPose(hold.pose, hold.motion));
-    } catch (error) {
-      this.complaint.value = error instanceof Error ? error.message : String(error);
-    } finally {
-      this.isTelling = false;
-    }
+    this.telling = this.simulator
+      .move(hold.name, movedPose(hold.pose, hold.motion))
+      .catch((error: unknown) => {
+        this.complaint.value = error instanceof Error ? error.message : String(error);
+      })
+      .finally(() => {
+        this.telling = undefined;
+      });
   }
 
   private async finish({ name, mode, pose, motion, factors }: Hold): Promise<void> {
