@@ -117,6 +117,11 @@ export class Stage {
       if (group && !shown?.held && put(group, pose)) {
         this.touch();
       }
+      // Who is held is told of as well, and where it was let go need not be where it was told to be last.
+      const read = name === this.selected.value ? this.reading.value : undefined;
+      if (read && isElsewhere(read, pose)) {
+        this.touch();
+      }
     });
     return known && seen.size === this.models.size;
   }
@@ -326,16 +331,21 @@ function isGround({ scale }: Marker): boolean {
 }
 
 /** Put an object where it is; false where it was there already. */
-function put(object: Object3D, { position: p, orientation: o }: Pose): boolean {
-  const { position: at, quaternion: turn } = object;
-  const by = Math.max(Math.abs(at.x - p.x), Math.abs(at.y - p.y), Math.abs(at.z - p.z));
-  const turned = Math.max(Math.abs(turn.x - o.x), Math.abs(turn.y - o.y), Math.abs(turn.z - o.z));
-  if (by < STILL && turned < STILL) {
+function put(object: Object3D, pose: Pose): boolean {
+  const { position: p, orientation: o } = pose;
+  if (!isElsewhere({ position: object.position, orientation: object.quaternion }, pose)) {
     return false;
   }
-  at.set(p.x, p.y, p.z);
-  turn.set(o.x, o.y, o.z, o.w);
+  object.position.set(p.x, p.y, p.z);
+  object.quaternion.set(o.x, o.y, o.z, o.w);
   return true;
+}
+
+/** Whether two poses differ by more than the trembling of what stands still. */
+function isElsewhere({ position: at, orientation: turn }: Pose, { position: p, orientation: o }: Pose): boolean {
+  const by = Math.max(Math.abs(at.x - p.x), Math.abs(at.y - p.y), Math.abs(at.z - p.z));
+  const turned = Math.max(Math.abs(turn.x - o.x), Math.abs(turn.y - o.y), Math.abs(turn.z - o.z));
+  return by >= STILL || turned >= STILL;
 }
 
 export function matrixOf({ position: p, orientation: o }: Pose): Matrix4 {
