@@ -15,6 +15,8 @@ from typing import Any, TypeVar
 import aiohttp
 import pytest
 
+from daidalos.studio.build import build, is_fresh
+
 T = TypeVar("T")
 
 FLAGS = (
@@ -51,6 +53,16 @@ def require_chromium() -> None:
     """Skip the test where there is no browser, unless `DAIDALOS_REQUIRE_BROWSER` says that there must be one."""
     if find_chromium() is None:
         text = "no Chromium found; install it, or name it in DAIDALOS_CHROMIUM"
+        if os.environ.get("DAIDALOS_REQUIRE_BROWSER"):
+            pytest.fail(text)
+        pytest.skip(text)
+
+
+def require_page() -> None:
+    """Build the page where it is not; skip the test where that can not be done, unless it must be."""
+    words: list[str] = []
+    if not is_fresh() and not build(words.append):
+        text = f"the page can not be built: {words}"
         if os.environ.get("DAIDALOS_REQUIRE_BROWSER"):
             pytest.fail(text)
         pytest.skip(text)

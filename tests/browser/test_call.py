@@ -7,25 +7,13 @@ from collections.abc import Iterator
 
 import pytest
 
-from browser.cdp import Chromium, require_chromium
-from daidalos.studio.build import build, is_fresh
+from browser.cdp import Chromium
 from nodes.terminal import Terminal
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
+WINDOW = (800, 700)
 _DOMAIN = 100 + os.getpid() % 100
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Chromium]:
-    require_chromium()
-    words: list[str] = []
-    if not is_fresh() and not build(words.append):
-        if os.environ.get("DAIDALOS_REQUIRE_BROWSER"):
-            pytest.fail(f"the page can not be built: {words}")
-        pytest.skip(f"the page is not built: {words}")
-    with Chromium(800, 700) as browser:
-        yield browser
 
 
 @pytest.fixture

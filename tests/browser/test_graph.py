@@ -3,30 +3,17 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
 
 import pytest
 
-from browser.cdp import Chromium, require_chromium
-from daidalos.studio.build import build, is_fresh
+from browser.cdp import Chromium
 from nodes.terminal import Terminal
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
+WINDOW = (1100, 700)
 _DOMAIN = 100 + os.getpid() % 100
 _ARROWS = "[...document.querySelectorAll('[data-arrow]')].map((each) => each.dataset.arrow).sort().join('; ')"
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Chromium]:
-    require_chromium()
-    words: list[str] = []
-    if not is_fresh() and not build(words.append):
-        if os.environ.get("DAIDALOS_REQUIRE_BROWSER"):
-            pytest.fail(f"the page can not be built: {words}")
-        pytest.skip(f"the page is not built: {words}")
-    with Chromium(1100, 700) as browser:
-        yield browser
 
 
 def _shows(*names: str) -> str:

@@ -3,33 +3,20 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
-from browser.cdp import Chromium, require_chromium
+from browser.cdp import Chromium
 from daidalos.nodes.packages import package_share
-from daidalos.studio.build import build, is_fresh
 from nodes.terminal import Terminal
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
+WINDOW = (420, 720)
 _DOMAIN = 100 + os.getpid() % 100
 _JOINTS = "[...document.querySelectorAll('[data-joint]')]"
 _VALUES = f"{_JOINTS}.map((each) => Number(each.querySelector('.joint-value').value))"
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Chromium]:
-    require_chromium()
-    words: list[str] = []
-    if not is_fresh() and not build(words.append):
-        if os.environ.get("DAIDALOS_REQUIRE_BROWSER"):
-            pytest.fail(f"the page can not be built: {words}")
-        pytest.skip(f"the page is not built: {words}")
-    with Chromium(420, 720) as browser:
-        yield browser
 
 
 def _echo_position(wanted: str) -> None:

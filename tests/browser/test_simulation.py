@@ -4,35 +4,22 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from browser.cdp import Chromium, require_chromium
-from daidalos.studio.build import build, is_fresh
+from browser.cdp import Chromium
 from nodes.terminal import Terminal
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
+WINDOW = (1100, 760)
 _DOMAIN = 100 + os.getpid() % 100
 _MODELS = "document.querySelector('[data-test=models]')?.textContent"
 _FACTOR = "document.querySelector('[data-test=rtf]').textContent"
 _POSE = "document.querySelector('[data-test=pose]').textContent"
 _SELECTED = "document.querySelector('footer select').value"
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Chromium]:
-    require_chromium()
-    words: list[str] = []
-    if not is_fresh() and not build(words.append):
-        if os.environ.get("DAIDALOS_REQUIRE_BROWSER"):
-            pytest.fail(f"the page can not be built: {words}")
-        pytest.skip(f"the page is not built: {words}")
-    with Chromium(1100, 760) as browser:
-        yield browser
 
 
 def _settle(browser: Chromium) -> None:

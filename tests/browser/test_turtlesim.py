@@ -3,33 +3,20 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
 
 import pytest
 
-from browser.cdp import Chromium, require_chromium
-from daidalos.studio.build import build, is_fresh
+from browser.cdp import Chromium
 from nodes.terminal import Terminal
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
+WINDOW = (900, 960)
 _DOMAIN = 100 + os.getpid() % 100
 _TURTLES = "[...document.querySelectorAll('[data-turtle]')].map((each) => each.dataset.turtle).join()"
 _COLOUR = "getComputedStyle(document.querySelector('.turtlesim-square')).backgroundColor"
 _LILAC = (179, 184, 255)
 _RED = (255, 10, 20)
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Chromium]:
-    require_chromium()
-    words: list[str] = []
-    if not is_fresh() and not build(words.append):
-        if os.environ.get("DAIDALOS_REQUIRE_BROWSER"):
-            pytest.fail(f"the page can not be built: {words}")
-        pytest.skip(f"the page is not built: {words}")
-    with Chromium(900, 960) as browser:
-        yield browser
 
 
 def _ink(*colour: int) -> str:

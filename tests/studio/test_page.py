@@ -1,7 +1,6 @@
 """The page in a real browser, against the real server and a robot that drives."""
 
 import math
-import os
 import queue
 import time
 from collections.abc import Iterator
@@ -9,10 +8,9 @@ from collections.abc import Iterator
 import foxglove
 import pytest
 
-from browser.cdp import Chromium, require_chromium
+from browser.cdp import Chromium, require_chromium, require_page
 from daidalos.studio.arrangement import Arrangement, Curve, Display, Plot, Split, View
 from daidalos.studio.assets import AssetResolver
-from daidalos.studio.build import build, is_fresh
 from daidalos.studio.server import StudioServer
 
 from . import display_zoo
@@ -27,11 +25,7 @@ SEES = "daidalos.state().scanPoints > 700 && daidalos.state().maps.Map?.[0] === 
 
 @pytest.fixture(scope="module", autouse=True)
 def built_page() -> None:
-    words: list[str] = []
-    if not is_fresh() and not build(words.append):
-        if os.environ.get("DAIDALOS_REQUIRE_BROWSER"):
-            pytest.fail(f"the page can not be built: {words}")
-        pytest.skip(f"the page is not built: {words}")
+    require_page()
 
 
 @pytest.fixture(scope="module")
@@ -39,6 +33,13 @@ def browser() -> Iterator[Chromium]:
     require_chromium()
     with Chromium(1280, 800) as browser:
         yield browser
+
+
+@pytest.fixture(autouse=True)
+def left_page(browser: Chromium) -> Iterator[None]:
+    """Leave the page after each test: it would ask for its server, which is gone, and the next test would be blamed."""
+    yield
+    browser.open("about:blank")
 
 
 @pytest.fixture

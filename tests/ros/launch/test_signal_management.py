@@ -22,6 +22,14 @@ def loop():
 
 
 @pytest.fixture
+def nobody_told():
+    """Let nobody be told of signals, whatever was run before in this process."""
+    before = signal.set_wakeup_fd(-1)
+    yield
+    signal.set_wakeup_fd(before)
+
+
+@pytest.fixture
 def plain():
     """Count the signals that reach ordinary handlers."""
     received = []
@@ -66,6 +74,7 @@ def test_handlers_can_be_changed_inside(loop, plain):
         assert plain == [ONE]
 
 
+@pytest.mark.usefixtures("nobody_told")
 def test_a_signal_wakes_the_loop_although_another_thread_got_it(loop, plain):
     manager = AsyncSafeSignalManager(loop)
     got = loop.create_future()
