@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from daidalos.description import urdf
 from daidalos.description.errors import DescriptionError
-from daidalos.description.geometry import Box, Capsule, Cylinder, Mesh
+from daidalos.description.geometry import Box, Capsule, Cylinder, Empty, Mesh, Plane
 from daidalos.description.joint import JointType
 from daidalos.description.markup import parse_markup
 from daidalos.description.pose import Pose
@@ -95,6 +95,28 @@ def test_a_joint_may_hang_on_the_world_without_a_link_of_that_name():
     )
     assert robot.root == "world"
     assert "r.urdf:2: link 'world' does not exist and was added" in robot.warnings[0]
+
+
+def test_what_bullet_adds_is_read_with_a_warning():
+    robot = urdf.parse(
+        """<robot name="b">
+        <link name="floor"><collision><geometry><plane normal="0 1 0"/></geometry></collision></link>
+        <link name="ball"><collision><geometry><cdf filename="bowl.cdf"/></geometry></collision></link>
+        <joint name="neck" type="spherical"><parent link="floor"/><child link="ball"/></joint></robot>"""
+    )
+    assert robot.links["floor"].collisions[0].geometry == Plane((0, 1, 0))
+    assert robot.links["ball"].collisions[0].geometry == Empty()
+    assert (robot.joints["neck"].type, robot.joints["neck"].axes) == (JointType.BALL, ())
+    assert [re.search(r":(\d+): .*Bullet", warning)[1] for warning in robot.warnings] == ["2", "3", "4"]
+
+
+def test_a_xacro_file_may_be_called_urdf(tmp_path):
+    file = tmp_path / "robot.urdf"
+    file.write_text(
+        """<robot name="r" xmlns:xacro="http://ros.org/wiki/xacro"><xacro:arg name="side" default="2"/>
+        <link name="base"><visual><geometry><box size="1 1 $(arg side)"/></geometry></visual></link></robot>"""
+    )
+    assert urdf.load(file, {"side": "3"}).links["base"].visuals[0].geometry == Box((1, 1, 3))
 
 
 def test_a_loop_is_no_tree():

@@ -1,0 +1,159 @@
+"""URDF: reads a robot from text or a file (through xacro where that is written for it).
+
+The elements and their rules are those of the ROS documentation's URDF/XML pages; what the reference
+parser refuses is refused here, except what only controllers need, an inertial without mass, a joint to the
+world without a link ``world``, and what Bullet adds to the language: those are warned of.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+
+from daidalos.description.errors import DescriptionError
+from daidalos.description.joint import Joint
+from daidalos.description.link import Link
+from daidalos.description.markup import Element, parse_markup
+from daidalos.description.resolve import PackageResolver
+from daidalos.description.robot import GazeboExtension, Robot
+from daidalos.description.transmissions import read_transmissions
+from daidalos.description.urdf.joints import read_joints
+from daidalos.description.urdf.links import read_links, read_materials
+
+
+def load(
+    path: Path | str,
+    mappings: Mapping[str, str] | None = None,
+    resolve: PackageResolver | None = None,
+) -> Robot:
+    """Read a robot from a file.
+
+    Parameters
+    ----------
+    path : Path or str
+        A URDF, or a xacro file: one whose name ends in ``.xacro``, or that uses it under another name.
+    mappings : mapping or None
+        Values for xacro's arguments.
+    resolve : callable or None
+        Share directory of a package, for ``package://`` and ``$(find)``.
+
+    Returns
+    -------
+    Robot
+
+    Raises
+    ------
+    DescriptionError
+        When the file is missing or is not a robot; names file, line and element.
+    """
+    path = Path(path)
+    try:
+        text = path.read_bytes()
+    except OSError as problem:
+        raise DescriptionError(_file_problem(problem), str(path)) from None
+    if path.suffix == ".xacro" or _is_xacro(text):
+        from daidalos.description.xacro import expand
+
+        return read_robot(expand(path, mappings, resolve), resolve)
+    return read_robot(parse_markup(text, str(path)), resolve)
+
+
+def parse(text: str | bytes, source: str = "robot_description", resolve: PackageResolver | None = None) -> Robot:
+    """Read a robot from text.
+
+    Parameters
+    ----------
+    text : str or bytes
+        The URDF document.
+    source : str
+        Its origin; errors name it, and relative mesh paths start at its folder when it is a file.
+    resolve : callable or None
+        Share directory of a package, for ``package://``.
+
+    Returns
+    -------
+    Robot
+
+    Raises
+    ------
+    DescriptionError
+        When the text is not a robot; names line and element.
+    """
+    return read_robot(parse_markup(text, source), resolve)
+
+
+def read_robot(root: Element, resolve: PackageResolver | None = None) -> Robot:
+    """Read a robot from its ``<robot>`` element; see `parse`."""
+    if root.tag != "robot":
+        raise root.error("expected <robot> as the root element of a URDF")
+    warnings: list[str] = []
+    materials = read_materials(root, resolve)
+    links = read_links(root, materials, resolve, warnings)
+    joints = read_joints(root, warnings)
+    links |= _world(links, joints, warnings)
+    return Robot(
+        name=root.name(),
+        links=links,
+        joints=joints,
+        root=_check_tree(root, links, joints),
+        materials=materials,
+        transmissions=read_transmissions(root, warnings),
+        gazebo=tuple(GazeboExtension(e.attribute("reference", ""), e) for e in root.all("gazebo")),
+        ros2_control=tuple(root.all("ros2_control")),
+        source=root.source,
+        warnings=tuple(warnings),
+    )
+
+
+def _world(links: Mapping[str, Link], joints: Mapping[str, Joint], warnings: list[str]) -> dict[str, Link]:
+    """Return the link ``world`` where joints hang on it although the robot has none, as some simulators allow."""
+    first = next((joint for joint in joints.values() if joint.parent == "world"), None)
+    if first is None or "world" in links:
+        return {}
+    warnings.append(f"{first.where}: link 'world' does not exist and was added, which ROS itself does not do")
+    return {"world": Link("world", where=first.where)}
+
+
+def _check_tree(root: Element, links: Mapping[str, Link], joints: Mapping[str, Joint]) -> str:
+    """Return the one root link; raise when links and joints are no tree."""
+    parent_of: dict[str, str] = {}
+    elements = {element.name(): element for element in root.all("joint")}
+    for joint in joints.values():
+        element = elements[joint.name]
+        for end, name in (("parent", joint.parent), ("child", joint.child)):
+            if name not in links:
+                raise element.error(f"its {end} link {name!r} does not exist")
+        if joint.child in parent_of:
+            raise element.error(f"link {joint.child!r} is the child of more than one joint")
+        parent_of[joint.child] = joint.parent
+    roots = [name for name in links if name not in parent_of]
+    if not roots:
+        raise root.error("the joints form a loop: every link is the child of another")
+    if len(roots) > 1:
+        raise root.error(f"the robot should have one root link, these are nobody's child: {', '.join(roots)}")
+    reached = _reached_from(roots[0], joints.values())
+    if len(reached) < len(links):
+        rest = ", ".join(name for name in links if name not in reached)
+        raise root.error(f"the joints form a loop that the root link does not reach: {rest}")
+    return roots[0]
+
+
+def _reached_from(start: str, joints: Iterable[Joint]) -> set[str]:
+    children: dict[str, list[str]] = {}
+    for joint in joints:
+        children.setdefault(joint.parent, []).append(joint.child)
+    reached, waiting = {start}, [start]
+    while waiting:
+        for child in children.get(waiting.pop(), ()):
+            reached.add(child)
+            waiting.append(child)
+    return reached
+
+
+def _is_xacro(text: bytes) -> bool:
+    """Tell whether a file that is not called so has something that only xacro can work out."""
+    return b"xmlns:xacro" in text and any(word in text for word in (b"<xacro:", b"$(", b"${"))
+
+
+def _file_problem(problem: OSError) -> str:
+    return "no such file" if isinstance(problem, FileNotFoundError) else (problem.strerror or str(problem))
