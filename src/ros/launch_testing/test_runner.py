@@ -6,10 +6,9 @@ import inspect
 import sys
 import threading
 import unittest
-from collections.abc import Iterator
 from typing import Any
 
-from launch import LaunchDescription, LaunchDescriptionSource, LaunchService
+from launch import Action, LaunchDescription, LaunchDescriptionSource, LaunchService
 from launch.actions import IncludeLaunchDescription, RegisterEventHandler
 from launch.event_handlers import OnProcessExit, OnProcessIO, OnProcessStart
 from launch.events.process import ProcessStarted
@@ -49,17 +48,16 @@ class LaunchTestRunner:
         self._launch_file_arguments = launch_file_arguments or []
         self._debug = debug
 
-    def generate_preamble(self) -> Iterator[str]:
-        """Yield what there is to say before each run."""
-        for number, run in enumerate(self._test_runs, 1):
-            yield f"Starting test run {number} of {len(self._test_runs)}: {run}\n"
+    def generate_preamble(self) -> list[Action]:
+        """Return the actions that come before those of a launch under test; a subclass may add some."""
+        return []
 
     def run(self) -> dict[TestRun, unittest.TestResult]:
         """Make the runs and return the results of each."""
         results: dict[TestRun, unittest.TestResult] = {}
-        for run, preamble in zip(self._test_runs, self.generate_preamble(), strict=True):
-            sys.stdout.write(preamble)
-            worker = _RunnerWorker(run, self._launch_file_arguments, self._debug)
+        for number, run in enumerate(self._test_runs, 1):
+            sys.stdout.write(f"Starting test run {number} of {len(self._test_runs)}: {run}\n")
+            worker = _RunnerWorker(run, self.generate_preamble(), self._launch_file_arguments, self._debug)
             try:
                 results[run] = worker.run()
             except unittest.case.SkipTest as skip:
@@ -97,8 +95,11 @@ class LaunchTestRunner:
 class _RunnerWorker:
     """Makes one run."""
 
-    def __init__(self, test_run: TestRun, launch_file_arguments: list[str], debug: bool) -> None:
+    def __init__(
+        self, test_run: TestRun, preamble: list[Action], launch_file_arguments: list[str], debug: bool
+    ) -> None:
         self._test_run = test_run
+        self._preamble = preamble
         self._arguments = parse_launch_arguments(launch_file_arguments)
         self._launch_service = LaunchService(debug=debug)
         self._processes_launched = threading.Event()
@@ -171,6 +172,7 @@ class _RunnerWorker:
                 # What keeps the launch alive is not under test, so it comes before the handlers.
                 *keep_alive,
                 *(RegisterEventHandler(handler) for handler in handlers),
+                *self._preamble,
                 IncludeLaunchDescription(
                     LaunchDescriptionSource(launch_description=description), launch_arguments=self._arguments
                 ),

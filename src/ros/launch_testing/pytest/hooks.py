@@ -141,15 +141,15 @@ class LaunchTestModule(pytest.File):
         # The marks of the description are those of the item.
         entrypoint = getattr(module, _ENTRYPOINT)
         for mark in getattr(entrypoint, "pytestmark", []):
-            if mark.name != "launch_test":
+            if mark.name not in ("launch_test", "rostest"):
                 item.add_marker(getattr(pytest.mark, mark.name).with_args(*mark.args, **mark.kwargs))
         yield item
 
 
 def find_launch_test_entrypoint(path: pathlib.Path, config: pytest.Config | None = None) -> Any:
-    """Return the function of a file that describes a launch and is marked as a launch test, or None.
+    """Return the function of a file that describes a launch and has a mark of pytest, or None.
 
-    Only a file in whose text there is such a function is imported.
+    Whether the mark is one of a launch test is for those to say who collect it. Only a file in whose text there is such a function is imported.
 
     Parameters
     ----------
@@ -166,8 +166,7 @@ def find_launch_test_entrypoint(path: pathlib.Path, config: pytest.Config | None
         # pytest itself reports what is wrong with the file.
         return None
     function = getattr(_import(path, config), _ENTRYPOINT, None)
-    marks = getattr(function, "pytestmark", [])
-    return function if any(mark.name == "launch_test" for mark in marks) else None
+    return function if getattr(function, "pytestmark", []) else None
 
 
 def pytest_pycollect_makemodule(module_path: pathlib.Path, parent: Any) -> Any:

@@ -1,0 +1,61 @@
+"""Reserves ROS domains: who holds the port that stands for a domain has the domain."""
+
+from __future__ import annotations
+
+import random
+import socket
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+_DOMAINS = 100
+# Below the ports that systems give to whoever asks for any.
+_FIRST_PORT = 20300
+
+
+class default_selector:
+    """Proposes all domains from 1 to 100, from a random one on."""
+
+    def __init__(self) -> None:
+        self._next = random.randrange(_DOMAINS)
+
+    def __call__(self) -> int:
+        """Return the next domain to try."""
+        self._next = self._next % _DOMAINS + 1
+        return self._next
+
+
+@contextmanager
+def domain_id(selector: Callable[[], int] | None = None) -> Iterator[int]:
+    """Reserve a ROS domain from 1 to 100 for the ``with`` block; no other process gets it meanwhile.
+
+    Parameters
+    ----------
+    selector
+        Returns the domain to try next.
+
+    Raises
+    ------
+    RuntimeError
+        When a hundred tries found no domain that is free.
+    """
+    select = selector or default_selector()
+    for _ in range(_DOMAINS):
+        domain = select()
+        holder = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
+        with holder:
+            if _bind(holder, _FIRST_PORT + domain):
+                yield domain
+                return
+    raise RuntimeError(f"none of the ROS domains from 1 to {_DOMAINS} is free: other tests hold them")
+
+
+def _bind(holder: socket.socket, port: int) -> bool:
+    if sys.platform == "win32":
+        # There, two may bind one port unless one says otherwise.
+        holder.setsockopt(socket.SOL_SOCKET, socket.SO_EXCLUSIVEADDRUSE, 1)
+    try:
+        holder.bind(("127.0.0.1", port))
+    except OSError:
+        return False
+    return True

@@ -1,0 +1,5 @@
+"""Tests of launched nodes: waiting for their topics, and changing what they tell each other."""
+
+from launch._lazy import attach_stub
+
+__getattr__, __dir__, __all__ = attach_stub(__name__, __file__)

@@ -1,0 +1,1 @@
+"""Launch tests with nodes under pytest."""
