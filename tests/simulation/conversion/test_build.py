@@ -189,7 +189,7 @@ def test_terrain_carries_at_its_height(tmp_path):
     assert simulation.pose("north").position == pytest.approx((0, 5, 3.5), abs=2e-2)
     assert simulation.pose("south").position == pytest.approx((0, -5, 1.5), abs=2e-2)
     simulation.delete("t")
-    assert not simulation._spec.hfields
+    assert not simulation._compilation.spec.hfields
 
 
 def test_zero_outside_the_limits_starts_at_the_nearest():
@@ -206,6 +206,16 @@ def test_equal_limits_lock():
     simulation = weightless(two_links("revolute", limits))
     simulation.advance(SECOND)
     assert simulation.joint("m", "j").position == pytest.approx(0.3, abs=1e-3)
+
+
+def test_an_infinite_plane_stays_where_it_is():
+    text = "<robot name='floor'><link name='floor'><collision><geometry><plane/></geometry></collision></link></robot>"
+    lines = []
+    simulation = Simulation(world(), warn=lines.append)
+    simulation.spawn(urdf.parse(text), pose=Pose((0, 0, 2)))
+    simulation.step(100)
+    assert simulation.pose("floor") == Pose((0, 0, 2))
+    assert lines[-1].endswith("link 'floor' stays where it is, as an infinite plane can not move")
 
 
 def test_shapes_without_size_are_left_out_with_a_line():

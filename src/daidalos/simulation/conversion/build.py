@@ -8,6 +8,7 @@ from dataclasses import replace
 from typing import Any
 
 from daidalos.description.errors import DescriptionError
+from daidalos.description.geometry import Plane
 from daidalos.description.joint import Joint, JointType
 from daidalos.description.link import Collision, Link, Surface
 from daidalos.description.pose import Pose
@@ -73,6 +74,8 @@ class _Builder:
         self._below: dict[str, list[Joint]] = {}
         for joint in self._above.values():
             self._below.setdefault(joint.parent, []).append(joint)
+        self._free = [link for link in self._model.links.values() if self._is_free(link)]
+        self._held = [link for link in self._free if any(isinstance(c.geometry, Plane) for c in link.collisions)]
         self._solid_without_mass: set[str] = set()
         self._empty_without_mass: set[str] = set()
 
@@ -97,14 +100,21 @@ class _Builder:
 
     def _add_moving(self) -> None:
         in_world = self._below.get("world", [])
-        if in_world:
+        if in_world or self._held:
             base = self._base()
             for joint in in_world:
                 self._add_branch(base, joint, moves=False)
-        for link in self._model.links.values():
-            joint_above = self._above.get(link.name)
-            if joint_above is None or joint_above.type is JointType.FLOATING:
+            for link in self._held:
+                self._warn(f"{link.where}: link {link.name!r} stays where it is, as an infinite plane can not move")
+                self._add_link(base, link, link.pose)
+                self._add_children(link, moves=False)
+        for link in self._free:
+            if link not in self._held:
                 self._add_free(link)
+
+    def _is_free(self, link: Link) -> bool:
+        joint_above = self._above.get(link.name)
+        return joint_above is None or joint_above.type is JointType.FLOATING
 
     def _base(self) -> Any:
         """Add the body that a static model, or one that is fixed to the world, stands on."""
@@ -175,7 +185,7 @@ class _Builder:
         """Find the links that move although neither they nor what is fixed to them has any mass."""
         for link in self._model.links.values():
             above = self._above.get(link.name)
-            if self._model.static or (above is not None and above.type is JointType.FIXED):
+            if self._model.static or link in self._held or (above is not None and above.type is JointType.FIXED):
                 continue
             group = self._fixed_group(link)
             if any(part.inertial is not None and part.inertial.mass > 0 for part in group):
