@@ -43,4 +43,4 @@ def test_joints_between_models():
     assert simulation.pose("b").position[2] < 4.9
     simulation.delete("b")
     simulation.advance(SECOND)
-    assert not simulation._spec.equalities
+    assert not simulation._compilation.spec.equalities

@@ -141,15 +141,23 @@ def test_spawn_takes_name_and_pose():
 
 def test_many_models_come_and_go_without_a_trace():
     simulation = Simulation(world())
-    before = (simulation.physics.model.nbody, len(simulation._spec.bodies), len(simulation._spec.frames))
+    before = (
+        simulation.physics.model.nbody,
+        len(simulation._compilation.spec.bodies),
+        len(simulation._compilation.spec.frames),
+    )
     for number in range(30):
         simulation.spawn(turtlebot(), f"r{number}", Pose((number, 0, 0)), namespace=f"r{number}")
         simulation.step()
         simulation.delete(f"r{number}")
-    after = (simulation.physics.model.nbody, len(simulation._spec.bodies), len(simulation._spec.frames))
+    after = (
+        simulation.physics.model.nbody,
+        len(simulation._compilation.spec.bodies),
+        len(simulation._compilation.spec.frames),
+    )
     assert after == before
-    assert not simulation._spec.actuators
-    assert not simulation._spec.excludes
+    assert not simulation._compilation.spec.actuators
+    assert not simulation._compilation.spec.excludes
     assert not simulation.publications
 
 

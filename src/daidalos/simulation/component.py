@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -42,6 +43,13 @@ class Setting:
     world: World
     stream: Callable[[], np.random.Generator]
     warn: Callable[[str], None]
+
+
+def random_stream(seed: int, name: str) -> np.random.Generator:
+    """Return random numbers that depend on a seed and a name alone."""
+    digest = hashlib.sha256(name.encode()).digest()
+    key = [int.from_bytes(digest[i : i + 4], "little") for i in range(0, 16, 4)]
+    return np.random.default_rng(np.random.SeedSequence(seed, spawn_key=key))
 
 
 @dataclass(frozen=True)

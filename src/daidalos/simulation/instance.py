@@ -175,6 +175,24 @@ class Instance:
             return self.model.pose
         return LinkView(self.physics, self.physics.model.body(self.name).id).pose
 
+    @property
+    def bounds(self) -> tuple[Array, Array]:
+        """The least and the greatest corner (3,) in the world, now, of what is solid of the model [m].
+
+        Infinite shapes do not count; without any other the corners are the model's origin.
+        """
+        model, data = self.physics.model, self.physics.data
+        self.physics.refresh_positions()
+        corners = []
+        for geom in (model.geom(name).id for name in self.build.geoms):
+            if model.geom_rbound[geom] > 0:
+                turn = data.geom_xmat[geom].reshape(3, 3)
+                centre = data.geom_xpos[geom] + turn @ model.geom_aabb[geom, :3]
+                reach = np.abs(turn) @ model.geom_aabb[geom, 3:]
+                corners += [centre - reach, centre + reach]
+        corners = corners or [np.array(self.pose.position)]
+        return np.min(corners, axis=0), np.max(corners, axis=0)
+
     def place_joints(self) -> None:
         """Put joints whose zero is outside their limits to where they start."""
         for name, position in self.build.start.items():

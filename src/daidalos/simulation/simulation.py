@@ -1,23 +1,25 @@
-"""The simulation as its users have it: an engine whose world can be pushed, weighed and changed while it runs."""
+"""The simulation as its users have it: models come and go, and are moved, pushed and changed while it runs."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import replace
 
-import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from daidalos.description.link import Inertial, Surface
-from daidalos.description.pose import Vector
+from daidalos.description.gazebo import model_from_robot
+from daidalos.description.link import Inertial
+from daidalos.description.pose import Pose, Vector
+from daidalos.description.robot import Robot
 from daidalos.description.scaling import scaled
-from daidalos.simulation.conversion.contact import set_friction
-from daidalos.simulation.conversion.options import physics_step
+from daidalos.description.world import Model
 from daidalos.simulation.courses import Course, CourseFollower
 from daidalos.simulation.engine import Engine
 from daidalos.simulation.errors import SimulationError
 from daidalos.simulation.forces import JointPush, Push
+from daidalos.simulation.instance import JointView
 from daidalos.simulation.samples import TrajectoryCommand
 
 Array = NDArray[np.float64]
@@ -46,6 +48,205 @@ class Simulation(Engine):
     SimulationError
         When the world can not be simulated.
     """
+
+    # Models
+
+    def spawn(
+        self,
+        description: Robot | Model,
+        name: str | None = None,
+        pose: Pose | None = None,
+        namespace: str = "",
+    ) -> str:
+        """Put a model into the running world.
+
+        Parameters
+        ----------
+        description : Robot or Model
+        name : str or None
+            In the simulation; None takes the description's.
+        pose : Pose or None
+            Of the model's frame in the world; None takes the description's.
+        namespace : str
+            Relative topics of its plugins and sensors go below it.
+
+        Returns
+        -------
+        str
+            The name.
+
+        Raises
+        ------
+        NameTakenError
+            When a model of this name is there already.
+        SimulationError, DescriptionError
+            When it can not be simulated; the world is then as it was before.
+        """
+        model = model_from_robot(description) if isinstance(description, Robot) else description
+        name = name or model.name
+        instance = self._add(replace(model, name=name), pose or model.pose, namespace)
+        try:
+            self._recompile()
+            self._start(instance)
+        except (ValueError, SimulationError) as problem:
+            self._drop(instance)
+            self._recompile()
+            raise SimulationError(f"model {name!r} can not be simulated: {problem}") from None
+        return name
+
+    def delete(self, name: str) -> None:
+        """Take a model out of the world.
+
+        Raises
+        ------
+        UnknownNameError
+        """
+        instance = self.instance(name)
+        self._drop(instance)
+        self._recompile()
+
+    def pose(self, model: str, link: str | None = None) -> Pose:
+        """Return the true pose in the world of a model's frame, or of one of its links.
+
+        Raises
+        ------
+        UnknownNameError
+        """
+        instance = self.instance(model)
+        return instance.pose if link is None else instance.link(link).pose
+
+    def velocity(self, model: str, link: str | None = None) -> tuple[Array, Array]:
+        """Return the true linear [m/s] and angular [rad/s] velocity of a link, in world axes.
+
+        Parameters
+        ----------
+        model : str
+        link : str or None
+            None takes the model's first link.
+        """
+        instance = self.instance(model)
+        return instance.link(link or next(iter(instance.model.links))).velocity()
+
+    def set_pose(self, model: str, pose: Pose) -> None:
+        """Move a model, static or not; its velocity stays."""
+        instance = self.instance(model)
+        instance.set_pose(pose)
+        self.physics.changed()
+        if instance.build.base is not None:
+            # What stands in the world is built into the compiled model.
+            instance.build.place_base(pose)
+            self._recompile()
+
+    def set_velocity(self, model: str, linear: Iterable[float], angular: Iterable[float]) -> None:
+        """Set a model's velocity in world axes [m/s, rad/s]."""
+        linear, angular = np.array(list(linear), dtype=float), np.array(list(angular), dtype=float)
+        self.instance(model).set_velocity(linear, angular)
+        self.physics.changed()
+
+    def set_joint(self, model: str, joint: str, position: float, velocity: float = 0.0) -> None:
+        """Put a joint somewhere [rad, m], with a speed."""
+        view = self.joint(model, joint)
+        self.physics.data.qpos[view.qpos] = position
+        self.physics.data.qvel[view.dof] = velocity
+        self.physics.changed()
+
+    def joint(self, model: str, joint: str) -> JointView:
+        """Return a view on a joint: its position, velocity and effort."""
+        return self.instance(model).joint(joint)
+
+    def follow(self, model: str, course: TrajectoryCommand) -> None:
+        """Put joints where a trajectory says from now on, in every step until its end, without any force.
+
+        Raises
+        ------
+        UnknownNameError
+        ValueError
+            When it has no points, or its times do not rise.
+        """
+        instance = self.instance(model)
+        for name in course.joints:
+            instance.joint(name)
+        if not len(course.times) or (np.diff(course.times) <= 0).any():
+            raise ValueError("the trajectory should have points at times that rise")
+        follower = next((c for c in instance.components if isinstance(c, CourseFollower)), None)
+        if follower is None:
+            follower = CourseFollower(self._setting(instance.model, instance.namespace, "course"))
+            self._attach(follower, instance)
+        follower.memory = Course(course, self.time_ns)
+
+    def set_joint_properties(
+        self, model: str, joint: str, damping: float | None, limits: tuple[float, float] | None
+    ) -> None:
+        """Change a joint's damping [N m s/rad] and limits [rad, m] while the world runs."""
+        self.joint(model, joint)
+        self.instance(model).build.set_joint(joint, damping, limits)
+        self._recompile()
+
+    def set_link_properties(self, model: str, link: str, inertial: Inertial, gravity: bool) -> None:
+        """Change what a link weighs, and whether gravity pulls at it, while the world runs.
+
+        Raises
+        ------
+        UnknownNameError
+        ValueError
+            When the mass is not positive.
+        """
+        instance = self.instance(model)
+        instance.link(link)
+        if not inertial.mass > 0:
+            raise ValueError(f"a mass should be positive, got {inertial.mass:g}")
+        instance.build.set_inertial(link, inertial, gravity)
+        self._recompile()
+
+    def bounds(self, model: str) -> tuple[Array, Array]:
+        """Return the least and the greatest corner (3,) in the world of what is solid of a model [m].
+
+        Infinite shapes do not count; without any other the corners are the model's origin.
+        """
+        return self.instance(model).bounds
+
+    def scale(self, model: str, factor: float | Vector) -> None:
+        """Make a model larger or smaller where it stands: its lowest point stays at its height.
+
+        Parameters
+        ----------
+        model : str
+        factor : float or tuple of 3 floats
+            Of all its lengths, or of those along its axes where it has one link.
+
+        Raises
+        ------
+        UnknownNameError, ValueError, SimulationError
+        """
+        instance = self.instance(model)
+        larger = scaled(instance.model, factor)
+        pose, namespace = instance.pose, instance.namespace
+        bottom = float(self.bounds(model)[0][2])
+        self.delete(model)
+        try:
+            self.spawn(larger, model, pose, namespace)
+            x, y, z = pose.position
+            self.set_pose(model, replace(pose, position=(x, y, z + bottom - float(self.bounds(model)[0][2]))))
+        except SimulationError:
+            self.spawn(instance.model, model, pose, namespace)
+            raise
+
+    def set_friction(self, model: str, friction: float, link: str | None = None) -> None:
+        """Change the friction of a model's collisions, or of those of one of its links.
+
+        Raises
+        ------
+        UnknownNameError
+        ValueError
+            When it is negative.
+        """
+        if not friction >= 0:
+            raise ValueError(f"friction should not be negative, got {friction:g}")
+        instance = self.instance(model)
+        if link is not None:
+            instance.link(link)
+        instance.build.set_friction(friction, link)
+        self._recompile()
 
     # Forces
 
@@ -102,151 +303,3 @@ class Simulation(Engine):
     def _span(self, delay_ns: int, duration_ns: int | None) -> tuple[float, float]:
         start = self.time_ns + max(0, delay_ns)
         return start, math.inf if duration_ns is None else start + duration_ns
-
-    # Models
-
-    def follow(self, model: str, course: TrajectoryCommand) -> None:
-        """Put joints where a trajectory says from now on, in every step until its end, without any force.
-
-        Raises
-        ------
-        UnknownNameError
-        ValueError
-            When it has no points, or its times do not rise.
-        """
-        instance = self.instance(model)
-        for name in course.joints:
-            instance.joint(name)
-        if not len(course.times) or (np.diff(course.times) <= 0).any():
-            raise ValueError("the trajectory should have points at times that rise")
-        follower = next((c for c in instance.components if isinstance(c, CourseFollower)), None)
-        if follower is None:
-            follower = CourseFollower(self._setting(instance.model, instance.namespace, "course"))
-            self._attach(follower, instance)
-        follower.memory = Course(course, self.time_ns)
-
-    def set_joint_properties(
-        self, model: str, joint: str, damping: float | None, limits: tuple[float, float] | None
-    ) -> None:
-        """Change a joint's damping [N m s/rad] and limits [rad, m] while the world runs."""
-        view = self.joint(model, joint)
-        described = self._spec.joint(self.instance(model).build.joints[joint][0])
-        if damping is not None:
-            described.damping = [damping, 0.0, 0.0]
-            self._physics.model.dof_damping[view.dof] = damping
-        if limits is not None:
-            described.limited = mujoco.mjtLimited.mjLIMITED_TRUE
-            described.range = sorted(limits)
-        self._recompile()
-
-    def set_link_properties(self, model: str, link: str, inertial: Inertial, gravity: bool) -> None:
-        """Change what a link weighs, and whether gravity pulls at it, while the world runs.
-
-        Raises
-        ------
-        UnknownNameError
-        ValueError
-            When the mass is not positive.
-        """
-        instance = self.instance(model)
-        instance.link(link)
-        if not inertial.mass > 0:
-            raise ValueError(f"a mass should be positive, got {inertial.mass:g}")
-        instance.build.set_inertial(link, inertial, gravity)
-        self._recompile()
-
-    def bounds(self, model: str) -> tuple[Array, Array]:
-        """Return the least and the greatest corner (3,) in the world of what is solid of a model [m].
-
-        Infinite shapes do not count; without any other the corners are the model's origin.
-        """
-        instance = self.instance(model)
-        self._physics.refresh_positions()
-        compiled, data = self._physics.model, self._physics.data
-        origin = np.array(instance.pose.position)
-        corners = [origin, origin]
-        for name in instance.build.geoms:
-            geom = compiled.geom(name).id
-            half = compiled.geom_aabb[geom, 3:]
-            if compiled.geom_rbound[geom] > 0:
-                turn = data.geom_xmat[geom].reshape(3, 3)
-                centre, reach = data.geom_xpos[geom] + turn @ compiled.geom_aabb[geom, :3], np.abs(turn) @ half
-                if corners[0] is origin:
-                    corners = []
-                corners += [centre - reach, centre + reach]
-        return np.min(corners, axis=0), np.max(corners, axis=0)
-
-    def scale(self, model: str, factor: float | Vector) -> None:
-        """Make a model larger or smaller where it stands: its lowest point stays at its height.
-
-        Parameters
-        ----------
-        model : str
-        factor : float or tuple of 3 floats
-            Of all its lengths, or of those along its axes where it has one link.
-
-        Raises
-        ------
-        UnknownNameError, ValueError, SimulationError
-        """
-        instance = self.instance(model)
-        larger = scaled(instance.model, factor)
-        pose, namespace = instance.pose, instance.namespace
-        bottom = float(self.bounds(model)[0][2])
-        self.delete(model)
-        try:
-            self.spawn(larger, model, pose, namespace)
-            x, y, z = pose.position
-            self.set_pose(model, replace(pose, position=(x, y, z + bottom - float(self.bounds(model)[0][2]))))
-        except SimulationError:
-            self.spawn(instance.model, model, pose, namespace)
-            raise
-
-    # The world
-
-    @property
-    def gravity(self) -> Vector:
-        """[m/s^2]."""
-        x, y, z = (float(value) for value in self._physics.model.opt.gravity)
-        return x, y, z
-
-    @gravity.setter
-    def gravity(self, gravity: Vector) -> None:
-        self._physics.model.opt.gravity[:] = gravity
-        self._spec.option.gravity = list(gravity)
-        self._physics.wake()
-        self._physics.changed()
-
-    def set_step(self, seconds: float) -> None:
-        """Change the length of a step.
-
-        Raises
-        ------
-        ValueError
-            When it is not positive.
-        """
-        if not seconds > 0:
-            raise ValueError(f"a step should be longer than 0 s, got {seconds:g}")
-        self.step_ns, self._substeps = physics_step(replace(self.world.physics, max_step_size=seconds))
-        timestep = self.step_ns / self._substeps * 1e-9
-        self._spec.option.timestep = self._physics.model.opt.timestep = timestep
-
-    def set_friction(self, model: str, friction: float, link: str | None = None) -> None:
-        """Change the friction of a model's collisions, or of those of one of its links.
-
-        Raises
-        ------
-        UnknownNameError
-        ValueError
-            When it is negative.
-        """
-        if not friction >= 0:
-            raise ValueError(f"friction should not be negative, got {friction:g}")
-        instance = self.instance(model)
-        if link is not None:
-            instance.link(link)
-        surface = Surface(mu=friction, mu2=friction)
-        for name, info in instance.build.geoms.items():
-            if link is None or info.link == link:
-                set_friction(self._spec.geom(name), surface)
-        self._recompile()

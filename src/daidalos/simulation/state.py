@@ -13,7 +13,7 @@ from daidalos.simulation.forces import JointPush, Push
 
 @dataclass(frozen=True, eq=False)
 class State:
-    """All that a simulation needs to go on from an instant; made by `Engine.save`."""
+    """All that a simulation needs to go on from an instant; made by `Simulation.save`."""
 
     time_ns: int
     physics: Any

@@ -83,7 +83,7 @@ def test_what_loops_goes_with_its_model():
     loop += "<joint name='w2' type='fixed'><parent>world</parent><child>b</child></joint>"
     simulation = weightless(loop)
     simulation.delete("m")
-    assert not simulation._spec.equalities
+    assert not simulation._compilation.spec.equalities
     assert simulation.physics.model.nbody == 1
 
 

@@ -7,9 +7,10 @@ from typing import Any
 
 import mujoco
 
-from daidalos.description.link import Inertial
+from daidalos.description.link import Inertial, Surface
 from daidalos.description.pose import Pose
 from daidalos.description.world import Model
+from daidalos.simulation.conversion.contact import set_friction
 from daidalos.simulation.conversion.inertia import PrincipalInertia, principal_inertia
 from daidalos.simulation.errors import UnknownNameError
 
@@ -136,6 +137,22 @@ class ModelBuild:
             self.model,
             links={**self.model.links, link: replace(self.model.links[link], inertial=inertial, gravity=gravity)},
         )
+
+    def set_joint(self, joint: str, damping: float | None, limits: tuple[float, float] | None) -> None:
+        """Change a joint's damping and limits, for the next compilation; None leaves them."""
+        described = self.spec.joint(self.joints[joint][0])
+        if damping is not None:
+            described.damping = [damping, 0.0, 0.0]
+        if limits is not None:
+            described.limited = mujoco.mjtLimited.mjLIMITED_TRUE
+            described.range = sorted(limits)
+
+    def set_friction(self, friction: float, link: str | None) -> None:
+        """Change the friction of collisions, of one link or of all, for the next compilation."""
+        surface = Surface(mu=friction, mu2=friction)
+        for name, info in self.geoms.items():
+            if link is None or info.link == link:
+                set_friction(self.spec.geom(name), surface)
 
     def place_base(self, pose: Pose) -> None:
         """Put the part that does not move somewhere else, for the next compilation."""

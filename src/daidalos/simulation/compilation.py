@@ -1,0 +1,157 @@
+"""The models of a world as MuJoCo compiles them together: they come and go, and what stays keeps its state."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import mujoco
+
+from daidalos.description.joint import Joint
+from daidalos.description.pose import Pose
+from daidalos.description.world import Model, World
+from daidalos.simulation.component import Component
+from daidalos.simulation.conversion.assets import Assets
+from daidalos.simulation.conversion.build import add_model
+from daidalos.simulation.conversion.couplings import close_loop
+from daidalos.simulation.conversion.options import set_options
+from daidalos.simulation.errors import SimulationError
+from daidalos.simulation.forces import Forces
+from daidalos.simulation.instance import Instance
+from daidalos.simulation.physics import Physics
+from daidalos.simulation.stage import Stage
+
+
+class Compilation:
+    """MuJoCo's specification of a world, and what it was last compiled to.
+
+    What is added or removed counts from the next `compile` or `recompile` on.
+
+    Parameters
+    ----------
+    world : World
+        Its physics count here; its models are added one by one.
+    timestep : float
+        Of MuJoCo [s].
+    heard : callable
+        Tells whether anyone listens to a topic.
+    warn : callable
+        Takes a line for each thing that is left out or changed.
+
+    Attributes
+    ----------
+    spec : MjSpec
+    instances : dict
+        The models by name, in the order in which they came.
+    stage : Stage
+        What cameras see of them.
+    forces : Forces
+        What pushes them from outside.
+    number : int
+        Counts the changes to what there is; a state from before one does not fit after it.
+    """
+
+    def __init__(
+        self, world: World, timestep: float, heard: Callable[[str], bool], warn: Callable[[str], None]
+    ) -> None:
+        self.spec: Any = mujoco.MjSpec()
+        self.instances: dict[str, Instance] = {}
+        self.stage = Stage(world, warn)
+        self.forces = Forces()
+        self.number = 0
+        self._assets = Assets(self.spec)
+        self._heard = heard
+        self._warn = warn
+        self._physics: Physics | None = None
+        set_options(self.spec, world, timestep)
+
+    @property
+    def physics(self) -> Physics:
+        """MuJoCo's model and data; replaced with every compilation."""
+        if self._physics is None:
+            raise SimulationError("the world is not compiled yet")
+        return self._physics
+
+    def add(self, model: Model, pose: Pose, namespace: str, components: list[Component]) -> Instance:
+        """Add a model, whose name is still free, with what acts in it.
+
+        Raises
+        ------
+        SimulationError
+            When it can not be simulated; it is not there then.
+        """
+        build = add_model(self.spec, self._assets, model, model.name, pose, self._warn)
+        instance = Instance(build, namespace, components)
+        self.instances[model.name] = instance
+        try:
+            for component in components:
+                component.prepare(build)
+            if components:
+                build.keep_awake()
+        except SimulationError:
+            self.remove(instance)
+            raise
+        return instance
+
+    def attach(self, component: Component, instance: Instance) -> None:
+        """Let a component act in a model that is compiled already."""
+        self.number += 1
+        instance.components.append(component)
+        component.bind(instance)
+
+    def add_joint(self, joint: Joint) -> None:
+        """Add a joint between two models, or between the world and a model."""
+        parent = self.spec.worldbody if joint.parent == "world" else self.spec.body(joint.parent)
+        close_loop(self.spec, parent, self.spec.body(joint.child), joint, joint.name)
+
+    def remove(self, instance: Instance) -> None:
+        """Take a model out."""
+        del self.instances[instance.name]
+        instance.build.remove()
+        self._assets.release(instance.build.assets)
+
+    def compile(self) -> None:
+        """Compile for the first time.
+
+        Raises
+        ------
+        SimulationError
+            With MuJoCo's words, in one line.
+        """
+        try:
+            model = self.spec.compile()
+        except ValueError as problem:
+            raise SimulationError(_one_line(problem)) from None
+        self._bind(model, mujoco.MjData(model))
+
+    def recompile(self) -> None:
+        """Compile after something changed; everything that stays keeps its state.
+
+        Raises
+        ------
+        SimulationError
+            With MuJoCo's words, in one line.
+        """
+        try:
+            model, data = self.spec.recompile(self.physics.model, self.physics.data)
+        except ValueError as problem:
+            raise SimulationError(_one_line(problem)) from None
+        self._bind(model, data)
+
+    def _bind(self, model: Any, data: Any) -> None:
+        self.number += 1
+        geoms = {
+            model.geom(geom).id: (instance.name, info)
+            for instance in self.instances.values()
+            for geom, info in instance.build.geoms.items()
+        }
+        self._physics = Physics(model, data, geoms, self._heard, self.stage, self.forces)
+        self.forces.bind(self.instances)
+        for instance in self.instances.values():
+            instance.bind(self._physics)
+        self.stage.bind(self.instances.values())
+
+
+def _one_line(problem: ValueError) -> str:
+    """Return the words of MuJoCo's error in one line."""
+    return " ".join(str(problem).split()).removeprefix("Error: ")
