@@ -26,6 +26,8 @@ class Model:
         By name; a link's pose is in the model's frame.
     frames : mapping
         Poses in the model's frame of everything that has a name: links, joints, frames, nested models.
+    carriers : mapping
+        The links that frames, joints and nested models are attached to; ``__model__`` stands for the model itself.
     static : bool
         Does not move, whatever pushes.
     scripted : bool
@@ -48,6 +50,7 @@ class Model:
     links: Mapping[str, Link] = field(default_factory=dict)
     joints: Mapping[str, Joint] = field(default_factory=dict)
     frames: Mapping[str, Pose] = field(default_factory=dict)
+    carriers: Mapping[str, str] = field(default_factory=dict)
     static: bool = False
     scripted: bool = False
     self_collide: bool = False

@@ -98,3 +98,53 @@ def test_axes_in_each_versions_frame(version, axis, expected):
         version,
     )
     assert made.joints["j"].axis.xyz == pytest.approx(expected)
+
+
+NESTED = """<model name="arm"><pose>1 0 0 0 0 0</pose><link name="k"/><link name="l"><pose>0 2 0 0 0 0</pose></link>
+  <frame name="tip" attached_to="l"><pose>0 0 3 0 0 0</pose></frame><frame name="foot"/></model>"""
+
+
+@pytest.mark.parametrize(("end", "link"), [("arm::tip", "arm::l"), ("arm::foot", "arm::k"), ("g", "arm::l")])
+def test_a_joint_may_name_frames_of_nested_models(end, link):
+    made = model(
+        f"""{NESTED}<link name="b"/><frame name="g" attached_to="arm::tip"/>
+        <joint name="j" type="fixed"><parent>b</parent><child>{end}</child></joint>"""
+    )
+    assert made.joints["j"].child == link
+    place = made.links[link].pose @ made.joints["j"].anchor
+    assert place.position == pytest.approx(made.frames[end].position)
+
+
+def test_frames_of_a_merged_model_are_those_of_the_model_around_it(tmp_path):
+    (tmp_path / "arm.sdf").write_text(f"<sdf version='1.11'>{NESTED}</sdf>")
+    text = """<sdf version='1.11'><model name='m'><include merge='true'><uri>arm.sdf</uri></include><link name='b'/>
+        <joint name='j' type='fixed'><parent>b</parent><child>{}</child></joint></model></sdf>"""
+    made = sdf.parse_model(text.format("tip"), str(tmp_path / "m.sdf"))
+    assert made.joints["j"].child == "l"
+    place = made.links["l"].pose @ made.joints["j"].anchor
+    assert place.position == pytest.approx((1, 2, 3))
+    with pytest.raises(DescriptionError, match="no link 'arm::l'"):
+        sdf.parse_model(text.format("arm::l"), str(tmp_path / "m.sdf"))
+
+
+@pytest.mark.parametrize(
+    ("end", "link"), [("arm", "arm::k"), ("arm::tip", "arm::l"), ("g", "arm::l"), ("arm::l", "arm::l")]
+)
+def test_joints_of_a_world_may_name_models_and_frames(end, link):
+    made = sdf.parse(
+        f"""<sdf version="1.11"><world name="w">{NESTED}<frame name="g" attached_to="arm::tip"/>
+        <joint name="j" type="fixed"><parent>world</parent><child>{end}</child></joint></world></sdf>"""
+    )
+    joint = made.joints["j"]
+    assert joint.child == link
+    place = made.models[0].pose @ made.models[0].links[link.removeprefix("arm::")].pose @ joint.anchor
+    assert place.position == pytest.approx(made.frames[end].position)
+    assert joint.origin.position == pytest.approx(made.frames[end].position)
+
+
+def test_a_world_has_no_frame_that_is_attached_to_itself():
+    with pytest.raises(DescriptionError, match=r"circle|itself"):
+        sdf.parse(
+            """<sdf version="1.11"><world name="w"><frame name="g" attached_to="h"/><frame name="h" attached_to="g"/>
+            <joint name="j" type="fixed"><parent>world</parent><child>g</child></joint></world></sdf>"""
+        )

@@ -41,6 +41,21 @@ def place_nested(graph: FrameGraph, model: Model, pose: RelativePose, element: E
         graph.add(f"{model.name}::{name}", RelativePose(frame), model.name, element)
 
 
+def carried_by(model: Model, prefix: str) -> dict[str, str]:
+    """Return what a scope can call the links of a model in it, its frames and the model itself, with the link of each.
+
+    Parameters
+    ----------
+    model : Model
+    prefix : str
+        What stands before its links' names in the scope.
+    """
+    carriers = {name: name for name in model.links} | dict(model.carriers)
+    named = {f"{prefix}{name}": f"{prefix}{link}" for name, link in carriers.items() if name != ROOT}
+    canonical = carriers.get(ROOT, next(iter(model.links), ""))
+    return named | ({model.name: f"{prefix}{canonical}"} if canonical else {})
+
+
 class _ModelReader:
     def __init__(self, element: Element, context: Context) -> None:
         self._element = element
@@ -70,6 +85,7 @@ class _ModelReader:
             links=links,
             joints=joints,
             frames={name: self._graph.pose(name, element) for name in self._graph.names()},
+            carriers=self._carriers(),
             static=element.flag_of("static", default=False),
             self_collide=element.flag_of("self_collide", default=False),
             wind=element.flag_of("enable_wind", default=False),
@@ -91,13 +107,10 @@ class _ModelReader:
                 model, pose = read_model(child, self._context), read_pose(child)
             self._nested.append((model, merged))
             place_nested(self._graph, model, pose, child)
-            self._attached |= {f"{model.name}::{name}": f"{model.name}::{name}" for name in model.links}
-            if model.links:
-                self._attached[model.name] = f"{model.name}::{next(iter(model.links))}"
+            self._attached |= carried_by(model, "" if merged else f"{model.name}::")
             if merged:
                 for name in model.frames:
                     self._graph.add(name, RelativePose(), f"{model.name}::{name}", child)
-                self._attached |= {name: name for name in model.links}
 
     def _place_links_and_frames(self) -> None:
         for child in self._element.all("link"):
@@ -106,8 +119,7 @@ class _ModelReader:
         for child in self._element.all("frame"):
             attached_to = child.attribute("attached_to", "")
             self._graph.add(child.name(), read_pose(child), attached_to or ROOT, child)
-            if attached_to:
-                self._attached[child.name()] = attached_to
+            self._attached[child.name()] = attached_to or ROOT
         for child in self._element.all("joint"):
             end = child.require("child")
             name = end.text.strip() or end.text_of("link_name")
@@ -115,7 +127,9 @@ class _ModelReader:
             self._attached[child.name()] = name
         first = next((name for name, target in self._attached.items() if name == target), "")
         own = [child.name() for child in self._element.all("link")]
-        self._attached[ROOT] = self._element.attribute("canonical_link", "") or (own[0] if own else first)
+        canonical = self._element.attribute("canonical_link", "") or (own[0] if own else first)
+        if canonical:
+            self._attached[ROOT] = canonical
 
     def _settle_world(self) -> set[str]:
         """Return the links to leave out, since they are but another word for the world; rename others called so."""
@@ -144,6 +158,17 @@ class _ModelReader:
             seen.append(name)
             name = self._attached[name]
         return name
+
+    def _carriers(self) -> dict[str, str]:
+        """Return the links that carry what is not a link; frames of a model without links have none."""
+        carriers = {}
+        for name in self._attached:
+            link, steps = name, 0
+            while self._attached.get(link, link) != link and steps < len(self._attached):
+                link, steps = self._attached[link], steps + 1
+            if link != name and self._attached.get(link) == link:
+                carriers[name] = link
+        return carriers
 
     def _link(self, element: Element) -> Link:
         name = element.name()

@@ -15,7 +15,7 @@ from daidalos.description.sdf.includes import read_include
 from daidalos.description.sdf.joints import read_joint
 from daidalos.description.sdf.links import read_light, read_plugin
 from daidalos.description.sdf.materials import read_color
-from daidalos.description.sdf.models import place_nested, read_model
+from daidalos.description.sdf.models import carried_by, place_nested, read_model
 from daidalos.description.sdf.population import population_poses
 from daidalos.description.world import (
     Actor,
@@ -49,6 +49,7 @@ class _WorldReader:
         self._models: list[tuple[Model, Element]] = []
         self._lights: list[tuple[Light, RelativePose, Element]] = []
         self._actors: list[tuple[Actor, RelativePose, Element]] = []
+        self._attached: dict[str, str] = {}
 
     def world(self) -> World:
         element, base = self._element, World()
@@ -95,8 +96,10 @@ class _WorldReader:
             elif child.tag == "frame":
                 default = child.attribute("attached_to", "") or ROOT
                 self._graph.add(child.name(), read_pose(child), default, child)
+                self._attached[child.name()] = default
             elif child.tag == "joint":
                 self._graph.add(child.name(), read_pose(child), child.text_of("child"), child)
+                self._attached[child.name()] = child.text_of("child")
 
     def _add_included(self, element: Element) -> None:
         included = read_include(element, self._context, read_model)
@@ -137,9 +140,20 @@ class _WorldReader:
         return read_joint(element, self._context, self._graph.pose, self._link_of, ROOT)
 
     def _link_of(self, name: str, element: Element) -> str:
-        if not any(name == f"{model.name}::{link}" for model, _ in self._models for link in model.links):
-            raise element.error(f"there is no link {name!r}; expected model::link")
-        return name
+        """Follow the world's frames and joints to the link that carries them."""
+        seen: list[str] = []
+        while name in self._attached:
+            if name in seen:
+                raise element.error(f"{name!r} is attached to itself")
+            seen.append(name)
+            name = self._attached[name]
+        for model, _ in self._models:
+            carried = carried_by(model, f"{model.name}::")
+            if name in carried:
+                return carried[name]
+        if name == ROOT:
+            return ROOT
+        raise element.error(f"there is no link {name!r}; expected a model, or model::link")
 
 
 def _default_physics(element: Element) -> Element:
