@@ -6,8 +6,9 @@ import pytest
 import rclpy
 from launch_testing_ros import DataRepublisher, MessagePump, WaitForTopics
 from rclpy.qos import DurabilityPolicy, QoSProfile
-from ros.graph import spinning
 from std_msgs.msg import Int32, String
+
+from ros.graph import spinning
 
 LATCHED = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 

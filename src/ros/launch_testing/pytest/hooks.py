@@ -149,7 +149,8 @@ class LaunchTestModule(pytest.File):
 def find_launch_test_entrypoint(path: pathlib.Path, config: pytest.Config | None = None) -> Any:
     """Return the function of a file that describes a launch and has a mark of pytest, or None.
 
-    Whether the mark is one of a launch test is for those to say who collect it. Only a file in whose text there is such a function is imported.
+    Whether the mark is one of a launch test is for those to say who collect it. Only a file in whose text there is
+    such a function is imported.
 
     Parameters
     ----------
