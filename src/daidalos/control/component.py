@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from daidalos.control.controllers.base import Pulse
 from daidalos.control.errors import HardwareError, StateError
 from daidalos.control.hardware.base import Hardware
 from daidalos.control.limits import CommandLimiter
+from daidalos.control.pulse import Pulse
 
 UNCONFIGURED, INACTIVE, ACTIVE, FINALIZED = "unconfigured", "inactive", "active", "finalized"
 _STEPS = (UNCONFIGURED, INACTIVE, ACTIVE)

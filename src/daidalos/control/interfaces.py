@@ -112,3 +112,8 @@ class Loan:
             found = np.flatnonzero(rows == place)
             if found.size:
                 own[columns[found[0]]] = value
+
+
+def interface_names(joints: Sequence[str], interfaces: Sequence[str]) -> tuple[str, ...]:
+    """Return the names of interfaces: all joints of the first kind, then of the second."""
+    return tuple(f"{joint}/{interface}" for interface in interfaces for joint in joints)

@@ -6,9 +6,10 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from daidalos.control.component import UNCONFIGURED
-from daidalos.control.controllers.base import Controller, ControllerSetting, Pulse
+from daidalos.control.controllers.base import Controller, ControllerSetting
 from daidalos.control.errors import StateError
 from daidalos.control.interfaces import Interfaces
+from daidalos.control.pulse import Pulse
 from daidalos.control.switching import Candidate
 
 Reader = Callable[[type], object]

@@ -9,12 +9,13 @@ from dataclasses import replace
 from typing import TypeVar
 
 from daidalos.control.component import ACTIVE, FINALIZED, INACTIVE, UNCONFIGURED, Component
-from daidalos.control.controllers.base import ControllerSetting, Pulse
+from daidalos.control.controllers.base import ControllerSetting
 from daidalos.control.errors import ControlError, HardwareError, StateError, SwitchError, UnknownError
 from daidalos.control.hardware.base import Hardware
 from daidalos.control.interfaces import Interfaces, Loan
 from daidalos.control.loaded_controller import LoadedController, Reader, prefixed
 from daidalos.control.plugins import controller_class
+from daidalos.control.pulse import Pulse
 from daidalos.control.switching import Candidate, Strictness, Switch, plan_switch, update_order
 from daidalos.simulation.samples import Sample
 

@@ -54,7 +54,7 @@ def random_stream(seed: int, name: str) -> np.random.Generator:
 
 @dataclass(frozen=True)
 class Subscription:
-    """A topic that a component listens to: the command's class and who takes it."""
+    """A topic that is listened to: the command's class and who takes it."""
 
     type: type
     take: Callable[[Any], None]
@@ -76,7 +76,21 @@ class Switch:
     fixed: bool | None = None
 
 
-class Component:
+class Endpoint:
+    """Something that gives samples and takes commands on topics."""
+
+    @property
+    def publications(self) -> Mapping[str, type[Sample]]:
+        """Topics that its samples may have, with their classes."""
+        return {}
+
+    @property
+    def subscriptions(self) -> Mapping[str, Subscription]:
+        """Topics that it takes commands from."""
+        return {}
+
+
+class Component(Endpoint):
     """Something that acts when it is due and may say something then.
 
     Attributes
@@ -110,16 +124,6 @@ class Component:
     def update(self, now_ns: int) -> Iterable[Sample]:
         """Act, at a simulated time in nanoseconds, and return what there is to say."""
         raise NotImplementedError
-
-    @property
-    def publications(self) -> Mapping[str, type[Sample]]:
-        """Topics that its samples may have, with their classes."""
-        return {}
-
-    @property
-    def subscriptions(self) -> Mapping[str, Subscription]:
-        """Topics that it takes commands from."""
-        return {}
 
     @property
     def switches(self) -> Mapping[str, Switch]:

@@ -9,9 +9,9 @@ import numpy as np
 
 from daidalos.control.admittance import AdmittanceLaw, Yielding, advance, without_weight
 from daidalos.control.chain import Chain
-from daidalos.control.controllers.base import Controller, Subscription, interface_names
+from daidalos.control.controllers.base import Controller, Subscription
 from daidalos.control.errors import ControlError, ParameterError
-from daidalos.control.interfaces import Interfaces
+from daidalos.control.interfaces import Interfaces, interface_names
 from daidalos.control.parameters import (
     above,
     at_least,

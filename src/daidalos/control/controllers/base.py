@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
 from daidalos.control.interfaces import Interfaces, Loan
 from daidalos.description.robot import Robot
 from daidalos.description.world import Model
+from daidalos.simulation.component import Endpoint
 from daidalos.simulation.component import Subscription as Subscription
 from daidalos.simulation.samples import Sample
 
@@ -109,8 +110,10 @@ class Action:
     cancel: Callable[[Goal], None]
 
 
-class Controller:
+class Controller(Endpoint):
     """Turns states into commands, once in each of its periods.
+
+    Names of topics, services and actions that begin with ``~/`` go below its own.
 
     Adding a file with a subclass to this folder adds its types; a package of the user's does the same through
     the entry point group ``daidalos.controllers``, or is named by its place.
@@ -196,16 +199,6 @@ class Controller:
         raise NotImplementedError
 
     @property
-    def publications(self) -> Mapping[str, type[Sample]]:
-        """Topics of its samples, ``~/`` in front for its own, with their classes."""
-        return {}
-
-    @property
-    def subscriptions(self) -> Mapping[str, Subscription]:
-        """Topics that it takes commands from."""
-        return {}
-
-    @property
     def services(self) -> Mapping[str, Service]:
         """Questions that it answers."""
         return {}
@@ -214,39 +207,3 @@ class Controller:
     def actions(self) -> Mapping[str, Action]:
         """Actions that it carries out."""
         return {}
-
-
-class Pulse:
-    """Tells when something is due that happens at a rate, however the cycles fall.
-
-    Parameters
-    ----------
-    rate : float
-        [Hz]; every time where 0 or less.
-    """
-
-    def __init__(self, rate: float) -> None:
-        self._period = 1e9 / rate if rate > 0 else 0.0
-        self.restart()
-
-    def restart(self) -> None:
-        """Be due when next asked, and count from then on."""
-        self._start_ns: int | None = None
-        self._count = 0
-
-    def due(self, now_ns: int) -> bool:
-        """Tell whether it is due now."""
-        if self._period == 0.0:
-            return True
-        if self._start_ns is None or now_ns < self._start_ns:
-            self._start_ns, self._count = now_ns, 1
-            return True
-        if now_ns < self._start_ns + round(self._count * self._period):
-            return False
-        self._count = int((now_ns - self._start_ns) / self._period) + 1
-        return True
-
-
-def interface_names(joints: Sequence[str], interfaces: Sequence[str]) -> tuple[str, ...]:
-    """Return the names of interfaces: all joints of the first kind, then of the second."""
-    return tuple(f"{joint}/{interface}" for interface in interfaces for joint in joints)

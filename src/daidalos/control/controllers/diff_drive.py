@@ -8,10 +8,11 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from daidalos.control.base_odometry import BaseOdometry, prefixed_frame
-from daidalos.control.controllers.base import Controller, Pulse, Subscription
+from daidalos.control.controllers.base import Controller, Subscription
 from daidalos.control.errors import ParameterError
 from daidalos.control.interfaces import Interfaces
 from daidalos.control.parameters import above, not_empty, parameter, size, unique
+from daidalos.control.pulse import Pulse
 from daidalos.control.samples import VelocitySample
 from daidalos.control.speed_limiter import SpeedLimiter, SpeedLimits
 from daidalos.control.velocity_input import VelocityInput

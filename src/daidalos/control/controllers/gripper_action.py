@@ -9,9 +9,10 @@ from typing import ClassVar
 
 import numpy as np
 
-from daidalos.control.controllers.base import Action, Controller, Goal, Pulse
+from daidalos.control.controllers.base import Action, Controller, Goal
 from daidalos.control.parameters import at_least, not_empty, parameter, per_name
 from daidalos.control.pid import Gains, Pid
+from daidalos.control.pulse import Pulse
 from daidalos.control.samples import GripperRequest, GripperState, ParallelGripperRequest
 from daidalos.simulation.samples import Sample
 

@@ -9,10 +9,12 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from daidalos.control.controllers.base import Action, Controller, Goal, Pulse, Service, Subscription, interface_names
+from daidalos.control.controllers.base import Action, Controller, Goal, Service, Subscription
 from daidalos.control.controllers.joint_trajectory_parameters import JointTrajectoryParameters
 from daidalos.control.errors import StateError
+from daidalos.control.interfaces import interface_names
 from daidalos.control.pid import Pid
+from daidalos.control.pulse import Pulse
 from daidalos.control.samples import (
     SpeedCommand,
     StateAnswer,

@@ -8,9 +8,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from daidalos.control.controllers.base import Controller, Service, Subscription, interface_names
+from daidalos.control.controllers.base import Controller, Service, Subscription
 from daidalos.control.errors import ParameterError
-from daidalos.control.interfaces import Interfaces
+from daidalos.control.interfaces import Interfaces, interface_names
 from daidalos.control.parameters import not_empty, parameter, per_name, subset_of, unique
 from daidalos.control.pid import Gains, Pid
 from daidalos.control.samples import Answer, Asked, DofCommand, DofSample, DofState, Switched

@@ -7,10 +7,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from daidalos.control.controllers.base import Controller, Pulse
+from daidalos.control.controllers.base import Controller
 from daidalos.control.errors import ParameterError
 from daidalos.control.interfaces import Interfaces
 from daidalos.control.parameters import not_empty, parameter, size
+from daidalos.control.pulse import Pulse
 from daidalos.control.samples import PoseSample, VariedRangeSample
 from daidalos.description.pose import Pose, multiply
 from daidalos.simulation.samples import ImuSample, Sample, TransformSample, WrenchSample
