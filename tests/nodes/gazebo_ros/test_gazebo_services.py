@@ -1,11 +1,14 @@
 """The services of Gazebo classic, as a program would call them."""
 
+import math
+
 import pytest
 from builtin_interfaces.msg import Duration
 from daidalos_msgs.srv import SetFriction
 from gazebo_msgs import srv
 from gazebo_msgs.msg import EntityState, ODEJointProperties
-from geometry_msgs.msg import Point, Pose, Twist, Vector3, Wrench
+from geometry_msgs.msg import Point, Pose, Quaternion, Twist, Vector3, Wrench
+from rclpy.parameter import Parameter
 from std_msgs.msg import ColorRGBA
 from std_srvs.srv import Empty, Trigger
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
@@ -31,7 +34,9 @@ def state(shop, name, reference=""):
 
 def test_models_come_and_go(shop):
     assert spawn(shop).success
-    assert shop.call(srv.GetModelList, "/get_model_list").model_names == ["ground_plane", "shelf", "crate"]
+    told = shop.call(srv.GetModelList, "/get_model_list")
+    assert told.model_names == ["ground_plane", "shelf", "crate"]
+    assert (told.header.frame_id, told.header.stamp.sec) == ("world", 0)  # simulated time
     again = spawn(shop)
     assert not again.success
     assert "'crate' is in the simulation already" in again.status_message
@@ -66,6 +71,31 @@ def test_poses_may_be_relative(shop):
     assert (answer.state.pose.position.x, answer.state.pose.position.y) == pytest.approx((2.0, 1.0))
     assert answer.state.twist.linear.x == pytest.approx(1.0)
     assert not state(shop, "nobody").success
+
+
+def test_orientations_need_no_length_of_one(shop):
+    assert spawn(shop).success
+    turned = Pose(position=Point(x=1.0, z=0.5), orientation=Quaternion(z=2.0, w=2.0))
+    assert shop.call(srv.SetEntityState, "/set_entity_state", state=EntityState(name="crate", pose=turned)).success
+    found = state(shop, "crate").state.pose
+    assert (found.orientation.z, found.orientation.w) == pytest.approx((0.5**0.5, 0.5**0.5))
+    beside = EntityState(name="shelf", reference_frame="crate", pose=at(1.0, 0.0, 0.0))
+    assert shop.call(srv.SetEntityState, "/set_entity_state", state=beside).success
+    assert state(shop, "shelf").state.pose.position.y == pytest.approx(1.0)
+
+
+def test_numbers_that_are_none_are_refused(shop):
+    assert spawn(shop).success
+    for wrong in (at(math.nan), Pose(orientation=Quaternion(x=math.inf))):
+        assert not shop.call(
+            srv.SetEntityState, "/set_entity_state", state=EntityState(name="crate", pose=wrong)
+        ).success
+        assert "finite" in spawn(shop, "other", pose=wrong).status_message
+    push = Wrench(force=Vector3(x=math.nan))
+    assert not shop.call(srv.ApplyLinkWrench, "/apply_link_wrench", link_name="crate::body", wrench=push).success
+    assert not shop.call(srv.SetPhysicsProperties, "/set_physics_properties", max_update_rate=math.nan).success
+    step(shop, 10)
+    assert state(shop, "crate").state.pose.position.x == pytest.approx(0.0)
 
 
 def test_states_can_be_saved_and_restored(shop):
@@ -106,6 +136,14 @@ def test_physics_can_be_changed(shop):
     assert shop.server._paced.real_time_factor == pytest.approx(2.0)
     step(shop, 500)
     assert state(shop, "crate").state.twist.linear.z == pytest.approx(1.0, rel=1e-3)
+
+
+@pytest.mark.parametrize("value", [-1.0, math.nan, math.inf])
+def test_a_speed_that_can_not_be_is_refused(shop, value):
+    (answer,) = shop.server.set_parameters([Parameter("real_time_factor", value=value)])
+    assert not answer.successful
+    assert "0 for as fast as possible" in answer.reason
+    assert shop.server._paced.real_time_factor == 1.0
 
 
 def test_links_are_pushed(shop):

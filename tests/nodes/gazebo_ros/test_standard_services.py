@@ -1,7 +1,10 @@
 """The services and the action that every simulator may offer."""
 
+from threading import Event
+
 import pytest
 import trimesh
+from action_msgs.msg import GoalStatus
 from daidalos_msgs.srv import GetShapes
 from geometry_msgs.msg import Point, Pose, PoseStamped, Twist, Vector3
 from rclpy.action import ActionClient
@@ -140,6 +143,24 @@ def test_steps_are_an_action(shop):
     assert result.result.result.result == OK
     assert told[-1] == 250
     assert shop.server._paced.simulation.time_ns == 250_000_000
+
+
+def test_steps_can_be_cancelled(shop):
+    client = ActionClient(shop.client, SimulateSteps, "/gazebo/simulate_steps")
+    assert client.wait_for_server(5.0)
+    over = Event()
+    accepted = []
+
+    def take(future):
+        accepted.append(future.result())
+        accepted[0].get_result_async().add_done_callback(lambda _: over.set())
+        accepted[0].cancel_goal_async()
+
+    steps = 100_000_000
+    client.send_goal_async(SimulateSteps.Goal(steps=steps)).add_done_callback(take)
+    assert over.wait(10.0)
+    assert accepted[0].status == GoalStatus.STATUS_CANCELED
+    assert shop.server._paced.simulation.time_ns < steps * 1_000_000
 
 
 def test_worlds_are_exchanged(shop):

@@ -15,7 +15,15 @@ from daidalos.nodes.conversions import nanoseconds, time_message
 from daidalos.nodes.gazebo_ros._entities import Entity, find_entity, find_joint, motion_of, set_motion
 from daidalos.nodes.gazebo_ros._host import Host, state_namespaces
 from daidalos.nodes.gazebo_ros._messages import trajectory_of
-from daidalos.nodes.gazebo_ros._states import color_message, color_of, pose_message, pose_of, twist_message, vector_of
+from daidalos.nodes.gazebo_ros._states import (
+    color_message,
+    color_of,
+    pose_message,
+    pose_of,
+    require_finite,
+    twist_message,
+    vector_of,
+)
 from daidalos.simulation import Simulation
 from daidalos.simulation.errors import SimulationError
 
@@ -103,8 +111,11 @@ class GazeboServices:
         return _told("status_message", work)
 
     def _list(self, request: Any, response: Any) -> Any:
-        response.model_names = self._host.paced.call(lambda simulation: list(simulation.models))
-        response.header.stamp = self._node.get_clock().now().to_msg()
+        def work(simulation: Simulation) -> None:
+            response.header.stamp, response.header.frame_id = time_message(simulation.time_ns), "world"
+            response.model_names = list(simulation.models)
+
+        self._host.paced.call(work)
         response.success = True
         return response
 
@@ -174,6 +185,7 @@ class GazeboServices:
 
     def _set_physics(self, simulation: Simulation, request: Any, response: Any) -> None:
         """Set step, gravity, and by both rates the wanted speed; 0 updates a second is as fast as possible."""
+        require_finite("time_step and max_update_rate", (request.time_step, request.max_update_rate))
         if request.time_step > 0:
             simulation.set_step(request.time_step)
         simulation.gravity = vector_of(request.gravity)
@@ -280,6 +292,7 @@ def _set_state(simulation: Simulation, name: str, state: Any) -> None:
 def _set_configuration(simulation: Simulation, request: Any, response: Any) -> None:
     if len(request.joint_names) != len(request.joint_positions):
         raise ValueError(f"{len(request.joint_names)} joints, but {len(request.joint_positions)} positions")
+    require_finite("joint_positions", request.joint_positions)
     for joint in request.joint_names:
         simulation.joint(request.model_name, joint)
     for joint, position in zip(request.joint_names, request.joint_positions, strict=True):
@@ -316,6 +329,7 @@ def _get_joint_properties(simulation: Simulation, request: Any, response: Any) -
 def _set_joint_properties(simulation: Simulation, request: Any, response: Any) -> None:
     model, name = find_joint(simulation, request.joint_name)
     wanted = request.ode_joint_config
+    require_finite("ode_joint_config", (*wanted.damping, *wanted.lo_stop, *wanted.hi_stop))
     limits = (wanted.lo_stop[0], wanted.hi_stop[0]) if wanted.lo_stop and wanted.hi_stop else None
     simulation.set_joint_properties(model, name, wanted.damping[0] if wanted.damping else None, limits)
 
@@ -336,6 +350,7 @@ def _set_link_properties(simulation: Simulation, request: Any, response: Any) ->
 
     entity = _link(simulation, request.link_name)
     moments = request.ixx, request.ixy, request.ixz, request.iyy, request.iyz, request.izz
+    require_finite("mass and moments", (request.mass, *moments))
     inertial = Inertial(request.mass, pose_of(request.com), moments)
     simulation.set_link_properties(entity.model, entity.link or "", inertial, request.gravity_mode)
 
@@ -386,6 +401,7 @@ def _push(simulation: Simulation, name: str, request: Any) -> None:
 
 
 def _push_joint(simulation: Simulation, request: Any, response: Any) -> None:
+    require_finite("effort", [request.effort])
     simulation.push_joint(*find_joint(simulation, request.joint_name), request.effort, *_span(simulation, request))
 
 

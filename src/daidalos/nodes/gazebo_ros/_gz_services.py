@@ -69,7 +69,7 @@ class GzServices:
             try:
                 work(request)
                 response.success = True
-            except (SimulationError, DescriptionError, OSError) as error:
+            except (SimulationError, DescriptionError, OSError, ValueError) as error:
                 self._node.get_logger().error(str(error))
                 response.success = False
             return response

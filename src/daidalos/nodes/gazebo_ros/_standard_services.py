@@ -54,7 +54,7 @@ class StandardServices:
     """
 
     def __init__(self, node: Any, host: Host, group: Any, quit_simulator: Callable[[], None]) -> None:
-        from rclpy.action import ActionServer
+        from rclpy.action import ActionServer, CancelResponse
         from simulation_interfaces import srv
         from simulation_interfaces.action import SimulateSteps
 
@@ -85,7 +85,14 @@ class StandardServices:
             (srv.GetAvailableWorlds, "get_available_worlds", self._available_worlds),
         ):
             node.create_service(kind, f"~/{name}", _answering(work), callback_group=group)
-        self._action = ActionServer(node, SimulateSteps, "~/simulate_steps", self._simulate_steps, callback_group=group)
+        self._action = ActionServer(
+            node,
+            SimulateSteps,
+            "~/simulate_steps",
+            self._simulate_steps,
+            cancel_callback=lambda _: CancelResponse.ACCEPT,
+            callback_group=group,
+        )
         self._stopped = False
 
     # Features

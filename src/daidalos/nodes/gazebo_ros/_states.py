@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
@@ -24,10 +25,18 @@ def pose_message(pose: Pose) -> Any:
 
 
 def pose_of(message: Any) -> Pose:
-    """Return a ``geometry_msgs/msg/Pose``; an all-zero quaternion means no rotation."""
-    p, q = message.position, message.orientation
-    orientation = (q.x, q.y, q.z, q.w) if any((q.x, q.y, q.z, q.w)) else (0.0, 0.0, 0.0, 1.0)
-    return Pose((p.x, p.y, p.z), orientation)
+    """Return a ``geometry_msgs/msg/Pose``; a quaternion of any length will do, and none means no rotation.
+
+    Raises
+    ------
+    ValueError
+        When a number of it is not finite.
+    """
+    q = message.orientation
+    require_finite("an orientation", (q.x, q.y, q.z, q.w))
+    length = math.hypot(q.x, q.y, q.z, q.w)
+    orientation = (q.x / length, q.y / length, q.z / length, q.w / length) if length else (0.0, 0.0, 0.0, 1.0)
+    return Pose(vector_of(message.position), orientation)
 
 
 def twist_message(linear: Any, angular: Any) -> Any:
@@ -43,8 +52,28 @@ def _vector(kind: Any, values: Any) -> Any:
 
 
 def vector_of(message: Any) -> Vector:
-    """Return a ``geometry_msgs/msg/Vector3`` or ``Point``."""
-    return float(message.x), float(message.y), float(message.z)
+    """Return a ``geometry_msgs/msg/Vector3`` or ``Point``.
+
+    Raises
+    ------
+    ValueError
+        When a number of it is not finite.
+    """
+    vector = float(message.x), float(message.y), float(message.z)
+    require_finite("a vector", vector)
+    return vector
+
+
+def require_finite(what: str, values: Iterable[float]) -> None:
+    """Refuse numbers that are not finite: one of them would spread through the whole simulation.
+
+    Raises
+    ------
+    ValueError
+    """
+    values = tuple(values)
+    if not all(math.isfinite(value) for value in values):
+        raise ValueError(f"{what} has numbers that are not finite: {', '.join(f'{value:g}' for value in values)}")
 
 
 def color_message(color: Rgba) -> Any:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 import signal
 import sys
 from collections.abc import Callable, Sequence
@@ -251,6 +252,11 @@ class GzServer(Node):
 
         for parameter in parameters:
             if parameter.name == "real_time_factor":
+                if not 0.0 <= parameter.value < math.inf:
+                    reason = (
+                        f"a speed of {parameter.value:g} can not be; expected a factor, or 0 for as fast as possible"
+                    )
+                    return SetParametersResult(successful=False, reason=reason)
                 self._paced.real_time_factor = float(parameter.value)
         return SetParametersResult(successful=True)
 
