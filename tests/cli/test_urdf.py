@@ -116,3 +116,77 @@ def test_a_check_warns_of_missing_and_broken_files(tmp_path, capsys, monkeypatch
     assert words in said
     assert said.startswith("warning: ")
     assert said.count("\n") == 1
+
+
+MODEL = """<model name="m">
+  <link name="a"/>
+  <link name="b"><collision name="c"><geometry><sphere><radius>{radius}</radius></sphere></geometry></collision></link>
+  <joint name="j" type="revolute"><parent>a</parent><child>b</child></joint>
+</model>"""
+WORLD = """<world name="yard"><light name="sun" type="directional"/>
+<model name="floor"><static>true</static><link name="l"/></model>
+{model}
+</world>"""
+
+
+def written(path, body):
+    path.parent.mkdir(exist_ok=True)
+    path.write_text(f"<?xml version='1.0'?>\n<!-- a comment first -->\n<sdf version='1.9'>{body}</sdf>")
+    return str(path)
+
+
+def test_it_looks_at_models_in_sdf(tmp_path, capsys):
+    file = written(tmp_path / "m" / "m.sdf", MODEL.format(radius=1))
+    (tmp_path / "m" / "model.config").write_text("<model><sdf>m.sdf</sdf></model>")
+    for path in (file, str(tmp_path / "m"), written(tmp_path / "m.xml", MODEL.format(radius=1))):
+        assert main(["urdf", path]) == 0
+        said = capsys.readouterr().out
+        assert said.startswith("model name is: m\n")
+        assert "child(1):  b" in said
+        assert "2 kg in 2 links, 1 joints" in said  # SDF's default
+        assert main(["urdf", path, "--check", "--svg", str(tmp_path / "m.svg")]) == 0
+        assert capsys.readouterr().out == ""
+        assert "<svg" in (tmp_path / "m.svg").read_text()
+
+
+def test_it_looks_at_worlds(tmp_path, capsys):
+    path = written(tmp_path / "yard.world", WORLD.format(model=MODEL.format(radius=1)))
+    assert main(["urdf", path]) == 0
+    said = capsys.readouterr().out.splitlines()
+    assert said[0] == "world name is: yard"
+    assert "lights: sun" in said
+    assert [line.split()[0] for line in said if line.endswith((" 0", " 1"))] == ["floor", "m"]
+    assert main(["urdf", path, "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["models"][0]["static"] is True
+    assert main(["urdf", path, "--check"]) == 0
+    assert main(["urdf", path, "--svg", str(tmp_path / "w.svg")]) == 2
+    assert "draw one of its models" in capsys.readouterr().err
+
+
+def test_xacro_may_make_sdf(tmp_path, capsys):
+    body = "<xacro:arg name='r' default='2'/>" + MODEL.format(radius="$(arg r)")
+    path = tmp_path / "m.sdf.xacro"
+    path.write_text(f"<sdf version='1.9' xmlns:xacro='http://www.ros.org/wiki/xacro'>{body}</sdf>")
+    assert main(["urdf", str(path)]) == 0
+    assert "model name is: m" in capsys.readouterr().out
+    assert main(["urdf", str(path), "r:=x"]) == 2
+    assert "should be a number, got 'x'" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("body", "words"),
+    [
+        (MODEL.format(radius="ten"), "m.sdf:5: <radius>"),
+        (WORLD.format(model=MODEL.format(radius=1).replace("<child>b", "<child>c")), "m.sdf:8: <child>"),
+        (WORLD.format(model="<include><uri>model://nothing</uri></include>"), "m.sdf:5: <include>"),
+        ("<world", "m.sdf:3: not well-formed XML"),
+    ],
+)
+def test_a_fault_in_sdf_is_one_line(tmp_path, capsys, monkeypatch, body, words):
+    monkeypatch.chdir(tmp_path)
+    written(tmp_path / "m.sdf", body)
+    for check in ([], ["--check"]):
+        assert main(["urdf", "m.sdf", *check]) == 2
+        said = capsys.readouterr().err
+        assert words in said
+        assert said.count("\n") == 1

@@ -1,12 +1,15 @@
-"""A robot's tree as a drawing: an SVG of our own layout, and the same for Graphviz."""
+"""The tree of a robot or a model as a drawing: an SVG of our own layout, and the same for Graphviz."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from xml.sax.saxutils import escape
 
 from daidalos.description.joint import Joint
 from daidalos.description.robot import Robot
+from daidalos.description.tree import LinkTree, link_tree
+from daidalos.description.world import Model
 
 _LETTER = 7.2
 _HEIGHT = 26.0
@@ -23,16 +26,14 @@ class _Node:
     width: float
 
 
-def to_svg(robot: Robot) -> str:
+def to_svg(robot: Robot | Model) -> str:
     """Draw links as boxes and joints as the arrows between them, roots on top.
 
-    Each parent stands over the middle of its children, and no two subtrees overlap.
+    Each parent stands over the middle of its children, and no two subtrees overlap. Joints that close loops
+    are arrows as well.
     """
-    children: dict[str, list[Joint]] = {}
-    for joint in robot.joints.values():
-        children.setdefault(joint.parent, []).append(joint)
-    nodes, width = _place(robot, children)
-    height = max(node.y for node in nodes.values()) + _HEIGHT / 2 + _MARGIN
+    nodes, width = _place(link_tree(robot))
+    height = max((node.y for node in nodes.values()), default=0.0) + _HEIGHT / 2 + _MARGIN
     parts = [
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width:.0f} {height:.0f}" '
         f'width="{width:.0f}" height="{height:.0f}" font-family="sans-serif" font-size="12">',
@@ -45,7 +46,7 @@ def to_svg(robot: Robot) -> str:
     return "\n".join([*parts, "</svg>"]) + "\n"
 
 
-def to_dot(robot: Robot) -> str:
+def to_dot(robot: Robot | Model) -> str:
     """Return the tree in Graphviz's language, as ``urdf_to_graphviz`` writes it."""
     lines = ["digraph G {", "node [shape=box];"]
     lines += [f'"{link}" [label="{link}"];' for link in robot.links]
@@ -56,31 +57,39 @@ def to_dot(robot: Robot) -> str:
     return "\n".join([*lines, "}"]) + "\n"
 
 
-def _place(robot: Robot, children: dict[str, list[Joint]]) -> tuple[dict[str, _Node], float]:
+def _place(tree: LinkTree) -> tuple[dict[str, _Node], float]:
     """Give every link a place; returns them with the width of the drawing."""
-    order = [(robot.root, 0)]
+    order = [(root, 0) for root in tree.roots]
     for name, depth in order:
-        order += [(joint.child, depth + 1) for joint in children.get(name, ())]
+        order += [(joint.child, depth + 1) for joint in tree.children.get(name, ())]
     own = {name: max(_LETTER * len(name) + 16, 60.0) for name, _ in order}
     # The label of the joint above needs room too.
-    label = {joint.child: _LETTER * 0.9 * len(joint.name) + 12 for joint in robot.joints.values()}
+    label = {j.child: _LETTER * 0.9 * len(j.name) + 12 for joints in tree.children.values() for j in joints}
     span: dict[str, float] = {}
     for name, _ in reversed(order):
-        span[name] = max(own[name], label.get(name, 0.0), _room(children.get(name, []), span))
-    left = {robot.root: _MARGIN}
+        below = [joint.child for joint in tree.children.get(name, ())]
+        span[name] = max(own[name], label.get(name, 0.0), _room(below, span))
+    left = _side_by_side(tree.roots, span, _MARGIN)
     nodes = {}
     for name, depth in order:
         nodes[name] = _Node(name, left[name] + span[name] / 2, _MARGIN + _HEIGHT / 2 + depth * _LEVEL, own[name])
-        start = left[name] + (span[name] - _room(children.get(name, []), span)) / 2
-        for joint in children.get(name, []):
-            left[joint.child] = start
-            start += span[joint.child] + _GAP
-    return nodes, span[robot.root] + 2 * _MARGIN
+        below = [joint.child for joint in tree.children.get(name, ())]
+        left |= _side_by_side(below, span, left[name] + (span[name] - _room(below, span)) / 2)
+    return nodes, _room(tree.roots, span) + 2 * _MARGIN
 
 
-def _room(joints: list[Joint], span: dict[str, float]) -> float:
-    """Return the width that children need side by side."""
-    return sum(span[joint.child] for joint in joints) + _GAP * max(0, len(joints) - 1)
+def _side_by_side(names: Sequence[str], span: dict[str, float], start: float) -> dict[str, float]:
+    """Return the left edges of subtrees that stand in a row."""
+    left = {}
+    for name in names:
+        left[name] = start
+        start += span[name] + _GAP
+    return left
+
+
+def _room(names: Sequence[str], span: dict[str, float]) -> float:
+    """Return the width that subtrees need side by side."""
+    return sum(span[name] for name in names) + _GAP * max(0, len(names) - 1)
 
 
 def _box(node: _Node) -> str:

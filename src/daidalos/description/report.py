@@ -1,4 +1,4 @@
-"""What there is to say about a robot: its tree, masses, doubts about inertias, joints and limits."""
+"""What there is to say about a robot, a model or a world: trees, masses, doubts about inertias, joints and limits."""
 
 from __future__ import annotations
 
@@ -7,7 +7,10 @@ from dataclasses import dataclass
 
 from daidalos.description.inertia import doubts
 from daidalos.description.joint import Joint, JointType
+from daidalos.description.pose import Pose
 from daidalos.description.robot import Robot
+from daidalos.description.tree import link_tree
+from daidalos.description.world import Model, World
 
 
 @dataclass(frozen=True)
@@ -32,7 +35,7 @@ class JointReport:
 
 @dataclass(frozen=True)
 class RobotReport:
-    """A robot at a glance.
+    """A robot or a model at a glance.
 
     Parameters
     ----------
@@ -54,8 +57,59 @@ class RobotReport:
     warnings: tuple[str, ...]
 
 
-def report(robot: Robot) -> RobotReport:
-    """Return what there is to say about a robot."""
+@dataclass(frozen=True)
+class PlacedReport:
+    """A model in a world: where it is, whether it can move, and the model itself."""
+
+    pose: Pose
+    static: bool
+    model: RobotReport
+
+
+@dataclass(frozen=True)
+class WorldReport:
+    """A world at a glance.
+
+    Parameters
+    ----------
+    name : str
+    step : float
+        Of the physics [s].
+    gravity : tuple of 3 floats
+        [m/s^2].
+    models : tuple of PlacedReport
+    lights, actors, plugins : tuple of str
+        Names; of plugins those of their files.
+    warnings : tuple of str
+        What reading the world noted.
+    """
+
+    name: str
+    step: float
+    gravity: tuple[float, float, float]
+    models: tuple[PlacedReport, ...]
+    lights: tuple[str, ...]
+    actors: tuple[str, ...]
+    plugins: tuple[str, ...]
+    warnings: tuple[str, ...]
+
+
+def report_world(world: World) -> WorldReport:
+    """Return what there is to say about a world."""
+    return WorldReport(
+        name=world.name,
+        step=world.physics.max_step_size,
+        gravity=world.gravity,
+        models=tuple(PlacedReport(model.pose, model.static, report(model)) for model in world.models),
+        lights=tuple(light.name for light in world.lights),
+        actors=tuple(actor.name for actor in world.actors),
+        plugins=tuple(plugin.filename for plugin in world.plugins),
+        warnings=world.warnings,
+    )
+
+
+def report(robot: Robot | Model) -> RobotReport:
+    """Return what there is to say about a robot or a model."""
     links = tuple(
         LinkReport(link.name, None if link.inertial is None else link.inertial.mass, tuple(doubts(link)))
         for link in robot.links.values()
@@ -74,28 +128,28 @@ def report(robot: Robot) -> RobotReport:
     )
 
 
-def tree_text(robot: Robot) -> str:
-    """Return the tree of links in the form of ``check_urdf``."""
-    children: dict[str, list[str]] = {}
-    for joint in robot.joints.values():
-        children.setdefault(joint.parent, []).append(joint.child)
+def tree_text(robot: Robot | Model) -> str:
+    """Return the tree of links in the form of ``check_urdf``; a model of SDF may have several."""
+    tree = link_tree(robot)
     lines = [
-        f"robot name is: {robot.name}",
+        f"{'robot' if isinstance(robot, Robot) else 'model'} name is: {robot.name}",
         "---------- Successfully Parsed XML ---------------",
-        f"root Link: {robot.root} has {len(children.get(robot.root, ()))} child(ren)",
     ]
-    waiting = [(1, number, child) for number, child in enumerate(children.get(robot.root, ()), 1)][::-1]
-    while waiting:
-        depth, number, link = waiting.pop()
-        lines.append(f"{'    ' * depth}child({number}):  {link}")
-        waiting += [(depth + 1, i, child) for i, child in enumerate(children.get(link, ()), 1)][::-1]
+    for root in tree.roots:
+        below = tree.children.get(root, ())
+        lines.append(f"root Link: {root} has {len(below)} child(ren)")
+        waiting = [(1, number, joint.child) for number, joint in enumerate(below, 1)][::-1]
+        while waiting:
+            depth, number, link = waiting.pop()
+            lines.append(f"{'    ' * depth}child({number}):  {link}")
+            waiting += [(depth + 1, i, joint.child) for i, joint in enumerate(tree.children.get(link, ()), 1)][::-1]
     return "\n".join(lines) + "\n"
 
 
 def limits_in_words(joint: Joint) -> str:
     """Return what bounds a joint: position, speed, effort, and whom it follows."""
     words = []
-    if joint.axes and joint.type in (JointType.REVOLUTE, JointType.PRISMATIC):
+    if joint.axes and joint.type in (JointType.REVOLUTE, JointType.PRISMATIC) and _is_bounded(joint):
         words.append(f"{joint.axis.lower:g} .. {joint.axis.upper:g} {_unit(joint)}")
     if joint.axes and math.isfinite(joint.axis.velocity):
         words.append(f"{joint.axis.velocity:g} {_unit(joint)}/s")
@@ -104,6 +158,10 @@ def limits_in_words(joint: Joint) -> str:
     if joint.mimic is not None:
         words.append(f"= {joint.mimic.multiplier:g} * {joint.mimic.joint} + {joint.mimic.offset:g}")
     return ", ".join(words)
+
+
+def _is_bounded(joint: Joint) -> bool:
+    return math.isfinite(joint.axis.lower) or math.isfinite(joint.axis.upper)
 
 
 def _unit(joint: Joint) -> str:

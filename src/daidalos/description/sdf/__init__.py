@@ -1,5 +1,5 @@
 """SDF 1.4 to 1.11: worlds and models with every include read and every pose resolved."""
 
-from daidalos.description.sdf.reader import load, load_model, parse, parse_model
+from daidalos.description.sdf.reader import load, load_model, parse, parse_any, parse_model
 
-__all__ = ["load", "load_model", "parse", "parse_model"]
+__all__ = ["load", "load_model", "parse", "parse_any", "parse_model"]

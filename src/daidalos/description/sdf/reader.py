@@ -89,6 +89,18 @@ def parse_model(
     return replace(read_model(element, context), warnings=tuple(context.warnings))
 
 
+def parse_any(
+    text: str | bytes,
+    source: str = "description",
+    resolve: PackageResolver | None = None,
+    model_path: Sequence[Path] | None = None,
+) -> Model | World:
+    """Read what a document holds: a model when it is nothing but one, or else a world. See `load`."""
+    tags = [child.tag for child in parse_markup(text, source).children]
+    read = parse_model if tags == ["model"] else parse
+    return read(text, source, resolve, model_path)
+
+
 def _read(path: Path) -> bytes:
     try:
         return path.read_bytes()
