@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from daidalos.simulation.rendering.compilation import compiled, compiled_in_place
-from daidalos.simulation.rendering.raster import cut, rows_of
+from daidalos.simulation.rendering.raster import cut, rows_of, transform_vertices
 
 
 @compiled
@@ -84,19 +84,6 @@ def draw_flat(
                 turn * a0, turn * b0, turn * c0, turn * a1, turn * b1, turn * c1, turn * a2, turn * b2, turn * c2,
                 slope_x, slope_y, offset, first_row, last_row + 1.0, first_column, last_column + 1.0, depths,
             )  # fmt: skip
-
-
-@compiled
-def transform_vertices(first: Any, last: Any, pose: Any, vertices: Any, transformed: Any) -> None:
-    """Transform a range of points (n, 3) by a pose (3, 4)."""
-    a, b, c, d = pose[0, 0], pose[0, 1], pose[0, 2], pose[0, 3]
-    e, f, g, h = pose[1, 0], pose[1, 1], pose[1, 2], pose[1, 3]
-    i, j, k, m = pose[2, 0], pose[2, 1], pose[2, 2], pose[2, 3]
-    for n in range(first, last):
-        x, y, z = vertices[n, 0], vertices[n, 1], vertices[n, 2]
-        transformed[n, 0] = a * x + b * y + c * z + d
-        transformed[n, 1] = e * x + f * y + g * z + h
-        transformed[n, 2] = i * x + j * y + k * z + m
 
 
 @compiled_in_place

@@ -68,26 +68,30 @@ def place_parts(part_body: Any, part_pose: Any, body_position: Any, body_rotatio
 
 
 @compiled
+def transform_vertices(first: Any, last: Any, pose: Any, vertices: Any, transformed: Any) -> None:
+    """Transform a range of points (n, 3) by a pose (3, 4) into the first three columns of another array."""
+    a, b, c, d = pose[0, 0], pose[0, 1], pose[0, 2], pose[0, 3]
+    e, f, g, h = pose[1, 0], pose[1, 1], pose[1, 2], pose[1, 3]
+    i, j, k, m = pose[2, 0], pose[2, 1], pose[2, 2], pose[2, 3]
+    for n in range(first, last):
+        x, y, z = vertices[n, 0], vertices[n, 1], vertices[n, 2]
+        transformed[n, 0] = a * x + b * y + c * z + d
+        transformed[n, 1] = e * x + f * y + g * z + h
+        transformed[n, 2] = i * x + j * y + k * z + m
+
+
+@compiled
 def project_vertices(first: Any, last: Any, pose: Any, lens: Any, vertices: Any, projected: Any) -> None:
     """Transform a range of points (n, 3) by a pose (3, 4) and project them: x, y, z and pixels (n, 5).
 
     The pixels of what lies behind the eye have no meaning.
     """
-    a, b, c, d = pose[0, 0], pose[0, 1], pose[0, 2], pose[0, 3]
-    e, f, g, h = pose[1, 0], pose[1, 1], pose[1, 2], pose[1, 3]
-    i, j, k, m = pose[2, 0], pose[2, 1], pose[2, 2], pose[2, 3]
+    transform_vertices(first, last, pose, vertices, projected)
     fx, fy, cx, cy = lens[0], lens[1], lens[2], lens[3]
     for n in range(first, last):
-        px, py, pz = vertices[n, 0], vertices[n, 1], vertices[n, 2]
-        x = a * px + b * py + c * pz + d
-        y = e * px + f * py + g * pz + h
-        z = i * px + j * py + k * pz + m
-        nearness = 1.0 / z
-        projected[n, 0] = x
-        projected[n, 1] = y
-        projected[n, 2] = z
-        projected[n, 3] = fx * x * nearness + cx
-        projected[n, 4] = fy * y * nearness + cy
+        nearness = 1.0 / projected[n, 2]
+        projected[n, 3] = fx * projected[n, 0] * nearness + cx
+        projected[n, 4] = fy * projected[n, 1] * nearness + cy
 
 
 @compiled
