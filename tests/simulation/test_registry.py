@@ -2,6 +2,8 @@ import re
 
 import pytest
 
+from daidalos.description.link import Plugin as Description
+from daidalos.description.markup import Element
 from daidalos.simulation import Simulation, registry
 from daidalos.simulation.plugins.base import Plugin, library_name
 from daidalos.simulation.plugins.diff_drive import DiffDrive
@@ -22,16 +24,23 @@ from simulation.models import box, world
         ("gz-sim8-diff-drive-system", "gz-sim-diff-drive-system"),
         ("libignition-gazebo6-diff-drive-system.so", "gz-sim-diff-drive-system"),
         ("ignition-gazebo-diff-drive-system", "gz-sim-diff-drive-system"),
+        ("ignition::gazebo::systems::DiffDrive", "gz-sim-diff-drive-system"),
+        ("static://gz::sim::systems::NavSat", "gz-sim-nav-sat-system"),
     ],
 )
 def test_libraries_by_any_of_their_names(written, name):
     assert library_name(written) == name
 
 
+def written(name, filename):
+    return Description(name, filename, Element("plugin"))
+
+
 def test_ours_are_found():
     assert registry.sensor_class("gpu_lidar") is Lidar
-    assert registry.plugin_class("libgazebo_ros_diff_drive.so") is DiffDrive
-    assert registry.plugin_class("libnothing.so") is None
+    assert registry.plugin_class(written("p", "libgazebo_ros_diff_drive.so")) is DiffDrive
+    assert registry.plugin_class(written("ignition::gazebo::v6::systems::DiffDrive", "gz-sim-systems")) is DiffDrive
+    assert registry.plugin_class(written("diff_drive", "libnothing.so")) is None
     assert registry.sensor_class("nose") is None
 
 

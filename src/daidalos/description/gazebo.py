@@ -16,6 +16,7 @@ from daidalos.description.named_colors import named_color
 from daidalos.description.robot import Robot
 from daidalos.description.sdf.frames import read_pose
 from daidalos.description.sdf.links import read_plugin, read_sensor
+from daidalos.description.transmissions import control_from_transmissions
 from daidalos.description.world import Model
 
 
@@ -55,7 +56,7 @@ def model_from_robot(robot: Robot) -> Model:
         static=extensions.robot_flag("static"),
         self_collide=extensions.robot_flag("self_collide", "selfCollide"),
         plugins=tuple(extensions.plugins),
-        ros2_control=robot.ros2_control,
+        ros2_control=robot.ros2_control or control_from_transmissions(robot),
         source=robot.source,
         warnings=(*robot.warnings, *extensions.warnings),
     )

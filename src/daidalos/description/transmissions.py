@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from daidalos.description.errors import DescriptionError
 from daidalos.description.markup import Element
-from daidalos.description.robot import Actuator, Transmission, TransmissionJoint
+from daidalos.description.robot import Actuator, Robot, Transmission, TransmissionJoint
+
+_COMMANDS = {f"{what.capitalize()}JointInterface": what for what in ("position", "velocity", "effort")}
+_STATES = ("position", "velocity", "effort")
 
 
 def read_transmissions(root: Element, warnings: list[str]) -> tuple[Transmission, ...]:
@@ -24,6 +27,37 @@ def read_transmissions(root: Element, warnings: list[str]) -> tuple[Transmission
         except DescriptionError as problem:
             warnings.append(f"{problem}; the transmission is left out")
     return tuple(transmissions)
+
+
+def control_from_transmissions(robot: Robot) -> tuple[Element, ...]:
+    """Return the ``<ros2_control>`` element that says what a robot's transmissions of ROS 1 say; none without them.
+
+    Parameters
+    ----------
+    robot : Robot
+    """
+    commands: dict[str, list[str]] = {}
+    for joint in (joint for transmission in robot.transmissions for joint in transmission.joints):
+        names = [name.rpartition("/")[2] for name in joint.hardware_interfaces]
+        commands.setdefault(joint.name, []).extend(_COMMANDS[name] for name in names if name in _COMMANDS)
+    joints = [
+        Element(
+            "joint",
+            {"name": name},
+            children=[
+                *(Element("command_interface", {"name": one}) for one in dict.fromkeys(wanted)),
+                *(Element("state_interface", {"name": one}) for one in _STATES),
+            ],
+            source=robot.source,
+        )
+        for name, wanted in commands.items()
+        if name in robot.joints
+    ]
+    if not joints:
+        return ()
+    plugin = Element("plugin", text="gazebo_ros2_control/GazeboSystem")
+    attributes = {"name": "transmissions", "type": "system"}
+    return (Element("ros2_control", attributes, "", [Element("hardware", children=[plugin]), *joints], robot.source),)
 
 
 def _transmission(element: Element) -> Transmission:

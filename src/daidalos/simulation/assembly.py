@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 
 from daidalos.description.link import Plugin as PluginDescription
 from daidalos.description.link import Sensor as SensorDescription
 from daidalos.description.world import Model, World
 from daidalos.simulation.component import Component, Setting
-from daidalos.simulation.plugins.base import Parameters, SensorPlugin
+from daidalos.simulation.plugins.base import COMMON_PARAMETERS, Parameters, Plugin, ReadElement, SensorPlugin
 from daidalos.simulation.registry import is_built_in, plugin_class, sensor_class
 from daidalos.simulation.sensors.base import Sensor
 
@@ -41,22 +42,30 @@ def make_components(model: Model, setting: Callable[[str], Setting]) -> list[Com
 
 
 def check_world_plugins(world: World, warn: Callable[[str], None]) -> None:
-    """Warn of a world's plugins that are not known; those that are, are built in."""
+    """Warn of a world's plugins that do nothing there; those that do something are built in."""
     for plugin in world.plugins:
-        if not is_built_in(plugin.filename):
+        if is_built_in(plugin):
+            continue
+        cls = plugin_class(plugin)
+        if cls is None:
             warn(_unknown(plugin))
+        else:
+            home = "sensor" if issubclass(cls, SensorPlugin) else "model"
+            warn(f"{plugin.element.where}: plugin {plugin.name!r} belongs inside a <{home}>, left out")
 
 
 def _plugin(plugin: PluginDescription, setting: Setting) -> Iterator[Component]:
-    if is_built_in(plugin.filename):
+    if is_built_in(plugin):
         return
-    cls = plugin_class(plugin.filename)
+    cls = plugin_class(plugin)
     if cls is None:
         setting.warn(_unknown(plugin))
     elif issubclass(cls, SensorPlugin):
         setting.warn(f"{plugin.element.where}: plugin {plugin.name!r} belongs inside a <sensor>, left out")
     else:
-        yield from cls.make(plugin, setting)
+        element = ReadElement(plugin.element)
+        yield from cls.make(replace(plugin, element=element), setting)
+        _warn_of_unread(plugin, element, cls, setting)
 
 
 def _sensors(model: Model) -> Iterator[tuple[str, str, SensorDescription]]:
@@ -84,15 +93,27 @@ def _sensor(description: SensorDescription, link: str, joint: str, setting: Sett
 
 
 def _configure(sensor: Sensor, plugin: PluginDescription, setting: Setting) -> None:
-    if is_built_in(plugin.filename):
+    if is_built_in(plugin):
         return
-    cls = plugin_class(plugin.filename)
+    cls = plugin_class(plugin)
     if cls is None:
         setting.warn(_unknown(plugin))
     elif issubclass(cls, SensorPlugin):
-        cls().configure(sensor, Parameters(plugin, setting))
+        element = ReadElement(plugin.element)
+        cls().configure(sensor, Parameters(replace(plugin, element=element), setting))
+        _warn_of_unread(plugin, element, cls, setting)
     else:
         setting.warn(f"{plugin.element.where}: plugin {plugin.name!r} does not belong inside a <sensor>")
+
+
+def _warn_of_unread(
+    plugin: PluginDescription, element: ReadElement, cls: type[Plugin] | type[SensorPlugin], setting: Setting
+) -> None:
+    """Name the parameters that nobody read; a plugin of the user's may read its own whenever it likes."""
+    unread = element.unread((*COMMON_PARAMETERS, *cls.unused)) if cls.names else ()
+    if unread:
+        where = f"{plugin.element.where}: plugin {plugin.name!r} ({plugin.filename})"
+        setting.warn(f"{where} does not use {', '.join(unread)}")
 
 
 def _unknown(plugin: PluginDescription) -> str:

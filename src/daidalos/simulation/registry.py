@@ -12,9 +12,10 @@ from importlib.metadata import entry_points
 from types import ModuleType
 from typing import TypeVar
 
+from daidalos.description.link import Plugin as Description
 from daidalos.simulation import plugins as plugin_package
 from daidalos.simulation import sensors as sensor_package
-from daidalos.simulation.plugins.base import Plugin, SensorPlugin, library_name
+from daidalos.simulation.plugins.base import Plugin, SensorPlugin, library_name, library_of
 from daidalos.simulation.sensors.base import Sensor
 
 T = TypeVar("T")
@@ -26,7 +27,7 @@ PLUGIN_GROUP = "daidalos.plugins"
 _BUILT_IN = re.compile(
     r"gazebo_ros_(init|factory|api_plugin|paths_plugin|properties|state|force_system)"
     r"|gz-sim-(physics|user-commands|scene-broadcaster|sensors|imu|contact|forcetorque|force-torque|altimeter"
-    r"|magnetometer|navsat|air-pressure|logical-camera|label|particle-emitter|performer)-system"
+    r"|magnetometer|nav-?sat|air-pressure|logical-camera|label|particle-emitter|performer)-system"
 )
 
 
@@ -35,14 +36,14 @@ def sensor_class(kind: str) -> type[Sensor] | None:
     return _sensors().get(kind)
 
 
-def plugin_class(filename: str) -> type[Plugin] | type[SensorPlugin] | None:
-    """Return the class for a plugin's file name; None when there is none."""
-    return _plugins().get(library_name(filename))
+def plugin_class(plugin: Description) -> type[Plugin] | type[SensorPlugin] | None:
+    """Return the class for a plugin; None when there is none."""
+    return _plugins().get(library_of(plugin))
 
 
-def is_built_in(filename: str) -> bool:
+def is_built_in(plugin: Description) -> bool:
     """Tell whether a plugin asks for what the simulator does anyway."""
-    return _BUILT_IN.fullmatch(library_name(filename)) is not None
+    return _BUILT_IN.fullmatch(library_of(plugin)) is not None
 
 
 @cache

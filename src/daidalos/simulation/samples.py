@@ -328,6 +328,13 @@ class FlagSample(Sample):
 
 
 @dataclass(frozen=True, eq=False)
+class NumberSample(Sample):
+    """A number in its own unit."""
+
+    value: float
+
+
+@dataclass(frozen=True, eq=False)
 class WheelSlipSample(Sample):
     """How wheels slip, arrays (n,).
 

@@ -18,6 +18,7 @@ _wrench_type = named("geometry_msgs", "WrenchStamped")
 _contacts_type = named("ros_gz_interfaces", "Contacts")
 _bumper_type = named("gazebo_msgs", "ContactsState")
 _flag_type = named("std_msgs", "Bool")
+_number_type = named("std_msgs", "Float32")
 _wheel_slip_type = named("gazebo_msgs", "WheelSlip")
 
 
@@ -126,6 +127,10 @@ def _flag(sample: samples.FlagSample) -> Any:
     return _flag_type()(data=sample.value)
 
 
+def _number(sample: samples.NumberSample) -> Any:
+    return _number_type()(data=sample.value)
+
+
 def _wheel_slip(sample: samples.WheelSlipSample) -> Any:
     return _wheel_slip_type()(
         name=list(sample.names), lateral_slip=sample.lateral.tolist(), longitudinal_slip=sample.longitudinal.tolist()
@@ -142,5 +147,6 @@ SENSORS: dict[type[samples.Sample], Outgoing] = {
     samples.ContactsSample: Outgoing(_contacts_type, _contacts),
     samples.BumperSample: Outgoing(_bumper_type, _bumper),
     samples.FlagSample: Outgoing(_flag_type, _flag),
+    samples.NumberSample: Outgoing(_number_type, _number),
     samples.WheelSlipSample: Outgoing(_wheel_slip_type, _wheel_slip),
 }

@@ -18,8 +18,8 @@ from daidalos.simulation.instance import Instance
 from daidalos.simulation.odometry import PlanarPose, planar_covariance, transform_of, yaw_quaternion
 from daidalos.simulation.plugins.ackermann_settings import Settings, read_settings
 from daidalos.simulation.plugins.base import Plugin
-from daidalos.simulation.plugins.truth import true_odometry
-from daidalos.simulation.samples import OdometrySample, Sample, TransformSample, TwistCommand
+from daidalos.simulation.plugins.truth import link_transforms, true_odometry
+from daidalos.simulation.samples import NumberSample, OdometrySample, Sample, TransformSample, TwistCommand
 
 Array = NDArray[np.float64]
 
@@ -39,6 +39,8 @@ class Motion:
     steering: float
     angles: Array
     pose: PlanarPose
+    place: Array
+    distance: float = 0.0
     stamp_ns: int = -1
 
 
@@ -46,6 +48,11 @@ class AckermannDrive(Plugin):
     """ROS 2's ``libgazebo_ros_ackermann_drive.so`` and gz's AckermannSteering system."""
 
     names = ("gazebo_ros_ackermann_drive", "gz-sim-ackermann-steering-system")
+    unused = tuple(
+        f"{what}_{gain}"
+        for what in ("left_steering", "right_steering", "linear_velocity")
+        for gain in ("pid_gain", "i_range")
+    )
     memory: Motion
 
     def __init__(self, description: Description, setting: Setting) -> None:
@@ -82,14 +89,15 @@ class AckermannDrive(Plugin):
 
     def start(self) -> Motion:
         """Stand still."""
-        return Motion(np.zeros(2), 0.0, 0.0, self._angles(), PlanarPose())
+        return Motion(np.zeros(2), 0.0, 0.0, self._angles(), PlanarPose(), self._place())
 
     @property
     def publications(self) -> Mapping[str, type[Sample]]:
         """Odometry and its transform, as far as they are wanted."""
         topics: dict[str, type[Sample]] = {
             self.settings.odometry_topic: OdometrySample,
-            self.settings.tf_topic: TransformSample,
+            self.settings.tf_topic or ("/tf" if self.settings.publish_wheels else ""): TransformSample,
+            self.settings.distance_topic: NumberSample,
         }
         return {topic: kind for topic, kind in topics.items() if topic}
 
@@ -110,6 +118,15 @@ class AckermannDrive(Plugin):
             yield odometry
         if s.tf_topic:
             yield transform_of(odometry, s.tf_topic)
+        if s.publish_wheels:
+            joints = [*s.left, *s.right, *filter(None, (s.left_steering, s.right_steering, s.steering_wheel))]
+            topic = s.tf_topic or "/tf"
+            yield from link_transforms(self._instance, self._base, joints, now_ns, topic, s.base_frame)
+        if s.distance_topic:
+            place = self._place()
+            motion.distance += float(np.linalg.norm(place - motion.place))
+            motion.place = place
+            yield NumberSample(now_ns, s.distance_topic, "", motion.distance)
 
     def _command(self, command: TwistCommand) -> None:
         self.memory.command = np.array((float(command.linear[0]), float(command.angular[2])))
@@ -166,6 +183,9 @@ class AckermannDrive(Plugin):
             pose_covariance=covariance,
             twist_covariance=covariance,
         )
+
+    def _place(self) -> Array:
+        return np.array(self._base.pose.position[:2])
 
     def _angles(self) -> Array:
         return np.array([wheel.position for wheel in self._wheels])

@@ -34,6 +34,10 @@ class Settings:
         The command's angular z is the steering angle, rather than the turn rate.
     truth : bool
         Odometry from the true pose instead of from the wheels.
+    publish_wheels : bool
+        Transforms of the wheels and of what steers them.
+    distance_topic : str
+        Where the way that it has driven is told; may be empty.
     """
 
     left: tuple[str, ...]
@@ -56,6 +60,8 @@ class Settings:
     linear: Limits = field(default_factory=Limits)
     steers_by_angle: bool = False
     truth: bool = False
+    publish_wheels: bool = False
+    distance_topic: str = ""
 
 
 def read_settings(parameters: Parameters, setting: Setting) -> Settings:
@@ -106,6 +112,8 @@ def _read_classic(parameters: Parameters, setting: Setting) -> Settings:
         linear=Limits(-top, top),
         steers_by_angle=True,
         truth=True,
+        publish_wheels=element.flag_of("publish_wheel_tf", default=False),
+        distance_topic=parameters.topic("distance") if element.flag_of("publish_distance", default=False) else "",
     )
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from abc import ABC, abstractmethod
 from collections.abc import Iterable
+from difflib import get_close_matches
 from typing import ClassVar
 
 from daidalos.description.link import Plugin as Description
@@ -13,16 +14,61 @@ from daidalos.simulation.component import Component, Setting
 from daidalos.simulation.sensors.base import Sensor
 from daidalos.simulation.topics import absolute_topic, join_namespaces
 
+COMMON_PARAMETERS = ("alwaysOn", "always_on", "rosDebugLevel", "debug", "robotParam", "latch")
+"""Parameters of many libraries that mean nothing here."""
+
 
 def library_name(filename: str) -> str:
     """Return the name of a library without what platforms and versions add to it.
 
-    ``libgazebo_ros_imu.so`` becomes ``gazebo_ros_imu``; ``libignition-gazebo6-imu-system.so`` and
-    ``gz-sim8-imu-system`` become ``gz-sim-imu-system``.
+    ``libgazebo_ros_imu.so`` becomes ``gazebo_ros_imu``; ``libignition-gazebo6-imu-system.so``,
+    ``gz-sim8-imu-system`` and gz's class name ``gz::sim::systems::Imu`` become ``gz-sim-imu-system``.
     """
     name = filename.strip().replace("\\", "/").rpartition("/")[2]
+    system = re.fullmatch(r"(?:gz::sim|ignition::gazebo)(?:::v\d+)?::systems::(\w+)", name)
+    if system:
+        return f"gz-sim-{re.sub('(?<=[a-z])(?=[A-Z])', '-', system[1]).lower()}-system"
     name = re.sub(r"\.(so|dll|dylib)$", "", name).removeprefix("lib")
     return re.sub(r"^(ignition-gazebo|gz-sim)\d*-", "gz-sim-", name)
+
+
+def library_of(plugin: Description) -> str:
+    """Return the name of a plugin's library; gz's name of a class counts where the file is of no system of gz's."""
+    library = library_name(plugin.filename)
+    is_class = "::systems::" in plugin.name and not re.fullmatch("gz-sim-.*-system", library)
+    return library_name(plugin.name) if is_class else library
+
+
+class ReadElement(Element):
+    """A plugin's element that remembers which of its children somebody asked for.
+
+    Parameters
+    ----------
+    element : Element
+    """
+
+    __slots__ = ("_asked",)
+
+    def __init__(self, element: Element) -> None:
+        super().__init__(element.tag, element.attributes, element.text, element.children, element.source, element.line)
+        self._asked: set[str] = set()
+
+    def first(self, *tags: str) -> Element | None:
+        """See `Element.first`."""
+        self._asked.update(tags)
+        return super().first(*tags)
+
+    def all(self, *tags: str) -> list[Element]:
+        """See `Element.all`."""
+        self._asked.update(tags)
+        return super().all(*tags)
+
+    def unread(self, unused: Iterable[str] = ()) -> list[str]:
+        """Return the tags that nobody asked for, each with one that it may be meant to be."""
+        known = self._asked | set(unused)
+        tags = dict.fromkeys(child.tag for child in self.children if child.tag not in known)
+        near = {tag: get_close_matches(tag, sorted(self._asked), 1, 0.8) for tag in tags}
+        return [f"<{tag}>" + "".join(f" (did you mean <{one}>?)" for one in near[tag]) for tag in tags]
 
 
 class Plugin(Component):
@@ -36,9 +82,15 @@ class Plugin(Component):
     ----------
     description : daidalos.description.link.Plugin
     setting : Setting
+
+    Attributes
+    ----------
+    unused : tuple of str
+        Parameters of those libraries that mean nothing here; any other that is not read is named in a warning.
     """
 
     names: ClassVar[tuple[str, ...]] = ()
+    unused: ClassVar[tuple[str, ...]] = ()
 
     def __init__(self, description: Description, setting: Setting) -> None:
         super().__init__(setting)
@@ -55,6 +107,7 @@ class SensorPlugin(ABC):
     """Code that decides how a sensor speaks to ROS: topic, frame, message."""
 
     names: ClassVar[tuple[str, ...]] = ()
+    unused: ClassVar[tuple[str, ...]] = ()
 
     @abstractmethod
     def configure(self, sensor: Sensor, parameters: Parameters) -> None:
@@ -72,14 +125,14 @@ class Parameters:
 
     def __init__(self, description: Description, setting: Setting) -> None:
         self.element: Element = description.element
-        self.library = library_name(description.filename)
+        self.library = library_of(description)
         self.scope = description.scope
         ros = self.element.first("ros") or Element("ros")
         inner = ros.text_of("namespace", default=self.element.text_of("robotNamespace", "robot_namespace"))
         self.namespace = join_namespaces(setting.namespace, inner)
         self._remappings: dict[str, str] = {}
         for remapping in ros.all("remapping", "argument"):
-            name, separator, target = remapping.text.partition(":=")
+            name, separator, target = remapping.text.strip().rpartition(" ")[2].partition(":=")
             if separator:
                 self._remappings[name.strip()] = target.strip()
 

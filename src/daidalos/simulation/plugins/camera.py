@@ -20,6 +20,10 @@ class CameraOfSensor(SensorPlugin):
         *("gazebo_ros_depth_camera", "gazebo_ros_openni_kinect"),
         *("gazebo_ros_multicamera", "gazebo_ros_triggered_multicamera"),
     )
+    unused = (
+        *("CxPrime", "Cx", "Cy", "focalLength", "autoDistortion", "auto_distortion", "borderCrop", "border_crop"),
+        *("pollServiceName", "triggerTopicName", "triggered"),
+    )
 
     def configure(self, sensor: Sensor, parameters: Parameters) -> None:
         """Take topics, frame, distortion, baseline and limits of depths."""

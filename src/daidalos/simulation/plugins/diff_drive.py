@@ -20,7 +20,7 @@ from daidalos.simulation.odometry import (
 )
 from daidalos.simulation.plugins.base import Plugin
 from daidalos.simulation.plugins.diff_drive_settings import read_settings
-from daidalos.simulation.plugins.truth import true_odometry
+from daidalos.simulation.plugins.truth import link_transforms, true_odometry
 from daidalos.simulation.samples import (
     JointStateSample,
     OdometrySample,
@@ -67,6 +67,7 @@ class DiffDrive(Plugin):
     """``libgazebo_ros_diff_drive.so`` of ROS 1 and 2, ROS 1's skid steer drive, and gz's DiffDrive system."""
 
     names = ("gazebo_ros_diff_drive", "gazebo_ros_skid_steer_drive", "gz-sim-diff-drive-system")
+    unused = ("num_wheel_pairs", "legacyModeNS")
     memory: Motion
 
     def __init__(self, description: Description, setting: Setting) -> None:
@@ -139,7 +140,9 @@ class DiffDrive(Plugin):
         if self.settings.tf_topic:
             yield transform_of(odometry, self.settings.tf_topic)
             if self.settings.publish_wheels:
-                yield from self._wheel_transforms(now_ns)
+                joints = [wheel.name for wheel in self._wheels]
+                frame = self.settings.base_frame
+                yield from link_transforms(self._instance, self._base, joints, now_ns, self.settings.tf_topic, frame)
         if self.settings.joint_topic:
             yield self._joint_states(now_ns)
 
@@ -198,20 +201,6 @@ class DiffDrive(Plugin):
             pose_covariance=covariance,
             twist_covariance=covariance,
         )
-
-    def _wheel_transforms(self, now_ns: int) -> Iterable[TransformSample]:
-        base = self._base.pose.inverse
-        for wheel in self._wheels:
-            joint = self.setting.model.joints[wheel.name]
-            pose = base @ self._instance.link(joint.child).pose
-            yield TransformSample(
-                stamp_ns=now_ns,
-                topic=self.settings.tf_topic,
-                frame_id=self.settings.base_frame,
-                child_frame_id=joint.child,
-                translation=np.array(pose.position),
-                rotation=np.array(pose.orientation),
-            )
 
     def _joint_states(self, now_ns: int) -> JointStateSample:
         return JointStateSample(

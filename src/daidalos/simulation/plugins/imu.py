@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from daidalos.description.link import Plugin as PluginDescription
 from daidalos.description.link import Sensor as SensorDescription
+from daidalos.description.markup import Element
 from daidalos.description.pose import Pose
 from daidalos.simulation.component import Component, Setting
 from daidalos.simulation.noise import Noise
@@ -20,6 +21,7 @@ class ImuOfModel(Plugin):
     """ROS 1's ``libgazebo_ros_imu.so``: an IMU on the link ``bodyName``, without a ``<sensor>``."""
 
     names = ("gazebo_ros_imu",)
+    unused = ("serviceName",)
 
     @classmethod
     def make(cls, description: PluginDescription, setting: Setting) -> Iterable[Component]:
@@ -30,14 +32,12 @@ class ImuOfModel(Plugin):
         if link not in setting.model.links:
             known = ", ".join(setting.model.links)
             raise element.error(f"<bodyName> is {link!r}, expected one of the links {known}")
-        x, y, z = element.vector_of("xyzOffset", "xyzOffsets", size=3, default=(0.0, 0.0, 0.0))
-        rpy = element.vector_of("rpyOffset", "rpyOffsets", size=3, default=(0.0, 0.0, 0.0))
         sensor = Imu(
             SensorDescription(
                 name=description.name,
                 type="imu",
                 element=element,
-                pose=Pose.from_xyz_rpy((x, y, z), rpy),
+                pose=_offset(element),
                 update_rate=element.number_of("updateRate", "update_rate", default=0.0),
             ),
             link,
@@ -45,10 +45,7 @@ class ImuOfModel(Plugin):
         )
         sensor.topic = parameters.topic(element.text_of("topicName", "topic_name", default="imu"))
         sensor.frame_id = frame(element.text_of("frameName", "frame_name", default=sensor.frame_id))
-        stddev = element.number_of("gaussianNoise", "gaussian_noise", default=0.0)
-        if stddev > 0:
-            sensor.rate_noise = _at_least(sensor.rate_noise, stddev)
-            sensor.acceleration_noise = _at_least(sensor.acceleration_noise, stddev)
+        _disturb(sensor, element)
         return (sensor,)
 
 
@@ -56,12 +53,34 @@ class ImuOfSensor(SensorPlugin):
     """``libgazebo_ros_imu_sensor.so``: topic and frame of an IMU sensor."""
 
     names = ("gazebo_ros_imu_sensor",)
+    unused = ("bodyName", "serviceName")
 
     def configure(self, sensor: Sensor, parameters: Parameters) -> None:
-        """Take topic and frame."""
+        """Take topic and frame, and what ROS 1's plugin knows besides: rate, place and noise."""
         element = parameters.element
         sensor.topic = parameters.topic(element.text_of("topicName", "topic_name", default="~/out"))
         sensor.frame_id = frame(element.text_of("frameName", "frame_name", default=sensor.frame_id))
+        rate = element.number_of("updateRateHZ", default=0.0)
+        sensor.period = 1.0 / rate if rate > 0 else sensor.period
+        if element.first("xyzOffset", "rpyOffset") is not None:
+            sensor.pose = sensor.pose @ _offset(element)
+        if isinstance(sensor, Imu):
+            sensor.starts_level = element.flag_of(
+                "initialOrientationAsReference", "initial_orientation_as_reference", default=False
+            )
+            _disturb(sensor, element)
+
+
+def _offset(element: Element) -> Pose:
+    xyz = element.vector_of("xyzOffset", "xyzOffsets", size=3, default=(0.0, 0.0, 0.0))
+    return Pose.from_xyz_rpy(xyz, element.vector_of("rpyOffset", "rpyOffsets", size=3, default=(0.0, 0.0, 0.0)))
+
+
+def _disturb(sensor: Imu, element: Element) -> None:
+    stddev = element.number_of("gaussianNoise", "gaussian_noise", default=0.0)
+    if stddev > 0:
+        sensor.rate_noise = _at_least(sensor.rate_noise, stddev)
+        sensor.acceleration_noise = _at_least(sensor.acceleration_noise, stddev)
 
 
 def _at_least(noises: tuple[Noise, ...], stddev: float) -> tuple[Noise, ...]:

@@ -21,6 +21,7 @@ class JointPoseTrajectory(Plugin):
     """
 
     names = ("gazebo_ros_joint_pose_trajectory", "gz-sim-joint-trajectory-controller-system")
+    unused = ("serviceName",)
     memory: Course | None
 
     def __init__(self, description: Description, setting: Setting) -> None:
@@ -78,9 +79,12 @@ class JointController(Plugin):
             known = ", ".join(joints) or "none"
             raise element.error(f"<joint_name> is {self.joint!r}, expected one of the joints {known}")
         self.holds_position = "position" in self.parameters.library
-        words = f"0/cmd_{'pos' if self.holds_position else 'vel'}"
-        topic = element.text_of("topic", default=f"/model/{setting.model_name}/joint/{self.joint}/{words}")
-        self.topic = absolute_topic(topic, setting.namespace)
+        model = f"/model/{setting.model_name}"
+        axis = element.integer_of("joint_index", default=0)
+        words = f"{axis}/cmd_pos" if self.holds_position else "cmd_vel"
+        below = element.text_of("sub_topic")
+        default = f"{model}/{below}" if below else f"{model}/joint/{self.joint}/{words}"
+        self.topic = absolute_topic(element.text_of("topic", default=default), setting.namespace)
         self.gain = element.number_of("p_gain", default=1.0)
         self.damping = element.number_of("d_gain", default=0.1)
         self.effort = element.number_of("cmd_max", default=float("inf"))

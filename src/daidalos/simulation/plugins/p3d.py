@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from daidalos.description.link import Plugin as Description
+from daidalos.description.markup import Element
 from daidalos.description.pose import Pose
 from daidalos.simulation.component import Setting
 from daidalos.simulation.instance import Instance
@@ -32,9 +33,7 @@ class P3d(Plugin):
             raise element.error(f"<body_name> is {self.link!r}, expected one of the links {', '.join(links)}")
         self.frame_id = frame(element.text_of("frameName", "frame_name", default="world"))
         self.topic = parameters.topic(element.text_of("topicName", "topic_name", default="odom"))
-        xyz = element.vector_of("xyzOffset", "xyzOffsets", "xyz_offset", "xyz_offsets", size=3, default=(0.0,) * 3)
-        rpy = element.vector_of("rpyOffset", "rpyOffsets", "rpy_offset", "rpy_offsets", size=3, default=(0.0,) * 3)
-        self.offset = Pose.from_xyz_rpy(xyz, rpy)
+        self.offset = _read_offset(element)
         self.noise = element.number_of("gaussianNoise", "gaussian_noise", default=0.0)
         rate = element.number_of("updateRate", "update_rate", default=0.0)
         self.period = 1.0 / rate if rate > 0 else 0.0
@@ -59,14 +58,9 @@ class P3d(Plugin):
         odometry = true_odometry(
             self._link, now_ns, self.topic, self.frame_id, self.link.rpartition("::")[2], (1e-6,) * 3, origin
         )
-        moved = self.offset @ Pose(_triple(odometry.position), _quadruple(odometry.orientation))
         noise = self.random.normal(0.0, self.noise, (2, 3)) if self.noise else np.zeros((2, 3))
         yield replace(
-            odometry,
-            position=np.array(moved.position),
-            orientation=np.array(moved.orientation),
-            linear=odometry.linear + noise[0],
-            angular=odometry.angular + noise[1],
+            _moved(odometry, self.offset), linear=odometry.linear + noise[0], angular=odometry.angular + noise[1]
         )
 
 
@@ -74,6 +68,7 @@ class OdometryPublisher(Plugin):
     """gz's OdometryPublisher system: the model's odometry since it came, without wheels."""
 
     names = ("gz-sim-odometry-publisher-system",)
+    unused = ("dimensions",)
 
     def __init__(self, description: Description, setting: Setting) -> None:
         super().__init__(description, setting)
@@ -82,6 +77,7 @@ class OdometryPublisher(Plugin):
         self.odometry_frame = frame(element.text_of("odom_frame", default=f"{name}/odom"))
         self.base_frame = frame(element.text_of("robot_base_frame", default=f"{name}/base_footprint"))
         self.link = base
+        self.offset = _read_offset(element)
         topic = element.text_of("odom_topic", default=f"/model/{name}/odometry")
         self.topic = absolute_topic(topic, setting.namespace)
         self.tf_topic = absolute_topic(element.text_of("tf_topic", default=f"/model/{name}/pose"), setting.namespace)
@@ -103,11 +99,21 @@ class OdometryPublisher(Plugin):
 
     def update(self, now_ns: int) -> Iterable[Sample]:
         """Say where the model is."""
-        odometry = true_odometry(
-            self._link, now_ns, self.topic, self.odometry_frame, self.base_frame, start=self.memory
-        )
+        frames = self.odometry_frame, self.base_frame
+        odometry = _moved(true_odometry(self._link, now_ns, self.topic, *frames, start=self.memory), self.offset)
         yield odometry
         yield transform_of(odometry, self.tf_topic)
+
+
+def _read_offset(element: Element) -> Pose:
+    xyz = element.vector_of("xyzOffset", "xyzOffsets", "xyz_offset", "xyz_offsets", size=3, default=(0.0,) * 3)
+    rpy = element.vector_of("rpyOffset", "rpyOffsets", "rpy_offset", "rpy_offsets", size=3, default=(0.0,) * 3)
+    return Pose.from_xyz_rpy(xyz, rpy)
+
+
+def _moved(odometry: OdometrySample, offset: Pose) -> OdometrySample:
+    moved = offset @ Pose(_triple(odometry.position), _quadruple(odometry.orientation))
+    return replace(odometry, position=np.array(moved.position), orientation=np.array(moved.orientation))
 
 
 def _triple(values: np.ndarray) -> tuple[float, float, float]:

@@ -35,6 +35,7 @@ class PlanarMove(Plugin):
     """``libgazebo_ros_planar_move.so`` of ROS 1 and 2."""
 
     names = ("gazebo_ros_planar_move",)
+    unused = ("update_rate",)
     memory: Motion
 
     def __init__(self, description: Description, setting: Setting) -> None:
@@ -46,6 +47,11 @@ class PlanarMove(Plugin):
         self.base_frame = frame(element.text_of("robotBaseFrame", "robot_base_frame", default="base_footprint"))
         self.publishes = element.flag_of("publish_odom", default=True)
         self.publishes_tf = element.flag_of("publish_odom_tf", default=True)
+        self.covariance = (
+            element.number_of("covariance_x", default=1e-5),
+            element.number_of("covariance_y", default=1e-5),
+            element.number_of("covariance_yaw", default=1e-3),
+        )
         rate = element.number_of("odometryRate", "publish_rate", default=20.0)
         self._publish_ns = round(1e9 / rate) if rate > 0 else 0
 
@@ -78,7 +84,8 @@ class PlanarMove(Plugin):
             return
         motion.due_ns = now_ns + self._publish_ns
         topic = self.odometry_topic
-        odometry = true_odometry(self._base, now_ns, topic, self.odometry_frame, self.base_frame, start=motion.origin)
+        frames = self.odometry_frame, self.base_frame
+        odometry = true_odometry(self._base, now_ns, topic, *frames, self.covariance, motion.origin)
         if self.publishes:
             yield odometry
         if self.publishes_tf:

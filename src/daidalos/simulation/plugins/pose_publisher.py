@@ -23,6 +23,7 @@ class PosePublisher(Plugin):
     """
 
     names = ("gz-sim-pose-publisher-system",)
+    unused = ("publish_sensor_pose", "publish_collision_pose", "publish_visual_pose", "use_pose_vector_msg")
 
     def __init__(self, description: Description, setting: Setting) -> None:
         super().__init__(description, setting)

@@ -9,11 +9,15 @@ from daidalos.simulation.sensors.base import Sensor
 from daidalos.simulation.sensors.lidar import Lidar
 from daidalos.simulation.topics import frame
 
+_UNUSED = ("hokuyoMinIntensity", "min_intensity", "organize_cloud", "updateRate", "update_rate")
+"""Parameters of lidars that mean nothing here."""
+
 
 class Laser(SensorPlugin):
     """ROS 1's ``libgazebo_ros_laser.so``: scans on ``topicName``."""
 
     names = ("gazebo_ros_laser", "gazebo_ros_gpu_laser")
+    unused = _UNUSED
 
     def configure(self, sensor: Sensor, parameters: Parameters) -> None:
         """Take topic, frame and noise."""
@@ -28,21 +32,25 @@ class Laser(SensorPlugin):
 
 
 class BlockLaser(SensorPlugin):
-    """ROS 1's ``libgazebo_ros_block_laser.so``: points on ``topicName``."""
+    """ROS 1's ``libgazebo_ros_block_laser.so`` and the Velodyne plugins: points on ``topicName``."""
 
-    names = ("gazebo_ros_block_laser",)
+    names = ("gazebo_ros_block_laser", "gazebo_ros_velodyne_laser", "gazebo_ros_velodyne_gpu_laser")
+    unused = _UNUSED
 
     def configure(self, sensor: Sensor, parameters: Parameters) -> None:
         """As `Laser`, in points."""
         Laser().configure(sensor, parameters)
         if isinstance(sensor, Lidar):
             sensor.as_points = True
+            sensor.range_min = parameters.element.number_of("min_range", default=sensor.range_min)
+            sensor.range_max = parameters.element.number_of("max_range", default=sensor.range_max)
 
 
 class RaySensor(SensorPlugin):
     """ROS 2's ``libgazebo_ros_ray_sensor.so``: scans or points on ``~/out``."""
 
     names = ("gazebo_ros_ray_sensor",)
+    unused = _UNUSED
 
     def configure(self, sensor: Sensor, parameters: Parameters) -> None:
         """Take topic, frame and kind of message."""
@@ -54,6 +62,7 @@ class RaySensor(SensorPlugin):
             kind = element.text_of("output_type", default="sensor_msgs/PointCloud2")
             sensor.as_points = not kind.endswith(("LaserScan", "Range"))
             sensor.as_range = kind.endswith("Range")
+            sensor.ultrasound = element.text_of("radiation_type") == "ultrasound"
             if kind.endswith("PointCloud"):
                 sensor.setting.warn(f"{element.where}: <output_type> is {kind}; it is published as PointCloud2")
 
@@ -62,6 +71,7 @@ class RangeSensor(SensorPlugin):
     """``libgazebo_ros_range.so``: the nearest ray, as an infrared or ultrasound sensor would tell it."""
 
     names = ("gazebo_ros_range",)
+    unused = (*_UNUSED, "fov")
 
     def configure(self, sensor: Sensor, parameters: Parameters) -> None:
         """Take topic, frame and noise."""
@@ -70,3 +80,4 @@ class RangeSensor(SensorPlugin):
         sensor.topic = parameters.topic(element.text_of("topicName", "topic_name", default="range"))
         if isinstance(sensor, Lidar):
             sensor.as_range = True
+            sensor.ultrasound = element.text_of("radiation").lower() == "ultrasound"

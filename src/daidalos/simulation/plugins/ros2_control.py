@@ -26,7 +26,7 @@ _KINEMATIC = "gazebo_ros2_control/GazeboSystem"
 
 
 class Ros2Control(Plugin):
-    """``libgazebo_ros2_control.so`` and gz's ``gz_ros2_control-system``.
+    """``libgazebo_ros2_control.so``, gz's ``gz_ros2_control-system``, and ROS 1's ``libgazebo_ros_control.so``.
 
     Who runs controllers sets `cycle`, which is called once in each period of the controller manager.
 
@@ -45,7 +45,11 @@ class Ros2Control(Plugin):
         Takes the time [ns].
     """
 
-    names = ("gazebo_ros2_control", "gz_ros2_control-system", "ign_ros2_control-system")
+    names = ("gazebo_ros2_control", "gazebo_ros_control", "gz_ros2_control-system", "ign_ros2_control-system")
+    unused = (
+        *("robot_param", "robot_param_node", "robotSimType", "robot_sim_type", "controlPeriod", "control_period"),
+        "position_proportional_gain",
+    )
     memory: DriveState
 
     def __init__(self, description: Description, setting: Setting) -> None:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
+
 import numpy as np
 
 from daidalos.description.pose import Pose, Quaternion, rotate
-from daidalos.simulation.instance import LinkView
+from daidalos.simulation.instance import Instance, LinkView
 from daidalos.simulation.odometry import Array, planar_covariance
-from daidalos.simulation.samples import OdometrySample
+from daidalos.simulation.samples import OdometrySample, TransformSample
 
 
 def true_odometry(
@@ -46,6 +48,17 @@ def true_odometry(
         pose_covariance=spread,
         twist_covariance=spread,
     )
+
+
+def link_transforms(
+    instance: Instance, base: LinkView, joints: Iterable[str], now_ns: int, topic: str, frame_id: str
+) -> Iterator[TransformSample]:
+    """Yield where the children of joints are, seen from a base."""
+    back = base.pose.inverse
+    for joint in joints:
+        child = instance.model.joints[joint].child
+        pose = back @ instance.link(child).pose
+        yield TransformSample(now_ns, topic, frame_id, child, np.array(pose.position), np.array(pose.orientation))
 
 
 def _turned(orientation: Quaternion, vector: Array) -> Array:

@@ -21,8 +21,8 @@ class Imu(NoisySensor):
 
     Attributes
     ----------
-    reference : tuple of 4 floats
-        Orientation that is reported as none; a plugin may set it.
+    starts_level : bool
+        Whether the orientation that it starts with is reported as none; a plugin may set it.
     """
 
     types = ("imu",)
@@ -42,7 +42,7 @@ class Imu(NoisySensor):
             self.rate_noise = noise_of_axes(settings.first("angular_velocity"))
             self.acceleration_noise = noise_of_axes(settings.first("linear_acceleration"))
         self.with_orientation = settings.flag_of("enable_orientation", default=True)
-        self.reference: Quaternion = (0.0, 0.0, 0.0, 1.0)
+        self.starts_level = False
 
     @property
     def publications(self) -> Mapping[str, type[Sample]]:
@@ -59,7 +59,8 @@ class Imu(NoisySensor):
         biases = super().start()
         self._arm = np.array(self.pose.position) if any(self.pose.position) else None
         self._into_sensor = rotation_matrix(self.pose.orientation).T
-        self._from_reference = Pose(orientation=self.reference).inverse.orientation
+        reference = self._mount() if self.starts_level else Pose().orientation
+        self._from_reference = Pose(orientation=reference).inverse.orientation
         self._covariances = (
             np.zeros(9) if self.with_orientation else -np.eye(3).ravel(),
             np.diag(self.variance[:3]).ravel(),
@@ -93,5 +94,8 @@ class Imu(NoisySensor):
     def _orientation(self) -> Array:
         if not self.with_orientation:
             return np.array((0.0, 0.0, 0.0, 1.0))
-        mount = multiply(self.link.pose.orientation, self.pose.orientation)
-        return np.array(multiply(self._from_reference, mount))
+        return np.array(multiply(self._from_reference, self._mount()))
+
+    def _mount(self) -> Quaternion:
+        """Return the sensor's orientation in the world."""
+        return multiply(self.link.pose.orientation, self.pose.orientation)

@@ -57,6 +57,8 @@ class Lidar(Sensor):
         Speak in points rather than ranges; so from the start when there is more than one ring.
     as_range : bool
         Speak of the nearest of all rays alone.
+    ultrasound : bool
+        What it then claims to be, rather than infrared.
     as_both : bool
         Speak as gz's lidar does: the middle ring's ranges, and points on ``<topic>/points``.
     """
@@ -82,7 +84,7 @@ class Lidar(Sensor):
         self.resolution = limits.number_of("resolution", default=0.0)
         self.noise = read_noise(settings.first("noise"))
         self.as_points = self.vertical.count > 1
-        self.as_range = False
+        self.as_range = self.ultrasound = False
         self._directions = _directions(self.horizontal.angles, self.vertical.angles)
 
     @property
@@ -178,7 +180,7 @@ class Lidar(Sensor):
         angle = max(self.horizontal.last - self.horizontal.first, self.vertical.last - self.vertical.first)
         limits = self.range_min, self.range_max
         nearest = float(ranges.min())
-        return RangeSample(now_ns, self.topic, self.frame_id, angle, *limits, nearest, ultrasound=False)
+        return RangeSample(now_ns, self.topic, self.frame_id, angle, *limits, nearest, self.ultrasound)
 
     def _scan(self, now_ns: int, ranges: Array, intensities: NDArray[np.float32]) -> LaserScanSample:
         return LaserScanSample(

@@ -14,19 +14,25 @@ from daidalos.simulation.sensors.noisy import NoisySensor, noise_of_axes
 
 
 class Magnetometer(NoisySensor):
-    """Measures in its own axes [T]."""
+    """Measures in its own axes [T].
+
+    Attributes
+    ----------
+    field_noise : tuple of 3 Noise
+        A plugin may set another.
+    """
 
     types = ("magnetometer",)
     default_topic = "magnetometer"
 
     def read(self, element: Element) -> None:
         """Read the noise of each axis."""
-        self._noises = noise_of_axes(element.first("magnetometer"))
+        self.field_noise: tuple[Noise, ...] = noise_of_axes(element.first("magnetometer"))
 
     @property
     def noises(self) -> tuple[Noise, ...]:
         """Of the three axes."""
-        return self._noises
+        return self.field_noise
 
     @property
     def publications(self) -> Mapping[str, type[Sample]]:
