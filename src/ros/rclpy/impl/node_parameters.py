@@ -1,44 +1,33 @@
-"""The parameters of a node: declaring, setting, describing, and telling of changes."""
+"""The parameters of a node: declaring, getting and describing them."""
 
 from __future__ import annotations
 
 import copy
-import math
-import warnings
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from rclpy.exceptions import (
-    InvalidParameterTypeException,
     InvalidParameterValueException,
     ParameterAlreadyDeclaredException,
     ParameterImmutableException,
     ParameterNotDeclaredException,
     ParameterUninitializedException,
 )
-from rclpy.parameter import PARAMETER_SEPARATOR_STRING, Parameter, ParameterType, parameter_value_to_python
+from rclpy.impl.node_parameter_setting import NodeParameterSetting
+from rclpy.impl.parameter_checks import REL_TOL, check_value
+from rclpy.impl.parameter_declaration import initial, overridden, unpacked
+from rclpy.parameter import PARAMETER_SEPARATOR_STRING, Parameter, ParameterType
 from rclpy.validate_parameter_name import validate_parameter_name
 
 if TYPE_CHECKING:
-    from rcl_interfaces.msg import ListParametersResult, ParameterDescriptor, SetParametersResult
-
-_REL_TOL = 1e-6
-PreSet = Callable[[list[Parameter[Any]]], list[Parameter[Any]]]
-OnSet = Callable[[list[Parameter[Any]]], "SetParametersResult"]
-PostSet = Callable[[list[Parameter[Any]]], None]
+    from rcl_interfaces.msg import ListParametersResult, ParameterDescriptor
 
 
-class NodeParameters:
+class NodeParameters(NodeParameterSetting):
     """The part of `Node` that has to do with parameters."""
 
-    PARAM_REL_TOL = _REL_TOL
-    _parameters: dict[str, Parameter[Any]]
-    _descriptors: dict[str, ParameterDescriptor]
+    PARAM_REL_TOL = REL_TOL
     _parameter_overrides: dict[str, Parameter[Any]]
-    _allow_undeclared_parameters: bool
-    _pre_set_parameters_callbacks: list[PreSet]
-    _on_set_parameters_callbacks: list[OnSet]
-    _post_set_parameters_callbacks: list[PostSet]
 
     def _rcl_init_parameters(self, overrides: dict[str, Parameter[Any]], allow_undeclared: bool) -> None:
         self._parameters = {}
@@ -48,11 +37,6 @@ class NodeParameters:
         self._pre_set_parameters_callbacks = []
         self._on_set_parameters_callbacks = []
         self._post_set_parameters_callbacks = []
-
-    def _rcl_publish_parameter_event(
-        self, new: list[Parameter[Any]], changed: list[Parameter[Any]], deleted: list[Parameter[Any]]
-    ) -> None:
-        raise NotImplementedError
 
     # Declaring.
 
@@ -106,7 +90,7 @@ class NodeParameters:
         taken: list[str] = []
         descriptors: dict[str, ParameterDescriptor] = {}
         for index, entry in enumerate(parameters):
-            name, value, descriptor = _unpacked(index, entry)
+            name, value, descriptor = unpacked(index, entry)
             bare = name
             if namespace:
                 name = f"{namespace}{PARAMETER_SEPARATOR_STRING}{name}"
@@ -117,9 +101,9 @@ class NodeParameters:
             overrides = self._parameter_overrides
             override = overrides.get(name) or overrides.get(bare)  # the bare name serves too, as in ROS 2
             if override is not None and not ignore_override:
-                parameter = _overridden(Parameter(name, override.type_, override.value), value, descriptor)
+                parameter = overridden(Parameter(name, override.type_, override.value), value, descriptor)
             else:
-                parameter = _initial(name, value, descriptor)
+                parameter = initial(name, value, descriptor)
             declared.append(parameter)
             descriptors[name] = descriptor
         if taken:
@@ -134,7 +118,7 @@ class NodeParameters:
             if parameter.type_ == ParameterType.NOT_SET:
                 self._rcl_store(parameter, descriptor)
                 continue
-            result = self._rcl_check_value(parameter, descriptor)
+            result = check_value(parameter, descriptor)
             if result.successful:
                 result = self._rcl_ask_callbacks([parameter])
             if not result.successful:
@@ -268,148 +252,6 @@ class NodeParameters:
                 result.prefixes.append(prefix)
         return result
 
-    # Setting.
-
-    def set_parameters(self, parameter_list: list[Parameter[Any]]) -> list[SetParametersResult]:
-        """Set parameters one by one.
-
-        Returns
-        -------
-        list of rcl_interfaces/msg/SetParametersResult
-            Whether each was set, and if not, why.
-
-        Raises
-        ------
-        ParameterNotDeclaredException
-            When one was not declared and undeclared ones are not allowed; those before it are set.
-        """
-        results = []
-        for parameter in parameter_list:
-            self._rcl_check_declared([parameter])
-            results.append(self._rcl_set_checked([parameter]))
-        return results
-
-    def set_parameters_atomically(self, parameter_list: list[Parameter[Any]]) -> SetParametersResult:
-        """Set all of the parameters or none; see `set_parameters`."""
-        self._rcl_check_declared(parameter_list)
-        return self._rcl_set_checked(parameter_list)
-
-    def _rcl_check_declared(self, parameters: Iterable[Parameter[Any]]) -> None:
-        for parameter in parameters:
-            if not isinstance(parameter, Parameter):
-                raise TypeError("parameter must be instance of type 'rclpy.parameter.Parameter'")
-        missing = [parameter.name for parameter in parameters if parameter.name not in self._parameters]
-        if missing and not self._allow_undeclared_parameters:
-            raise ParameterNotDeclaredException(missing)
-
-    def _rcl_set_checked(self, parameters: list[Parameter[Any]]) -> SetParametersResult:
-        from rcl_interfaces.msg import ParameterDescriptor, SetParametersResult
-
-        for callback in self._pre_set_parameters_callbacks:
-            modified = callback(parameters)
-            if not modified:
-                return SetParametersResult(
-                    successful=False,
-                    reason="parameter list cannot be empty, this might be due to pre_set_parameters_callback "
-                    "modifying the original parameters list.",
-                )
-            parameters = modified
-        for parameter in parameters:
-            descriptor = self._descriptors.get(parameter.name) or ParameterDescriptor(dynamic_typing=True)
-            result = self._rcl_check_change(parameter, descriptor)
-            if not result.successful:
-                return result
-        result = self._rcl_ask_callbacks(parameters)
-        if result.successful:
-            self._rcl_commit(parameters)
-        return result
-
-    def _rcl_check_change(self, parameter: Parameter[Any], descriptor: ParameterDescriptor) -> SetParametersResult:
-        from rcl_interfaces.msg import SetParametersResult
-
-        if descriptor.read_only:
-            return SetParametersResult(successful=False, reason=str(ParameterImmutableException(parameter.name)))
-        if parameter.type_ == ParameterType.NOT_SET and not descriptor.dynamic_typing:
-            return SetParametersResult(successful=False, reason="Static parameter cannot be undeclared")
-        return self._rcl_check_value(parameter, descriptor)
-
-    def _rcl_check_value(self, parameter: Parameter[Any], descriptor: ParameterDescriptor) -> SetParametersResult:
-        from rcl_interfaces.msg import SetParametersResult
-
-        expected = ParameterType(descriptor.type)
-        if parameter.type_ == ParameterType.NOT_SET:
-            return SetParametersResult(successful=True)
-        if not descriptor.dynamic_typing and expected not in (ParameterType.NOT_SET, parameter.type_):
-            reason = f"Wrong parameter type, expected 'Type.{expected.name}' got 'Type.{parameter.type_.name}'"
-            return SetParametersResult(successful=False, reason=reason)
-        reason = ""
-        if parameter.type_ == ParameterType.INTEGER and descriptor.integer_range:
-            reason = _integer_fault(parameter, descriptor.integer_range[0])
-        elif parameter.type_ == ParameterType.DOUBLE and descriptor.floating_point_range:
-            reason = _float_fault(parameter, descriptor.floating_point_range[0])
-        return SetParametersResult(successful=not reason, reason=reason)
-
-    def _rcl_ask_callbacks(self, parameters: list[Parameter[Any]]) -> SetParametersResult:
-        from rcl_interfaces.msg import SetParametersResult
-
-        for callback in self._on_set_parameters_callbacks:
-            result = callback(parameters)
-            if not result.successful:
-                return result
-        return SetParametersResult(successful=True)
-
-    def _rcl_commit(self, parameters: list[Parameter[Any]]) -> None:
-        from rcl_interfaces.msg import ParameterDescriptor
-
-        new, changed, deleted = [], [], []
-        for parameter in parameters:
-            if parameter.type_ == ParameterType.NOT_SET:
-                if parameter.name in self._parameters:
-                    deleted.append(self._parameters.pop(parameter.name))
-                    self._descriptors.pop(parameter.name)
-                continue
-            known = parameter.name in self._parameters
-            was_set = known and self._parameters[parameter.name].type_ != ParameterType.NOT_SET
-            (changed if was_set else new).append(parameter)
-            self._parameters[parameter.name] = parameter
-            if not known:
-                self._descriptors[parameter.name] = ParameterDescriptor(name=parameter.name, dynamic_typing=True)
-        self._rcl_publish_parameter_event(new, changed, deleted)
-        for callback in self._post_set_parameters_callbacks:
-            callback(parameters)
-
-    def _rcl_tell_set(self, parameters: list[Parameter[Any]], new: list[Parameter[Any]]) -> None:
-        self._rcl_publish_parameter_event([one for one in new if one.type_ != ParameterType.NOT_SET], [], [])
-        if parameters:
-            for callback in self._post_set_parameters_callbacks:
-                callback(parameters)
-
-    # Callbacks.
-
-    def add_pre_set_parameters_callback(self, callback: PreSet) -> None:
-        """Call ``callback(parameters) -> parameters`` before parameters are checked; it may change the list."""
-        self._pre_set_parameters_callbacks.insert(0, callback)
-
-    def add_on_set_parameters_callback(self, callback: OnSet) -> None:
-        """Call ``callback(parameters) -> SetParametersResult`` before parameters are set; it may refuse."""
-        self._on_set_parameters_callbacks.insert(0, callback)
-
-    def add_post_set_parameters_callback(self, callback: PostSet) -> None:
-        """Call ``callback(parameters)`` after parameters were set."""
-        self._post_set_parameters_callbacks.insert(0, callback)
-
-    def remove_pre_set_parameters_callback(self, callback: PreSet) -> None:
-        """Undo `add_pre_set_parameters_callback`; ValueError when it was not added."""
-        self._pre_set_parameters_callbacks.remove(callback)
-
-    def remove_on_set_parameters_callback(self, callback: OnSet) -> None:
-        """Undo `add_on_set_parameters_callback`; ValueError when it was not added."""
-        self._on_set_parameters_callbacks.remove(callback)
-
-    def remove_post_set_parameters_callback(self, callback: PostSet) -> None:
-        """Undo `add_post_set_parameters_callback`; ValueError when it was not added."""
-        self._post_set_parameters_callbacks.remove(callback)
-
     # Describing.
 
     def describe_parameter(self, name: str) -> ParameterDescriptor:
@@ -471,9 +313,9 @@ class NodeParameters:
         if alternative_value is not None:
             from rcl_interfaces.msg import Parameter as ParameterMsg
 
-            if not self._rcl_check_value(current, fresh).successful:
+            if not check_value(current, fresh).successful:
                 current = Parameter.from_parameter_msg(ParameterMsg(name=name, value=alternative_value))
-        result = self._rcl_check_value(current, fresh)
+        result = check_value(current, fresh)
         if result.successful and current is not self._parameters[name]:
             result = self._rcl_ask_callbacks([current])
         if not result.successful:
@@ -482,85 +324,6 @@ class NodeParameters:
         if current is not self._parameters[name]:
             self._rcl_commit([current])
         return current.get_parameter_value()
-
-
-def _unpacked(index: int, entry: Any) -> tuple[str, Any, Any]:
-    """Return (name, value, descriptor) of a declaration."""
-    from rcl_interfaces.msg import ParameterDescriptor
-
-    if not isinstance(entry, tuple) or not 1 <= len(entry) <= 3:
-        raise TypeError(
-            f"Invalid parameter tuple length at index {index} in parameters list: {entry}; expecting 1 to 3"
-        )
-    name = entry[0]
-    if not isinstance(name, str):
-        raise TypeError(f"First element {name} at index {index} in parameters list is not a str.")
-    value = entry[1] if len(entry) > 1 else None
-    is_message = type(value).__name__ == "ParameterValue"
-    if is_message:
-        value = parameter_value_to_python(value)
-    descriptor = copy.deepcopy(entry[2]) if len(entry) > 2 else None
-    if descriptor is None:
-        descriptor = ParameterDescriptor(dynamic_typing=value is None)
-    if not isinstance(descriptor, ParameterDescriptor):
-        raise TypeError(f"Third element {descriptor} at index {index} in parameters list is not a ParameterDescriptor.")
-    if is_message and value is None and not descriptor.dynamic_typing:
-        raise ValueError(f"Cannot declare the statically typed parameter '{name}' with a value that is not set")
-    if len(entry) == 1:
-        warnings.warn(
-            f"Parameter '{name}' is declared by its name alone, which is deprecated: give it a default value, a type, "
-            "or a descriptor with dynamic_typing=True",
-            stacklevel=4,
-        )
-    return name, value, descriptor
-
-
-def _initial(name: str, value: Any, descriptor: ParameterDescriptor) -> Parameter[Any]:
-    """Return a declared parameter with its initial value; notes its type in the descriptor."""
-    if isinstance(value, ParameterType):
-        if value == ParameterType.NOT_SET:
-            raise ValueError(f"Cannot declare parameter '{name}' as statically typed of type NOT_SET")
-        if descriptor.dynamic_typing:
-            raise ValueError("When declaring a parameter with a type, it cannot be of dynamic typing")
-        descriptor.type = int(value)
-        return Parameter(name, ParameterType.NOT_SET)
-    if value is None and not descriptor.dynamic_typing and descriptor.type == ParameterType.NOT_SET:
-        raise ValueError(
-            f"Parameter '{name}' has neither a value nor a type; give one or set dynamic_typing in its descriptor"
-        )
-    parameter: Parameter[Any] = Parameter(name, value=value)
-    if value is not None:
-        if isinstance(value, (list, tuple)) and not value and descriptor.type >= ParameterType.BYTE_ARRAY:
-            return Parameter(name, ParameterType(descriptor.type), value)
-        descriptor.type = int(parameter.type_)
-    return parameter
-
-
-def _overridden(override: Parameter[Any], value: Any, descriptor: ParameterDescriptor) -> Parameter[Any]:
-    """Return a declared parameter with a value from outside; notes its type in the descriptor."""
-    if descriptor.dynamic_typing:
-        return override
-    expected = value if isinstance(value, ParameterType) else ParameterType.from_parameter_value(value)
-    if expected == ParameterType.NOT_SET:
-        expected = ParameterType(descriptor.type)
-    override = _fitting(override, expected)
-    descriptor.type = int(expected if expected != ParameterType.NOT_SET else override.type_)
-    return override
-
-
-def _fitting(parameter: Parameter[Any], expected: ParameterType) -> Parameter[Any]:
-    """Return an override as the type that was declared.
-
-    Raises
-    ------
-    InvalidParameterTypeException
-        When it is of another type.
-    """
-    if expected in (ParameterType.NOT_SET, parameter.type_):
-        return parameter
-    if isinstance(parameter.value, (list, tuple)) and not parameter.value and expected >= ParameterType.BYTE_ARRAY:
-        return Parameter(parameter.name, expected, parameter.value)
-    raise InvalidParameterTypeException(parameter, expected)
 
 
 def _is_listed(name: str, prefixes: list[str], depth: int, recursive: bool) -> bool:
@@ -574,35 +337,3 @@ def _is_listed(name: str, prefixes: list[str], depth: int, recursive: bool) -> b
         if name.startswith(start) and (recursive or name[len(start) :].count(separator) < depth):
             return True
     return False
-
-
-def _integer_fault(parameter: Parameter[Any], allowed: Any) -> str:
-    low, high = sorted((allowed.from_value, allowed.to_value))
-    value = parameter.value
-    if value in (low, high):
-        return ""
-    if not low < value < high:
-        return f"Parameter {parameter.name} out of range. Min: {low}, Max: {high}, value: {value}"
-    if allowed.step and (value - low) % allowed.step:
-        return (
-            f"The parameter value for {parameter.name} is not a valid step. Min: {low}, max: {high}, "
-            f"value: {value}, step: {allowed.step}"
-        )
-    return ""
-
-
-def _float_fault(parameter: Parameter[Any], allowed: Any) -> str:
-    low, high = sorted((allowed.from_value, allowed.to_value))
-    value = parameter.value
-    if any(math.isclose(value, edge, rel_tol=_REL_TOL) for edge in (low, high)):
-        return ""
-    if not low < value < high:
-        return f"Parameter {parameter.name} out of range Min: {low}, Max: {high}, value: {value}"
-    if allowed.step:
-        nearest = low + round((value - low) / allowed.step) * allowed.step
-        if not math.isclose(value, nearest, rel_tol=_REL_TOL):
-            return (
-                f"The parameter value for {parameter.name} is not close enough to a valid step. Min: {low}, "
-                f"max: {high}, value: {value}, step: {allowed.step}"
-            )
-    return ""
