@@ -1,0 +1,3 @@
+"""Laser scans as point clouds."""
+
+from .laser_geometry import LaserProjection as LaserProjection
