@@ -61,6 +61,10 @@ class KinematicTree:
         Of each of the k joints, for its transform: parent link, child link, joint name.
     moving : array (k,) of bool
         Whether a joint's transform depends on the positions.
+    drivers : array (k,) of int
+        The position that moves a joint; n for those that none moves.
+    floating : array (k,) of bool
+        Whether a joint holds its child nowhere.
     """
 
     def __init__(self, robot: Robot | Model) -> None:
@@ -81,6 +85,8 @@ class KinematicTree:
         self._index = {name: i for i, name in enumerate(self.joint_names)}
         self._motion = _motion(joints, robot.joints, self._index)
         self.moving = np.any(self._motion.turn != 0, axis=1) | np.any(self._motion.slide != 0, axis=1)
+        self.drivers = np.where(self.moving, self._motion.position_index, len(self.joint_names))
+        self.floating = np.array([joint.type is JointType.FLOATING for joint in joints], dtype=bool)
         self._origin = _PoseArray.of([joint.origin for joint in joints])
         self._anchor_inverse = _PoseArray.of([joint.anchor.inverse for joint in joints])
         self._anchored = any(joint.anchor != Pose() for joint in joints)

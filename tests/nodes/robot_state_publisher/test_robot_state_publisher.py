@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 from geometry_msgs.msg import Quaternion, Transform, TransformStamped, Vector3
 from rclpy.parameter import Parameter
+from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.serialization import deserialize_message, serialize_message
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Header
@@ -71,11 +72,11 @@ def test_joint_states_become_transforms(node, written):  # noqa: F811
     heard = []
     done = threading.Event()
     node.create_subscription(TFMessage, "/tf", lambda message: (heard.append(message), done.set()), 10)
-    states = node.create_publisher(JointState, "/joint_states", 10)
+    told = node.create_publisher(JointState, "/joint_states", 10)
     with spinning(node, state_publisher):
-        message = JointState(name=["nobody", "j1"], position=[9.0, np.pi / 2])
+        message = JointState(name=["nobody", "j1", "j0"], position=[9.0, np.pi / 2, 0.0])
         message.header.stamp.sec = 3
-        states.publish(message)
+        told.publish(message)
         assert done.wait(5.0)
     first, second = heard[0].transforms
     assert (first.header.frame_id, first.child_frame_id) == ("bot/l0", "bot/l1")
@@ -86,12 +87,86 @@ def test_joint_states_become_transforms(node, written):  # noqa: F811
     state_publisher.destroy_node()
 
 
-def test_names_may_change_from_message_to_message(graph):  # noqa: F811
-    state_publisher = publisher(chain(3))
-    state_publisher._take(["j2", "j0"], [0.2, 0.1])
-    state_publisher._take(["j1"], [0.3])
+def states(seconds, **positions):
+    message = JointState(name=list(positions), position=list(positions.values()))
+    message.header.stamp.sec, message.header.stamp.nanosec = divmod(round(seconds * 1e9), 10**9)
+    return message
+
+
+@pytest.fixture
+def sent(graph, monkeypatch):  # noqa: F811
+    """Makes a node and returns it with the list of what it publishes on /tf."""
+    nodes = []
+
+    def make(text, **parameters):
+        nodes.append(publisher(text, **parameters))
+        heard = []
+        monkeypatch.setattr(nodes[-1]._tf_publisher, "publish", lambda data: heard.append(data))
+        return nodes[-1], heard
+
+    yield make
+    for each in nodes:
+        each.destroy_node()
+
+
+def children(data):
+    return [transform.child_frame_id for transform in deserialize_message(data, TFMessage).transforms]
+
+
+def test_only_what_is_told_of_has_a_transform(sent):
+    state_publisher, heard = sent(chain(3).replace("</robot>", MIMIC))
+    state_publisher._on_joint_states(states(1.0, j2=0.2, j0=0.1))
+    state_publisher._on_joint_states(states(1.0, j1=0.3))
+    state_publisher._on_joint_states(states(1.0, nobody=0.3))
+    assert [children(data) for data in heard] == [["l1", "m", "l3"], ["l2"]]
     assert state_publisher._positions.tolist() == [0.1, 0.3, 0.2]
-    state_publisher.destroy_node()
+
+
+MIMIC = """<link name="m"/><joint name="k" type="continuous"><parent link="l0"/><child link="m"/>
+<mimic joint="j0"/></joint></robot>"""
+
+
+def test_states_come_as_often_as_wanted_though_not_on_time(sent):
+    random = np.random.default_rng(1)
+    late = random.uniform(0, 0.008, 1000)
+    for rate, expected in ((100.0, 1000), (20.0, 200)):
+        state_publisher, heard = sent(chain(1), publish_frequency=rate)
+        for i in range(1000):
+            state_publisher._on_joint_states(states(5 + 0.01 * i + late[i], j0=0.0))
+        assert len(heard) == pytest.approx(expected, abs=3)
+
+
+def test_two_who_tell_of_different_joints_are_both_heard(sent):
+    state_publisher, heard = sent(chain(2), publish_frequency=10.0)
+    for i in range(100):
+        state_publisher._on_joint_states(states(5 + 0.1 * i, j0=0.0))
+        state_publisher._on_joint_states(states(5 + 0.1 * i + 0.001, j1=0.0))
+    assert len(heard) == 200
+
+
+def test_a_clock_may_be_set_back(sent):
+    state_publisher, heard = sent(chain(1))
+    for seconds in (50.0, 1.0, 1.01, 1.06):
+        state_publisher._on_joint_states(states(seconds, j0=0.0))
+    assert len(heard) == 3
+
+
+def test_states_without_a_time_count_only_when_times_are_ignored(sent):
+    for ignored in (False, True):
+        state_publisher, heard = sent(chain(1), ignore_timestamp=ignored)
+        state_publisher._on_joint_states(states(0.0, j0=0.0))
+        assert len(heard) == ignored
+
+
+@pytest.mark.parametrize(("type_", "expected"), [("floating", []), ("planar", ["l1"]), ("fixed", ["l1"])])
+def test_what_floats_is_left_to_others(sent, node, type_, expected):  # noqa: F811
+    heard, done = [], threading.Event()
+    latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    node.create_subscription(TFMessage, "/tf_static", lambda message: (heard.append(message), done.set()), latched)
+    state_publisher, _ = sent(chain(1).replace("continuous", type_))
+    with spinning(node, state_publisher):
+        assert done.wait(5.0)
+    assert [each.child_frame_id for each in heard[0].transforms] == expected
 
 
 def test_a_missing_description_is_named(graph):  # noqa: F811
@@ -103,7 +178,7 @@ def test_a_thousand_joints_take_less_than_a_millisecond(graph):  # noqa: F811
     """At 100 Hz that is a tenth of a core: decoding, kinematics and encoding together."""
     state_publisher = publisher(chain(1000), publish_frequency=0.0)
     names = [f"j{i}" for i in range(1000)]
-    data = bytes(serialize_message(JointState(name=names, position=np.linspace(0, 1, 1000))))
+    data = bytes(serialize_message(states(1.0, **dict(zip(names, np.linspace(0, 1, 1000).tolist(), strict=True)))))
     times = []
     for _ in range(60):
         begun = time.thread_time()

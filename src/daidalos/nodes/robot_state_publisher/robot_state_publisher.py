@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import sys
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.qos import DurabilityPolicy, QoSProfile
@@ -25,14 +27,38 @@ if TYPE_CHECKING:
     from daidalos.description.robot import Robot
     from daidalos.description.world import Model
 
+_KEPT = 100
+"""Sets of joints that are told of together; a robot has a few."""
+
 _LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+
+
+@dataclass(frozen=True)
+class _Told:
+    """What a message about certain joints means.
+
+    Parameters
+    ----------
+    columns, rows : arrays of int
+        Places of the robot's joints in the message, and in the positions.
+    moved : array of int
+        Transforms that depend on them.
+    bytes : TransformBytes
+        Writes those.
+    """
+
+    columns: NDArray[np.intp]
+    rows: NDArray[np.intp]
+    moved: NDArray[np.intp]
+    bytes: TransformBytes
 
 
 class RobotStatePublisher(Node):
     """Publishes ``/tf``, ``/tf_static`` and ``/robot_description``.
 
     Parameters of the node are those of ROS 2's: ``robot_description``, ``publish_frequency`` [Hz],
-    ``ignore_timestamp``, ``frame_prefix``.
+    ``ignore_timestamp``, ``frame_prefix``. Also as there, a joint has a transform only once its state is told, and
+    what a floating joint holds is left to others.
 
     Parameters
     ----------
@@ -77,18 +103,11 @@ class RobotStatePublisher(Node):
             raise UserError(str(error)) from None
         self._tree = KinematicTree(robot)
         self._positions = np.zeros(len(self._tree.joint_names))
-        self._index = {name: i for i, name in enumerate(self._tree.joint_names)}
-        self._moving = np.flatnonzero(self._tree.moving)
-        self._names: list[str] = []
-        self._rows = self._columns = np.zeros(0, dtype=np.intp)
-        self._last_ns = -1
+        self._last_ns = np.zeros(len(self._tree.joint_names), dtype=np.int64)
+        self._told: dict[tuple[str, ...], _Told] = {}
         self._prefix = self.get_parameter("frame_prefix").value
-        self._bytes = TransformBytes(
-            [self._prefix + self._tree.parents[row] for row in self._moving],
-            [self._prefix + self._tree.children[row] for row in self._moving],
-        )
         self._static_broadcaster.sendTransform(
-            self._transforms(np.flatnonzero(~self._tree.moving), self.get_clock().now().to_msg())
+            self._transforms(np.flatnonzero(~self._tree.moving & ~self._tree.floating), self.get_clock().now().to_msg())
         )
         self._description_publisher.publish(String(data=text))
         self.get_logger().info("Robot initialized")
@@ -120,38 +139,55 @@ class RobotStatePublisher(Node):
                 throttle_duration_sec=5.0,
             )
             return
-        self._take(message.name, message.position)
-        if self._is_due(nanoseconds(message.header.stamp)):
-            stamp = message.header.stamp
-            if self.get_parameter("ignore_timestamp").value:
-                stamp = self.get_clock().now().to_msg()
-            self._publish(stamp)
-
-    def _take(self, names: list[str], positions: Any) -> None:
-        """Take the positions of joints; where each goes is looked up once for as long as the names stay."""
-        if names != self._names:
-            self._names = list(names)
-            rows = [(self._index[name], i) for i, name in enumerate(names) if name in self._index]
-            self._rows, self._columns = np.array(rows, dtype=np.intp).reshape(-1, 2).T
-        self._positions[self._rows] = np.asarray(positions, dtype=np.float64)[self._columns]
-
-    def _publish(self, stamp: Any) -> None:
-        if len(self._moving):
+        told = self._meaning(tuple(message.name))
+        if not len(told.rows):
+            return
+        self._positions[told.rows] = np.asarray(message.position, dtype=np.float64)[told.columns]
+        stamp = message.header.stamp
+        if self.get_parameter("ignore_timestamp").value or self._is_due(nanoseconds(stamp), told.rows):
             translations, rotations = self._tree.joint_transforms(self._positions)
-            rows = self._moving
-            message = self._bytes.write(stamp.sec, stamp.nanosec, translations[rows], rotations[rows])
-            self._tf_publisher.publish(message)
+            self._tf_publisher.publish(
+                told.bytes.write(stamp.sec, stamp.nanosec, translations[told.moved], rotations[told.moved])
+            )
 
-    def _is_due(self, stamp_ns: int) -> bool:
-        """Tell whether the last transforms are old enough, by the stamps of joint states."""
-        if self.get_parameter("ignore_timestamp").value:
-            stamp_ns = self.get_clock().now().nanoseconds
-        frequency = self.get_parameter("publish_frequency").value
-        period = 0.0 if frequency <= 0.0 else 1e9 / frequency
-        # A stamp before the last one is a clock that was set back.
-        if self._last_ns <= stamp_ns < self._last_ns + period:
+    def _meaning(self, names: tuple[str, ...]) -> _Told:
+        """Return what a message about these joints means; it is worked out once for those that are told of together."""
+        if names not in self._told:
+            if len(self._told) >= _KEPT:
+                self._told.clear()
+            index = {name: row for row, name in enumerate(self._tree.joint_names)}
+            places = [(column, index[name]) for column, name in enumerate(names) if name in index]
+            columns, rows = np.array(places, dtype=np.intp).reshape(-1, 2).T
+            moved = np.flatnonzero(np.isin(self._tree.drivers, rows))
+            self._told[names] = _Told(
+                columns,
+                rows,
+                moved,
+                TransformBytes(
+                    [self._prefix + self._tree.parents[row] for row in moved],
+                    [self._prefix + self._tree.children[row] for row in moved],
+                ),
+            )
+        return self._told[names]
+
+    def _is_due(self, stamp_ns: int, rows: NDArray[np.intp]) -> bool:
+        """Tell whether the last transforms of joints are old enough, by the stamps of joint states.
+
+        States that come at the wanted rate are late and early in turn: up to one period is kept for the early ones.
+        """
+        if stamp_ns == 0:
+            self.get_logger().warning(
+                "joint states without a time are not published; set header.stamp", throttle_duration_sec=10.0
+            )
             return False
-        self._last_ns = stamp_ns
+        frequency = self.get_parameter("publish_frequency").value
+        period = 0 if frequency <= 0.0 else round(1e9 / frequency)
+        last = int(self._last_ns[rows].min())
+        if stamp_ns < last:  # the clock was set back
+            last = stamp_ns - period
+        if stamp_ns < last + period:
+            return False
+        self._last_ns[rows] = max(last + period, stamp_ns - period)
         return True
 
     def _on_set_parameters(self, parameters: list[Parameter[Any]]) -> Any:
