@@ -38,9 +38,11 @@ def gz(argv: Sequence[str] | None = None) -> int:
             file=sys.stderr,
         )
         return 2
+    from daidalos.nodes.ros_gz_sim.gz_sim import parse
+
     if "-g" in words:
         return gzclient()
-    return _run("ros_gz_sim", "gz_sim", words, with_view="-s" not in words)
+    return _run("ros_gz_sim", "gz_sim", words, with_view=not parse(words).server)
 
 
 def _run(package: str, server: str, words: Sequence[str], with_view: bool) -> int:

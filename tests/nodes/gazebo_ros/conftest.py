@@ -47,11 +47,11 @@ class Shop:
 
 @pytest.fixture
 def shop(graph, tmp_path):  # noqa: F811
-    from daidalos.nodes.gazebo_ros.gzserver import GzServer
+    from daidalos.nodes.gazebo_ros.gzserver import GzServer, Start
 
     path = tmp_path / "shop.world"
     path.write_text(WORLD)
-    server = GzServer(path, paused=True)
+    server = GzServer(Start(path, paused=True))
     client = rclpy.create_node("client")
     executor = MultiThreadedExecutor(4)
     executor.add_node(server)

@@ -16,16 +16,6 @@ def test_gzs_arguments_may_come_in_one_word():
     assert gz_sim.parse(["-v", "2", "-s"]).server
 
 
-def test_worlds_are_found_where_packages_keep_them(tmp_path, monkeypatch):
-    assert gz_sim.find_world("empty.sdf") is None
-    assert gz_sim.find_world("arena.world").name == "arena.world"
-    (tmp_path / "shop.sdf").write_text("")
-    monkeypatch.setenv("GZ_SIM_RESOURCE_PATH", str(tmp_path))
-    assert gz_sim.find_world("shop.sdf") == tmp_path / "shop.sdf"
-    with pytest.raises(FileNotFoundError, match=r"no world file 'none\.sdf'"):
-        gz_sim.find_world("none.sdf")
-
-
 def test_create_takes_one_dash_or_two():
     arguments = create.parse(["-name", "bot", "--file", "a.sdf", "-x", "1.5", "-Y", "-2", "-allow_renaming", "true"])
     assert (arguments.name, arguments.file, arguments.x, arguments.Y) == ("bot", "a.sdf", 1.5, -2.0)

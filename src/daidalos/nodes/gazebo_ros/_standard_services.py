@@ -16,6 +16,7 @@ from daidalos.nodes.conversions import time_message
 from daidalos.nodes.gazebo_ros._entities import find_entity, motion_of, set_motion
 from daidalos.nodes.gazebo_ros._host import Host, read_entity, read_entity_file, read_world
 from daidalos.nodes.gazebo_ros._states import pose_message, pose_of, twist_message, vector_of
+from daidalos.nodes.gazebo_ros._worlds import world_folders, worlds_in
 from daidalos.nodes.packages import package_share
 from daidalos.simulation import Simulation
 from daidalos.simulation.errors import NameTakenError, SimulationError, UnknownNameError
@@ -318,8 +319,8 @@ class StandardServices:
     def _available_worlds(self, request: Any, response: Any) -> None:
         from simulation_interfaces.msg import Resource, WorldResource
 
-        folders = [*map(Path, request.additional_sources), *_world_folders()]
-        files = [file for folder in folders for file in sorted(_worlds_in(folder))]
+        folders = [*map(Path, request.additional_sources), *world_folders()]
+        files = [file for folder in folders for file in sorted(worlds_in(folder))]
         response.worlds = [
             WorldResource(name=file.stem, world_resource=Resource(uri=str(file))) for file in dict.fromkeys(files)
         ]
@@ -368,23 +369,6 @@ def _entity(resource: Any) -> Robot | Model:
         raise Failure(_NO_RESOURCE, f"{path} can not be read: {error}") from None
 
 
-def _resource(resource: Any, missing: int) -> str:
-    """Return a description's text."""
-    if resource.resource_string:
-        return str(resource.resource_string)
-    path = _file(resource.uri, missing)
-    if path.is_dir():
-        path = path / "model.sdf"
-    if path.suffix == ".xacro":
-        from daidalos.description.xacro import load_xacro
-
-        return load_xacro(path, resolve=package_share)
-    try:
-        return path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        raise Failure(missing, f"{path} can not be read: {error}") from None
-
-
 def _file(uri: str, missing: int) -> Path:
     path = resolve_uri(uri, Path.cwd(), package_share, default_model_path()) if uri else None
     if path is None:
@@ -404,14 +388,3 @@ def _state(simulation: Simulation, name: str) -> Any:
     state = EntityState(pose=pose_message(motion.pose), twist=twist_message(motion.linear, motion.angular))
     state.header.frame_id, state.header.stamp = "world", time_message(simulation.time_ns)
     return state
-
-
-def _world_folders() -> list[Path]:
-    from ament_index_python.packages import get_packages_with_prefixes
-
-    shares = (package_share(name) for name in get_packages_with_prefixes())
-    return [Path(share) / "worlds" for share in shares if share is not None]
-
-
-def _worlds_in(folder: Path) -> list[Path]:
-    return [file for pattern in ("*.world", "*.sdf") for file in folder.glob(pattern)] if folder.is_dir() else []

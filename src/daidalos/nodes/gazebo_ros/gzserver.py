@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-import argparse
 import math
 import signal
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
+from rclpy.logging import LoggingSeverity, set_logger_level
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.qos import DurabilityPolicy, QoSProfile
@@ -18,6 +19,8 @@ from rclpy.utilities import remove_ros_args
 
 from daidalos.description.errors import DescriptionError
 from daidalos.nodes.conversions import time_message
+from daidalos.nodes.gazebo_ros._command_line import parse
+from daidalos.nodes.gazebo_ros._worlds import find_world
 from daidalos.nodes.runner import UserError, run
 from daidalos.nodes.warming import warm_up_in_background
 
@@ -26,13 +29,14 @@ if TYPE_CHECKING:
     from daidalos.simulation import Simulation
     from daidalos.simulation.samples import Sample
 
-_EMPTY = ("", "empty.world", "worlds/empty.world")
-_CLOCK_PERIOD_NS = 10_000_000
+_CLOCK_RATE = 100.0
+_STATES_PERIOD_NS = 20_000_000
 _LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
-class GzServer(Node):
-    """Runs a simulation and connects it with the graph.
+@dataclass(frozen=True)
+class Start:
+    """How a simulation begins, and when it ends.
 
     Parameters
     ----------
@@ -40,6 +44,27 @@ class GzServer(Node):
         An SDF file; an empty world with a ground where None.
     paused : bool
         Whether to begin with time standing still.
+    update_rate : float or None
+        Steps in a second of real time [Hz], 0 for as many as can be; None leaves it to the world and the
+        parameter ``real_time_factor``.
+    steps : int or None
+        After how many of them the process ends.
+    """
+
+    world: Path | None = None
+    paused: bool = False
+    update_rate: float | None = None
+    steps: int | None = None
+
+
+class GzServer(Node):
+    """Runs a simulation and connects it with the graph.
+
+    Parameters
+    ----------
+    start : Start
+    quit_simulator : callable
+        Ends the process.
     **kwargs
         Of `Node`.
 
@@ -49,15 +74,22 @@ class GzServer(Node):
         When the world cannot be used.
     """
 
-    def __init__(self, world: Path | None = None, paused: bool = False, **kwargs: Any) -> None:
+    def __init__(
+        self,
+        start: Start | None = None,
+        quit_simulator: Callable[[], None] = lambda: signal.raise_signal(signal.SIGTERM),
+        **kwargs: Any,
+    ) -> None:
         super().__init__("gazebo", **kwargs)
         from daidalos.nodes.gazebo_ros._companions import Companions
         from daidalos.nodes.gazebo_ros._host import Host, read_world, wanted_speed
         from daidalos.nodes.gazebo_ros._pacing import PacedSimulation
         from daidalos.simulation import Simulation
 
+        start = start or Start()
         seed = self.declare_parameter("seed", 0).value
-        described = read_world(world)
+        clock_rate = _positive(self.declare_parameter("publish_rate", _CLOCK_RATE))
+        described = read_world(start.world)
         factor = self.declare_parameter("real_time_factor", wanted_speed(described.physics)).value
         self._watched = self.declare_parameter("contact_monitor", "").value
         self._outgoing: dict[str, tuple[Any, Any]] = {}
@@ -70,17 +102,23 @@ class GzServer(Node):
             return Simulation(description, seed=seed, heard=self._is_heard, warn=self._warn)
 
         simulation = make(described)
-        self._paced = PacedSimulation(simulation, self._publish, _CLOCK_PERIOD_NS, factor, self._on_failure)
+        if start.update_rate is not None:
+            factor = start.update_rate * simulation.step_ns * 1e-9
+        self._quit = quit_simulator
+        self._end_ns = math.inf if start.steps is None else start.steps * simulation.step_ns
+        self._next_states_ns = 0
+        period_ns = max(simulation.step_ns, round(1e9 / clock_rate))
+        self._paced = PacedSimulation(simulation, self._publish, period_ns, factor, self._on_failure)
         self._host = Host(self._paced, make, self._topics_changed)
         self._companions = Companions(self.context, self._warn)
-        self._host.world_path = world
+        self._host.world_path = start.world
         self._create_topics(described)
         self._topics_changed(simulation)
         self._create_services()
         self.add_on_set_parameters_callback(self._on_set_parameters)
         self._performance = self.create_timer(1.0, self._publish_performance, clock=_steady_clock())
-        self._paced.start(paused=paused)
-        name = world.name if world else "an empty world"
+        self._paced.start(paused=start.paused)
+        name = start.world.name if start.world else "an empty world"
         self.get_logger().info(f"simulating {name}, {len(simulation.models)} models")
 
     def _warn(self, text: str) -> None:
@@ -114,7 +152,7 @@ class GzServer(Node):
         GazeboServices(self, self._host, group)
         GzServices(self, self._host, group)
         EditingServices(self, self._host, group)
-        StandardServices(self, self._host, group, lambda: signal.raise_signal(signal.SIGTERM))
+        StandardServices(self, self._host, group, self._quit)
 
     # The simulation's side: called on its thread.
 
@@ -135,10 +173,15 @@ class GzServer(Node):
                 publisher.publish(convert(sample))
         if transforms:
             self._publish_transforms(transforms)
-        if now_ns % 20_000_000 < _CLOCK_PERIOD_NS:
+        if now_ns >= self._next_states_ns or now_ns < self._next_states_ns - _STATES_PERIOD_NS:
+            self._next_states_ns = now_ns - now_ns % _STATES_PERIOD_NS + _STATES_PERIOD_NS
             self._publish_states()
         self._publish_contacts()
         self._companions.publish()
+        if now_ns >= self._end_ns:
+            self._end_ns = math.inf
+            self._paced.set_paused(True)
+            self._quit()
 
     def _publish_transforms(self, transforms: list[Any]) -> None:
         from tf2_msgs.msg import TFMessage
@@ -190,6 +233,7 @@ class GzServer(Node):
                 self._warn_once(f"{topic} is not published: no message is known for {kind.__name__}")
             elif topic not in self._outgoing:
                 self._outgoing[topic] = (self.create_publisher(entry.message(), topic, 10), entry.convert)
+                self.get_logger().debug(f"publishes {topic}")
         commands = simulation.subscriptions
         for topic in [topic for topic in self._incoming if topic not in commands]:
             self.destroy_subscription(self._incoming.pop(topic))
@@ -200,6 +244,7 @@ class GzServer(Node):
             elif topic not in self._incoming:
                 take = self._taker(topic, accepted.convert)
                 self._incoming[topic] = self.create_subscription(accepted.message(), topic, take, 10)
+                self.get_logger().debug(f"listens to {topic}")
 
         self._connect_switches(simulation)
         if ImageSample in wanted.values():
@@ -308,42 +353,24 @@ def _steady_clock() -> Any:
     return Clock(clock_type=ClockType.STEADY_TIME)
 
 
-def _arguments(arguments: Sequence[str]) -> argparse.Namespace:
-    parser = argparse.ArgumentParser(prog="gzserver", description="Simulate a world.")
-    parser.add_argument("world", nargs="?", default="", help="an SDF file; an empty world by default")
-    parser.add_argument("-u", "--pause", action="store_true", help="begin with time standing still")
-    parser.add_argument("--verbose", action="store_true", help="say more")
-    parser.add_argument(
-        "-s",
-        "--server-plugin",
-        action="append",
-        default=[],
-        metavar="PLUGIN",
-        help="ignored: the ROS interface is built in",
-    )
-    parser.add_argument("--seed", type=int, help="of all random numbers")
-    for names in (
-        ("-e", "--physics"),
-        ("-o", "--profile"),
-        ("-p", "--play"),
-        ("-g", "--gui-client-plugin"),
-        ("--iters",),
-    ):
-        parser.add_argument(*names, help="accepted, without effect")
-    for names in (("-r", "--record"), ("--lockstep",), ("--minimal_comms",)):
-        parser.add_argument(*names, action="store_true", help="accepted, without effect")
-    return parser.parse_args(list(arguments))
+def _positive(parameter: Any) -> float:
+    """Return a parameter's value, which must be more than nothing."""
+    if not 0.0 < parameter.value < math.inf:
+        raise UserError(f"the parameter {parameter.name} is {parameter.value:g}; expected a positive number")
+    return float(parameter.value)
 
 
-def serve(world: Path | None, paused: bool, seed: int | None = None) -> int:
+def serve(start: Start, seed: int | None = None, verbose: bool = False) -> int:
     """Run the node until the process is asked to end; return its exit status."""
 
     def make() -> Node:
         from daidalos.simulation.errors import SimulationError
 
         overrides: list[Parameter[int]] = [] if seed is None else [Parameter("seed", value=seed)]
+        if verbose:
+            set_logger_level("gazebo", LoggingSeverity.DEBUG)
         try:
-            return GzServer(world, paused, parameter_overrides=overrides)
+            return GzServer(start, parameter_overrides=overrides)
         except (DescriptionError, SimulationError) as error:
             raise UserError(str(error)) from None
 
@@ -352,12 +379,13 @@ def serve(world: Path | None, paused: bool, seed: int | None = None) -> int:
 
 def main() -> int:
     """Run the node."""
-    arguments = _arguments(remove_ros_args(sys.argv)[1:])
-    world = None if arguments.world in _EMPTY else Path(arguments.world)
-    if world is not None and not world.is_file():
-        print(f"error: there is no world file '{world}'", file=sys.stderr)
+    arguments = parse(remove_ros_args(sys.argv)[1:])
+    try:
+        world = find_world(arguments.world)
+    except FileNotFoundError as error:
+        print(f"error: {error}", file=sys.stderr)
         return 2
-    return serve(world, arguments.pause, arguments.seed)
+    return serve(Start(world, arguments.pause, steps=arguments.iters), arguments.seed, arguments.verbose)
 
 
 if __name__ == "__main__":

@@ -6,13 +6,23 @@ import argparse
 import shlex
 import sys
 from collections.abc import Sequence
-from pathlib import Path
 
 from rclpy.utilities import remove_ros_args
 
-from daidalos.description.resolve import default_model_path
-from daidalos.nodes.gazebo_ros.gzserver import serve
-from daidalos.nodes.packages import package_share
+from daidalos.nodes.gazebo_ros._worlds import find_world
+from daidalos.nodes.gazebo_ros.gzserver import Start, serve
+
+_DEBUG = 4
+_WITH_VALUE = (
+    *("--gui-config", "--initial-sim-time", "--network-role", "--network-secondaries", "--playback", "--record-path"),
+    *("--record-topic", "--record-period", "--physics-engine", "--render-engine", "--render-engine-gui"),
+    *("--render-engine-server", "--render-engine-api-backend", "--render-engine-gui-api-backend"),
+    *("--render-engine-server-api-backend", "--force-version"),
+)
+_ALONE = (
+    *("--headless-rendering", "--levels", "--log-overwrite", "--log-compress", "--record", "--record-resources"),
+    *("--wait-for-assets", "--same-process"),
+)
 
 
 def parse(words: Sequence[str]) -> argparse.Namespace:
@@ -22,39 +32,19 @@ def parse(words: Sequence[str]) -> argparse.Namespace:
     parser.add_argument("-r", dest="run", action="store_true", help="let time go on from the start")
     parser.add_argument("-s", dest="server", action="store_true", help="no view, which is served apart anyway")
     parser.add_argument("-v", "--verbose", nargs="?", const=3, type=int, default=1, help="how much to say, 0 to 4")
-    parser.add_argument("-z", dest="rate", type=float, help="accepted, without effect")
-    parser.add_argument("--iterations", type=int, help="accepted, without effect")
-    parser.add_argument("--seed", type=int, default=0, help="of all random numbers")
-    parser.add_argument("--headless-rendering", action="store_true", help="accepted: nothing else is done")
-    parser.add_argument("--physics-engine", help="accepted, without effect")
-    parser.add_argument("--render-engine", help="accepted, without effect")
-    parser.add_argument("--force-version", help="accepted, without effect")
+    parser.add_argument("-z", dest="rate", type=float, metavar="HZ", help="steps in a second; 0: as many as can be")
+    parser.add_argument("--iterations", type=int, metavar="STEPS", help="end after so many steps")
+    parser.add_argument("--seed", type=int, help="of all random numbers")
+    for name in _WITH_VALUE:
+        parser.add_argument(name, help="accepted, without effect")
+    for name in _ALONE:
+        parser.add_argument(name, action="store_true", help="accepted, without effect")
     return parser.parse_args([part for word in words for part in shlex.split(_apart(word))])
 
 
 def _apart(words: str) -> str:
     """Write ``-v4`` as ``-v 4``."""
     return " ".join(f"-v {word[2:]}" if word[:2] == "-v" and word[2:].isdigit() else word for word in words.split())
-
-
-def find_world(name: str) -> Path | None:
-    """Return the file of a world: as it is, in gz's resource paths, or among packages' worlds; None is empty.
-
-    Raises
-    ------
-    FileNotFoundError
-    """
-    if name in ("", "empty.sdf"):
-        return None
-    places = [Path(), *default_model_path(), *_worlds()]
-    found = next((place / name for place in places if (place / name).is_file()), None)
-    if found is None:
-        raise FileNotFoundError(f"there is no world file '{name}'")
-    return found
-
-
-def _worlds() -> list[Path]:
-    return [Path(share) / "worlds" for share in map(package_share, ("ros_gz_sim", "turtlebot3_gazebo")) if share]
 
 
 def main() -> int:
@@ -65,7 +55,8 @@ def main() -> int:
     except FileNotFoundError as error:
         print(f"error: {error}", file=sys.stderr)
         return 2
-    return serve(world, not arguments.run, arguments.seed)
+    start = Start(world, not arguments.run, arguments.rate, arguments.iterations)
+    return serve(start, arguments.seed, arguments.verbose >= _DEBUG)
 
 
 if __name__ == "__main__":

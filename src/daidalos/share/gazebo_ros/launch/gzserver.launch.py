@@ -1,61 +1,86 @@
 """The simulator alone."""
 
+import shlex
+
 from launch import LaunchDescription
-from launch.actions import DeclareLaunchArgument, OpaqueFunction
-from launch.conditions import IfCondition
+from launch.actions import DeclareLaunchArgument, OpaqueFunction, Shutdown
 from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
 from launch_ros.parameter_descriptions import ParameterValue
+
+SWITCHES = {
+    "version": "say which one this is, and end",
+    "verbose": "say more",
+    "lockstep": "accepted, without effect",
+    "help": "say what the server takes, and end",
+    "pause": "begin with time standing still",
+    "record": "accepted, without effect",
+    "minimal_comms": "accepted, without effect",
+}
+VALUES = {
+    "seed": "of all random numbers",
+    "iters": "end after so many steps",
+    "physics": "accepted, without effect",
+    "play": "accepted, without effect",
+    "record_encoding": "accepted, without effect",
+    "record_path": "accepted, without effect",
+    "record_period": "accepted, without effect",
+    "record_filter": "accepted, without effect",
+    "profile": "accepted, without effect",
+}
+OTHERS = {
+    "world": ("", "an SDF world; an empty one by default"),
+    "params_file": ("", "YAML file with parameters of the node gazebo"),
+    "extra_gazebo_args": ("", "more arguments of the server"),
+    "server": ("true", "whether to start the simulator"),
+    "server_required": ("false", "whether everything ends with the simulator"),
+    "real_time_factor": ("", "0: as fast as possible; the world's by default"),
+    "contact_monitor": ("", "model whose contacts are told"),
+    **dict.fromkeys(("gdb", "valgrind"), ("false", "accepted, without effect")),
+    **dict.fromkeys(("init", "factory", "force_system"), ("true", "accepted: always there")),
+}
 
 
 def server(context):
     """Make the node from arguments that are known by now."""
 
-    def is_true(name):
-        return LaunchConfiguration(name).perform(context).lower() in ("true", "1")
+    def value(name):
+        return LaunchConfiguration(name).perform(context)
 
-    world = LaunchConfiguration("world").perform(context)
-    arguments = [world] if world and world != "empty.world" else []
-    arguments += ["--pause"] if is_true("pause") else []
-    arguments += ["--verbose"] if is_true("verbose") else []
-    parameters = {
-        "seed": ParameterValue(LaunchConfiguration("seed"), value_type=int),
-        "contact_monitor": LaunchConfiguration("contact_monitor"),
-    }
-    speed = LaunchConfiguration("real_time_factor").perform(context)
-    if speed:
-        parameters["real_time_factor"] = float(speed)
+    def is_true(name):
+        return value(name).lower() in ("true", "1")
+
+    arguments = [value("world")] if value("world") else []
+    arguments += [f"--{name}" for name in SWITCHES if is_true(name)]
+    arguments += [word for name in VALUES if value(name) for word in (f"--{name}", value(name))]
+    # The same as a node takes them: "--ros-args --params-file FILE" is common.
+    arguments += shlex.split(value("extra_gazebo_args"))
+    parameters = [value("params_file")] if value("params_file") else []
+    if value("contact_monitor"):
+        parameters.append({"contact_monitor": LaunchConfiguration("contact_monitor")})
+    if value("real_time_factor"):
+        speed = ParameterValue(LaunchConfiguration("real_time_factor"), value_type=float)
+        parameters.append({"real_time_factor": speed})
     node = Node(
         package="gazebo_ros",
         executable="gzserver",
         arguments=arguments,
-        parameters=[parameters],
+        parameters=parameters,
         output="screen",
+        on_exit=[Shutdown()] if is_true("server_required") else [],
     )
     return [node] if is_true("server") else []
 
 
 def generate_launch_description():
-    # What Gazebo's launch file also takes; the simulator needs none of it.
-    accepted = (
-        *("gdb", "valgrind", "lockstep", "init", "factory", "force_system", "minimal_comms", "record"),
-        *("profile", "iters", "physics", "play", "extra_gazebo_args", "server_required", "gui_required"),
-    )
     return LaunchDescription(
         [
-            DeclareLaunchArgument("world", default_value="", description="SDF world; an empty one by default"),
-            DeclareLaunchArgument("pause", default_value="false", description="begin with time standing still"),
-            DeclareLaunchArgument("verbose", default_value="false", description="say more"),
-            DeclareLaunchArgument("server", default_value="true", description="whether to start the simulator"),
-            DeclareLaunchArgument("seed", default_value="0", description="of all random numbers"),
-            DeclareLaunchArgument(
-                "real_time_factor", default_value="", description="0: as fast as possible; the world's by default"
-            ),
-            DeclareLaunchArgument("contact_monitor", default_value="", description="model whose contacts are told"),
             *(
-                DeclareLaunchArgument(name, default_value="", description="accepted, without effect")
-                for name in accepted
+                DeclareLaunchArgument(name, default_value=value, description=text)
+                for name, (value, text) in OTHERS.items()
             ),
-            OpaqueFunction(function=server, condition=IfCondition(LaunchConfiguration("server"))),
+            *(DeclareLaunchArgument(name, default_value="false", description=text) for name, text in SWITCHES.items()),
+            *(DeclareLaunchArgument(name, default_value="", description=text) for name, text in VALUES.items()),
+            OpaqueFunction(function=server),
         ]
     )

@@ -1,25 +1,34 @@
 """The simulator alone, running at once."""
 
+import tempfile
+
 from launch import LaunchDescription
-from launch.actions import DeclareLaunchArgument
+from launch.actions import DeclareLaunchArgument, OpaqueFunction
 from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
 
 
+def server(context):
+    """Make the node from arguments that are known by now."""
+    world = LaunchConfiguration("world_sdf_file").perform(context)
+    text = LaunchConfiguration("world_sdf_string").perform(context)
+    if text and not world:
+        with tempfile.NamedTemporaryFile("w", suffix=".sdf", prefix="world_", delete=False, encoding="utf-8") as file:
+            file.write(text)
+            world = file.name
+    return [Node(package="ros_gz_sim", executable="gz_sim", arguments=["-r", "-s", world], output="screen")]
+
+
 def generate_launch_description():
-    accepted = ("world_sdf_string", "container_name", "create_own_container", "use_composition")
+    accepted = ("container_name", "create_own_container", "use_composition")
     return LaunchDescription(
         [
             DeclareLaunchArgument("world_sdf_file", default_value="", description="SDF world"),
+            DeclareLaunchArgument("world_sdf_string", default_value="", description="the world itself"),
             *(
                 DeclareLaunchArgument(name, default_value="", description="accepted, without effect")
                 for name in accepted
             ),
-            Node(
-                package="ros_gz_sim",
-                executable="gz_sim",
-                arguments=["-r", "-s", LaunchConfiguration("world_sdf_file")],
-                output="screen",
-            ),
+            OpaqueFunction(function=server),
         ]
     )

@@ -1,5 +1,6 @@
 """The simulator with gz's arguments, and the view on it unless they say ``-s``."""
 
+import re
 import shlex
 
 from launch import LaunchDescription
@@ -26,7 +27,8 @@ def simulator(context):
     )
     if "-g" in words:
         return [view]
-    return [server] if "-s" in words else [server, view]
+    # Letters may stand together: -rs.
+    return [server] if any(re.fullmatch(r"-[rg]*s[rg]*(v\d?)?", word) for word in words) else [server, view]
 
 
 def generate_launch_description():

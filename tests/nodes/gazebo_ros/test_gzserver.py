@@ -1,0 +1,49 @@
+"""How the simulator's process begins and ends."""
+
+from threading import Event
+
+import pytest
+from rclpy.parameter import Parameter
+
+from daidalos.nodes.gazebo_ros.gzserver import GzServer, Start
+from daidalos.nodes.runner import UserError
+from end_to_end.processes import ROS2, Command
+from ros.graph import graph  # noqa: F401
+
+
+def test_it_ends_after_so_many_steps(graph):  # noqa: F811
+    ended = Event()
+    server = GzServer(Start(update_rate=0.0, steps=30_000), ended.set)
+    try:
+        assert ended.wait(20.0)
+        assert server._paced.simulation.time_ns == 30_000_000_000
+        assert server._paced.paused
+    finally:
+        server.destroy_node()
+
+
+def test_the_clock_is_told_as_often_as_wanted(graph):  # noqa: F811
+    told = []
+    server = GzServer(Start(paused=True), parameter_overrides=[Parameter("publish_rate", value=250.0)])
+    try:
+        server._paced._publish = lambda now_ns, samples: told.append(now_ns)
+        server._paced.set_paused(False)
+        while len(told) < 3:
+            server._paced.call(lambda simulation: None)
+        assert told[:3] == [4_000_000, 8_000_000, 12_000_000]
+    finally:
+        server.destroy_node()
+    with pytest.raises(UserError, match="publish_rate"):
+        GzServer(parameter_overrides=[Parameter("publish_rate", value=0.0)])
+
+
+def test_gazebos_launch_arguments_reach_it(domain, tmp_path):
+    parameters = tmp_path / "gazebo.yaml"
+    parameters.write_text("gazebo:\n  ros__parameters:\n    real_time_factor: 0.0\n")
+    launch = ("launch", "gazebo_ros", "gazebo.launch.py", "gui:=false", "server_required:=true")
+    # 500 seconds of an empty world pass in time only when the parameter arrives.
+    more = ("iters:=500000", f"extra_gazebo_args:=--ros-args --params-file {parameters}")
+    with Command(*ROS2, *launch, *more, domain=domain) as command:
+        command.wait_for_line("simulating an empty world")
+        command.wait_for_line("was required: shutting down")
+    assert "finished cleanly" in command.text
