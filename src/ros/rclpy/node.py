@@ -13,8 +13,9 @@ from rclpy.context import Context
 from rclpy.exceptions import NotInitializedException
 from rclpy.impl.entities import NodeHandle
 from rclpy.impl.errors import InvalidHandle
-from rclpy.impl.node_entities import KINDS, NodeEntities, attach, depth_or_profile, detach
+from rclpy.impl.node_entities import NodeEntities, depth_or_profile
 from rclpy.impl.node_graph import NodeGraph
+from rclpy.impl.node_members import KINDS, attach, detach
 from rclpy.impl.node_parameters import NodeParameters
 from rclpy.impl.rcutils_logger import RcutilsLogger
 from rclpy.impl.rosout import rosout
