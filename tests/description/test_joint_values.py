@@ -29,6 +29,25 @@ def test_mimics_follow():
     assert values.position("echo") == 1.1
 
 
+def test_speeds_and_efforts_of_who_follows_come_from_the_leader():
+    values = JointValues(urdf.parse(TEXT))
+    values.take(["slide"], velocities=[0.5], efforts=[3.0])
+    assert values.all_velocities() == [0.0, 0.5, 1.0]
+    assert values.all_efforts() == [0.0, 3.0, 3.0]
+
+
+def test_soft_limits_bound_where_they_are_given():
+    def reach(safety, **settings):
+        text = TEXT.replace('<limit lower="0.2"', f'<safety_controller k_velocity="1"{safety}/><limit lower="0.2"')
+        (slide,) = [each for each in JointValues(urdf.parse(text), **settings).ranges if each.name == "slide"]
+        return slide.lower, slide.upper
+
+    given = ' soft_lower_limit="0.3" soft_upper_limit="0.5"'
+    assert reach(given) == (0.3, 0.5)
+    assert reach(given, soft=False) == (0.2, 0.6)
+    assert reach("") == (0.2, 0.6)
+
+
 def test_mimics_may_be_let_alone_and_others_may_follow():
     values = JointValues(urdf.parse(TEXT), {"slide": 0.3}, mimics=False, dependents={"turn": Mimic("slide", 3.0, 0.0)})
     values.take(["echo"], [0.7])

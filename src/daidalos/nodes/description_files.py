@@ -3,9 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from daidalos.nodes.packages import package_share
 from daidalos.nodes.runner import UserError
+
+if TYPE_CHECKING:
+    from daidalos.description.robot import Robot
+    from daidalos.description.world import Model
 
 
 def read_description(path: Path) -> str:
@@ -30,3 +35,25 @@ def read_description(path: Path) -> str:
         raise UserError(f"cannot read '{path}': {error.strerror}") from None
     except UnicodeDecodeError:
         raise UserError(f"'{path}' is not a text file") from None
+
+
+def parse_description(text: str, source: str = "robot_description") -> Robot | Model:
+    """Read a robot in URDF, or a model in SDF.
+
+    Raises
+    ------
+    UserError
+        When it is faulty; names `source`.
+    """
+    from daidalos.description.errors import DescriptionError
+
+    try:
+        if "<sdf" in text[:2000]:
+            from daidalos.description import sdf
+
+            return sdf.parse_model(text, source, package_share)
+        from daidalos.description import urdf
+
+        return urdf.parse(text, source, package_share)
+    except DescriptionError as error:
+        raise UserError(str(error)) from None

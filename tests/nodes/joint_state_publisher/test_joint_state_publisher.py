@@ -50,7 +50,16 @@ def test_it_waits_for_a_description_and_takes_other_sources(node):  # noqa: F811
         source.publish(JointState(name=["slide"], position=[0.6], velocity=[0.1]))
         moved = listener.wait(lambda message: message.position[1] == 0.6)
         assert moved.position[2] == pytest.approx(1.3)
-        assert list(moved.velocity) == [0.0, 0.1, 0.0]
+        assert list(moved.velocity) == [0.0, 0.1, 0.2]
+    publisher.destroy_node()
+
+
+def test_a_model_in_sdf_has_joints_too(graph):  # noqa: F811
+    text = """<sdf version="1.8"><model name="m"><link name="a"/><link name="b"/><joint name="j" type="revolute">
+    <parent>a</parent><child>b</child><axis><limit><lower>0.5</lower><upper>1.5</upper></limit></axis></joint>
+    </model></sdf>"""
+    publisher = JointStatePublisher(text)
+    assert publisher.values.all_positions() == [1.0]
     publisher.destroy_node()
 
 

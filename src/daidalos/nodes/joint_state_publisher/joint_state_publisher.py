@@ -10,12 +10,9 @@ from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.utilities import remove_ros_args
 
-from daidalos.description import urdf
-from daidalos.description.errors import DescriptionError
 from daidalos.description.joint import Mimic
 from daidalos.description.joint_values import JointValues
-from daidalos.nodes.description_files import read_description
-from daidalos.nodes.packages import package_share
+from daidalos.nodes.description_files import parse_description, read_description
 from daidalos.nodes.runner import UserError, run
 
 _LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
@@ -25,9 +22,9 @@ class JointStatePublisher(Node):
     """Publishes ``joint_states`` at ``rate`` once it knows the robot.
 
     Parameters of the node are those of ROS 2's: ``rate`` [Hz], ``publish_default_positions``,
-    ``publish_default_velocities``, ``publish_default_efforts``, ``use_mimic_tags``, ``source_list``,
-    ``delta``, ``zeros.<joint>``, ``dependent_joints.<joint>.parent`` (``factor``, ``offset``),
-    ``robot_description``.
+    ``publish_default_velocities``, ``publish_default_efforts``, ``use_mimic_tags``,
+    ``use_smallest_joint_limits``, ``source_list``, ``delta``, ``zeros.<joint>``,
+    ``dependent_joints.<joint>.parent`` (``factor``, ``offset``), ``robot_description``.
 
     Parameters
     ----------
@@ -74,12 +71,15 @@ class JointStatePublisher(Node):
         ------
         UserError
         """
-        try:
-            robot = urdf.parse(text, "robot_description", package_share)
-        except DescriptionError as error:
-            raise UserError(str(error)) from None
+        robot = parse_description(text)
         zeros = {name: float(p.value) for name, p in self.get_parameters_by_prefix("zeros").items()}
-        self._values = JointValues(robot, zeros, self._setting("use_mimic_tags", True), self._dependents())
+        self._values = JointValues(
+            robot,
+            zeros,
+            mimics=self._setting("use_mimic_tags", True),
+            dependents=self._dependents(),
+            soft=self._setting("use_smallest_joint_limits", True),
+        )
 
     def _setting(self, name: str, default: Any) -> Any:
         """Return a parameter; it is declared when nobody has given it."""
@@ -123,9 +123,9 @@ class JointStatePublisher(Node):
         if self._setting("publish_default_positions", True):
             message.position = values.all_positions()
         if values.velocities or self._setting("publish_default_velocities", False):
-            message.velocity = [values.velocities.get(name, 0.0) for name in values.names]
+            message.velocity = values.all_velocities()
         if values.efforts or self._setting("publish_default_efforts", False):
-            message.effort = [values.efforts.get(name, 0.0) for name in values.names]
+            message.effort = values.all_efforts()
         self._publisher.publish(message)
 
     def _wander(self, values: JointValues) -> None:

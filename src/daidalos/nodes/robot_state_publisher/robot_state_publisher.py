@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,18 +14,11 @@ from rclpy.parameter import Parameter
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.utilities import remove_ros_args
 
-from daidalos.description import urdf
-from daidalos.description.errors import DescriptionError
 from daidalos.description.kinematics import KinematicTree
 from daidalos.nodes.conversions import nanoseconds
-from daidalos.nodes.description_files import read_description
-from daidalos.nodes.packages import package_share
+from daidalos.nodes.description_files import parse_description, read_description
 from daidalos.nodes.robot_state_publisher._transform_bytes import TransformBytes
 from daidalos.nodes.runner import UserError, run
-
-if TYPE_CHECKING:
-    from daidalos.description.robot import Robot
-    from daidalos.description.world import Model
 
 _KEPT = 100
 """Sets of joints that are told of together; a robot has a few."""
@@ -97,11 +90,7 @@ class RobotStatePublisher(Node):
 
         if not text:
             raise UserError("the parameter 'robot_description' must hold a URDF document, it is empty")
-        try:
-            robot = _parse(text, source)
-        except DescriptionError as error:
-            raise UserError(str(error)) from None
-        self._tree = KinematicTree(robot)
+        self._tree = KinematicTree(parse_description(text, source))
         self._positions = np.zeros(len(self._tree.joint_names))
         self._last_ns = np.zeros(len(self._tree.joint_names), dtype=np.int64)
         self._told: dict[tuple[str, ...], _Told] = {}
@@ -200,14 +189,6 @@ class RobotStatePublisher(Node):
                 except UserError as error:
                     return SetParametersResult(successful=False, reason=str(error))
         return SetParametersResult(successful=True)
-
-
-def _parse(text: str, source: str) -> Robot | Model:
-    if "<sdf" in text[:2000]:
-        from daidalos.description import sdf
-
-        return sdf.parse_model(text, source, package_share)
-    return urdf.parse(text, source, package_share)
 
 
 def _from_file(path: str) -> RobotStatePublisher:
