@@ -9,6 +9,8 @@ from pathlib import Path
 from urllib.parse import unquote, urlparse
 from urllib.request import url2pathname
 
+from daidalos.description.fuel import fuel_candidates
+
 PackageResolver = Callable[[str], Path | str | None]
 """Takes a package's name, returns its share directory, or None when there is no such package."""
 
@@ -32,8 +34,8 @@ def resolve_uri(
     Parameters
     ----------
     uri : str
-        ``package://name/path``, ``model://name/path``, ``file://path``, an absolute path, or a path
-        relative to `base`.
+        ``package://name/path``, ``model://name/path``, ``file://path``, an absolute path, a path
+        relative to `base`, or an address of Gazebo Fuel, see `fuel_candidates`.
     base : Path or None
         Folder of the file that holds `uri`. What neither `packages` nor `model_path` know is looked for
         around it, see `packages_near`.
@@ -55,6 +57,8 @@ def resolve_uri(
         candidates = _file(uri, rest, base, model_path)
     elif scheme in ("package", "model"):
         candidates = _named(scheme, unquote(rest), base, packages, model_path)
+    elif scheme in ("http", "https"):
+        candidates = fuel_candidates(uri, model_path)
     else:
         return None
     return next((path for path in candidates if path.exists()), None)

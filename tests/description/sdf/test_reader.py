@@ -257,7 +257,7 @@ def test_a_urdf_can_be_included(tmp_path):
             r"w.sdf:2: <include>: model://chair not found; looked in",
         ),
         ("<include/>", "<uri> is missing"),
-        ("<include><uri>https://fuel/x</uri></include>", "models are not downloaded"),
+        ("<include><uri>https://fuel/x</uri></include>", "not among Gazebo Fuel's downloads"),
         ("<include><uri>gone.sdf</uri></include>", "gone.sdf not found; looked beside"),
         ("<include><uri>model://empty</uri></include>", "neither model.config nor model.sdf"),
         ("<include><uri>model://loop</uri></include>", "includes itself"),
@@ -270,13 +270,93 @@ def test_includes_that_fail(tmp_path, include, words):
         "<sdf version='1.9'><model name='l'><include><uri>model://loop</uri></include></model></sdf>"
     )
     with pytest.raises(DescriptionError, match=words):
-        included(tmp_path, include)
+        included(tmp_path, include, strict=True)
 
 
-def test_missing_models_can_be_skipped(tmp_path):
-    world = included(tmp_path, "<include><uri>model://chair</uri></include>", skip_missing=True)
-    assert not world.models
-    assert "model://chair not found, left out" in world.warnings[0]
+def test_the_world_around_a_missing_model_loads(tmp_path):
+    world = included(
+        tmp_path,
+        """
+<include><uri>model://chair</uri><pose>1 0 0 0 0 0</pose></include>
+<include><uri>https://fuel.gazebosim.org/1.0/owner/models/Tall Lamp/2</uri></include>
+<model name="box"><pose relative_to="chair">0 2 0 0 0 0</pose><link name="body"/></model>
+<joint name="glue" type="fixed"><parent>box</parent><child>Tall Lamp::foot</child></joint>
+<joint name="hold" type="fixed"><parent>world</parent><child>box</child></joint>
+<model name="chair_stand"><link name="leg"/>
+  <include><uri>model://chair</uri><name>seat</name></include>
+  <joint name="screw" type="fixed"><parent>leg</parent><child>seat::board</child></joint>
+  <joint name="foot" type="fixed"><parent>world</parent><child>leg</child></joint>
+</model>
+<model name="robot"><link name="base"/>
+  <include merge="true"><uri>model://chair</uri></include>
+  <joint name="neck" type="fixed"><parent>base</parent><child>head</child></joint>
+</model>""",
+    )
+    box, stand, robot = world.models
+    assert box.pose.position == (1, 2, 0)
+    assert list(world.joints) == ["hold"]
+    assert list(stand.joints) == ["foot"]
+    assert not robot.joints
+    missing = [line.rpartition("/")[2] for line in world.warnings]
+    assert "w.sdf:3: <include>: model://chair not found; looked in" in " ".join(missing + list(world.warnings))
+    assert sum("; left out" in line for line in world.warnings) == 4
+    assert sum("left out, as is one of" in line for line in world.warnings) == 3
+
+
+def test_a_model_found_takes_the_name_of_one_that_is_missing(tmp_path):
+    text = '<include><uri>model://chair</uri></include><model name="chair"><link name="body"/></model>'
+    text += '<joint name="hold" type="fixed"><parent>world</parent><child>chair</child></joint>'
+    world = included(tmp_path, text)
+    assert [model.name for model in world.models] == ["chair"]
+    assert list(world.joints) == ["hold"]
+
+
+def test_a_model_that_is_spawned_needs_all_of_its_parts(tmp_path):
+    text = '<sdf version="1.9"><model name="m"><include><uri>model://chair</uri></include></model></sdf>'
+    with pytest.raises(DescriptionError, match="model://chair not found"):
+        sdf.parse_model(text, str(tmp_path / "m.sdf"), model_path=[])
+    with pytest.raises(DescriptionError, match="model://chair not found"):
+        sdf.parse_any(text.replace("<model name", "<light name='l'/><model name"), "m.sdf", model_path=[])
+
+
+def test_downloads_of_gazebo_fuel_are_found(tmp_path, monkeypatch):
+    monkeypatch.setenv("GZ_FUEL_CACHE_PATH", str(tmp_path / "fuel"))
+    for version, name in ((2, "two"), (10, "ten")):
+        folder = tmp_path / f"fuel/fuel.gazebosim.org/some one/models/tall lamp/{version}"
+        folder.mkdir(parents=True)
+        (folder / "model.sdf").write_text(
+            f"<sdf version='1.9'><model name='{name}'><link name='l'><visual name='v'><geometry><mesh>"
+            "<uri>https://fuel.ignitionrobotics.org/1.0/Some One/models/Tall%20Lamp/tip/files/lamp.stl</uri>"
+            "</mesh></geometry></visual></link></model></sdf>"
+        )
+        (folder / "lamp.stl").write_text("solid\nendsolid\n")
+    address = "https://fuel.ignitionrobotics.org/1.0/Some One/models/Tall Lamp"
+    for tail, name in (("", "ten"), ("/2", "two"), ("/tip", "ten"), ("\n  ", "ten")):
+        (model,) = included(tmp_path, f"<include><uri>{address}{tail}</uri></include>", strict=True).models
+        assert model.name == name
+        assert model.links["l"].visuals[0].geometry.path == folder / "lamp.stl"
+
+
+def test_models_of_gazebo_fuel_are_found_among_the_users(tmp_path):
+    folder = tmp_path / "Tall Lamp"
+    folder.mkdir()
+    (folder / "model.sdf").write_text("<sdf version='1.9'><model name='mine'/></sdf>")
+    include = "<include><uri>https://fuel.gazebosim.org/1.0/owner/models/Tall Lamp</uri></include>"
+    assert [model.name for model in included(tmp_path, include, strict=True).models] == ["mine"]
+
+
+def test_a_joint_may_be_called_as_a_link():
+    world = sdf.parse(
+        """<sdf version="1.5"><world name="w"><model name="lift">
+<link name="car"/><link name="door"><pose>1 0 0 0 0 0</pose></link>
+<joint name="door" type="prismatic"><pose>0 3 0 0 0 0</pose><parent>car</parent><child>door</child>
+<axis><xyz>0 1 0</xyz></axis></joint></model></world></sdf>""",
+        "w.sdf",
+    )
+    (lift,) = world.models
+    assert lift.links["door"].pose.position == (1, 0, 0)
+    assert lift.joints["door"].origin.position == (1, 3, 0)
+    assert "w.sdf:3: <joint name=\"door\">: a link is called 'door' as well" in world.warnings[0]
 
 
 @pytest.mark.parametrize(

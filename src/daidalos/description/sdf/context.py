@@ -26,8 +26,8 @@ class Context:
         Share directory of a package.
     model_path : sequence of Path
         Folders that hold models.
-    skip_missing : bool
-        An include that can not be found becomes a warning.
+    strict : bool
+        An include that can not be found is an error; else it is left out, with a warning.
     warnings : list of str
         Shared by all files of one world.
     including : tuple of Path
@@ -38,7 +38,7 @@ class Context:
     folder: Path
     packages: PackageResolver | None = None
     model_path: Sequence[Path] = ()
-    skip_missing: bool = False
+    strict: bool = True
     warnings: list[str] = field(default_factory=list)
     including: tuple[Path, ...] = ()
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import re
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -11,7 +12,7 @@ from daidalos.description.link import Light
 from daidalos.description.markup import Element, parse_markup
 from daidalos.description.pose import Pose
 from daidalos.description.sdf.context import Context
-from daidalos.description.sdf.frames import RelativePose, read_pose
+from daidalos.description.sdf.frames import FrameGraph, RelativePose, read_pose
 from daidalos.description.sdf.links import read_light, read_plugin
 from daidalos.description.world import Model
 
@@ -20,10 +21,20 @@ NEWEST = (1, 11)
 
 @dataclass(frozen=True)
 class Included:
-    """What an include brought, and where its pose puts it; `content` is None when it was skipped."""
+    """What an include brought, and where its pose puts it.
+
+    Parameters
+    ----------
+    content : Model, Light or None
+        None when it was not found.
+    pose : RelativePose
+    missing : str
+        What was not found would have been called so.
+    """
 
     content: Model | Light | None
     pose: RelativePose
+    missing: str = ""
 
 
 def read_include(element: Element, context: Context, read_model: Callable[[Element, Context], Model]) -> Included:
@@ -33,10 +44,12 @@ def read_include(element: Element, context: Context, read_model: Callable[[Eleme
         raise element.error("<uri> is missing or empty")
     found = context.find(uri)
     if found is None:
-        if context.skip_missing:
-            context.warn(element, f"{uri} not found, left out")
-            return Included(None, RelativePose())
-        raise element.error(f"{uri} not found; {_searched(uri, context)}")
+        missing = element.error(f"{uri} not found; {_searched(uri, context)}")
+        if context.strict:
+            raise missing
+        context.warnings.append(f"{missing}; left out")
+        named = re.sub(r"/(\d+|tip)?$", "", uri).rpartition("/")[2]
+        return Included(None, read_pose(element), element.text_of("name", default=named))
     file = model_file(found, element)
     if file in context.including:
         raise element.error(f"{uri} includes itself")
@@ -52,6 +65,35 @@ def read_include(element: Element, context: Context, read_model: Callable[[Eleme
         plugins=(*content.plugins, *(read_plugin(child) for child in element.all("plugin"))),
     )
     return Included(model, pose)
+
+
+def settle_missing(
+    missing: Mapping[str, tuple[RelativePose, Element]], graph: FrameGraph, joints: list[Element], context: Context
+) -> list[Element]:
+    """Keep the places of models that were not found, and return the joints that are not tied to one.
+
+    Parameters
+    ----------
+    missing : mapping of str to (RelativePose, Element)
+        Pose and ``<include>`` of each, by name.
+    graph : FrameGraph
+        Holds everything else in the scope but the joints.
+    joints : list of Element
+        The scope's ``<joint>`` elements.
+    context : Context
+    """
+    gone = {name: place for name, place in missing.items() if name not in graph}
+    for name, (pose, element) in gone.items():
+        graph.add(name, pose, graph.root, element)
+    merged = any(element.attribute("merge", "false") in ("true", "1") for _, element in gone.values())
+    kept = []
+    for joint in joints:
+        ends = [joint.text_of(end) for end in ("parent", "child")]
+        if any(end.partition("::")[0] in gone or (merged and end not in graph) for end in ends):
+            context.warn(joint, f"left out, as is one of {' and '.join(ends)}")
+        else:
+            kept.append(joint)
+    return kept
 
 
 def model_file(found: Path, element: Element) -> Path:
@@ -108,7 +150,7 @@ def _read_file(
 
 def _searched(uri: str, context: Context) -> str:
     if uri.startswith(("http://", "https://")):
-        return "models are not downloaded, put it into a folder of GZ_SIM_RESOURCE_PATH"
+        return "it is not among Gazebo Fuel's downloads, nor in a folder of GZ_SIM_RESOURCE_PATH"
     if uri.startswith(("model://", "package://")):
         folders = ", ".join(str(folder) for folder in context.model_path) or "no folder"
         return f"looked in {folders} (set GZ_SIM_RESOURCE_PATH or GAZEBO_MODEL_PATH)"

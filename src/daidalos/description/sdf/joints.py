@@ -31,7 +31,7 @@ LinkOf = Callable[[str, Element], str]
 """Takes the name of a link, frame or joint, returns the link that it is attached to."""
 
 
-def read_joint(element: Element, context: Context, frame: FramePose, link_of: LinkOf, root: str) -> Joint:
+def read_joint(element: Element, context: Context, own: str, frame: FramePose, link_of: LinkOf, root: str) -> Joint:
     """Read a joint.
 
     Parameters
@@ -39,6 +39,8 @@ def read_joint(element: Element, context: Context, frame: FramePose, link_of: Li
     element : Element
         ``<joint>``.
     context : Context
+    own : str
+        Name of the joint's own frame in its scope.
     frame : callable
         Resolves frames in the scope of the joint.
     link_of : callable
@@ -52,7 +54,7 @@ def read_joint(element: Element, context: Context, frame: FramePose, link_of: Li
         raise element.error(f"parent and child are the same link {parent!r}")
     if child == "world":
         raise element.error("the child of a joint can not be the world")
-    here = frame(element.name(), element)
+    here = frame(own, element)
     in_child = frame(child, element).inverse @ here
     in_parent = here if parent == "world" else frame(parent, element).inverse @ here
     joint = Joint(

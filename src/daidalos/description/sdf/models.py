@@ -10,7 +10,7 @@ from daidalos.description.markup import Element
 from daidalos.description.pose import Pose
 from daidalos.description.sdf.context import Context
 from daidalos.description.sdf.frames import FrameGraph, RelativePose, read_pose
-from daidalos.description.sdf.includes import read_include
+from daidalos.description.sdf.includes import read_include, settle_missing
 from daidalos.description.sdf.joints import read_joint
 from daidalos.description.sdf.links import read_link, read_plugin
 from daidalos.description.world import Model
@@ -62,7 +62,10 @@ class _ModelReader:
         self._context = context
         self._graph = FrameGraph(ROOT)
         self._attached: dict[str, str] = {}
+        self._joint_frames: dict[str, str] = {}
         self._nested: list[tuple[Model, bool]] = []
+        self._missing: dict[str, tuple[RelativePose, Element]] = {}
+        self._joints: list[Element] = []
 
     def model(self) -> Model:
         element = self._element
@@ -70,7 +73,7 @@ class _ModelReader:
         self._read_nested()
         self._place_links_and_frames()
         links = {link.name: link for link in map(self._link, element.all("link")) if link.name not in left_out}
-        joints = {joint.name: joint for joint in map(self._joint, element.all("joint"))}
+        joints = {joint.name: joint for joint in map(self._joint, self._joints)}
         plugins = [read_plugin(child) for child in element.all("plugin")]
         for nested, merged in self._nested:
             prefix = "" if merged else f"{nested.name}::"
@@ -99,6 +102,8 @@ class _ModelReader:
             merged = False
             if child.tag == "include":
                 included = read_include(child, self._context, read_model)
+                if included.missing:
+                    self._missing[included.missing] = (included.pose, child)
                 if not isinstance(included.content, Model):
                     continue
                 model, pose = included.content, included.pose
@@ -120,16 +125,27 @@ class _ModelReader:
             attached_to = child.attribute("attached_to", "")
             self._graph.add(child.name(), read_pose(child), attached_to or ROOT, child)
             self._attached[child.name()] = attached_to or ROOT
-        for child in self._element.all("joint"):
+        joints = self._element.all("joint")
+        self._joints = settle_missing(self._missing, self._graph, joints, self._context)
+        for child in self._joints:
             end = child.require("child")
             name = end.text.strip() or end.text_of("link_name")
-            self._graph.add(child.name(), read_pose(child), name, child)
-            self._attached[child.name()] = name
+            frame = self._joint_frame(child)
+            self._graph.add(frame, read_pose(child), name, child)
+            self._attached[frame] = name
         first = next((name for name, target in self._attached.items() if name == target), "")
         own = [child.name() for child in self._element.all("link")]
         canonical = self._element.attribute("canonical_link", "") or (own[0] if own else first)
         if canonical:
             self._attached[ROOT] = canonical
+
+    def _joint_frame(self, element: Element) -> str:
+        """Return what a joint's frame is called: as the joint, unless a link is called so, as SDF below 1.7 allows."""
+        name = element.name()
+        if any(link.name() == name for link in self._element.all("link")):
+            self._context.warn(element, f"a link is called {name!r} as well, which is what poses and joints mean")
+            self._joint_frames[name] = f"{name}_joint"
+        return self._joint_frames.get(name, name)
 
     def _settle_world(self) -> set[str]:
         """Return the links to leave out, since they are but another word for the world; rename others called so."""
@@ -179,7 +195,8 @@ class _ModelReader:
         return read_link(element, self._context, self._graph.pose(name, element), place)
 
     def _joint(self, element: Element) -> Joint:
-        return read_joint(element, self._context, self._graph.pose, self._link_of, ROOT)
+        own = self._joint_frames.get(element.name(), element.name())
+        return read_joint(element, self._context, own, self._graph.pose, self._link_of, ROOT)
 
 
 def _moved(link: Link, prefix: str, place: Pose) -> Link:

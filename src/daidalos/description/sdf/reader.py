@@ -20,7 +20,7 @@ def load(
     path: Path | str,
     resolve: PackageResolver | None = None,
     model_path: Sequence[Path] | None = None,
-    skip_missing: bool = False,
+    strict: bool = False,
 ) -> World:
     """Read a world from a file.
 
@@ -32,8 +32,9 @@ def load(
         Share directory of a package, for ``package://``.
     model_path : sequence of Path or None
         Folders that hold models, for ``model://``; None takes those of Gazebo's environment variables.
-    skip_missing : bool
-        Leave out included models that are not found, with a warning, instead of an error.
+    strict : bool
+        An included model that is not found is an error. Else it is left out with a warning, as in Gazebo, and
+        so are the joints to it.
 
     Returns
     -------
@@ -45,7 +46,7 @@ def load(
         When a file is missing or wrong; names file, line and element.
     """
     path = Path(path)
-    return parse(_read(path), str(path), resolve, model_path, skip_missing)
+    return parse(_read(path), str(path), resolve, model_path, strict)
 
 
 def parse(
@@ -53,10 +54,10 @@ def parse(
     source: str = "world",
     resolve: PackageResolver | None = None,
     model_path: Sequence[Path] | None = None,
-    skip_missing: bool = False,
+    strict: bool = False,
 ) -> World:
     """Read a world from text; relative addresses start at the folder of `source`. See `load`."""
-    root, context = _open(text, source, resolve, model_path, skip_missing)
+    root, context = _open(text, source, resolve, model_path, strict)
     element = root.first("world")
     if element is not None:
         return read_world(element, context)
@@ -95,10 +96,11 @@ def parse_any(
     resolve: PackageResolver | None = None,
     model_path: Sequence[Path] | None = None,
 ) -> Model | World:
-    """Read what a document holds: a model when it is nothing but one, or else a world. See `load`."""
+    """Read what a document holds: a model when it is nothing but one, or else a world, strictly. See `load`."""
     tags = [child.tag for child in parse_markup(text, source).children]
-    read = parse_model if tags == ["model"] else parse
-    return read(text, source, resolve, model_path)
+    if tags == ["model"]:
+        return parse_model(text, source, resolve, model_path)
+    return parse(text, source, resolve, model_path, strict=True)
 
 
 def _read(path: Path) -> bytes:
@@ -115,7 +117,7 @@ def _open(
     source: str,
     resolve: PackageResolver | None,
     model_path: Sequence[Path] | None,
-    skip_missing: bool = False,
+    strict: bool = True,
 ) -> tuple[Element, Context]:
     root = parse_markup(text, source)
     if root.tag not in ("sdf", "gazebo"):
@@ -125,7 +127,7 @@ def _open(
         folder=Path(source).parent,
         packages=resolve,
         model_path=default_model_path() if model_path is None else tuple(model_path),
-        skip_missing=skip_missing,
+        strict=strict,
         including=(Path(source),),
     )
     return root, context

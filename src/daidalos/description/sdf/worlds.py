@@ -11,7 +11,7 @@ from daidalos.description.pose import Pose
 from daidalos.description.sdf.actors import read_actor
 from daidalos.description.sdf.context import Context
 from daidalos.description.sdf.frames import FrameGraph, RelativePose, read_pose
-from daidalos.description.sdf.includes import read_include
+from daidalos.description.sdf.includes import read_include, settle_missing
 from daidalos.description.sdf.joints import read_joint
 from daidalos.description.sdf.links import read_light, read_plugin
 from daidalos.description.sdf.materials import read_color
@@ -50,6 +50,8 @@ class _WorldReader:
         self._lights: list[tuple[Light, RelativePose, Element]] = []
         self._actors: list[tuple[Actor, RelativePose, Element]] = []
         self._attached: dict[str, str] = {}
+        self._missing: dict[str, tuple[RelativePose, Element]] = {}
+        self._joints: list[Element] = []
 
     def world(self) -> World:
         element, base = self._element, World()
@@ -64,7 +66,7 @@ class _WorldReader:
             actors=tuple(
                 replace(actor, pose=self._graph.place(pose, ROOT, child)) for actor, pose, child in self._actors
             ),
-            joints={joint.name: joint for joint in map(self._joint, element.all("joint"))},
+            joints={joint.name: joint for joint in map(self._joint, self._joints)},
             frames={name: self._graph.pose(name, element) for name in self._graph.names()},
             physics=_physics(physics),
             gravity=_vector(physics if physics.first("gravity") else element, "gravity", base.gravity),
@@ -97,13 +99,17 @@ class _WorldReader:
                 default = child.attribute("attached_to", "") or ROOT
                 self._graph.add(child.name(), read_pose(child), default, child)
                 self._attached[child.name()] = default
-            elif child.tag == "joint":
-                self._graph.add(child.name(), read_pose(child), child.text_of("child"), child)
-                self._attached[child.name()] = child.text_of("child")
+        joints = self._element.all("joint")
+        self._joints = settle_missing(self._missing, self._graph, joints, self._context)
+        for child in self._joints:
+            self._graph.add(child.name(), read_pose(child), child.text_of("child"), child)
+            self._attached[child.name()] = child.text_of("child")
 
     def _add_included(self, element: Element) -> None:
         included = read_include(element, self._context, read_model)
-        if isinstance(included.content, Light):
+        if included.missing:
+            self._missing[included.missing] = (included.pose, element)
+        elif isinstance(included.content, Light):
             self._lights.append((included.content, included.pose, element))
         elif included.content is not None:
             self._add_model(included.content, included.pose, element)
@@ -137,7 +143,7 @@ class _WorldReader:
         return replace(model, pose=self._graph.pose(model.name, element))
 
     def _joint(self, element: Element) -> Joint:
-        return read_joint(element, self._context, self._graph.pose, self._link_of, ROOT)
+        return read_joint(element, self._context, element.name(), self._graph.pose, self._link_of, ROOT)
 
     def _link_of(self, name: str, element: Element) -> str:
         """Follow the world's frames and joints to the link that carries them."""
