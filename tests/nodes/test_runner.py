@@ -1,6 +1,10 @@
 """How programs end."""
 
+import signal
+
 import pytest
+import rclpy
+from rclpy.exceptions import NotInitializedException
 
 from daidalos.nodes.runner import UserError, run_program
 
@@ -8,8 +12,6 @@ from daidalos.nodes.runner import UserError, run_program
 @pytest.fixture(autouse=True)
 def handler():
     """Ending a program switches interrupts off; the tests go on."""
-    import signal
-
     previous = signal.getsignal(signal.SIGINT)
     yield
     signal.signal(signal.SIGINT, previous)
@@ -33,6 +35,17 @@ def test_an_interrupt_is_no_error():
 
     assert run_program(body) == 0
     assert run_program(body, interrupted=130) == 130
+
+
+@pytest.mark.parametrize("error", [UserError("nothing came"), NotInitializedException()])
+def test_what_an_interrupt_made_fail_is_no_error(error, capsys):
+    def body():
+        rclpy.init()
+        rclpy.get_default_context().shutdown_by_signal()
+        raise error
+
+    assert run_program(body, interrupted=130) == 130
+    assert not capsys.readouterr().err
 
 
 def test_an_interrupt_in_the_import_of_a_compiled_module_is_no_error():

@@ -35,11 +35,17 @@ def run_program(body: Callable[[], None], interrupted: int = 0) -> int:
         The exit status.
     """
     import rclpy
+    from rclpy.exceptions import NotInitializedException
     from rclpy.signals import is_orderly
 
     try:
         body()
-    except UserError as error:
+    except (UserError, NotInitializedException) as error:
+        # What a program waited for did not come because it was asked to end.
+        if rclpy.get_default_context().ended_by_signal:
+            return interrupted
+        if not isinstance(error, UserError):
+            raise
         print(f"error: {error}", file=sys.stderr)
         return 2
     except BaseException as error:

@@ -147,6 +147,11 @@ class Context(AbstractContextManager["Context"]):
         if handle is not None and handle.try_shutdown():
             self._ended_by_signal = True
 
+    @property
+    def ended_by_signal(self) -> bool:
+        """Whether a signal ended it, and nothing has since."""
+        return self._ended_by_signal
+
     def _initialised_handle(self, action: str) -> ContextHandle:
         if self.__handle is None:
             raise RuntimeError(f"Context must be initialized before it can be {action}")

@@ -13,6 +13,8 @@ FILE = """
 - topic_name: cmd_vel
   ros_type_name: geometry_msgs/msg/Twist
   gz_type_name: ignition.msgs.Twist
+- service_name: /world/hall/control
+  ros_type_name: ros_gz_interfaces/srv/ControlWorld
 """
 
 
@@ -33,7 +35,8 @@ def test_arguments_say_topic_types_and_direction():
 def test_files_may_give_two_names(tmp_path: Path):
     path = tmp_path / "bridge.yaml"
     path.write_text(FILE)
-    first, second = read_file(path)
+    (first, second), services = read_file(path)
+    assert services == ["/world/hall/control"]
     assert first == Bridge("odom", "/model/cart/odometry", "nav_msgs/msg/Odometry", "gz.msgs.Odometry", "GZ_TO_ROS")
     assert (second.ros_topic, second.gz_topic, second.direction) == ("cmd_vel", "cmd_vel", "BIDIRECTIONAL")
 

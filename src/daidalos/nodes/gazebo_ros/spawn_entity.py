@@ -118,6 +118,7 @@ def _spawn(arguments: argparse.Namespace, node: Any) -> None:
 def _wait_for(entity: str, node: Any, base: str, timeout: float) -> None:
     """Wait until the simulation tells of an entity."""
     from gazebo_msgs.srv import GetModelList
+    from rclpy.executors import ExternalShutdownException
 
     node.get_logger().info(f"Waiting for entity {entity}")
     client = node.create_client(GetModelList, f"{base}/get_model_list")
@@ -128,7 +129,8 @@ def _wait_for(entity: str, node: Any, base: str, timeout: float) -> None:
         response = client.call(GetModelList.Request(), timeout)
         if response is not None and entity in response.model_names:
             return
-        clock.sleep_for(Duration(seconds=0.2))
+        if not clock.sleep_for(Duration(seconds=0.2)):
+            raise ExternalShutdownException
     raise UserError(f"there was no entity '{entity}' within {timeout:g} s")
 
 

@@ -81,8 +81,8 @@ def parse_arguments(words: Sequence[str]) -> tuple[list[Bridge], list[str]]:
     return bridges, services
 
 
-def read_file(path: Path) -> list[Bridge]:
-    """Return the bridges of a YAML file.
+def read_file(path: Path) -> tuple[list[Bridge], list[str]]:
+    """Return the bridges of a YAML file, and the services that it names.
 
     Raises
     ------
@@ -100,12 +100,19 @@ def read_file(path: Path) -> list[Bridge]:
         raise MappingError(f"{path}{line}: {getattr(error, 'problem', None) or error}") from None
     if not isinstance(entries, list):
         raise MappingError(f"{path}: expected a list of bridges")
-    return [_entry(entry, f"{path}: entry {number}") for number, entry in enumerate(entries, 1)]
+    bridges, services = [], []
+    for number, entry in enumerate(entries, 1):
+        where = f"{path}: entry {number}"
+        if not isinstance(entry, dict):
+            raise MappingError(f"{where}: expected names and values, got {entry!r}")
+        if "service_name" in entry:
+            services.append(str(entry["service_name"]))
+        else:
+            bridges.append(_entry(entry, where))
+    return bridges, services
 
 
-def _entry(entry: Any, where: str) -> Bridge:
-    if not isinstance(entry, dict):
-        raise MappingError(f"{where}: expected names and values, got {entry!r}")
+def _entry(entry: dict[str, Any], where: str) -> Bridge:
     common = entry.get("topic_name")
     ros = entry.get("ros_topic_name") or common or entry.get("gz_topic_name")
     gz = entry.get("gz_topic_name") or common or ros

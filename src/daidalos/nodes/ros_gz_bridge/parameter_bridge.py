@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -41,9 +42,13 @@ class ParameterBridge(Node):
         path = str(self.declare_parameter("config_file", "").value)
         try:
             bridges, services = parse_arguments(words)
-            bridges += read_file(Path(path)) if path else []
+            if path:
+                more_bridges, more_services = read_file(Path(path))
+                bridges, services = bridges + more_bridges, services + more_services
         except MappingError as error:
             raise UserError(str(error)) from None
+        if not bridges and not services:
+            self.get_logger().warning("there is nothing to bridge: neither arguments nor a config_file name a topic")
         # Names of the simulator's side are not to be remapped.
         self._gz_side = rclpy.create_node(
             "ros_gz_bridge_gz", use_global_arguments=False, start_parameter_services=False
@@ -63,12 +68,16 @@ class ParameterBridge(Node):
         package, _, name = bridge.ros_type.partition("/msg/")
         kind = getattr(import_module(f"{package}.msg"), name)
         overrides = QoSOverridingOptions(_OVERRIDABLE)
-        if bridge.direction in ("GZ_TO_ROS", "BIDIRECTIONAL"):
+        own: set[bytes] = set()
+        if bridge.direction != "ROS_TO_GZ":
             outward = self.create_publisher(kind, bridge.ros_topic, 10, qos_overriding_options=overrides)
-            self._gz_side.create_subscription(kind, gz, outward.publish, 10)
-        if bridge.direction == "ROS_TO_GZ":
+            own.add(outward.handle.impl.endpoint.gid)
+            self._gz_side.create_subscription(kind, gz, _passing_on(outward, own), 10)
+        if bridge.direction != "GZ_TO_ROS":
             inward = self._gz_side.create_publisher(kind, gz, 10)
-            self.create_subscription(kind, bridge.ros_topic, inward.publish, 10, qos_overriding_options=overrides)
+            own.add(inward.handle.impl.endpoint.gid)
+            take = _passing_on(inward, own)
+            self.create_subscription(kind, bridge.ros_topic, take, 10, qos_overriding_options=overrides)
         self.get_logger().info(f"{gz} is {ros} ({bridge.ros_type}, {bridge.direction})")
 
     def destroy_node(self) -> None:
@@ -76,6 +85,16 @@ class ParameterBridge(Node):
         self._gz_thread.stop()
         self._gz_side.destroy_node()
         super().destroy_node()
+
+
+def _passing_on(publisher: Any, own: set[bytes]) -> Callable[[Any, Any], None]:
+    """Return a callback that says on one side what it heard on the other, but for what this bridge said itself."""
+
+    def take(message: Any, info: Any) -> None:
+        if info["publisher_gid"]["data"] not in own:
+            publisher.publish(message)
+
+    return take
 
 
 def main() -> int:

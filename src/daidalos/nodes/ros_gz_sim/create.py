@@ -57,6 +57,7 @@ def find_service(node: Any, world: str, name: str, kind: str, timeout: float = _
     from rclpy.clock import Clock
     from rclpy.clock_type import ClockType
     from rclpy.duration import Duration
+    from rclpy.executors import ExternalShutdownException
 
     clock = Clock(clock_type=ClockType.STEADY_TIME)
     end = clock.now() + Duration(seconds=timeout)
@@ -65,7 +66,8 @@ def find_service(node: Any, world: str, name: str, kind: str, timeout: float = _
             parts = service.split("/")
             if kind in kinds and len(parts) == 4 and parts[3] == name and world in ("", parts[2]):
                 return str(service)
-        clock.sleep_for(Duration(seconds=0.1))
+        if not clock.sleep_for(Duration(seconds=0.1)):
+            raise ExternalShutdownException
     raise UserError(f"no simulator offers /world/{world or '<name>'}/{name}; was it started?")
 
 
