@@ -3,44 +3,26 @@
 from __future__ import annotations
 
 import itertools
-import logging
 import time
-from collections import deque
 from collections.abc import Callable
 from typing import Any
 
-from daidalos.interfaces.codec import CdrError, Codec
+from daidalos.interfaces.codec import Codec
 from daidalos.transport.backend import RequestId, WireClient
 from daidalos.transport.graph import EndpointInfo
 from daidalos.transport.service import Service
+from daidalos.transport.service_end import ServiceEnd
 
-_LOGGER = logging.getLogger(__name__)
 
+class Client(ServiceEnd[WireClient, int]):
+    """One client of a node; made by `Session.create_client`. Responses are known by their requests' numbers."""
 
-class Client:
-    """One client of a node; made by `Session.create_client`.
-
-    Attributes
-    ----------
-    endpoint
-        How the graph knows it.
-    on_ready
-        Called after a response was queued, on the thread that queued it.
-    """
+    incoming = "response of"
 
     def __init__(self, endpoint: EndpointInfo, request: Codec, response: Codec, on_ready: Callable[[], None]) -> None:
-        self.endpoint = endpoint
-        self.on_ready = on_ready
-        self._request = request
-        self._response = response
-        self._queue: deque[tuple[Any, ...]] = deque()
+        super().__init__(endpoint, request, response, on_ready)
         self._next_sequence = itertools.count(1).__next__
         self._server: Service | None = None
-        self._wire: WireClient | None = None
-        self._undo: Callable[[], None] | None = None
-
-    def __len__(self) -> int:
-        return len(self._queue)
 
     @property
     def has_local_server(self) -> bool:
@@ -69,51 +51,17 @@ class Client:
             self._wire.send(self._request.encode(request), sequence, time.time_ns())
         return sequence
 
-    def take(self) -> tuple[Any, int, int, int] | None:
-        """Return the oldest (response, its request's sequence number, source and reception stamp), or None."""
-        while True:
-            try:
-                response, item, received = self._queue.popleft()
-            except IndexError:
-                return None
-            if response is not None:
-                return response, item, received, received
-            if self._wire is None:
-                return None
-            try:
-                data, sequence, stamp = self._wire.response(item)
-                return self._response.decode(data), sequence, stamp, received
-            except CdrError as error:
-                _LOGGER.error("dropped a response of '%s': %s", self.endpoint.name, error)
-
-    def _accept_local(self, response: Any, sequence: int) -> None:
-        self._queue.append((response, sequence, time.time_ns()))
-        self.on_ready()
-
-    def accept(self, item: Any) -> None:
-        """Queue a response of another process."""
-        self._queue.append((None, item, time.time_ns()))
-        self.on_ready()
-
-    def close(self) -> None:
-        """Leave the graph and drop what is queued."""
-        undo, self._undo = self._undo, None
-        if undo:
-            undo()
+    def _open(self, wire: WireClient, item: Any) -> tuple[Any, int, int]:
+        data, sequence, stamp = wire.response(item)
+        return self._response.decode(data), sequence, stamp
 
     # The session's side.
-
-    def attach(self, wire: WireClient, undo: Callable[[], None]) -> None:
-        """Connect to the middleware; `undo` ends that."""
-        self._wire, self._undo = wire, undo
 
     def set_server(self, server: Service | None) -> None:
         """Note the service of this process that answers, if there is one."""
         self._server = server
 
     def detach(self) -> None:
-        """Forget the middleware and the queue."""
-        wire, self._wire, self._server = self._wire, None, None
-        self._queue.clear()
-        if wire:
-            wire.close()
+        """Forget the middleware, the service of this process and the queue."""
+        self._server = None
+        super().detach()

@@ -1,0 +1,99 @@
+"""What clients and services have in common: a queue that this process and the middleware fill."""
+
+from __future__ import annotations
+
+import logging
+import time
+from collections import deque
+from collections.abc import Callable
+from typing import Any, ClassVar, Generic, TypeVar
+
+from daidalos.interfaces.codec import CdrError, Codec
+from daidalos.transport.backend import WireClient, WireService
+from daidalos.transport.graph import EndpointInfo
+
+_LOGGER = logging.getLogger(__name__)
+
+Wire = TypeVar("Wire", bound=WireClient | WireService)
+Identity = TypeVar("Identity")
+
+
+class ServiceEnd(Generic[Wire, Identity]):
+    """One end of a service: what comes in is queued until it is taken.
+
+    Attributes
+    ----------
+    endpoint
+        How the graph knows it.
+    on_ready
+        Called after something was queued, on the thread that queued it.
+    """
+
+    incoming: ClassVar[str]
+    """What comes in, for messages that tell of it: ``request to`` or ``response of``."""
+
+    def __init__(self, endpoint: EndpointInfo, request: Codec, response: Codec, on_ready: Callable[[], None]) -> None:
+        self.endpoint = endpoint
+        self.on_ready = on_ready
+        self._request = request
+        self._response = response
+        self._queue: deque[tuple[Any, Any, int]] = deque()
+        self._wire: Wire | None = None
+        self._undo: Callable[[], None] | None = None
+
+    def __len__(self) -> int:
+        return len(self._queue)
+
+    def take(self) -> tuple[Any, Identity, int, int] | None:
+        """Return the oldest (message, identity, source stamp, reception stamp), or None when there is none.
+
+        What cannot be decoded is logged and passed over.
+        """
+        while True:
+            try:
+                message, item, received = self._queue.popleft()
+            except IndexError:
+                return None
+            if message is not None:
+                return message, item, received, received
+            if self._wire is None:
+                return None
+            try:
+                message, identity, stamp = self._open(self._wire, item)
+            except CdrError as error:
+                _LOGGER.error("dropped a %s '%s': %s", self.incoming, self.endpoint.name, error)
+            else:
+                return message, identity, stamp, received
+
+    def _open(self, wire: Wire, item: Any) -> tuple[Any, Identity, int]:
+        """Return the message, its identity and its source stamp of what `accept` queued."""
+        raise NotImplementedError
+
+    def accept(self, item: Any) -> None:
+        """Queue what came from another process."""
+        self._queue.append((None, item, time.time_ns()))
+        self.on_ready()
+
+    def _accept_local(self, message: Any, identity: Identity) -> None:
+        """Queue what came from this process."""
+        self._queue.append((message, identity, time.time_ns()))
+        self.on_ready()
+
+    def close(self) -> None:
+        """Leave the graph and drop what is queued."""
+        undo, self._undo = self._undo, None
+        if undo:
+            undo()
+
+    # The session's side.
+
+    def attach(self, wire: Wire, undo: Callable[[], None]) -> None:
+        """Connect to the middleware; `undo` ends that."""
+        self._wire, self._undo = wire, undo
+
+    def detach(self) -> None:
+        """Forget the middleware and the queue."""
+        wire, self._wire = self._wire, None
+        self._queue.clear()
+        if wire:
+            wire.close()
