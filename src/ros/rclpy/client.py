@@ -5,26 +5,19 @@ from __future__ import annotations
 import threading
 import weakref
 from collections.abc import Callable
-from types import GenericAlias, TracebackType
-from typing import TYPE_CHECKING, Any, Self
+from typing import Any
 
 from rclpy.callback_groups import CallbackGroup
 from rclpy.context import Context
 from rclpy.impl.entities import ClientHandle
-from rclpy.impl.ready import ReadyHook
 from rclpy.impl.running import THREAD, wait_for
+from rclpy.impl.service_end import ServiceEnd
 from rclpy.qos import QoSProfile
 from rclpy.task import Future
 
-if TYPE_CHECKING:
-    from rclpy.clock import Clock
-    from rclpy.service_introspection import ServiceIntrospectionState
 
-
-class Client:
+class Client(ServiceEnd):
     """Calls a service; made by `Node.create_client`."""
-
-    __class_getitem__ = classmethod(GenericAlias)
 
     def __init__(
         self,
@@ -35,16 +28,9 @@ class Client:
         qos_profile: QoSProfile,
         callback_group: CallbackGroup,
     ) -> None:
+        super().__init__(client_impl, srv_type, srv_name, qos_profile, callback_group)
         self.context = context
-        self.__client = client_impl
-        self._rcl_hook = ReadyHook(self)
-        self._rcl_node: Any = None
-        self.srv_type = srv_type
-        self.srv_name = srv_name
-        self.qos_profile = qos_profile
         self._pending_requests: dict[int, Future] = {}
-        self.callback_group = callback_group
-        self._executor_event = False
         self._lock = threading.RLock()
         self._has_own_waiter = 0
         self._has_stood_back = False
@@ -74,7 +60,7 @@ class Client:
             self._has_own_waiter += 1
         try:
             future = self.call_async(request)
-            if not wait_for(future, self.context, (self.__client.name,), timeout_sec):
+            if not wait_for(future, self.context, (self.handle.name,), timeout_sec):
                 self.remove_pending_request(future)
                 return None
         finally:
@@ -103,8 +89,8 @@ class Client:
         """
         if not isinstance(request, self.srv_type.Request):
             raise TypeError()
-        with self.handle, self._lock:
-            sequence_number = self.__client.send_request(request)
+        with self.handle as handle, self._lock:
+            sequence_number = handle.send_request(request)
             if sequence_number in self._pending_requests:
                 raise RuntimeError(f"Sequence ({sequence_number}) conflicts with pending request")
             future = Future()
@@ -122,8 +108,8 @@ class Client:
 
     def service_is_ready(self) -> bool:
         """Tell whether somebody serves the service."""
-        with self.handle:
-            return self.__client.service_server_is_available()
+        with self.handle as handle:
+            return handle.service_server_is_available()
 
     def wait_for_service(self, timeout_sec: float | None = None) -> bool:
         """Wait until somebody serves the service; False when `timeout_sec` seconds pass, or at a shutdown."""
@@ -132,43 +118,6 @@ class Client:
             limit = None if timeout_sec is None or timeout_sec < 0 else timeout_sec
             graph.wait_for(lambda: not self.context.ok() or self.service_is_ready(), limit)
             return self.service_is_ready()
-
-    @property
-    def handle(self) -> ClientHandle:
-        """What is behind the client."""
-        return self.__client
-
-    @property
-    def service_name(self) -> str:
-        """The service's full name."""
-        with self.handle:
-            return self.__client.name
-
-    @property
-    def logger_name(self) -> str:
-        """The name that the client's node logs under."""
-        return self.__client.node.logger_name()
-
-    def configure_introspection(
-        self, clock: Clock, service_event_qos_profile: QoSProfile, introspection_state: ServiceIntrospectionState
-    ) -> None:
-        """Tell of requests and responses on ``<service>/_service_event``.
-
-        Parameters
-        ----------
-        clock
-            Stamps the events.
-        service_event_qos_profile
-            Quality of service of that topic.
-        introspection_state
-            OFF, METADATA, or CONTENTS for the messages as well.
-        """
-        with self.handle as handle:
-            handle.configure_introspection(clock, self.srv_type, service_event_qos_profile, introspection_state)
-
-    def destroy(self) -> None:
-        """Let go; use `Node.destroy_client` instead."""
-        self.__client.destroy_when_not_in_use()
 
     def _on_ready(self) -> None:
         """Hand a response to who waits in `call`, which may be the executor itself, or make the client ready."""
@@ -192,7 +141,7 @@ class Client:
 
     def _rcl_take_unbound(self) -> tuple[Callable[..., Any], tuple[Any, ...]] | None:
         """Take a response; it only finishes a future, which need not wait for the callback group."""
-        taken = self.__client.take_response()
+        taken = self.handle.take_response()
         return None if taken is None else (self._finish, taken)
 
     def _finish(self, header: Any, response: Any) -> None:
@@ -203,17 +152,6 @@ class Client:
         node = self._rcl_node() if self._rcl_node else None
         future._set_executor(node.executor if node is not None else None)
         future.set_result(response)
-
-    def _rcl_has_more(self) -> bool:
-        return len(self.__client.impl) > 0
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self.destroy()
 
 
 class _Forget:
