@@ -144,6 +144,15 @@ def test_it_stands_when_it_stops() -> None:
     assert rig.commands.values == pytest.approx([0.0, 0.0, math.atan(0.5)])
 
 
+def test_the_steered_wheels_are_as_far_apart_as_the_driven_ones_unless_told_otherwise() -> None:
+    angles = []
+    for track in (0.0, 0.6):
+        rig = Rig("ackermann", front_wheel_track=track)
+        rig.run(0.05, 1.0, 0.5)
+        angles.append(rig.commands.values[2:].copy())
+    assert angles[0] == pytest.approx(angles[1])
+
+
 @pytest.mark.parametrize(
     ("kind", "values", "message"),
     [

@@ -161,7 +161,7 @@ class TricycleParameters(SteeringParameters):
 
 @dataclass(frozen=True)
 class AckermannParameters(SteeringParameters):
-    """Two driven wheels and two steered ones; tracks and radii [m]."""
+    """Two driven wheels and two steered ones; tracks and radii [m]. The steered track may be left out."""
 
     front_wheel_track: float = parameter(0.0, read_only=True)
     rear_wheel_track: float = parameter(0.0, read_only=True)
@@ -178,10 +178,9 @@ class AckermannParameters(SteeringParameters):
         rear, front = self.rear_wheel_track, self.front_wheel_track
         traction = self.traction_track_width or (rear if self.front_steering else front)
         steering = self.steering_track_width or (front if self.front_steering else rear)
-        for name, track in (("traction_track_width", traction), ("steering_track_width", steering)):
-            if track <= 0.0:
-                raise ParameterError(name, "must be above 0")
-        return SteeredBase(self.wheelbase, radius, traction, steering)
+        if traction <= 0.0:
+            raise ParameterError("traction_track_width", "must be above 0")
+        return SteeredBase(self.wheelbase, radius, traction, steering if steering > 0.0 else traction)
 
 
 class BicycleSteeringController(Controller):
