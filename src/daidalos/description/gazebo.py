@@ -15,7 +15,7 @@ from daidalos.description.markup import Element
 from daidalos.description.named_colors import named_color
 from daidalos.description.robot import Robot
 from daidalos.description.sdf.frames import read_pose
-from daidalos.description.sdf.links import read_plugin, read_sensor
+from daidalos.description.sdf.links import read_direction, read_plugin, read_sensor
 from daidalos.description.transmissions import control_from_transmissions
 from daidalos.description.world import Model
 
@@ -121,7 +121,11 @@ def _sensor(element: Element) -> Sensor:
 
 
 def _surface(elements: list[Element]) -> Surface:
+    given = next((e.first("fdir1") for e in reversed(elements) if e.first("fdir1") is not None), None)
+    direction, direction_frame = read_direction(given)
     return Surface(
+        direction=direction,
+        direction_frame=direction_frame,
         mu=_number(elements, "mu1", "mu"),
         mu2=_number(elements, "mu2"),
         slip1=_number(elements, "slip1"),

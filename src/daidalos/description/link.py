@@ -47,6 +47,10 @@ class Surface:
     ----------
     mu, mu2 : float or None
         Coulomb friction along the first direction and across it.
+    direction : tuple of 3 floats
+        The first direction (``fdir1``); zero leaves it to the simulator.
+    direction_frame : str
+        The link in whose axes it stands still while the surface turns; empty for the surface's own.
     slip1, slip2 : float or None
         Force dependent slip [1/(N s)] in the two directions.
     torsional : float or None
@@ -67,6 +71,8 @@ class Surface:
 
     mu: float | None = None
     mu2: float | None = None
+    direction: Vector = (0.0, 0.0, 0.0)
+    direction_frame: str = ""
     slip1: float | None = None
     slip2: float | None = None
     torsional: float | None = None

@@ -9,6 +9,7 @@ from daidalos.description.link import Plugin as PluginDescription
 from daidalos.description.link import Sensor as SensorDescription
 from daidalos.description.world import Model, World
 from daidalos.simulation.component import Component, Setting
+from daidalos.simulation.directional_friction import DirectionalFriction, directed_surfaces
 from daidalos.simulation.plugins.base import COMMON_PARAMETERS, Parameters, Plugin, ReadElement, SensorPlugin
 from daidalos.simulation.registry import is_built_in, plugin_class, sensor_class
 from daidalos.simulation.sensors.base import Sensor
@@ -34,6 +35,8 @@ def make_components(model: Model, setting: Callable[[str], Setting]) -> list[Com
         When a plugin or sensor is known and its parameters are wrong.
     """
     components: list[Component] = []
+    if directed_surfaces(model):
+        components.append(DirectionalFriction(setting("friction")))
     for plugin in model.plugins:
         components += _plugin(plugin, setting(plugin.name))
     for link, joint, sensor in _sensors(model):

@@ -17,7 +17,7 @@ from daidalos.description.link import (
     Visual,
 )
 from daidalos.description.markup import Element
-from daidalos.description.pose import Pose
+from daidalos.description.pose import Pose, Vector
 from daidalos.description.sdf.context import Context
 from daidalos.description.sdf.geometry import read_geometry
 from daidalos.description.sdf.materials import read_color, read_material
@@ -177,7 +177,10 @@ def _surface(element: Element) -> Surface:
     contact = _below(element, "contact")
     stiffness = _below(element, "contact", "ode")
     bounce = _below(element, "bounce")
+    direction, direction_frame = read_direction(friction.first("fdir1"))
     return Surface(
+        direction=direction,
+        direction_frame=direction_frame,
         mu=_optional(friction, "mu", _optional(bullet, "friction")),
         mu2=_optional(friction, "mu2", _optional(bullet, "friction2")),
         slip1=_optional(friction, "slip1"),
@@ -191,6 +194,15 @@ def _surface(element: Element) -> Surface:
         collide=not contact.flag_of("collide_without_contact", default=False),
         bitmask=_bitmask(contact),
     )
+
+
+def read_direction(element: Element | None) -> tuple[Vector, str]:
+    """Read the first direction of friction and the frame that it is in; zero and nothing where there is none."""
+    if element is None or not element.text.strip():
+        return (0.0, 0.0, 0.0), ""
+    x, y, z = element.vector(3)
+    frame = element.attribute("gz:expressed_in", element.attribute("ignition:expressed_in", ""))
+    return (x, y, z), frame
 
 
 def _bitmask(contact: Element) -> int:
