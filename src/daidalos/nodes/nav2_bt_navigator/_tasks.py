@@ -163,7 +163,7 @@ class _ActionTask:
             self._failure = f"the action {self._kind.server} is not served"
             return
         generation = self._generation
-        goal = self._kind.goal(self._client._action_type, ports)
+        goal = self._kind.goal(self._client.action_type, ports)
         future = self._client.send_goal_async(goal)
         future.add_done_callback(lambda sent: self._on_sent(sent.result(), generation))
 

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import threading
 import uuid
 import weakref
 from collections.abc import Callable
-from types import GenericAlias, TracebackType
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any
 
+from rclpy.action._action_end import ActionEnd, ActionQoS
+from rclpy.action._client_goal import ClientGoalHandle as ClientGoalHandle
 from rclpy.callback_groups import CallbackGroup
 from rclpy.impl.entities import ClientHandle, SubscriptionHandle
 from rclpy.impl.errors import InvalidHandle
-from rclpy.impl.node_graph import checked_name
-from rclpy.impl.ready import ReadyHook
 from rclpy.impl.running import wait_for
 from rclpy.qos import (
     QoSProfile,
@@ -21,74 +19,13 @@ from rclpy.qos import (
     qos_profile_services_default,
 )
 from rclpy.task import Future
-from rclpy.type_support import check_is_valid_action_type
-from rclpy.waitable import NumberOfEntities, Waitable
+from rclpy.waitable import NumberOfEntities
 
 if TYPE_CHECKING:
-    from rclpy.clock import Clock
     from rclpy.node import Node
-    from rclpy.service_introspection import ServiceIntrospectionState
 
 
-class ClientGoalHandle:
-    """A goal that was sent, as its sender sees it."""
-
-    __class_getitem__ = classmethod(GenericAlias)
-
-    def __init__(self, action_client: ActionClient, goal_id: Any, goal_response: Any) -> None:
-        self._action_client = action_client
-        self._goal_id = goal_id
-        self._goal_response = goal_response
-        self._status = 0
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, ClientGoalHandle) and self._goal_id == other.goal_id
-
-    __hash__ = None  # type: ignore[assignment]
-
-    def __repr__(self) -> str:
-        return (
-            f"ClientGoalHandle <id={bytes(self._goal_id.uuid).hex()}, accepted={self.accepted}, status={self.status}>"
-        )
-
-    @property
-    def goal_id(self) -> Any:
-        """The goal's identity, a ``unique_identifier_msgs/msg/UUID``."""
-        return self._goal_id
-
-    @property
-    def stamp(self) -> Any:
-        """When the server accepted the goal."""
-        return self._goal_response.stamp
-
-    @property
-    def accepted(self) -> bool:
-        """Whether the server accepted the goal."""
-        return bool(self._goal_response.accepted)
-
-    @property
-    def status(self) -> int:
-        """The goal's state, as in ``action_msgs/msg/GoalStatus``."""
-        return self._status
-
-    def cancel_goal(self) -> Any:
-        """Ask for cancellation and wait for the ``CancelGoal`` response."""
-        return self._action_client._cancel_goal(self)
-
-    def cancel_goal_async(self) -> Future:
-        """Ask for cancellation; the future's result will be the ``CancelGoal`` response."""
-        return self._action_client._cancel_goal_async(self)
-
-    def get_result(self) -> Any:
-        """Wait for the result: an object with ``status`` and ``result``."""
-        return self._action_client._get_result(self)
-
-    def get_result_async(self) -> Future:
-        """Ask for the result; the future's result will be an object with ``status`` and ``result``."""
-        return self._action_client._get_result_async(self)
-
-
-class ActionClient(Waitable):
+class ActionClient(ActionEnd):
     """Sends goals to an action's server.
 
     Parameters
@@ -107,7 +44,7 @@ status_sub_qos_profile
         Quality of service of the parts.
     """
 
-    __class_getitem__ = classmethod(GenericAlias)
+    role = "action client"
 
     def __init__(
         self,
@@ -122,17 +59,15 @@ status_sub_qos_profile
         feedback_sub_qos_profile: QoSProfile = QoSProfile(depth=10),  # noqa: B008
         status_sub_qos_profile: QoSProfile = qos_profile_action_status_default,
     ) -> None:
-        if callback_group is None:
-            callback_group = node.default_callback_group
-        super().__init__(callback_group)
-        check_is_valid_action_type(action_type)
-        self._client_node = node
-        self._action_type = action_type
-        self._action_name = action_name
-        self._lock = threading.RLock()
-        self._rcl_hook = ReadyHook(self)
+        qos = ActionQoS(
+            goal_service_qos_profile,
+            cancel_service_qos_profile,
+            result_service_qos_profile,
+            feedback_sub_qos_profile,
+            status_sub_qos_profile,
+        )
+        super().__init__(node, action_type, action_name, callback_group, ClientHandle, SubscriptionHandle, qos)
         self._own_waiters = 0
-        self._destroyed = False
         self._goal_handles: dict[bytes, weakref.ref[ClientGoalHandle]] = {}
         self._pending_goal_requests: dict[int, Future] = {}
         self._goal_sequence_number_to_goal_id: dict[int, Any] = {}
@@ -140,32 +75,13 @@ status_sub_qos_profile
         self._pending_result_requests: dict[int, Future] = {}
         self._result_sequence_number_to_goal_id: dict[int, Any] = {}
         self._feedback_callbacks: dict[bytes, Callable[[Any], None]] = {}
-        self._logger = node.get_logger().get_child("action_client")
-        impl = action_type.Impl
-        with node.handle as handle:
-            base = f"{checked_name(handle, action_name, is_service=False)}/_action"
-            self._goal_client = ClientHandle(
-                handle, impl.SendGoalService, f"{base}/send_goal", goal_service_qos_profile
-            )
-            self._cancel_client = ClientHandle(
-                handle, impl.CancelGoalService, f"{base}/cancel_goal", cancel_service_qos_profile
-            )
-            self._result_client = ClientHandle(
-                handle, impl.GetResultService, f"{base}/get_result", result_service_qos_profile
-            )
-            self._feedback_subscription = SubscriptionHandle(
-                handle, impl.FeedbackMessage, f"{base}/feedback", feedback_sub_qos_profile
-            )
-            self._status_subscription = SubscriptionHandle(
-                handle, impl.GoalStatusMessage, f"{base}/status", status_sub_qos_profile
-            )
         # In the order in which they are looked at: feedback comes before the result that ends it.
         self._sources = (
-            (self._goal_client, self._on_goal_response),
-            (self._cancel_client, self._on_cancel_response),
-            (self._feedback_subscription, self._on_feedback),
-            (self._status_subscription, self._on_status),
-            (self._result_client, self._on_result_response),
+            (self._goal_end, self._on_goal_response),
+            (self._cancel_end, self._on_cancel_response),
+            (self._feedback_end, self._on_feedback),
+            (self._status_end, self._on_status),
+            (self._result_end, self._on_result_response),
         )
         for source, _ in self._sources:
             source.set_on_ready(self._on_ready)
@@ -199,7 +115,7 @@ status_sub_qos_profile
     def _rcl_take_unbound(self) -> tuple[Callable[..., Any], tuple[Any, ...]] | None:
         """Take a response, which only finishes a future; a result waits for the feedback that came before it."""
         for source, callback in self._sources:
-            if source is self._result_client and len(self._feedback_subscription.impl):
+            if source is self._result_end and len(self._feedback_end.impl):
                 return None
             taken = source.take_response() if isinstance(source, ClientHandle) else None
             if taken is not None:
@@ -221,7 +137,7 @@ status_sub_qos_profile
                 f"'{self._action_name}'"
             )
             return
-        future._set_executor(self._client_node.executor)
+        future._set_executor(self._action_node.executor)
         future.set_result(result)
 
     def _on_goal_response(self, header: Any, response: Any) -> None:
@@ -303,8 +219,7 @@ status_sub_qos_profile
             self._own_waiters += 1
         try:
             future = call()
-            services = (self._goal_client, self._cancel_client, self._result_client)
-            wait_for(future, self._client_node.context, [one.name for one in services], timeout_s)
+            wait_for(future, self._action_node.context, [service.name for service in self._services], timeout_s)
         finally:
             with self._lock:
                 self._own_waiters -= 1
@@ -341,7 +256,7 @@ status_sub_qos_profile
         with self._lock:
             if feedback_callback is not None:
                 self._feedback_callbacks[bytes(request.goal_id.uuid)] = feedback_callback
-            number = self._goal_client.send_request(request)
+            number = self._goal_end.send_request(request)
             if number in self._pending_goal_requests:
                 raise RuntimeError(f"Sequence ({number}) conflicts with pending goal request")
             self._pending_goal_requests[number] = future
@@ -360,7 +275,7 @@ status_sub_qos_profile
         request.goal_info.goal_id = goal_handle.goal_id
         future = Future()
         with self._lock:
-            self._pending_cancel_requests[self._cancel_client.send_request(request)] = future
+            self._pending_cancel_requests[self._cancel_end.send_request(request)] = future
         return future
 
     def _get_result(self, goal_handle: ClientGoalHandle) -> Any:
@@ -373,7 +288,7 @@ status_sub_qos_profile
         request.goal_id = goal_handle.goal_id
         future = Future()
         with self._lock:
-            number = self._result_client.send_request(request)
+            number = self._result_end.send_request(request)
             self._pending_result_requests[number] = future
             self._result_sequence_number_to_goal_id[number] = goal_handle.goal_id
         return future
@@ -382,46 +297,13 @@ status_sub_qos_profile
         """Tell whether the action is served."""
         if self._destroyed:
             raise InvalidHandle("the action client was destroyed")
-        services = (self._goal_client, self._cancel_client, self._result_client)
-        served = all(client.service_server_is_available() for client in services)
-        return served and bool(self._feedback_subscription.get_publisher_count())
+        served = all(service.service_server_is_available() for service in self._services)
+        return served and bool(self._feedback_end.get_publisher_count())
 
     def wait_for_server(self, timeout_sec: float | None = None) -> bool:
         """Wait until the action is served; False when `timeout_sec` seconds pass, or at a shutdown."""
-        graph = self._goal_client.node.graph
-        context = self._client_node.context
+        graph = self._goal_end.node.graph
+        context = self._action_node.context
         limit = None if timeout_sec is None or timeout_sec < 0 else timeout_sec
         graph.wait_for(lambda: not context.ok() or self.server_is_ready(), limit)
         return self.server_is_ready()
-
-    def configure_introspection(
-        self, clock: Clock, service_event_qos_profile: QoSProfile, introspection_state: ServiceIntrospectionState
-    ) -> None:
-        """Tell of what passes the action's three services; see `Client.configure_introspection`."""
-        impl = self._action_type.Impl
-        for client, kind in (
-            (self._goal_client, impl.SendGoalService),
-            (self._cancel_client, impl.CancelGoalService),
-            (self._result_client, impl.GetResultService),
-        ):
-            client.configure_introspection(clock, kind, service_event_qos_profile, introspection_state)
-
-    def destroy(self) -> None:
-        """Call no more."""
-        if self._destroyed:
-            return
-        self._destroyed = True
-        for source, _ in self._sources:
-            source.destroy_when_not_in_use()
-        if self in list(self._client_node.waitables):
-            self._client_node.remove_waitable(self)
-
-    def __enter__(self) -> Self:
-        if self._destroyed:
-            raise InvalidHandle("the action client was destroyed")
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        """Leave it as it is."""

@@ -2,33 +2,28 @@
 
 from __future__ import annotations
 
-import threading
 import traceback
 from collections import deque
 from collections.abc import Callable
 from enum import Enum
-from types import GenericAlias, TracebackType
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any
 
-from rclpy.action._goal_state import GoalEvent, GoalState, next_state
+from rclpy.action._action_end import ActionEnd, ActionQoS
+from rclpy.action._expiry import Expiry
+from rclpy.action._goal_state import GoalEvent, GoalState
+from rclpy.action._server_goal import ServerGoalHandle as ServerGoalHandle
 from rclpy.callback_groups import CallbackGroup
 from rclpy.impl.entities import PublisherHandle, ServiceHandle
-from rclpy.impl.errors import InvalidHandle
-from rclpy.impl.node_graph import checked_name
-from rclpy.impl.ready import ReadyHook
 from rclpy.qos import (
     QoSProfile,
     qos_profile_action_status_default,
     qos_profile_services_default,
 )
 from rclpy.task import Future
-from rclpy.type_support import check_is_valid_action_type
-from rclpy.waitable import NumberOfEntities, Waitable
+from rclpy.waitable import NumberOfEntities
 
 if TYPE_CHECKING:
-    from rclpy.clock import Clock
     from rclpy.node import Node
-    from rclpy.service_introspection import ServiceIntrospectionState
 
 
 class GoalResponse(Enum):
@@ -43,119 +38,6 @@ class CancelResponse(Enum):
 
     REJECT = 1
     ACCEPT = 2
-
-
-class ServerGoalHandle:
-    """A goal that a server has accepted."""
-
-    __class_getitem__ = classmethod(GenericAlias)
-
-    def __init__(self, action_server: ActionServer, goal_info: Any, goal_request: Any) -> None:
-        self._action_server = action_server
-        self._goal_info = goal_info
-        self._goal_request = goal_request
-        self._cancel_requested = False
-        self._state = GoalState.ACCEPTED
-        self._lock = threading.Lock()
-        self._destroyed = False
-        self.ended_ns: int | None = None
-        self._response: Any = None
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, ServerGoalHandle) and self.goal_id == other.goal_id
-
-    def __hash__(self) -> int:
-        return hash(bytes(self.goal_id.uuid))
-
-    @property
-    def request(self) -> Any:
-        """The goal."""
-        return self._goal_request
-
-    @property
-    def goal_id(self) -> Any:
-        """The goal's identity, a ``unique_identifier_msgs/msg/UUID``."""
-        return self._goal_info.goal_id
-
-    @property
-    def is_active(self) -> bool:
-        """Whether the goal is not yet over."""
-        return not self._destroyed and self._state.is_active
-
-    @property
-    def is_cancel_requested(self) -> bool:
-        """Whether the goal is to be cancelled."""
-        return self._state is GoalState.CANCELING
-
-    @property
-    def status(self) -> int:
-        """The goal's state, as in ``action_msgs/msg/GoalStatus``."""
-        return GoalState.UNKNOWN if self._destroyed else int(self._state)
-
-    def _update_state(self, event: GoalEvent) -> None:
-        with self._lock:
-            if self._destroyed:
-                return
-            self._state = next_state(self._state, event)
-            if not self._state.is_active:
-                self.ended_ns = self._action_server._now_ns()
-        self._action_server._publish_status()
-        if not self._state.is_active:
-            self._action_server.notify_goal_done()
-
-    def execute(self, execute_callback: Callable[[ServerGoalHandle], Any] | None = None) -> None:
-        """Have the goal carried out, by the server's callback where None.
-
-        Raises
-        ------
-        RCLError
-            When it is carried out already, or over.
-        """
-        self.executing()
-        self._action_server.notify_execute(self, execute_callback)
-
-    def executing(self) -> None:
-        """Note that the goal is carried out, by whom it may be; RCLError when it is already, or over."""
-        if not self.is_cancel_requested:
-            self._update_state(GoalEvent.EXECUTE)
-
-    def publish_feedback(self, feedback: Any) -> None:
-        """Tell the client how far it got.
-
-        Raises
-        ------
-        TypeError
-            When the feedback is of the wrong type.
-        """
-        if not isinstance(feedback, self._action_server.action_type.Feedback):
-            raise TypeError(f"Expected {self._action_server.action_type.Feedback}, got {type(feedback)}")
-        message = self._action_server.action_type.Impl.FeedbackMessage()
-        message.goal_id = self.goal_id
-        message.feedback = feedback
-        self._action_server._feedback_publisher.impl.publish(message)
-
-    def succeed(self, response: Any = None) -> None:
-        """End the goal as reached, with a result if it is given here instead of being returned."""
-        self._finish(GoalEvent.SUCCEED, response)
-
-    def abort(self, response: Any = None) -> None:
-        """End the goal as failed; see `succeed`."""
-        self._finish(GoalEvent.ABORT, response)
-
-    def canceled(self, response: Any = None) -> None:
-        """End the goal as cancelled; see `succeed`."""
-        self._finish(GoalEvent.CANCELED, response)
-
-    def _finish(self, event: GoalEvent, response: Any) -> None:
-        self._update_state(event)
-        self._response = response
-        if response is not None:
-            self._action_server._set_result(self, response)
-
-    def destroy(self) -> None:
-        """Forget the goal."""
-        self._destroyed = True
-        self._action_server._forget(bytes(self.goal_id.uuid))
 
 
 def default_handle_accepted_callback(goal_handle: ServerGoalHandle) -> None:
@@ -173,7 +55,7 @@ def default_cancel_callback(cancel_request: Any) -> CancelResponse:
     return CancelResponse.REJECT
 
 
-class ActionServer(Waitable):
+class ActionServer(ActionEnd):
     """Serves an action.
 
     Parameters
@@ -202,7 +84,7 @@ status_pub_qos_profile
         How long results are kept, in seconds; for ever where negative.
     """
 
-    __class_getitem__ = classmethod(GenericAlias)
+    role = "action server"
 
     def __init__(
         self,
@@ -222,74 +104,49 @@ status_pub_qos_profile
         status_pub_qos_profile: QoSProfile = qos_profile_action_status_default,
         result_timeout: float = 900,
     ) -> None:
-        if callback_group is None:
-            callback_group = node.default_callback_group
-        super().__init__(callback_group)
-        check_is_valid_action_type(action_type)
-        self._lock = threading.RLock()
+        # Before anything is made that would have to be undone: they may refuse.
         self.register_handle_accepted_callback(handle_accepted_callback)
         self.register_goal_callback(goal_callback)
         self.register_cancel_callback(cancel_callback)
         self._execute_callback: Callable[[ServerGoalHandle], Any] | None = None
         if execute_callback is not None:
             self.register_execute_callback(execute_callback)
-        self._server_node = node
-        self._action_type = action_type
+        qos = ActionQoS(
+            goal_service_qos_profile,
+            cancel_service_qos_profile,
+            result_service_qos_profile,
+            feedback_pub_qos_profile,
+            status_pub_qos_profile,
+        )
+        super().__init__(node, action_type, action_name, callback_group, ServiceHandle, PublisherHandle, qos)
         self._goal_handles: dict[bytes, ServerGoalHandle] = {}
         self._result_futures: dict[bytes, Future] = {}
         self._result_timeout = result_timeout
-        self._logger = node.get_logger().get_child("action_server")
-        self._rcl_hook = ReadyHook(self)
-        self._destroyed = False
-        impl = action_type.Impl
-        with node.handle as handle:
-            name = checked_name(handle, action_name, is_service=False)
-            base = f"{name}/_action"
-            self._goal_service = ServiceHandle(
-                handle, impl.SendGoalService, f"{base}/send_goal", goal_service_qos_profile
-            )
-            self._cancel_service = ServiceHandle(
-                handle, impl.CancelGoalService, f"{base}/cancel_goal", cancel_service_qos_profile
-            )
-            self._result_service = ServiceHandle(
-                handle, impl.GetResultService, f"{base}/get_result", result_service_qos_profile
-            )
-            self._feedback_publisher = PublisherHandle(
-                handle, impl.FeedbackMessage, f"{base}/feedback", feedback_pub_qos_profile
-            )
-            self._status_publisher = PublisherHandle(
-                handle, impl.GoalStatusMessage, f"{base}/status", status_pub_qos_profile
-            )
-        self._services = (
-            (self._goal_service, self._execute_goal_request),
-            (self._cancel_service, self._execute_cancel_request),
-            (self._result_service, self._execute_get_result_request),
+        self._sources = (
+            (self._goal_end, self._execute_goal_request),
+            (self._cancel_end, self._execute_cancel_request),
+            (self._result_end, self._execute_get_result_request),
         )
-        self._rcl_serves = frozenset(service.name for service, _ in self._services)
+        self._rcl_serves = frozenset(service.name for service in self._services)
         self._waiting_goals: deque[tuple[ServerGoalHandle, Callable[[ServerGoalHandle], Any]]] = deque()
-        self._expiry = _Expiry(self, node)
-        for service, _ in self._services:
+        self._expiry = Expiry(self, node)
+        for service in self._services:
             service.set_on_ready(self._rcl_hook)
         node.add_waitable(self)
-
-    @property
-    def action_type(self) -> Any:
-        """Class of the action."""
-        return self._action_type
 
     # The executor's side.
 
     def _rcl_take(self) -> tuple[Callable[..., Any], tuple[Any, ...]] | None:
         if self._waiting_goals:
             return self.notify_execute, self._waiting_goals.popleft()
-        for service, callback in self._services:
+        for service, callback in self._sources:
             taken = service.take_request()
             if taken is not None:
                 return callback, taken
         return None
 
     def _rcl_has_more(self) -> bool:
-        return bool(self._waiting_goals) or any(len(service.impl) for service, _ in self._services)
+        return bool(self._waiting_goals) or any(len(service.impl) for service in self._services)
 
     def get_num_entities(self) -> NumberOfEntities:
         """Return three services and a timer."""
@@ -302,7 +159,7 @@ status_pub_qos_profile
 
         key = bytes(request.goal_id.uuid)
         response = self._action_type.Impl.SendGoalService.Response(accepted=False)
-        goal_info = GoalInfo(goal_id=request.goal_id, stamp=self._server_node.get_clock().now().to_msg())
+        goal_info = GoalInfo(goal_id=request.goal_id, stamp=self._action_node.get_clock().now().to_msg())
         self._logger.debug(f"New goal request with ID: {key.hex()}")
         with self._lock:
             known = key in self._goal_handles
@@ -317,7 +174,7 @@ status_pub_qos_profile
             with self._lock:
                 self._goal_handles[key] = goal_handle
                 self._result_futures[key] = Future()
-        self._goal_service.send_response(response, header)
+        self._goal_end.send_response(response, header)
         if goal_handle is None:
             self._logger.debug(f"New goal rejected: {key.hex()}")
             return
@@ -376,7 +233,7 @@ status_pub_qos_profile
         callback = execute_callback or self._execute_callback
         if callback is None:
             raise RuntimeError("the action server has no execute_callback, and none was given")
-        executor = self._server_node.executor
+        executor = self._action_node.executor
         if executor is not None:
             executor.create_task(self._execute_goal, callback, goal_handle)
         else:
@@ -401,7 +258,7 @@ status_pub_qos_profile
                 response.goals_canceling.append(goal_handle._goal_info)
         if wanted and not response.goals_canceling:
             response.return_code = CancelGoal.Response.ERROR_REJECTED
-        self._cancel_service.send_response(response, header)
+        self._cancel_end.send_response(response, header)
 
     def _goals_to_cancel(self, info: Any) -> tuple[list[ServerGoalHandle], int]:
         """Return the goals that a request means: one by its identity, all up to a time, both, or all."""
@@ -444,17 +301,17 @@ status_pub_qos_profile
             self._logger.debug(f"Sending result response for unknown goal ID: {key.hex()}")
             response = self._action_type.Impl.GetResultService.Response()
             response.status = GoalState.UNKNOWN
-            self._result_service.send_response(response, header)
+            self._result_end.send_response(response, header)
             return
         future.on_wake(lambda: self._send_result(future, header))
 
     def _send_result(self, future: Future, header: Any) -> None:
         if not self._destroyed and future.done():
-            self._result_service.send_response(future.result(), header)
+            self._result_end.send_response(future.result(), header)
 
     def _now_ns(self) -> int:
         """Return the time that results age by: the node's, which a simulator may give."""
-        return self._server_node.get_clock().now().nanoseconds
+        return self._action_node.get_clock().now().nanoseconds
 
     def _forget(self, key: bytes) -> None:
         with self._lock:
@@ -485,7 +342,7 @@ status_pub_qos_profile
         if self._destroyed:
             return
         statuses = [GoalStatus(goal_info=goal._goal_info, status=goal.status) for goal in goals]
-        self._status_publisher.impl.publish(GoalStatusArray(status_list=statuses))
+        self._status_end.impl.publish(GoalStatusArray(status_list=statuses))
 
     # Callbacks.
 
@@ -515,76 +372,17 @@ status_pub_qos_profile
             raise TypeError("Failed to register goal execution callback: not callable")
         self._execute_callback = execute_callback
 
-    def configure_introspection(
-        self, clock: Clock, service_event_qos_profile: QoSProfile, introspection_state: ServiceIntrospectionState
-    ) -> None:
-        """Tell of what passes the action's three services; see `Service.configure_introspection`."""
-        impl = self._action_type.Impl
-        kinds = (impl.SendGoalService, impl.CancelGoalService, impl.GetResultService)
-        for (service, _), kind in zip(self._services, kinds, strict=True):
-            service.configure_introspection(clock, kind, service_event_qos_profile, introspection_state)
-
     def destroy(self) -> None:
         """Serve no more; goals that are not over end as they are."""
         if self._destroyed:
             return
-        self._destroyed = True
+        super().destroy()
         self._expiry.close()
-        for handle in (
-            *(service for service, _ in self._services),
-            self._feedback_publisher,
-            self._status_publisher,
-        ):
-            handle.destroy_when_not_in_use()
         with self._lock:
             self._goal_handles.clear()
             self._result_futures.clear()
-        if self in list(self._server_node.waitables):
-            self._server_node.remove_waitable(self)
-
-    def __enter__(self) -> Self:
-        if self._destroyed:
-            raise InvalidHandle("the action server was destroyed")
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        """Leave it as it is."""
 
 
 def _stamp(goal: ServerGoalHandle) -> tuple[int, int]:
     stamp = goal._goal_info.stamp
     return stamp.sec, stamp.nanosec
-
-
-class _Expiry:
-    """Wakes the server when the oldest result has been kept long enough."""
-
-    def __init__(self, server: ActionServer, node: Node) -> None:
-        self._server = server
-        self._rcl_node = node
-        self._timer: Any = None
-
-    def plan(self) -> None:
-        """Wait for the next result to expire."""
-        server = self._server
-        if server._result_timeout < 0 or server._destroyed:
-            return
-        with server._lock:
-            ended = [goal.ended_ns for goal in server._goal_handles.values() if goal.ended_ns is not None]
-            if not ended:
-                return
-            left = min(ended) + int(server._result_timeout * 1e9) - server._now_ns()
-        self.close()
-        self._timer = self._rcl_node.create_timer(max(left, 0) / 1e9, self._expire, server.callback_group)
-
-    def _expire(self) -> None:
-        self.close()
-        self._server.expire_goals()
-
-    def close(self) -> None:
-        """Wait no more."""
-        timer, self._timer = self._timer, None
-        if timer is not None:
-            self._rcl_node.destroy_timer(timer)
