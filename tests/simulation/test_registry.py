@@ -41,6 +41,7 @@ def test_ours_are_found():
     assert registry.plugin_class(written("p", "libgazebo_ros_diff_drive.so")) is DiffDrive
     assert registry.plugin_class(written("ignition::gazebo::v6::systems::DiffDrive", "gz-sim-systems")) is DiffDrive
     assert registry.plugin_class(written("diff_drive", "libnothing.so")) is None
+    assert registry.is_built_in(written("ignition::gazebo::systems::v0::Physics", "libignition-gazebo-systems.so"))
     assert registry.sensor_class("nose") is None
 
 

@@ -303,6 +303,20 @@ def test_the_world_around_a_missing_model_loads(tmp_path):
     assert sum("left out, as is one of" in line for line in world.warnings) == 3
 
 
+def test_an_actor_can_be_included(tmp_path):
+    (tmp_path / "walker").mkdir()
+    (tmp_path / "walker/model.sdf").write_text(
+        "<sdf version='1.6'><actor name='walker'><pose>0 0 1 0 0 0</pose><link name='body'/>"
+        "<plugin name='p' filename='libp.so'/></actor></sdf>"
+    )
+    uri = "<uri>model://walker</uri>"
+    extra = "<name>guide</name><pose>1 0 0 0 0 0</pose><plugin name='q' filename='libq.so'/>"
+    first, second = included(tmp_path, f"<include>{uri}</include><include>{uri}{extra}</include>").actors
+    assert (first.name, first.pose.position) == ("walker", (0, 0, 1))
+    assert (second.name, second.model.name, second.pose.position) == ("guide", "guide", (1, 0, 0))
+    assert [plugin.filename for plugin in second.model.plugins] == ["libp.so", "libq.so"]
+
+
 def test_a_model_found_takes_the_name_of_one_that_is_missing(tmp_path):
     text = '<include><uri>model://chair</uri></include><model name="chair"><link name="body"/></model>'
     text += '<joint name="hold" type="fixed"><parent>world</parent><child>chair</child></joint>'

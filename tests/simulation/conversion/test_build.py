@@ -172,6 +172,21 @@ def test_missing_collision_meshes_are_left_out_with_a_line():
     assert lines[-1] == "r.urdf:1: mesh package://x/a.stl not found; the collision is left out"
 
 
+@pytest.mark.parametrize("static", ["true", "false"])
+def test_missing_files_of_visuals_are_named_though_no_camera_looks(static):
+    lines = []
+    visuals = "".join(
+        f"<visual name='{kind}'><geometry><{kind}><uri>{kind}.bin</uri></{kind}></geometry></visual>\n"
+        for kind in ("mesh", "heightmap")
+    )
+    text = f"<sdf version='1.9'><model name='m'><static>{static}</static><link name='l'>{visuals}</link></model></sdf>"
+    Simulation(world(), warn=lines.append).spawn(sdf.parse_model(text, "m.sdf"))
+    assert lines[:2] == [
+        "m.sdf:1: mesh mesh.bin not found; the visual is not drawn",
+        "m.sdf:2: heightmap heightmap.bin not found; the visual is not drawn",
+    ]
+
+
 def test_terrain_carries_at_its_height(tmp_path):
     """Dark in the south, bright in the north: the image's top row is the largest y."""
     image = pytest.importorskip("PIL.Image")

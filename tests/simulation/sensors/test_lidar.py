@@ -63,6 +63,8 @@ def test_reach_and_samples_times_resolution():
     assert np.isfinite(sample.ranges).tolist() == [False, False, True, False, False]
     fan = "<horizontal><samples>820</samples><resolution>0.5</resolution><min_angle>-1</min_angle>"
     assert len(scan(carrier(scan=f"{fan}<max_angle>1</max_angle></horizontal>")).ranges) == 410
+    flat = "<vertical><samples>1</samples><resolution>0.01</resolution></vertical>"
+    assert len(scan(carrier(scan=f"{fan}<max_angle>1</max_angle></horizontal>{flat}")).ranges) == 410
 
 
 def test_own_shapes_within_the_least_range_are_passed_and_others_are_too_near():

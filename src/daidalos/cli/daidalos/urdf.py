@@ -102,7 +102,7 @@ def _simulated(description: "Robot | Model | World") -> list[str]:
         simulation.spawn(description, pose=Pose((0.0, 0.0, 10.0)))
     simulation.step(10)
     unseen = [line for link in _links(description) for visual in link.visuals for line in _unseen(visual, link.where)]
-    return [*unseen, *simulation.warnings]
+    return list(dict.fromkeys([*unseen, *simulation.warnings]))
 
 
 def _links(description: "Robot | Model | World") -> "Iterator[Link]":

@@ -8,7 +8,7 @@ from daidalos.description.markup import Element
 from daidalos.description.pose import Pose
 from daidalos.description.sdf.context import Context
 from daidalos.description.sdf.frames import read_pose
-from daidalos.description.sdf.links import read_link
+from daidalos.description.sdf.links import read_link, read_plugin
 from daidalos.description.world import Actor, Model, Waypoint
 
 SKIN = "skin"
@@ -26,7 +26,14 @@ def read_actor(element: Element, context: Context) -> Actor:
     links = {link.name: link for link in (_skin(element, context), *_links(element, context)) if link is not None}
     return Actor(
         name=name,
-        model=Model(name=name, links=links, static=True, scripted=True, source=element.source),
+        model=Model(
+            name=name,
+            links=links,
+            static=True,
+            scripted=True,
+            plugins=tuple(read_plugin(child) for child in element.all("plugin")),
+            source=element.source,
+        ),
         pose=read_pose(element).pose,
         waypoints=_waypoints(script),
         loop=script.flag_of("loop", default=True),

@@ -11,10 +11,11 @@ from daidalos.description.errors import DescriptionError
 from daidalos.description.link import Light
 from daidalos.description.markup import Element, parse_markup
 from daidalos.description.pose import Pose
+from daidalos.description.sdf.actors import read_actor
 from daidalos.description.sdf.context import Context
 from daidalos.description.sdf.frames import FrameGraph, RelativePose, read_pose
 from daidalos.description.sdf.links import read_light, read_plugin
-from daidalos.description.world import Model
+from daidalos.description.world import Actor, Model
 
 NEWEST = (1, 11)
 
@@ -25,14 +26,14 @@ class Included:
 
     Parameters
     ----------
-    content : Model, Light or None
+    content : Model, Light, Actor or None
         None when it was not found.
     pose : RelativePose
     missing : str
         What was not found would have been called so.
     """
 
-    content: Model | Light | None
+    content: Model | Light | Actor | None
     pose: RelativePose
     missing: str = ""
 
@@ -57,6 +58,8 @@ def read_include(element: Element, context: Context, read_model: Callable[[Eleme
     pose = read_pose(element) if element.first("pose") is not None else written
     if isinstance(content, Light):
         return Included(replace(content, name=element.text_of("name", default=content.name)), pose)
+    if isinstance(content, Actor):
+        return Included(_cast(content, element), pose)
     model = replace(
         content,
         name=element.text_of("name", default=content.name),
@@ -131,7 +134,7 @@ def _rank(version: tuple[int, int]) -> tuple[bool, tuple[int, int]]:
 
 def _read_file(
     file: Path, context: Context, read_model: Callable[[Element, Context], Model]
-) -> tuple[Model | Light, RelativePose]:
+) -> tuple[Model | Light | Actor, RelativePose]:
     root = parse_markup(file.read_bytes(), str(file))
     if root.tag == "robot":
         from daidalos.description.gazebo import model_from_robot
@@ -145,7 +148,17 @@ def _read_file(
     light = root.first("light")
     if light is not None:
         return read_light(light, Pose()), read_pose(light)
-    raise root.error("expected <model> or <light>")
+    actor = root.first("actor")
+    if actor is not None:
+        return read_actor(actor, inside), read_pose(actor)
+    raise root.error("expected <model>, <light> or <actor>")
+
+
+def _cast(actor: Actor, element: Element) -> Actor:
+    """Give an actor the name and the plugins that are written in its ``<include>``."""
+    name = element.text_of("name", default=actor.name)
+    plugins = (*actor.model.plugins, *(read_plugin(child) for child in element.all("plugin")))
+    return replace(actor, name=name, model=replace(actor.model, name=name, plugins=plugins))
 
 
 def _searched(uri: str, context: Context) -> str:

@@ -111,6 +111,8 @@ class _WorldReader:
             self._missing[included.missing] = (included.pose, element)
         elif isinstance(included.content, Light):
             self._lights.append((included.content, included.pose, element))
+        elif isinstance(included.content, Actor):
+            self._actors.append((included.content, included.pose, element))
         elif included.content is not None:
             self._add_model(included.content, included.pose, element)
 

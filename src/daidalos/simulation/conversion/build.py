@@ -8,7 +8,7 @@ from dataclasses import replace
 from typing import Any
 
 from daidalos.description.errors import DescriptionError
-from daidalos.description.geometry import Plane
+from daidalos.description.geometry import Heightmap, Mesh, Plane
 from daidalos.description.joint import Joint, JointType
 from daidalos.description.link import Collision, Link, Surface
 from daidalos.description.pose import Pose
@@ -160,9 +160,18 @@ class _Builder:
         self._set_inertia(body, link)
         for index, collision in enumerate(link.collisions):
             self._add_collision(body, link, collision, index)
+        self._warn_of_unseen(link)
         if link.name in self._solid_without_mass and not body.geoms:
             apply_inertia(body, smallest_inertia())
         return body
+
+    def _warn_of_unseen(self, link: Link) -> None:
+        """Say which files of visuals are missing: nobody may ever draw them, and a robot that can not be seen puzzles."""
+        for visual in link.visuals:
+            shape = visual.geometry
+            if isinstance(shape, Mesh | Heightmap) and shape.path is None:
+                kind = type(shape).__name__.lower()
+                self._warn(f"{shape.where}: {kind} {shape.uri} not found; the visual is not drawn")
 
     def _body(self, parent: Any, name: str, pose: Pose) -> Any:
         x, y, z, w = pose.orientation

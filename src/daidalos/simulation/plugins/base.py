@@ -25,7 +25,7 @@ def library_name(filename: str) -> str:
     ``gz-sim8-imu-system`` and gz's class name ``gz::sim::systems::Imu`` become ``gz-sim-imu-system``.
     """
     name = filename.strip().replace("\\", "/").rpartition("/")[2]
-    system = re.fullmatch(r"(?:gz::sim|ignition::gazebo)(?:::v\d+)?::systems::(\w+)", name)
+    system = re.fullmatch(r"(?:gz::sim|ignition::gazebo)(?:::v\d+)?::systems(?:::v\d+)?::(\w+)", name)
     if system:
         return f"gz-sim-{re.sub('(?<=[a-z])(?=[A-Z])', '-', system[1]).lower()}-system"
     name = re.sub(r"\.(so|dll|dylib)$", "", name).removeprefix("lib")

@@ -213,11 +213,12 @@ class Lidar(Sensor):
 
 
 def _fan(element: Element | None, samples: int, scan: Element) -> Fan:
-    """Read the angles of one direction; ``resolution`` multiplies the number of samples (SDF)."""
+    """Read the angles of one direction; ``resolution`` multiplies the number of samples (SDF), never to none."""
     if element is None:
         return Fan(0.0, 0.0, 1)
     asked = element.integer_of("samples", default=samples)
-    count = round(asked * element.number_of("resolution", default=1.0))
+    wanted = asked * element.number_of("resolution", default=1.0)
+    count = 1 if 0 < wanted < 1 else round(wanted)
     if not 1 <= count <= MOST_RAYS:
         raise element.error(f"expected 1 to {MOST_RAYS} rays, got {count}")
     first = element.number_of("min_angle", default=0.0)
