@@ -1,0 +1,1 @@
+"""The joystick node, as ROS 2 offers it."""

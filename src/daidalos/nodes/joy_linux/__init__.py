@@ -1,0 +1,1 @@
+"""The joystick node for Linux, as ROS 2 offers it."""

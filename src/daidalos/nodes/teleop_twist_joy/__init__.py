@@ -1,0 +1,1 @@
+"""Driving with a game pad, as ROS 2 offers it."""

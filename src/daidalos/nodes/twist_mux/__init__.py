@@ -1,0 +1,1 @@
+"""Choosing among velocities, as ROS 2 offers it."""
