@@ -151,6 +151,18 @@ def test_a_clock_may_be_set_back(sent):
     assert len(heard) == 3
 
 
+def test_transforms_of_a_joint_never_go_back_a_little(sent):
+    """Two may tell of the same joint, each with its own view of the time."""
+    state_publisher, heard = sent(chain(1), publish_frequency=30.0)
+    for i in range(100):
+        state_publisher._on_joint_states(states(5 + 0.01 * i, j0=0.0))
+        state_publisher._on_joint_states(states(5 + 0.01 * i - 0.02, j0=0.0))
+    stamps = [deserialize_message(data, TFMessage).transforms[0].header.stamp for data in heard]
+    times = [stamp.sec + 1e-9 * stamp.nanosec for stamp in stamps]
+    assert len(times) == pytest.approx(30, abs=3)
+    assert times == sorted(times)
+
+
 def test_states_without_a_time_count_only_when_times_are_ignored(sent):
     for ignored in (False, True):
         state_publisher, heard = sent(chain(1), ignore_timestamp=ignored)

@@ -23,6 +23,9 @@ from daidalos.nodes.runner import UserError, run
 _KEPT = 100
 """Sets of joints that are told of together; a robot has a few."""
 
+_SET_BACK_NS = 1_000_000_000
+"""States that are older than this mean that the clock was set back; younger ones are another publisher's, and late."""
+
 _LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
@@ -172,7 +175,7 @@ class RobotStatePublisher(Node):
         frequency = self.get_parameter("publish_frequency").value
         period = 0 if frequency <= 0.0 else round(1e9 / frequency)
         last = int(self._last_ns[rows].min())
-        if stamp_ns < last:  # the clock was set back
+        if stamp_ns < last - _SET_BACK_NS:
             last = stamp_ns - period
         if stamp_ns < last + period:
             return False
