@@ -166,7 +166,7 @@ class _Builder:
         return body
 
     def _warn_of_unseen(self, link: Link) -> None:
-        """Say which files of visuals are missing: nobody may ever draw them, and a robot that can not be seen puzzles."""
+        """Say which files of visuals are missing, though perhaps no camera will ever look."""
         for visual in link.visuals:
             shape = visual.geometry
             if isinstance(shape, Mesh | Heightmap) and shape.path is None:
