@@ -183,6 +183,21 @@ def test_a_stereo_pair_sees_the_disparity_that_its_projections_tell():
     assert columns[0] - columns[1] == pytest.approx(info.matrix[0, 0] * 0.1 / 2.0, rel=0.05)
 
 
+def test_the_left_eye_of_a_stereo_pair_is_the_one_that_distances_are_told_from():
+    second = "<camera name='right'><image><width>8</width><height>8</height></image></camera></sensor>"
+    plugin = PLUGIN.format("gazebo_ros_camera", "<hack_baseline>0.07</hack_baseline>")
+    text = camera("multicamera", size=(8, 8), more=plugin).replace("</sensor>", second)
+    left, right = (s for s in samples(text) if isinstance(s, CameraInfoSample))
+    assert left.projection[0, 3] == 0.0
+    assert right.projection[0, 3] == pytest.approx(-right.matrix[0, 0] * 0.07)
+
+
+def test_a_depth_camera_may_name_its_format():
+    wall = thing("wall", "2 0 1 0 0 0", "<box><size>0.1 9 9</size></box>")
+    depths = samples(wall, camera("depth_camera", size=(8, 6), inside="<format>R_FLOAT32</format>"))
+    assert image(depths).encoding == "32FC1"
+
+
 def test_a_segmentation_camera_tells_classes_and_instances():
     label = "<plugin filename='gz-sim-label-system' name='l'><label>{}</label></plugin>"
     parts = [

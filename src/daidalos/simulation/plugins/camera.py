@@ -42,6 +42,9 @@ class CameraOfSensor(SensorPlugin):
             lens.frame_id, lens.points_ahead_x = frame_id, False
             _set_topics(lens, prefixes, parameters, deep=sensor.kind in ("depth", "rgbd"))
             _set_optics(lens, element)
+            # Of several eyes the first is the one that the others' distances are told from.
+            if lens is not sensor.lenses[0] or len(sensor.lenses) == 1:
+                lens.baseline = element.number_of("hackBaseline", "hack_baseline", default=0.0) or lens.baseline
 
 
 _ROS1 = ("imageTopicName", "cameraInfoTopicName", "cameraName", "frameName", "depthImageTopicName")
@@ -87,4 +90,3 @@ def _set_optics(lens: Lens, element: Element) -> None:
         depth_far=far,
         depth_encoding="16UC1" if element.flag_of("useDepth16UC1Format", default=False) else settings.depth_encoding,
     )
-    lens.baseline = element.number_of("hackBaseline", "hack_baseline", default=0.0) or lens.baseline

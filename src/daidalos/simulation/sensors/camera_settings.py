@@ -27,6 +27,9 @@ ENCODINGS = {
     "BAYER_BGGR8": "bayer_bggr8",
     "BAYER_GBRG8": "bayer_gbrg8",
     "BAYER_GRBG8": "bayer_grbg8",
+    # Formats of depths, which are always told as floats; what such a camera sees besides is coloured.
+    "R_FLOAT16": "rgb8",
+    "R_FLOAT32": "rgb8",
 }
 _MOST_PIXELS = 1 << 26
 
