@@ -8,12 +8,10 @@ from __future__ import annotations
 
 import inspect
 import math
-import os
 import threading
 import time
 import warnings
 import weakref
-from collections import deque
 from collections.abc import Callable, Coroutine, Iterable, Iterator
 from contextlib import AbstractContextManager, contextmanager
 from types import TracebackType
@@ -21,10 +19,9 @@ from typing import TYPE_CHECKING, Any, Self
 
 from rclpy.context import Context
 from rclpy.exceptions import ExternalShutdownException as ExternalShutdownException
+from rclpy.impl.callback_runner import CallbackRunner
 from rclpy.impl.ready import ReadyHook
-from rclpy.impl.ready_queue import ReadyQueue
-from rclpy.impl.running import THREAD, BlockedCalls
-from rclpy.impl.thread_pool import ThreadPool
+from rclpy.impl.thread_pool import ThreadPool, processors
 from rclpy.task import Future, Task
 from rclpy.utilities import get_default_context
 
@@ -63,10 +60,6 @@ class TimeoutObject:
         return max(self._deadline - time.monotonic(), 0.0)
 
 
-_AT_ONCE = 20
-"""How many messages a subscription may take in a row while nothing else is ready."""
-
-
 class _Failure:
     """An exception on its way from a worker to the thread that spins."""
 
@@ -74,7 +67,7 @@ class _Failure:
         self.error = error
 
 
-class Executor(AbstractContextManager["Executor"]):
+class Executor(CallbackRunner, AbstractContextManager["Executor"]):
     """Base of executors.
 
     Parameters
@@ -83,21 +76,11 @@ class Executor(AbstractContextManager["Executor"]):
         The default context where None.
     """
 
-    _helps = True
-    """Whether a callback that waits for a response runs other callbacks meanwhile."""
-
     def __init__(self, *, context: Context | None = None) -> None:
-        super().__init__()
-        self._context = context or get_default_context()
+        super().__init__(context or get_default_context())
         self._nodes: dict[Node, None] = {}
         self._nodes_lock = threading.RLock()
-        self._ready = ReadyQueue()
-        self._put = self._ready.put
         self._schedule = self._ready.schedule
-        self._deferred: deque[ReadyHook] = deque()
-        self._calls = BlockedCalls()
-        self._is_shutdown = False
-        self._spins = False  # within `spin`, where nobody counts the callbacks that run
         self._active = 0
         self._idle = threading.Condition()
         self._context.on_shutdown(self.wake)
@@ -223,6 +206,24 @@ class Executor(AbstractContextManager["Executor"]):
 
     def _spin_once(self, deadline_ns: int | None, condition: Callable[[], bool] | None) -> None:
         """Run one callback, unless the deadline or the condition comes first."""
+        try:
+            while True:
+                item = self._wait(deadline_ns, condition)
+                if item.__class__ is ReadyHook:
+                    entity = self._begin(item)
+                    if entity is not None:
+                        self._carry_out(self._run_entity, item, entity)
+                        return
+                elif isinstance(item, _Failure):
+                    raise item.error
+                else:
+                    self._carry_out(self._run_task, item)
+                    return
+        except (TimeoutException, ShutdownException, ConditionReachedException):
+            return
+
+    def _carry_out(self, function: Callable[..., None], *arguments: Any) -> None:
+        """Run a callback, here or in a thread of its own."""
         raise NotImplementedError
 
     def spin_once(self, timeout_sec: float | None = None) -> None:
@@ -310,103 +311,6 @@ class Executor(AbstractContextManager["Executor"]):
         if condition is not None and condition():
             raise ConditionReachedException()
 
-    # Running one entity's callback.
-
-    def _begin(self, hook: ReadyHook) -> Any:
-        """Reserve the entity's callback group; returns the entity, None when it must wait or is no longer ours."""
-        entity = hook.entity()
-        if entity is None or hook.sink is not self._put:
-            return None  # removed meanwhile; it stays marked and is queued where it is attached next
-        group = entity.callback_group
-        if group is not None and not group.beginning_execution(entity) and not self._calls.may_enter(entity):
-            unbound = getattr(entity, "_rcl_take_unbound", None)
-            work = unbound() if unbound is not None else None
-            while work is not None:
-                work[0](*work[1])
-                work = unbound()
-            self._deferred.append(hook)
-            if group.can_execute(entity):
-                self._retry_deferred()
-            return None
-        hook.queued = False
-        return entity
-
-    def _retry_deferred(self) -> None:
-        """Queue again what waited for a callback group."""
-        deferred = self._deferred
-        while deferred:
-            try:
-                self._put(deferred.popleft())
-            except IndexError:
-                return
-
-    def _end(self, entity: Any) -> None:
-        group = entity.callback_group
-        if group is not None:
-            group.ending_execution(entity)
-        if self._deferred:
-            self._retry_deferred()
-
-    def _run_entity(self, hook: ReadyHook, entity: Any) -> None:
-        """Take what is ready and run the callback; its group has been reserved."""
-        suspended = False
-        thread = THREAD
-        outer = thread.executor, thread.entity
-        thread.executor, thread.entity = self, entity
-        in_a_row = self._spins and self._helps
-        try:
-            for _ in range(_AT_ONCE):
-                work = entity._rcl_take()
-                if work is None:
-                    return
-                if not in_a_row and entity._rcl_has_more():
-                    hook()
-                callback, arguments = work
-                result = callback(*arguments)
-                if result is not None and inspect.iscoroutine(result):
-                    suspended = self._run_coroutine(result, entity)
-                if not in_a_row or suspended or not self._may_go_on(hook):
-                    return
-        finally:
-            thread.executor, thread.entity = outer
-            if in_a_row and entity._rcl_has_more():
-                hook()
-            if not suspended:
-                self._end(entity)
-
-    def _may_go_on(self, hook: ReadyHook) -> bool:
-        """Tell whether the entity that just ran may run again before all others."""
-        return self._ready.empty() and hook.sink is self._put and not self._is_shutdown and self._context.ok()
-
-    def _run_coroutine(self, coroutine: Coroutine[Any, Any, Any], entity: Any) -> bool:
-        """Run a callback that is a coroutine; True when it waits for something and so holds its group."""
-        task = Task(coroutine, executor=self)
-        task._requeue = self._put
-        task._entity = entity
-        task()
-        if task.done():
-            _raise_from(task)
-            return False
-        task.on_wake(lambda: self._end(entity))
-        return True
-
-    def _run_task(self, task: Task) -> None:
-        thread = THREAD
-        outer = thread.executor, thread.entity
-        thread.executor, thread.entity = self, task._entity
-        try:
-            task()
-        finally:
-            thread.executor, thread.entity = outer
-        if task.done():
-            _raise_from(task)
-
-
-def _raise_from(task: Task) -> None:
-    error = task.exception()
-    if error is not None:
-        raise error
-
 
 def _deadline(timeout_sec: float | TimeoutObject | None) -> int | None:
     """Return when a timeout ends, by ``time.monotonic_ns()``."""
@@ -417,31 +321,11 @@ def _deadline(timeout_sec: float | TimeoutObject | None) -> int | None:
     return time.monotonic_ns() + int(timeout_sec * 1e9)
 
 
-def _processors() -> int:
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
-
-
 class SingleThreadedExecutor(Executor):
     """Runs callbacks one after the other in the thread that spins."""
 
-    def _spin_once(self, deadline_ns: int | None, condition: Callable[[], bool] | None) -> None:
-        try:
-            while True:
-                item = self._wait(deadline_ns, condition)
-                if item.__class__ is ReadyHook:
-                    entity = self._begin(item)
-                    if entity is not None:
-                        self._run_entity(item, entity)
-                        return
-                elif isinstance(item, _Failure):
-                    raise item.error
-                else:
-                    self._run_task(item)
-                    return
-        except (TimeoutException, ShutdownException, ConditionReachedException):
-            return
+    def _carry_out(self, function: Callable[..., None], *arguments: Any) -> None:
+        function(*arguments)
 
 
 class MultiThreadedExecutor(Executor):
@@ -462,7 +346,7 @@ class MultiThreadedExecutor(Executor):
         super().__init__(context=context)
         if num_threads == 1:
             warnings.warn("A MultiThreadedExecutor of one thread: use a SingleThreadedExecutor.", stacklevel=2)
-        self._executor = ThreadPool(num_threads or max(_processors(), 2))
+        self._executor = ThreadPool(num_threads or max(processors(), 2))
         weakref.finalize(self, self._executor.close)
 
     @contextmanager
@@ -470,24 +354,7 @@ class MultiThreadedExecutor(Executor):
         with super()._blocked(entity, services), self._executor.blocked():
             yield
 
-    def _spin_once(self, deadline_ns: int | None, condition: Callable[[], bool] | None) -> None:
-        try:
-            while True:
-                item = self._wait(deadline_ns, condition)
-                if item.__class__ is ReadyHook:
-                    entity = self._begin(item)
-                    if entity is not None:
-                        self._submit(self._run_entity, item, entity)
-                        return
-                elif isinstance(item, _Failure):
-                    raise item.error
-                else:
-                    self._submit(self._run_task, item)
-                    return
-        except (TimeoutException, ShutdownException, ConditionReachedException):
-            return
-
-    def _submit(self, function: Callable[..., None], *arguments: Any) -> None:
+    def _carry_out(self, function: Callable[..., None], *arguments: Any) -> None:
         with self._idle:
             self._active += 1
         self._executor.submit(self._work, function, *arguments)
