@@ -3,7 +3,7 @@
 import pytest
 
 from daidalos.cli import gazebo as commands
-from daidalos.nodes.gazebo_ros.gzserver import _arguments
+from daidalos.nodes.gazebo_ros._command_line import parse
 
 
 @pytest.fixture
@@ -39,5 +39,5 @@ def test_other_verbs_are_ros2s(started, capsys, words, said):
 
 def test_the_server_takes_what_launch_files_give_gazebo():
     words = "--verbose -s libgazebo_ros_init.so -slibgazebo_ros_factory.so -e ode --seed 3 --lockstep a.world -u"
-    arguments = _arguments(words.split())
+    arguments = parse(words.split())
     assert (arguments.world, arguments.seed, arguments.pause) == ("a.world", 3, True)
