@@ -2,7 +2,13 @@ from pathlib import Path
 
 import pytest
 
-from daidalos.nodes.ros_gz_bridge._mapping import Bridge, MappingError, parse_arguments, read_file
+from daidalos.nodes.ros_gz_bridge._mapping import (
+    Bridge,
+    MappingError,
+    parse_arguments,
+    read_file,
+    simulator_topic,
+)
 
 FILE = """
 - ros_topic_name: odom
@@ -30,6 +36,20 @@ def test_arguments_say_topic_types_and_direction():
     assert [bridge.direction for bridge in bridges] == ["GZ_TO_ROS", "ROS_TO_GZ", "BIDIRECTIONAL"]
     assert bridges[0].ros_topic == "/scan"
     assert services == ["/world/w/control"]
+
+
+@pytest.mark.parametrize(
+    ("gz", "here"),
+    [
+        ("/world/hall/model/cart/link/base/sensor/lidar/scan/points", "/cart/base/lidar/scan/points"),
+        ("/world/hall/model/cart/model/mast/link/top/sensor/eye/image", "/cart/mast/top/eye/image"),
+        ("/world/hall/clock", "/clock"),
+        ("/model/cart/odometry", "/model/cart/odometry"),
+        ("scan", "/scan"),
+    ],
+)
+def test_gzs_long_names_mean_the_simulators(gz: str, here: str):
+    assert simulator_topic(gz) == here
 
 
 def test_files_may_give_two_names(tmp_path: Path):

@@ -35,6 +35,8 @@ for _package, _words in _NAMES.items():
         TYPES.setdefault(f"{_package}/msg/{_ros}", set()).add(_gz or _ros)
 
 _ARGUMENT = re.compile(r"(?P<topic>[^@]+)@(?P<ros>[^@\[\]]+)(?P<direction>[@\[\]])(?P<gz>.+)")
+_SENSOR = re.compile(r"/world/[^/]+/model/(?P<models>.+)/link/(?P<link>[^/]+)/sensor/(?P<sensor>.+)")
+_WORLD_CLOCK = re.compile(r"/world/[^/]+/clock")
 _DIRECTIONS = {"@": "BIDIRECTIONAL", "[": "GZ_TO_ROS", "]": "ROS_TO_GZ"}
 
 
@@ -59,6 +61,18 @@ class Bridge:
     ros_type: str
     gz_type: str
     direction: str = "BIDIRECTIONAL"
+
+
+def simulator_topic(name: str) -> str:
+    """Return how the simulator calls a topic of gz; sensors without a topic have long names there, which end alike."""
+    name = name if name.startswith("/") else f"/{name}"
+    if _WORLD_CLOCK.fullmatch(name):
+        return "/clock"
+    match = _SENSOR.fullmatch(name)
+    if match is None:
+        return name
+    models = match["models"].replace("/model/", "/")
+    return f"/{models}/{match['link']}/{match['sensor']}"
 
 
 def parse_arguments(words: Sequence[str]) -> tuple[list[Bridge], list[str]]:

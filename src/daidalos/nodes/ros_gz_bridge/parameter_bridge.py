@@ -15,7 +15,13 @@ from rclpy.qos_overriding_options import QoSOverridingOptions
 from rclpy.utilities import remove_ros_args
 
 from daidalos.nodes.node_thread import NodeThread
-from daidalos.nodes.ros_gz_bridge._mapping import Bridge, MappingError, parse_arguments, read_file
+from daidalos.nodes.ros_gz_bridge._mapping import (
+    Bridge,
+    MappingError,
+    parse_arguments,
+    read_file,
+    simulator_topic,
+)
 from daidalos.nodes.runner import UserError, run
 
 _OVERRIDABLE = (QoSPolicyKind.DEPTH, QoSPolicyKind.DURABILITY, QoSPolicyKind.HISTORY, QoSPolicyKind.RELIABILITY)
@@ -61,7 +67,7 @@ class ParameterBridge(Node):
 
     def _connect(self, bridge: Bridge) -> None:
         ros = self.resolve_topic_name(bridge.ros_topic)
-        gz = bridge.gz_topic if bridge.gz_topic.startswith("/") else f"/{bridge.gz_topic}"
+        gz = simulator_topic(bridge.gz_topic)
         if ros == gz:
             self.get_logger().info(f"{gz} ({bridge.ros_type}) needs no bridge")
             return

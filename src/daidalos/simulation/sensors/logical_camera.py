@@ -18,7 +18,7 @@ class LogicalCamera(Sensor):
     """A camera that recognises everything it looks at, walls or not."""
 
     types = ("logical_camera",)
-    default_topic = "models"
+    default_topic = "logical_camera"
 
     def read(self, element: Element) -> None:
         """Read the frustum."""
