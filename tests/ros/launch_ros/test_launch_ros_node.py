@@ -21,8 +21,8 @@ from launch_ros.actions import (
     SetParametersFromFile,
     SetRemap,
     SetROSLogDir,
+    _node_extension,
 )
-from launch_ros.actions import node as node_module
 from launch_ros.parameter_descriptions import Parameter, ParameterFile, ParameterValue
 from launch_ros.substitutions import ExecutableInPackage, FindPackagePrefix, FindPackageShare
 from launch_ros.substitutions import Parameter as ParameterSubstitution
@@ -365,16 +365,16 @@ def test_nodes_of_one_name_are_mentioned(show_arguments, capsys):
 
 
 def test_extensions(show_arguments, monkeypatch, capsys):
-    class Extension(node_module.NodeActionExtension):
+    class Extension(_node_extension.NodeActionExtension):
         def prepare_for_execute(self, context, ros_specific_arguments, node_action):
             assert node_action.node_name.endswith("/n")
             return ["--from-extension", [self.NAME]], ros_specific_arguments
 
-    class Broken(node_module.NodeActionExtension):
+    class Broken(_node_extension.NodeActionExtension):
         def __init__(self):
             raise RuntimeError("broken")
 
-    monkeypatch.setattr(node_module, "_extension_classes", {"mine": Extension, "broken": Broken})
+    monkeypatch.setattr(_node_extension, "_extension_classes", {"mine": Extension, "broken": Broken})
     run(make(name="n", output="screen"))
     printed = capsys.readouterr().out
     assert "'--from-extension', 'mine']" in printed

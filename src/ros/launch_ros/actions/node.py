@@ -13,14 +13,12 @@ from typing import TYPE_CHECKING, Any
 from launch.actions import ExecuteProcess
 from launch.frontend import Entity
 from launch.frontend.expose import expose_action
-from launch.frontend.type_utils import get_data_type_from_identifier
 from launch.launch_description_entity import LaunchDescriptionEntity
 from launch.some_substitutions_type import SomeSubstitutionsType
 from launch.substitution import Substitution
 from launch.substitutions import SubstitutionFailure, TextSubstitution
 from launch.utilities import normalize_to_list_of_substitutions, perform_substitutions
 
-from ..parameter_descriptions import ParameterFile, ParameterValue
 from ..parameters_type import SomeParameters
 from ..remap_rule_type import SomeRemapRules
 from ..utilities.evaluate_parameters import evaluate_parameters
@@ -33,6 +31,10 @@ from ..utilities.namespace_utils import (
 from ..utilities.normalize_parameters import normalize_parameters
 from ..utilities.normalize_remap_rule import normalize_remap_rules
 from ..utilities.track_node_names import add_node_name, get_node_name_count
+from ._node_extension import NodeActionExtension as NodeActionExtension
+from ._node_extension import get_extensions as get_extensions
+from ._node_extension import instantiate_extension as instantiate_extension
+from ._node_parsing import parse_parameter, parse_remapping
 
 if TYPE_CHECKING:
     import logging
@@ -43,38 +45,6 @@ if TYPE_CHECKING:
 
 # Operating systems limit the length of an argument; a robot's description may well be longer.
 _LONGEST_RULE = 8192
-
-
-class NodeActionExtension:
-    """The base of extensions that take part in how nodes are run; found by entry points of `launch_ros.node_action`."""
-
-    NAME: str | None = None
-    EXTENSION_POINT_VERSION = "0.1"
-
-    def __init__(self) -> None:
-        from ..utilities.plugin_support import satisfies_version
-
-        satisfies_version(self.EXTENSION_POINT_VERSION, "^0.1")
-
-    def prepare_for_execute(
-        self, context: LaunchContext, ros_specific_arguments: dict[str, Any], node_action: Node
-    ) -> tuple[list[SomeSubstitutionsType], dict[str, Any]]:
-        """Take part in what happens before a node is run.
-
-        Parameters
-        ----------
-        context
-            The launch context.
-        ros_specific_arguments
-            What other extensions returned.
-        node_action
-            The node's action.
-
-        Returns
-        -------
-            Arguments to add to the command line, and the arguments for the next extensions.
-        """
-        return [], ros_specific_arguments
 
 
 @expose_action("node")
@@ -168,7 +138,7 @@ class Node(ExecuteProcess):
                 kwargs[argument] = cls._parse_cmdline(text, parser)
         remappings = entity.get_attr("remap", data_type=list[Entity], optional=True)
         if remappings is not None:
-            kwargs["remappings"] = [_parse_remapping(remapping, parser) for remapping in remappings]
+            kwargs["remappings"] = [parse_remapping(remapping, parser) for remapping in remappings]
         parameters = entity.get_attr("param", data_type=list[Entity], optional=True)
         if parameters is not None:
             kwargs["parameters"] = cls.parse_nested_parameters(parameters, parser)
@@ -183,7 +153,7 @@ class Node(ExecuteProcess):
         RuntimeError
             If one is neither.
         """
-        return [_parse_parameter(param, parser) for param in params]
+        return [parse_parameter(param, parser) for param in params]
 
     # What is known of the node ----------------------------------------------------------------------
 
@@ -344,112 +314,10 @@ class Node(ExecuteProcess):
             self.process_description.cmd.extend(normalize_to_list_of_substitutions(text) for text in added)
 
 
-def instantiate_extension(
-    group_name: str,
-    extension_name: str,
-    extension_class: type[NodeActionExtension],
-    extensions: dict[str, NodeActionExtension],
-    logger: logging.Logger,
-    *,
-    unique_instance: bool = False,
-) -> NodeActionExtension | None:
-    """Return an instance of an extension, None if it can not be made.
-
-    Parameters
-    ----------
-    group_name, extension_name
-        The extension, for messages.
-    extension_class
-        Its class.
-    extensions
-        The instances made so far.
-    logger
-        Where problems go.
-    unique_instance
-        Whether to make another instance if there is one.
-    """
-    if not unique_instance and extension_name in extensions:
-        return extensions[extension_name]
-    try:
-        extension = extension_class()
-    # Somebody else's package must not keep nodes from being run.
-    except Exception as error:
-        logger.error(f"Exception instantiating extension '{group_name}.{extension_name}': {error}")
-        return None
-    if not unique_instance:
-        extensions[extension_name] = extension
-    return extension
-
-
-def get_extensions(logger: logging.Logger) -> dict[str, NodeActionExtension]:
-    """Return the extensions that take part in how nodes are run, by their names."""
-    group = "launch_ros.node_action"
-    if _extension_classes is None:
-        _load_extension_classes(group, logger)
-    extensions: dict[str, NodeActionExtension] = {}
-    for name, extension_class in (_extension_classes or {}).items():
-        extension = instantiate_extension(group, name, extension_class, extensions, logger)
-        if extension is not None:
-            extension.NAME = name
-    return extensions
-
-
-_extension_classes: dict[str, type[NodeActionExtension]] | None = None
-
-
-def _load_extension_classes(group: str, logger: logging.Logger) -> None:
-    from importlib.metadata import entry_points
-
-    global _extension_classes
-    _extension_classes = {}
-    for entry_point in sorted(entry_points(group=group), key=lambda found: found.name):
-        try:
-            _extension_classes[entry_point.name] = entry_point.load()
-        # Somebody else's package must not keep nodes from being run.
-        except Exception as error:
-            logger.error(f"Exception loading extension '{group}.{entry_point.name}': {error}")
-
-
 def _logger() -> logging.Logger:
     from launch.logging import get_logger
 
     return get_logger("launch_ros.actions.node")
-
-
-def _parse_remapping(entity: Entity, parser: Parser) -> tuple[list[Substitution], list[Substitution]]:
-    rule = parser.parse_substitution(entity.get_attr("from")), parser.parse_substitution(entity.get_attr("to"))
-    entity.assert_entity_completely_parsed()
-    return rule
-
-
-def _parse_parameter(param: Entity, parser: Parser) -> Any:
-    source = param.get_attr("from", optional=True)
-    name = param.get_attr("name", optional=True)
-    if (source is None) == (name is None):
-        raise RuntimeError("a parameter must have either 'name' or 'from', and not both")
-    if source is not None:
-        allow_substs = param.get_attr("allow_substs", data_type=bool, optional=True, can_be_str=True)
-        kwargs = {} if allow_substs is None else {"allow_substs": parser.parse_if_substitutions(allow_substs)}
-        param.assert_entity_completely_parsed()
-        return ParameterFile(parser.parse_substitution(source), **kwargs)
-    parsed_name = tuple(parser.parse_substitution(name))
-    nested = param.get_attr("param", data_type=list[Entity], optional=True)
-    identifier = param.get_attr("type", optional=True)
-    data_type = None if identifier is None else get_data_type_from_identifier(identifier)
-    value = param.get_attr("value", data_type=data_type, optional=True, can_be_str=True)
-    if (nested is None) == (value is None):
-        raise RuntimeError(f"the parameter '{name}' must have either 'value' or elements 'param', and not both")
-    param.assert_entity_completely_parsed()
-    if nested is None:
-        parsed = parser.parse_if_substitutions(value)
-        return {parsed_name: parsed if data_type is None else ParameterValue(parsed, value_type=data_type)}
-    inner: dict[Any, Any] = {}
-    for entry in nested:
-        entry_value = _parse_parameter(entry, parser)
-        if not isinstance(entry_value, dict):
-            raise RuntimeError(f"inside the parameter '{name}' there can be no files")
-        inner.update(entry_value)
-    return {parsed_name: inner}
 
 
 def _dump_yaml(value: Any, *, quoted: bool) -> str:

@@ -64,7 +64,8 @@ class ComposableNode:
     @classmethod
     def parse(cls, parser: Parser, entity: Entity) -> tuple[type[ComposableNode], dict[str, Any]]:
         """Read an element `composable_node`."""
-        from ..actions.node import Node, _parse_remapping
+        from ..actions._node_parsing import parse_remapping
+        from ..actions.node import Node
 
         kwargs: dict[str, Any] = {
             "package": parser.parse_substitution(entity.get_attr("pkg")),
@@ -80,7 +81,7 @@ class ComposableNode:
                 kwargs[argument] = Node.parse_nested_parameters(found, parser)
         remappings = entity.get_attr("remap", data_type=list[Entity], optional=True)
         if remappings is not None:
-            kwargs["remappings"] = [_parse_remapping(remapping, parser) for remapping in remappings]
+            kwargs["remappings"] = [parse_remapping(remapping, parser) for remapping in remappings]
         for attribute, condition in (("if", IfCondition), ("unless", UnlessCondition)):
             text = entity.get_attr(attribute, optional=True)
             if text is not None:
