@@ -44,6 +44,7 @@ def test_every_cache_is_looked_into(cache, monkeypatch):
     assert found == [
         *(Path(place, part) for place in ("/new", "/old", home / ".gz/fuel", home / ".ignition/fuel")),
         Path("/mine/Box"),
+        Path("/mine/box"),
     ]
 
 

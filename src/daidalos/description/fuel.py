@@ -21,7 +21,8 @@ def fuel_candidates(uri: str, model_path: Sequence[Path] = ()) -> Iterator[Path]
     """Yield where the model or file of an address can lie on this machine; nothing is downloaded.
 
     These are the cache of Fuel's tools, laid out as server, owner, ``models``, name and version, all in small
-    letters; and the folders of models, where it goes by its name.
+    letters; and the folders of models, where it goes by its name, or as Gazebo classic writes such a name:
+    ``Ground Plane`` as ``ground_plane``.
 
     Parameters
     ----------
@@ -38,7 +39,8 @@ def fuel_candidates(uri: str, model_path: Sequence[Path] = ()) -> Iterator[Path]
         for server in dict.fromkeys((address["server"], *(_SERVERS if address["server"] in _SERVERS else ()))):
             folder = cache / server / unquote(address["owner"]).lower() / address["kind"] / name.lower()
             yield from (version / inside for version in _versions(folder, address["version"]))
-    yield from (folder / name / inside for folder in model_path)
+    for folder in model_path:
+        yield from (folder / called / inside for called in dict.fromkeys((name, re.sub(r"\W+", "_", name.lower()))))
 
 
 def _caches() -> list[Path]:

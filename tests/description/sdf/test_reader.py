@@ -303,6 +303,33 @@ def test_the_world_around_a_missing_model_loads(tmp_path):
     assert sum("left out, as is one of" in line for line in world.warnings) == 3
 
 
+def test_ground_and_sun_of_gazebo_fuel_are_our_own(tmp_path):
+    address = "<include><uri>https://fuel.gazebosim.org/1.0/OpenRobotics/models/{}</uri></include>"
+    world = included(tmp_path, address.format("Ground Plane") + address.format("Sun"))
+    assert [model.name for model in world.models] == ["ground_plane"]
+    assert [light.name for light in world.lights] == ["sun"]
+    assert not world.warnings
+
+
+def test_a_saved_world_stands_as_it_was_when_it_was_saved():
+    world = sdf.parse(
+        """<sdf version="1.7"><world name="w">
+<light name="lamp" type="point"><pose>0 0 1 0 0 0</pose></light>
+<state world_name="w"><sim_time>792 318000000</sim_time>
+<model name="box"><pose>1 2 3 0 0 1.5</pose><link name="body"><pose>1 2 3.5 0 0 1.5</pose></link></model>
+<model name="gone"><pose>9 9 9 0 0 0</pose></model><model name="cup"/>
+<light name="lamp"><pose>0 0 5 0 0 0</pose></light></state>
+<model name="box"><pose>7 0 0 0 0 0</pose><link name="body"><pose>0 0 0.5 0 0 0</pose></link></model>
+<model name="cup"><pose relative_to="box">1 0 0 0 0 0</pose><link name="body"/></model>
+</world></sdf>"""
+    )
+    box, cup = world.models
+    assert box.pose == Pose.from_xyz_rpy((1, 2, 3), (0, 0, 1.5))
+    assert box.links["body"].pose.position == (0, 0, 0.5)
+    assert cup.pose.position == pytest.approx((1 + math.cos(1.5), 2 + math.sin(1.5), 3))
+    assert world.lights[0].pose.position == (0, 0, 5)
+
+
 def test_an_actor_can_be_included(tmp_path):
     (tmp_path / "walker").mkdir()
     (tmp_path / "walker/model.sdf").write_text(

@@ -52,6 +52,7 @@ class _WorldReader:
         self._attached: dict[str, str] = {}
         self._missing: dict[str, tuple[RelativePose, Element]] = {}
         self._joints: list[Element] = []
+        self._saved = _saved_poses(element.first("state"))
 
     def world(self) -> World:
         element, base = self._element, World()
@@ -88,7 +89,8 @@ class _WorldReader:
             if child.tag == "model":
                 self._add_model(read_model(child, self._context), read_pose(child), child)
             elif child.tag == "light":
-                self._lights.append((read_light(child, Pose()), read_pose(child), child))
+                light = read_light(child, Pose())
+                self._lights.append((light, self._saved.get(light.name, read_pose(child)), child))
             elif child.tag == "include":
                 self._add_included(child)
             elif child.tag == "actor":
@@ -139,7 +141,7 @@ class _WorldReader:
             self._context.warn(element, f"the name {model.name!r} is taken, called {model.name}_{number}")
             model = replace(model, name=f"{model.name}_{number}")
         self._models.append((model, element))
-        place_nested(self._graph, model, pose, element)
+        place_nested(self._graph, model, self._saved.get(model.name, pose), element)
 
     def _placed(self, model: Model, element: Element) -> Model:
         return replace(model, pose=self._graph.pose(model.name, element))
@@ -162,6 +164,14 @@ class _WorldReader:
         if name == ROOT:
             return ROOT
         raise element.error(f"there is no link {name!r}; expected a model, or model::link")
+
+
+def _saved_poses(state: Element | None) -> dict[str, RelativePose]:
+    """Return where ``<state>`` says that models and lights are: Gazebo classic writes it when it saves a world."""
+    if state is None:
+        return {}
+    placed = [child for child in state.all("model", "light") if child.first("pose") is not None]
+    return {child.attribute("name", ""): RelativePose(read_pose(child).pose) for child in placed}
 
 
 def _default_physics(element: Element) -> Element:
