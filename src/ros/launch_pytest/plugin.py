@@ -9,6 +9,29 @@ from typing import Any
 
 import pytest
 
+from ._marks import (
+    fixture_name,
+    fixture_scope,
+    is_launch_test,
+    is_launch_test_mark_valid,
+    is_shutdown_test,
+    is_valid_test_item,
+    launch_of,
+    need_shutdown_test_item,
+)
+from ._marks import get_launch_test_fixture as get_launch_test_fixture
+from ._marks import get_launch_test_fixturename as get_launch_test_fixturename
+from ._marks import has_shutdown_kwarg as has_shutdown_kwarg
+from ._marks import is_same_launch_test_fixture as is_same_launch_test_fixture
+from ._wrapping import run_until_complete as run_until_complete
+from ._wrapping import (
+    wrap_asyncgen,
+    wrap_asyncgen_fscope,
+    wrap_coroutine,
+    wrap_func,
+    wrap_generator,
+    wrap_generator_fscope,
+)
 from .fixture import (
     OPTIONS_ATTRIBUTE,
     finalize_launch_service,
@@ -109,77 +132,6 @@ def get_ready_to_test_action(launch_description: Any) -> Any:
     return action
 
 
-# Which tests are launch tests -----------------------------------------------------------------------
-
-
-def is_launch_test(item: Any) -> bool:
-    """Tell whether an item is marked as a launch test."""
-    return item.get_closest_marker("launch") is not None
-
-
-def is_launch_test_mark_valid(item: Any) -> bool:
-    """Tell whether the mark of a launch test names a fixture."""
-    return "fixture" in item.get_closest_marker("launch").kwargs
-
-
-def has_shutdown_kwarg(item: Any) -> bool:
-    """Tell whether a launch test is to run after the launch has ended."""
-    return bool(item.get_closest_marker("launch").kwargs.get("shutdown", False))
-
-
-def get_launch_test_fixture(item: Any) -> Any:
-    """Return the fixture of a launch test, None where its mark names none."""
-    return item.get_closest_marker("launch").kwargs.get("fixture")
-
-
-def get_launch_test_fixturename(item: Any) -> str | None:
-    """Return the name of the fixture of a launch test."""
-    fixture = get_launch_test_fixture(item)
-    return None if fixture is None else _fixture_name(fixture)
-
-
-def _fixture_name(fixture: Any) -> str:
-    return getattr(fixture, "name", None) or fixture.__name__
-
-
-def is_valid_test_item(obj: Any) -> bool:
-    """Tell whether something can be a launch test: a function, coroutine, generator or asynchronous generator."""
-    return inspect.isfunction(obj) or inspect.ismethod(obj)
-
-
-def need_shutdown_test_item(obj: Any) -> bool:
-    """Tell whether a launch test has a second part that runs after the launch has ended."""
-    return inspect.isgeneratorfunction(obj) or inspect.isasyncgenfunction(obj)
-
-
-def is_shutdown_test(item: Any) -> bool:
-    """Tell whether an item runs after the launch has ended."""
-    return getattr(item, "_launch_pytest_is_shutdown", False)
-
-
-def is_same_launch_test_fixture(left_item: Any, right_item: Any) -> bool:
-    """Tell whether two items run beside the same launch."""
-    return _launch_of(left_item) == _launch_of(right_item)
-
-
-def _launch_of(item: Any) -> Any:
-    """Return what tells the launch of an item from others."""
-    name = get_launch_test_fixturename(item)
-    scope = _fixture_scope(item)
-    parameters = getattr(getattr(item, "callspec", None), "indices", {})
-    node: Any = item
-    if scope != "function":
-        kinds = {"class": pytest.Class, "module": pytest.Module, "package": pytest.Package}
-        node = item.getparent(kinds[scope]) if scope in kinds else None
-        node = item.session if node is None else node
-    return name, scope, node, parameters.get(name)
-
-
-def _fixture_scope(item: Any) -> str:
-    definitions = item._fixtureinfo.name2fixturedefs.get(get_launch_test_fixturename(item) or "")
-    return definitions[-1].scope if definitions else "function"
-
-
 # Collection -----------------------------------------------------------------------------------------
 
 
@@ -198,7 +150,7 @@ def pytest_pycollect_makeitem(collector: Any, name: str, obj: Any) -> Any:
         collector,
         name,
         obj,
-        _fixture_name(fixture),
+        fixture_name(fixture),
         is_shutdown=bool(marks[-1].kwargs.get("shutdown", False)),
         needs_renaming=False,
     )
@@ -233,7 +185,7 @@ def generate_test_items(
             item.warn(LaunchTestWarning(message))
             item._launch_pytest_error = message
     splits = need_shutdown_test_item(obj) and not is_shutdown
-    if splits and items and _fixture_scope(items[0]) != "function":
+    if splits and items and fixture_scope(items[0]) != "function":
         rest = generate_test_items(collector, name, obj, fixturename, is_shutdown=True, needs_renaming=True)
         for first, second in zip(list(items), rest, strict=True):
             # The second item goes on where the first one stopped.
@@ -284,7 +236,7 @@ def pytest_collection_modifyitems(session: Any, config: Any, items: list[Any]) -
     places: dict[Any, list[int]] = {}
     for place, item in enumerate(items):
         if isinstance(item, pytest.Function) and is_launch_test(item) and is_launch_test_mark_valid(item):
-            places.setdefault(_launch_of(item), []).append(place)
+            places.setdefault(launch_of(item), []).append(place)
     for group in places.values():
         ordered = sorted((items[place] for place in group), key=is_shutdown_test)
         for place, item in zip(group, ordered, strict=True):
@@ -336,116 +288,3 @@ def _run_second_part(first: Any, loop: Any, shut_down: Callable[[], None]) -> No
     if rest is None:
         pytest.skip("the first part of the test did not come to its yield")
     rest()
-
-
-def run_until_complete(loop: Any, future_like: Any) -> Any:
-    """Run an event loop until a future is done, and return its result."""
-    return loop.run_until_complete(future_like)
-
-
-def wrap_coroutine(func: Callable[[], Any], event_loop: Any, before_test: Callable[[], None]) -> Callable[[], None]:
-    """Return a function that runs a coroutine in the event loop."""
-
-    def run() -> None:
-        before_test()
-        run_until_complete(event_loop, func())
-
-    return run
-
-
-def wrap_func(func: Callable[[], Any], event_loop: Any, before_test: Callable[[], None]) -> Callable[[], None]:
-    """Return a function that runs another in a thread, while the event loop runs in this one."""
-
-    def run() -> None:
-        before_test()
-        run_until_complete(event_loop, event_loop.run_in_executor(None, func))
-
-    return run
-
-
-def wrap_generator(
-    func: Callable[[], Any], event_loop: Any, on_shutdown: Callable[[Callable[[], None]], None]
-) -> Callable[[], None]:
-    """Return a function that runs a generator to its yield, and hands a function on that runs the rest.
-
-    Parameters
-    ----------
-    func
-        Returns the generator.
-    event_loop
-        Runs meanwhile.
-    on_shutdown
-        Gets the function for the rest.
-    """
-
-    def run() -> None:
-        generator = func()
-        _advance_in_thread(event_loop, generator)
-        on_shutdown(lambda: _finish_in_thread(event_loop, generator))
-
-    return run
-
-
-def wrap_generator_fscope(
-    func: Callable[[], Any], event_loop: Any, on_shutdown: Callable[[], None]
-) -> Callable[[], None]:
-    """Return a function that runs a generator to its yield, ends the launch, and runs the rest."""
-
-    def run() -> None:
-        generator = func()
-        _advance_in_thread(event_loop, generator)
-        on_shutdown()
-        _finish_in_thread(event_loop, generator)
-
-    return run
-
-
-def wrap_asyncgen(
-    func: Callable[[], Any], event_loop: Any, on_shutdown: Callable[[Callable[[], None]], None]
-) -> Callable[[], None]:
-    """Return a function that runs an asynchronous generator to its yield; as `wrap_generator`."""
-
-    def run() -> None:
-        generator = func()
-        run_until_complete(event_loop, _advance(generator))
-        on_shutdown(lambda: run_until_complete(event_loop, _finish(generator)))
-
-    return run
-
-
-def wrap_asyncgen_fscope(
-    func: Callable[[], Any], event_loop: Any, on_shutdown: Callable[[], None]
-) -> Callable[[], None]:
-    """Return a function that runs an asynchronous generator to its yield, ends the launch, and runs the rest."""
-
-    def run() -> None:
-        generator = func()
-        run_until_complete(event_loop, _advance(generator))
-        on_shutdown()
-        run_until_complete(event_loop, _finish(generator))
-
-    return run
-
-
-_ENDED = object()
-
-
-def _advance_in_thread(loop: Any, generator: Any) -> None:
-    # A StopIteration can not leave a future.
-    if run_until_complete(loop, loop.run_in_executor(None, next, generator, _ENDED)) is _ENDED:
-        pytest.fail("launch tests using a generator function must yield once", pytrace=False)
-
-
-def _finish_in_thread(loop: Any, generator: Any) -> None:
-    if run_until_complete(loop, loop.run_in_executor(None, next, generator, _ENDED)) is not _ENDED:
-        pytest.fail("launch tests using a generator function must stop iteration after yielding once", pytrace=False)
-
-
-async def _advance(generator: Any) -> None:
-    if await anext(generator, _ENDED) is _ENDED:
-        pytest.fail("launch tests using an async gen function must yield once", pytrace=False)
-
-
-async def _finish(generator: Any) -> None:
-    if await anext(generator, _ENDED) is not _ENDED:
-        pytest.fail("launch tests using an async gen function must stop iteration after yielding once", pytrace=False)
