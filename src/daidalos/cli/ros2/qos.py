@@ -99,17 +99,19 @@ def profile_of(preset: str, overrides: dict[str, Any] | None = None, lease_s: fl
     """Return a preset profile with some policies replaced by others, named in lower case."""
     import copy
 
-    from rclpy.duration import Duration
-    from rclpy.qos import (
-        DurabilityPolicy,
-        HistoryPolicy,
-        LivelinessPolicy,
-        QoSPresetProfiles,
-        ReliabilityPolicy,
-    )
+    from rclpy.qos import QoSPresetProfiles
 
     profile: QoSProfile = copy.copy(QoSPresetProfiles.get_from_short_key(preset))
-    given = {name: value for name, value in (overrides or {}).items() if value is not None}
+    replace_policies(profile, overrides or {}, lease_s)
+    return profile
+
+
+def replace_policies(profile: QoSProfile, overrides: dict[str, Any], lease_s: float | None = None) -> None:
+    """Replace some policies of a profile by others, named in lower case; None leaves a policy as it is."""
+    from rclpy.duration import Duration
+    from rclpy.qos import DurabilityPolicy, HistoryPolicy, LivelinessPolicy, ReliabilityPolicy
+
+    given = {name: value for name, value in overrides.items() if value is not None}
     kinds = {
         "history": HistoryPolicy,
         "reliability": ReliabilityPolicy,
@@ -125,7 +127,6 @@ def profile_of(preset: str, overrides: dict[str, Any] | None = None, lease_s: fl
         profile.depth = 1
     if lease_s is not None:
         profile.liveliness_lease_duration = Duration(seconds=lease_s)
-    return profile
 
 
 def qos_for_publishers(publishers: Sequence[EndpointInfo]) -> QoSProfile:

@@ -1,0 +1,64 @@
+"""What topics and services have in common where commands ask about them."""
+
+from __future__ import annotations
+
+from argparse import Namespace
+from collections.abc import Callable
+from typing import Any
+
+NamesAndTypes = list[tuple[str, list[str]]]
+
+
+def visible(found: NamesAndTypes, include_hidden: bool) -> NamesAndTypes:
+    """Return what has no part that begins with an underscore, or all."""
+    from rclpy.topic_or_service_is_hidden import topic_or_service_is_hidden
+
+    return [one for one in found if include_hidden or not topic_or_service_is_hidden(one[0])]
+
+
+def class_of(
+    node: Any, what: str, name: str, listing: Callable[[], NamesAndTypes], find: Callable[[str], Any], blocking: bool
+) -> Any:
+    """Return the class of a topic's or a service's type; None where nobody knows it.
+
+    Parameters
+    ----------
+    node
+        Who asks: an rclpy node or a `NodeStrategy`.
+    what
+        ``topic`` or ``service``.
+    name
+        Its name in full.
+    listing
+        Returns all of that kind.
+    find
+        Returns the class of a type.
+    blocking
+        Whether to wait for one that is not there.
+
+    Raises
+    ------
+    RuntimeError
+        When it has more than one type, or one that is not known here.
+    """
+
+    def types() -> list[str]:
+        return dict(listing()).get(name, [])
+
+    if not types():
+        print(f"WARNING: {what} [{name}] does not appear to be published yet", flush=True)  # noqa: T201
+        if not blocking:
+            return None
+        node.handle.graph.wait_for(lambda: bool(types()))
+    found = types()
+    if len(found) > 1:
+        raise RuntimeError(f"Cannot echo {what} '{name}', as it contains more than one type: [{', '.join(found)}]")
+    try:
+        return find(found[0])
+    except (AttributeError, ImportError, ValueError):
+        raise RuntimeError(f"The {what} type '{found[0]}' is invalid") from None
+
+
+def is_set(parsed_args: Namespace, key: str | None) -> bool:
+    """Tell whether a switch was given, if there is such a switch."""
+    return bool(key and getattr(parsed_args, key, False))

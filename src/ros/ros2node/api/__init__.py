@@ -1,0 +1,171 @@
+"""Nodes in the graph, and what they publish, listen to, serve and call."""
+
+from __future__ import annotations
+
+from argparse import Namespace
+from collections import namedtuple
+from collections.abc import Callable, Iterable
+from typing import Any
+
+from rclpy.action import (
+    get_action_client_names_and_types_by_node,
+    get_action_server_names_and_types_by_node,
+)
+from ros2cli.graph import is_set, visible
+from ros2cli.node.strategy import NodeStrategy
+
+NodeName = namedtuple("NodeName", ("name", "namespace", "full_name"))
+"""A node: its name, its namespace, and both joined."""
+
+TopicInfo = namedtuple("Topic", ("name", "types"))
+"""A topic, service or action with its types."""
+
+_HIDDEN_PREFIX = "_"
+
+
+def get_node_names(*, node: Any, include_hidden_nodes: bool = False) -> list[NodeName]:
+    """Return the nodes in the graph.
+
+    Parameters
+    ----------
+    node
+        Who asks: an rclpy node or a `NodeStrategy`.
+    include_hidden_nodes
+        Whether those whose name begins with an underscore are among them.
+    """
+    return [
+        NodeName(name, namespace, f"{namespace.rstrip('/')}/{name}")
+        for name, namespace in node.get_node_names_and_namespaces()
+        if include_hidden_nodes or not name.startswith(_HIDDEN_PREFIX)
+    ]
+
+
+def get_absolute_node_name(node_name: str) -> str | None:
+    """Return a name with a slash before it; None where there is no name."""
+    if not node_name:
+        return None
+    return node_name if node_name.startswith("/") else f"/{node_name}"
+
+
+def parse_node_name(node_name: str) -> NodeName:
+    """Return the parts of a name such as ``/robot/driver``."""
+    full_name = node_name if node_name.startswith("/") else f"/{node_name}"
+    namespace, _, name = full_name.rpartition("/")
+    return NodeName(name, namespace or "/", full_name)
+
+
+def has_duplicates(values: Iterable[Any]) -> bool:
+    """Tell whether a value is there more than once."""
+    listed = list(values)
+    return len(set(listed)) < len(listed)
+
+
+def wait_for_node(node: Any, node_name: str, include_hidden_nodes: bool = False, timeout: float = 1.0) -> bool:
+    """Wait until a node is in the graph; tells whether it is.
+
+    Parameters
+    ----------
+    node
+        Who asks.
+    node_name
+        The full name of the node.
+    include_hidden_nodes
+        Whether it may be a hidden node.
+    timeout
+        For how long [s].
+    """
+    wanted = get_absolute_node_name(node_name)
+
+    def is_there() -> bool:
+        found = get_node_names(node=node, include_hidden_nodes=include_hidden_nodes)
+        return wanted in (one.full_name for one in found)
+
+    return bool(node.handle.graph.wait_for(is_there, timeout))
+
+
+def get_topics(
+    remote_node_name: str,
+    func: Callable[[str, str], Iterable[tuple[str, list[str]]]],
+    *,
+    include_hidden_topics: bool = False,
+) -> list[TopicInfo]:
+    """Return what a function tells of a node.
+
+    Parameters
+    ----------
+    remote_node_name
+        The node.
+    func
+        Takes the node's name and its namespace.
+    include_hidden_topics
+        Whether what has a part that begins with an underscore is among it.
+    """
+    wanted = parse_node_name(remote_node_name)
+    found = visible(list(func(wanted.name, wanted.namespace)), include_hidden_topics)
+    return [TopicInfo(name, types) for name, types in found]
+
+
+def get_publisher_info(*, node: Any, remote_node_name: str, include_hidden: bool = False) -> list[TopicInfo]:
+    """Return the topics that a node publishes; see `get_topics`."""
+    return get_topics(
+        remote_node_name, node.get_publisher_names_and_types_by_node, include_hidden_topics=include_hidden
+    )
+
+
+def get_subscriber_info(*, node: Any, remote_node_name: str, include_hidden: bool = False) -> list[TopicInfo]:
+    """Return the topics that a node listens to; see `get_topics`."""
+    return get_topics(
+        remote_node_name, node.get_subscriber_names_and_types_by_node, include_hidden_topics=include_hidden
+    )
+
+
+def get_service_server_info(*, node: Any, remote_node_name: str, include_hidden: bool = False) -> list[TopicInfo]:
+    """Return the services that a node serves; see `get_topics`."""
+    return get_topics(remote_node_name, node.get_service_names_and_types_by_node, include_hidden_topics=include_hidden)
+
+
+def get_service_client_info(*, node: Any, remote_node_name: str, include_hidden: bool = False) -> list[TopicInfo]:
+    """Return the services that a node calls; see `get_topics`."""
+    return get_topics(remote_node_name, node.get_client_names_and_types_by_node, include_hidden_topics=include_hidden)
+
+
+def get_action_server_info(*, node: Any, remote_node_name: str, include_hidden: bool = False) -> list[TopicInfo]:
+    """Return the actions that a node serves; see `get_topics`."""
+    return get_topics(
+        remote_node_name,
+        lambda name, namespace: get_action_server_names_and_types_by_node(_node(node), name, namespace),
+        include_hidden_topics=include_hidden,
+    )
+
+
+def get_action_client_info(*, node: Any, remote_node_name: str, include_hidden: bool = False) -> list[TopicInfo]:
+    """Return the actions that a node calls; see `get_topics`."""
+    return get_topics(
+        remote_node_name,
+        lambda name, namespace: get_action_client_names_and_types_by_node(_node(node), name, namespace),
+        include_hidden_topics=include_hidden,
+    )
+
+
+class NodeNameCompleter:
+    """Returns the full names of the nodes that an argument may be.
+
+    Parameters
+    ----------
+    include_hidden_nodes_key
+        The argument that says whether hidden nodes are among them.
+    """
+
+    def __init__(self, *, include_hidden_nodes_key: str | None = None) -> None:
+        self.include_hidden_nodes_key = include_hidden_nodes_key
+
+    def __call__(self, prefix: str, parsed_args: Namespace, **kwargs: Any) -> list[str]:
+        """Return them."""
+        hidden = is_set(parsed_args, self.include_hidden_nodes_key)
+        with NodeStrategy(parsed_args) as node:
+            return [one.full_name for one in get_node_names(node=node, include_hidden_nodes=hidden)]
+
+
+def _node(node: Any) -> Any:
+    """Return the rclpy node behind a `NodeStrategy`."""
+    return node.node if isinstance(node, NodeStrategy) else node

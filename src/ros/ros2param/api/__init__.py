@@ -1,0 +1,136 @@
+"""Parameters of other nodes."""
+
+from __future__ import annotations
+
+import sys
+from argparse import Namespace
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+from ros2cli.node.direct import DirectNode
+
+if TYPE_CHECKING:
+    from rcl_interfaces.msg import Parameter, ParameterValue
+    from rcl_interfaces.srv import DescribeParameters, GetParameters, ListParameters, SetParameters
+
+
+def get_value(*, parameter_value: ParameterValue) -> Any:
+    """Return what a parameter's message holds, as a Python value; None where it is not set."""
+    from rclpy.parameter import parameter_value_to_python
+
+    return parameter_value_to_python(parameter_value)
+
+
+def get_parameter_type_string(parameter_type: int) -> str:
+    """Return the name of a type of `rcl_interfaces/msg/ParameterType`, such as ``double array``."""
+    from daidalos.cli.ros2.parameters import TYPE_NAMES
+
+    return TYPE_NAMES[parameter_type]
+
+
+def call_list_parameters(
+    *, node: Any, node_name: str, prefixes: Sequence[str] | None = None
+) -> ListParameters.Response:
+    """Ask a node for the names of its parameters.
+
+    Parameters
+    ----------
+    node
+        Who asks: an rclpy node or a `DirectNode`.
+    node_name
+        The full name of the node that is asked.
+    prefixes
+        Only names below these; all if None.
+
+    Raises
+    ------
+    RuntimeError
+        When it does not answer.
+    """
+    from rcl_interfaces.srv import ListParameters
+
+    request = ListParameters.Request(prefixes=list(prefixes or []))
+    return _call(node, ListParameters, node_name, "list_parameters", request)
+
+
+def call_get_parameters(*, node: Any, node_name: str, parameter_names: Sequence[str]) -> GetParameters.Response:
+    """Ask a node for the values of parameters; see `call_list_parameters`."""
+    from rcl_interfaces.srv import GetParameters
+
+    request = GetParameters.Request(names=list(parameter_names))
+    return _call(node, GetParameters, node_name, "get_parameters", request)
+
+
+def call_describe_parameters(
+    *, node: Any, node_name: str, parameter_names: Sequence[str] | None = None
+) -> DescribeParameters.Response:
+    """Ask a node for the descriptions of parameters; see `call_list_parameters`."""
+    from rcl_interfaces.srv import DescribeParameters
+
+    request = DescribeParameters.Request(names=list(parameter_names or []))
+    return _call(node, DescribeParameters, node_name, "describe_parameters", request)
+
+
+def call_set_parameters(*, node: Any, node_name: str, parameters: Sequence[Parameter]) -> SetParameters.Response:
+    """Have a node set parameters; see `call_list_parameters`."""
+    from rcl_interfaces.srv import SetParameters
+
+    request = SetParameters.Request(parameters=list(parameters))
+    return _call(node, SetParameters, node_name, "set_parameters", request)
+
+
+def load_parameter_file(*, node: Any, node_name: str, parameter_file: str, use_wildcard: bool) -> None:
+    """Have a node set what a file says of it, and print what became of each parameter.
+
+    Parameters
+    ----------
+    node
+        Who asks.
+    node_name
+        The full name of the node.
+    parameter_file
+        The file.
+    use_wildcard
+        Whether what the file says of all nodes (``/**``) counts.
+
+    Raises
+    ------
+    RuntimeError
+        When the node does not answer, or the file cannot be read or does not name the node.
+    """
+    from rclpy.parameter import parameter_dict_from_yaml_file
+
+    from daidalos.cli.ros2.parameters import report
+
+    try:
+        parameters = parameter_dict_from_yaml_file(parameter_file, use_wildcard, target_nodes=[node_name])
+    except OSError as error:
+        raise RuntimeError(f"{parameter_file}: {error.strerror}") from None
+    response = call_set_parameters(node=node, node_name=node_name, parameters=list(parameters.values()))
+    for name, result in zip(parameters, response.results, strict=True):
+        report(result, f"Set parameter {name} successful", f"Set parameter {name} failed")
+    sys.stdout.flush()
+
+
+class ParameterNameCompleter:
+    """Returns the names of the parameters of the node that the argument ``node_name`` names."""
+
+    def __call__(self, prefix: str, parsed_args: Namespace, **kwargs: Any) -> list[str]:
+        """Return them."""
+        from ros2node.api import get_absolute_node_name
+
+        name = get_absolute_node_name(parsed_args.node_name)
+        if name is None:
+            return []
+        with DirectNode(parsed_args) as node:
+            return sorted(call_list_parameters(node=node, node_name=name).result.names)
+
+
+def _call(node: Any, service_type: Any, node_name: str, service: str, request: Any) -> Any:
+    from daidalos.cli.ros2.errors import CliError
+    from daidalos.cli.ros2.services import call
+
+    try:
+        return call(node, service_type, f"{node_name}/{service}", request)
+    except CliError as error:
+        raise RuntimeError(str(error)) from None

@@ -1,0 +1,210 @@
+"""Topics and their types, and qualities of service as the command line names them."""
+
+from __future__ import annotations
+
+import argparse
+from typing import TYPE_CHECKING, Any
+
+from ros2cli.graph import NamesAndTypes, class_of, is_set, visible
+from ros2cli.node.strategy import NodeStrategy
+
+if TYPE_CHECKING:
+    from rclpy.qos import QoSProfile
+
+
+def get_topic_names_and_types(*, node: Any, include_hidden_topics: bool = False) -> NamesAndTypes:
+    """Return the topics in the graph with their types.
+
+    Parameters
+    ----------
+    node
+        Who asks: an rclpy node or a `NodeStrategy`.
+    include_hidden_topics
+        Whether those with a part that begins with an underscore are among them.
+    """
+    return visible(node.get_topic_names_and_types(), include_hidden_topics)
+
+
+def get_topic_names(*, node: Any, include_hidden_topics: bool = False) -> list[str]:
+    """Return the names of the topics in the graph; see `get_topic_names_and_types`."""
+    return [name for name, _ in get_topic_names_and_types(node=node, include_hidden_topics=include_hidden_topics)]
+
+
+def get_msg_class(node: Any, topic: str, blocking: bool = False, include_hidden_topics: bool = False) -> Any:
+    """Return the class of a topic's messages; None where nobody knows the topic.
+
+    Parameters
+    ----------
+    node
+        Who asks: an rclpy node or a `NodeStrategy`.
+    topic
+        The topic.
+    blocking
+        Whether to wait for a topic that is not there.
+    include_hidden_topics
+        Whether it may be a hidden topic.
+
+    Raises
+    ------
+    RuntimeError
+        When the topic has more than one type, or one that is not known here.
+    """
+    from rosidl_runtime_py.utilities import get_message
+
+    def listing() -> NamesAndTypes:
+        return get_topic_names_and_types(node=node, include_hidden_topics=include_hidden_topics)
+
+    return class_of(node, "topic", node.resolve_topic_name(topic), listing, get_message, blocking)
+
+
+def qos_profile_from_short_keys(
+    preset_profile: str,
+    reliability: str | None = None,
+    durability: str | None = None,
+    depth: int | None = None,
+    history: str | None = None,
+    liveliness: str | None = None,
+    liveliness_lease_duration_s: float | None = None,
+) -> QoSProfile:
+    """Return a preset profile, such as ``sensor_data``, with some policies replaced, such as ``reliable``."""
+    from daidalos.cli.ros2.qos import profile_of
+
+    profile = profile_of(preset_profile)
+    profile_configure_short_keys(
+        profile, reliability, durability, depth, history, liveliness, liveliness_lease_duration_s
+    )
+    return profile
+
+
+def profile_configure_short_keys(
+    profile: QoSProfile,
+    reliability: str | None = None,
+    durability: str | None = None,
+    depth: int | None = None,
+    history: str | None = None,
+    liveliness: str | None = None,
+    liveliness_lease_duration_s: float | None = None,
+) -> QoSProfile:
+    """Replace some policies of a profile, named as in `qos_profile_from_short_keys`, and return it."""
+    from daidalos.cli.ros2.qos import replace_policies
+
+    names = {
+        "reliability": reliability,
+        "durability": durability,
+        "depth": depth,
+        "history": history,
+        "liveliness": liveliness,
+    }
+    replace_policies(profile, names, liveliness_lease_duration_s)
+    return profile
+
+
+def add_qos_arguments(parser: argparse.ArgumentParser, subscribe_or_publish: str, default_profile_str: str) -> None:
+    """Declare the options for a quality of service.
+
+    Parameters
+    ----------
+    parser
+        What takes them.
+    subscribe_or_publish
+        What it is for: ``subscribe`` or ``publish``.
+    default_profile_str
+        The preset profile whose policies the options replace.
+    """
+    from daidalos.cli.ros2.qos import add_qos_arguments as add
+
+    add(parser, f"{subscribe_or_publish} with", default_profile_str)
+
+
+def unsigned_int(string: str) -> int:
+    """Read a whole number that is not negative; for argparse."""
+    return _number(string, int, lambda value: value >= 0, "a non-negative integer")
+
+
+def positive_int(string: str) -> int:
+    """Read a whole number above 0; for argparse."""
+    return _number(string, int, lambda value: value > 0, "a positive integer")
+
+
+def positive_float(inval: str) -> float:
+    """Read a number above 0; for argparse."""
+    return _number(inval, float, lambda value: value > 0, "a positive number")
+
+
+def message_type_completer(**kwargs: Any) -> list[str]:
+    """Return all message types."""
+    from daidalos.cli.ros2.interfaces import interface_names
+
+    return interface_names("msg")
+
+
+class TopicNameCompleter:
+    """Returns the topics that an argument may be.
+
+    Parameters
+    ----------
+    include_hidden_topics_key
+        The argument that says whether hidden topics are among them.
+    """
+
+    def __init__(self, *, include_hidden_topics_key: str | None = None) -> None:
+        self.include_hidden_topics_key = include_hidden_topics_key
+
+    def __call__(self, prefix: str, parsed_args: argparse.Namespace, **kwargs: Any) -> list[str]:
+        """Return them."""
+        hidden = is_set(parsed_args, self.include_hidden_topics_key)
+        with NodeStrategy(parsed_args) as node:
+            return get_topic_names(node=node, include_hidden_topics=hidden)
+
+
+class TopicTypeCompleter:
+    """Returns the types that an argument may be: that of the topic which another argument names, or all.
+
+    Parameters
+    ----------
+    topic_name_key
+        The other argument.
+    """
+
+    def __init__(self, *, topic_name_key: str | None = None) -> None:
+        self.topic_name_key = topic_name_key
+
+    def __call__(self, prefix: str, parsed_args: argparse.Namespace, **kwargs: Any) -> list[str]:
+        """Return them."""
+        topic = getattr(parsed_args, self.topic_name_key, None) if self.topic_name_key else None
+        if topic:
+            with NodeStrategy(parsed_args) as node:
+                found = dict(get_topic_names_and_types(node=node, include_hidden_topics=True))
+                types = found.get(node.resolve_topic_name(topic))
+            if types:
+                return types
+        return message_type_completer()
+
+
+class TopicMessagePrototypeCompleter:
+    """Returns the default message, as YAML, of the type that another argument names.
+
+    Parameters
+    ----------
+    topic_type_key
+        The other argument.
+    """
+
+    def __init__(self, *, topic_type_key: str) -> None:
+        self.topic_type_key = topic_type_key
+
+    def __call__(self, prefix: str, parsed_args: argparse.Namespace, **kwargs: Any) -> list[str]:
+        """Return it."""
+        from daidalos.cli.ros2.interfaces import prototype
+
+        return [prototype(getattr(parsed_args, self.topic_type_key))]
+
+
+def _number(string: str, kind: Any, is_good: Any, words: str) -> Any:
+    try:
+        value = kind(string)
+    except ValueError:
+        value = None
+    if value is None or not is_good(value):
+        raise argparse.ArgumentTypeError(f"value must be {words}, not '{string}'")
+    return value
