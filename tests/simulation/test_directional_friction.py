@@ -21,12 +21,13 @@ def surface(direction, prefix="gz"):
     )
 
 
-def mecanum():
-    drives = "".join(
+def mecanum(drives=True):
+    """Return a base on four wheels with rollers, with a drive for each."""
+    plugins = "".join(
         f"<plugin name='{wheel}' filename='gz-sim-joint-controller-system'><joint_name>{wheel}_j</joint_name></plugin>"
-        for wheel in GRIPS
+        for wheel in (GRIPS if drives else ())
     )
-    model = four_wheels(drives, base=BASE, track=TRACK, radius=RADIUS)
+    model = four_wheels(plugins, base=BASE, track=TRACK, radius=RADIUS)
     for wheel, direction in GRIPS.items():
         head, tail = model.split(f"<link name='{wheel}'>")
         model = f"{head}<link name='{wheel}'>{tail.replace('</collision>', surface(direction) + '</collision>', 1)}"

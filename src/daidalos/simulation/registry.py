@@ -27,7 +27,7 @@ PLUGIN_GROUP = "daidalos.plugins"
 _BUILT_IN = re.compile(
     r"gazebo_ros_(init|factory|api_plugin|paths_plugin|properties|state|force_system)"
     r"|gz-sim-(physics|user-commands|scene-broadcaster|sensors|imu|contact|forcetorque|force-torque|altimeter"
-    r"|magnetometer|nav-?sat|air-pressure|logical-camera|label|particle-emitter|performer)-system"
+    r"|magnetometer|nav-?sat|air-pressure|apply-link-wrench|logical-camera|label|particle-emitter|performer)-system"
 )
 
 

@@ -335,6 +335,31 @@ class NumberSample(Sample):
 
 
 @dataclass(frozen=True, eq=False)
+class TextSample(Sample):
+    """A word or two."""
+
+    text: str
+
+
+@dataclass(frozen=True, eq=False)
+class BatterySample(Sample):
+    """A battery.
+
+    Parameters
+    ----------
+    voltage, current : float
+        [V], and [A], negative while it empties.
+    charge, capacity : float
+        [A h].
+    """
+
+    voltage: float
+    current: float
+    charge: float
+    capacity: float
+
+
+@dataclass(frozen=True, eq=False)
 class WheelSlipSample(Sample):
     """How wheels slip, arrays (n,).
 
@@ -372,6 +397,11 @@ class WrenchCommand:
 
     force: Array = field(default_factory=lambda: np.zeros(3))
     torque: Array = field(default_factory=lambda: np.zeros(3))
+
+
+@dataclass(frozen=True)
+class SignalCommand:
+    """That something should happen now."""
 
 
 @dataclass(frozen=True, eq=False)

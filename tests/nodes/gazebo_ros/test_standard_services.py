@@ -1,14 +1,15 @@
 """The services and the action that every simulator may offer."""
 
+import time
 from threading import Event
 
 import pytest
 import trimesh
 from action_msgs.msg import GoalStatus
 from daidalos_msgs.srv import GetShapes
-from geometry_msgs.msg import Point, Pose, PoseStamped, Twist, Vector3
+from geometry_msgs.msg import Point, Pose, PoseStamped, Twist, Vector3, Wrench
 from rclpy.action import ActionClient
-from ros_gz_interfaces.msg import Entity, EntityFactory, WorldControl
+from ros_gz_interfaces.msg import Entity, EntityFactory, EntityWrench, WorldControl
 from ros_gz_interfaces.srv import ControlWorld, DeleteEntity, SetEntityPose, SpawnEntity
 from simulation_interfaces import srv
 from simulation_interfaces.action import SimulateSteps
@@ -195,6 +196,41 @@ def test_gzs_services_do_the_same(shop):
     assert shop.server._paced.simulation.pose("crate").position[0] == pytest.approx(1.0)
     assert shop.call(DeleteEntity, "/world/shop/remove", entity=Entity(name="crate")).success
     assert not shop.call(DeleteEntity, "/world/shop/remove", entity=Entity(name="crate")).success
+
+
+def test_gzs_wrenches_come_by_topic(shop):
+    spawn(shop, z=5.0)
+    simulation = shop.server._paced.simulation
+    publishers = {
+        name: shop.client.create_publisher(kind, f"/world/shop/wrench{name}", 10)
+        for name, kind in (("", EntityWrench), ("/persistent", EntityWrench), ("/clear", Entity))
+    }
+
+    def tell(name, message, pushes):
+        deadline = time.monotonic() + 10.0
+        while not publishers[name].get_subscription_count() and time.monotonic() < deadline:
+            Event().wait(0.01)
+        publishers[name].publish(message)
+        while len(simulation.forces.pushes) != pushes and time.monotonic() < deadline:
+            Event().wait(0.01)
+        assert len(simulation.forces.pushes) == pushes
+
+    def ahead():
+        return simulation.velocity("crate")[0][0]
+
+    def steps(count):
+        shop.call(ControlWorld, "/world/shop/control", world_control=WorldControl(pause=True, multi_step=count))
+
+    wrench = EntityWrench(entity=Entity(name="crate", type=Entity.MODEL), wrench=Wrench(force=Vector3(x=4.0)))
+    tell("", wrench, 1)
+    steps(100)
+    assert ahead() == pytest.approx(0.002, rel=1e-3)  # for one step
+    tell("/persistent", wrench, 1)
+    steps(100)
+    assert ahead() == pytest.approx(0.202, rel=1e-3)
+    tell("/clear", Entity(name="crate::body", type=Entity.LINK), 0)
+    steps(100)
+    assert ahead() == pytest.approx(0.202, rel=1e-3)
 
 
 @pytest.mark.parametrize(

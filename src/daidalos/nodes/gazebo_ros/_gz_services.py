@@ -1,4 +1,4 @@
-"""The services that ros_gz_bridge offers for gz: ``/world/<name>/create`` and its like."""
+"""What ros_gz_bridge offers for gz: ``/world/<name>/create`` and its like, and wrenches on links."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from daidalos.nodes.gazebo_ros._entities import find_entity, set_motion
 from daidalos.nodes.gazebo_ros._host import Host
 from daidalos.nodes.gazebo_ros._states import pose_of
 from daidalos.nodes.packages import package_share
+from daidalos.simulation import Simulation
 from daidalos.simulation.errors import SimulationError
 
 
@@ -26,6 +27,7 @@ class GzServices:
     """
 
     def __init__(self, node: Any, host: Host, group: Any) -> None:
+        from ros_gz_interfaces.msg import Entity, EntityWrench
         from ros_gz_interfaces.srv import ControlWorld, DeleteEntity, SetEntityPose, SpawnEntity
 
         self._node = node
@@ -38,6 +40,12 @@ class GzServices:
             (SetEntityPose, "set_pose", self._set_pose),
         ):
             node.create_service(kind, f"{base}/{name}", self._answering(work), callback_group=group)
+        for message, name, take in (
+            (EntityWrench, "wrench", lambda told: self._push(told, lasts=False)),
+            (EntityWrench, "wrench/persistent", lambda told: self._push(told, lasts=True)),
+            (Entity, "wrench/clear", self._stop_pushing),
+        ):
+            node.create_subscription(message, f"{base}/{name}", self._warning(take), 10, callback_group=group)
 
     def _control(self, request: Any) -> None:
         control, paced = request.world_control, self._host.paced
@@ -64,6 +72,28 @@ class GzServices:
         name, pose = request.entity.name, pose_of(request.pose)
         self._host.paced.call(lambda simulation: set_motion(simulation, find_entity(simulation, name), "", pose, None))
 
+    def _push(self, told: Any, lasts: bool) -> None:
+        force, torque = told.wrench.force, told.wrench.torque
+
+        def work(simulation: Simulation) -> None:
+            values = (force.x, force.y, force.z), (torque.x, torque.y, torque.z)
+            duration = None if lasts else simulation.step_ns
+            simulation.push(*_link(simulation, told.entity.name), *values, duration_ns=duration)
+
+        self._host.paced.call(work)
+
+    def _stop_pushing(self, told: Any) -> None:
+        self._host.paced.call(lambda simulation: simulation.stop_pushing(*_link(simulation, told.name)))
+
+    def _warning(self, take: Callable[[Any], None]) -> Callable[[Any], None]:
+        def heed(message: Any) -> None:
+            try:
+                take(message)
+            except SimulationError as error:
+                self._node.get_logger().warning(str(error))
+
+        return heed
+
     def _answering(self, work: Callable[[Any], None]) -> Callable[[Any, Any], Any]:
         def answer(request: Any, response: Any) -> Any:
             try:
@@ -75,6 +105,12 @@ class GzServices:
             return response
 
         return answer
+
+
+def _link(simulation: Simulation, name: str) -> tuple[str, str]:
+    """Return model and link of a name; of a model the first link."""
+    entity = find_entity(simulation, name)
+    return entity.model, entity.link or next(iter(simulation.instance(entity.model).model.links))
 
 
 def _text(uri: str) -> str:

@@ -149,6 +149,7 @@ OUTGOING: dict[type[samples.Sample], Outgoing] = {
 INCOMING: dict[type, Incoming] = {
     samples.TwistCommand: Incoming(named("geometry_msgs", "Twist"), _twist),
     samples.WrenchCommand: Incoming(named("geometry_msgs", "Wrench"), _wrench),
+    samples.SignalCommand: Incoming(named("std_msgs", "Empty"), lambda message: samples.SignalCommand()),
     samples.NumberCommand: Incoming(named("std_msgs", "Float64"), _number),
     samples.TrajectoryCommand: Incoming(_trajectory_type, trajectory_of),
 }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -19,6 +20,8 @@ _contacts_type = named("ros_gz_interfaces", "Contacts")
 _bumper_type = named("gazebo_msgs", "ContactsState")
 _flag_type = named("std_msgs", "Bool")
 _number_type = named("std_msgs", "Float32")
+_text_type = named("std_msgs", "String")
+_battery_type = named("sensor_msgs", "BatteryState")
 _wheel_slip_type = named("gazebo_msgs", "WheelSlip")
 
 
@@ -131,6 +134,27 @@ def _number(sample: samples.NumberSample) -> Any:
     return _number_type()(data=sample.value)
 
 
+def _text(sample: samples.TextSample) -> Any:
+    return _text_type()(data=sample.text)
+
+
+def _battery(sample: samples.BatterySample) -> Any:
+    cls = _battery_type()
+    charging = cls.POWER_SUPPLY_STATUS_CHARGING if sample.current > 0 else cls.POWER_SUPPLY_STATUS_DISCHARGING
+    return cls(
+        header=header(sample),
+        voltage=sample.voltage,
+        current=sample.current,
+        charge=sample.charge,
+        capacity=sample.capacity,
+        design_capacity=sample.capacity,
+        percentage=sample.charge / sample.capacity,
+        temperature=math.nan,
+        power_supply_status=charging,
+        present=True,
+    )
+
+
 def _wheel_slip(sample: samples.WheelSlipSample) -> Any:
     return _wheel_slip_type()(
         name=list(sample.names), lateral_slip=sample.lateral.tolist(), longitudinal_slip=sample.longitudinal.tolist()
@@ -148,5 +172,7 @@ SENSORS: dict[type[samples.Sample], Outgoing] = {
     samples.BumperSample: Outgoing(_bumper_type, _bumper),
     samples.FlagSample: Outgoing(_flag_type, _flag),
     samples.NumberSample: Outgoing(_number_type, _number),
+    samples.TextSample: Outgoing(_text_type, _text),
+    samples.BatterySample: Outgoing(_battery_type, _battery),
     samples.WheelSlipSample: Outgoing(_wheel_slip_type, _wheel_slip),
 }

@@ -100,6 +100,18 @@ class ModelBuild:
             actuator.forcerange = [-torque, torque]
         return str(actuator.name)
 
+    def add_motor(self, joint: str) -> str:
+        """Add an actuator whose control is the effort on a joint, and return its name."""
+        if not self.joints.get(joint):
+            raise UnknownNameError("movable joint", joint, [n for n, added in self.joints.items() if added])
+        actuator = self.spec.add_actuator(
+            name=f"{self.scoped(joint)}::effort",
+            trntype=mujoco.mjtTrn.mjTRN_JOINT,
+            target=self.joints[joint][0],
+        )
+        actuator.set_to_motor()
+        return str(actuator.name)
+
     def add_position_servo(self, joint: str, stiffness: float, damping: float, effort: float) -> str:
         """Add an actuator that holds a joint's position, and return its name.
 

@@ -14,12 +14,10 @@ from daidalos.description.pose import Pose
 from daidalos.simulation.component import Setting, Switch
 from daidalos.simulation.instance import Instance, LinkView
 from daidalos.simulation.plugins.base import Plugin
+from daidalos.simulation.plugins.holding import let_go, pull
 from daidalos.simulation.samples import FlagSample, Sample
 
 Array = NDArray[np.float64]
-
-_BANDWIDTH = 60.0
-"""Of the spring that holds [rad/s]: stiff, and still well below the steps' rate."""
 
 
 @dataclass
@@ -93,9 +91,9 @@ class VacuumGripper(Plugin):
             hold.held = hold.place = None
         target = self._target()
         if target is not None and hold.place is not None:
-            self._pull(target, hold.place)
+            pull(self._key, self._gripper, target, hold.place)
         else:
-            self._let_go()
+            let_go(self._key, self._physics.forces)
         if now_ns >= hold.due_ns:
             hold.due_ns = now_ns + 100_000_000
             yield FlagSample(now_ns, self.topic, "", target is not None)
@@ -129,28 +127,3 @@ class VacuumGripper(Plugin):
         local = data.geom_xmat[geom].reshape(3, 3).T @ (point - data.geom_xpos[geom])
         centre, half = model.geom_aabb[geom, :3], model.geom_aabb[geom, 3:]
         return float(np.linalg.norm(np.maximum(np.abs(local - centre) - half, 0.0)))
-
-    def _pull(self, target: LinkView, place: Pose) -> None:
-        model, data = self._physics.model, self._physics.data
-        wanted = self._gripper.pose @ place
-        error = (target.pose.inverse @ wanted).orientation
-        turn = 2 * np.array(error[:3]) * np.sign(error[3] or 1.0)
-        linear, angular = target.velocity()
-        own_linear, own_angular = self._gripper.velocity()
-        arm = np.array(wanted.position) - np.array(self._gripper.pose.position)
-        mass = float(model.body_subtreemass[target.body])
-        moment = float(model.body_inertia[target.body].mean())
-        gap = np.array(wanted.position) - np.array(target.pose.position)
-        slip = own_linear + np.cross(own_angular, arm) - linear
-        force = mass * (_BANDWIDTH**2 * gap + 2 * _BANDWIDTH * slip - np.array(model.opt.gravity))
-        torque = moment * (_BANDWIDTH**2 * (target.rotation @ turn) + 2 * _BANDWIDTH * (own_angular - angular))
-        # The force acts at the link's origin; forces are held at centres of mass.
-        at_target = np.array(target.pose.position) - data.xipos[target.body]
-        at_gripper = np.array(target.pose.position) - data.xipos[self._gripper.body]
-        forces = self._physics.forces
-        forces.hold(f"{self._key}/held", target.body, force, torque + np.cross(at_target, force))
-        forces.hold(f"{self._key}/own", self._gripper.body, -force, -torque - np.cross(at_gripper, force))
-
-    def _let_go(self) -> None:
-        for part in ("held", "own"):
-            self._physics.forces.release(f"{self._key}/{part}")

@@ -1,0 +1,102 @@
+"""Detachable joint: holds another model's link until it is told to let go, and again."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+import mujoco
+
+from daidalos.description.link import Plugin as Description
+from daidalos.description.pose import Pose
+from daidalos.simulation.component import Setting, Subscription
+from daidalos.simulation.instance import Instance, LinkView
+from daidalos.simulation.plugins.base import Plugin
+from daidalos.simulation.plugins.holding import let_go, pull
+from daidalos.simulation.samples import Sample, SignalCommand, TextSample
+from daidalos.simulation.topics import absolute_topic
+
+
+@dataclass
+class Attachment:
+    """Whether the other link is to be held, where it was taken, and what was said of it last."""
+
+    wanted: bool = True
+    place: Pose | None = None
+    said: str = ""
+
+
+class DetachableJoint(Plugin):
+    """gz's DetachableJoint system: attached from the start, as soon as the other model is there."""
+
+    names = ("gz-sim-detachable-joint-system",)
+    unused = ("suppress_child_warning",)
+    memory: Attachment
+
+    def __init__(self, description: Description, setting: Setting) -> None:
+        super().__init__(description, setting)
+        element, links = description.element, setting.model.links
+        self.parent = self.parameters.scoped(element.text_of("parent_link"))
+        if self.parent not in links:
+            raise element.error(f"<parent_link> is {self.parent!r}, expected one of the links {', '.join(links)}")
+        self.child = element.text_of("child_model"), element.text_of("child_link")
+        if not all(self.child):
+            raise element.error("<child_model> and <child_link> are needed")
+        base = f"/model/{setting.model_name}/detachable_joint"
+        self.attach, self.detach, self.output = (
+            absolute_topic(element.text_of(*tags, default=f"{base}/{word}"), setting.namespace)
+            for tags, word in (
+                (("attach_topic",), "attach"),
+                (("detach_topic", "topic"), "detach"),
+                (("output_topic",), "state"),
+            )
+        )
+        self._key = f"{setting.model_name}::{description.name}"
+
+    @property
+    def publications(self) -> Mapping[str, type[Sample]]:
+        """``attached`` or ``detached``, when that changes."""
+        return {self.output: TextSample}
+
+    @property
+    def subscriptions(self) -> Mapping[str, Subscription]:
+        """Attach and detach."""
+        return {
+            self.attach: Subscription(SignalCommand, lambda command: self._switch(on=True)),
+            self.detach: Subscription(SignalCommand, lambda command: self._switch(on=False)),
+        }
+
+    def bind(self, instance: Instance) -> None:
+        """Find the link that holds."""
+        self._physics = instance.physics
+        self._holder = instance.link(self.parent)
+        self._same = self.child[0] in (instance.name, "__model__")
+
+    def start(self) -> Attachment:
+        """Attach."""
+        return Attachment()
+
+    def update(self, now_ns: int) -> Iterable[Sample]:
+        """Hold, or let go."""
+        state = self.memory
+        target = self._target() if state.wanted else None
+        if target is None:
+            state.place = None
+            let_go(self._key, self._physics.forces)
+        else:
+            state.place = state.place or self._holder.pose.inverse @ target.pose
+            pull(self._key, self._holder, target, state.place)
+        word = "detached" if target is None else "attached"
+        if word != state.said:
+            state.said = word
+            yield TextSample(now_ns, self.output, "", word)
+
+    def _switch(self, on: bool) -> None:
+        self.memory.wanted = on
+
+    def _target(self) -> LinkView | None:
+        """Return the other link; None while it is not there."""
+        model, link = self.child
+        name = f"{self.setting.model_name if self._same else model}::{link}"
+        body = mujoco.mj_name2id(self._physics.model, mujoco.mjtObj.mjOBJ_BODY, name)
+        return LinkView(self._physics, body) if body >= 0 else None

@@ -1,0 +1,123 @@
+"""gz's systems that push: efforts on joints, and thrusters."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+import numpy as np
+
+from daidalos.description.link import Plugin as Description
+from daidalos.description.pose import rotate
+from daidalos.simulation.component import Setting, Subscription
+from daidalos.simulation.conversion.model_build import ModelBuild
+from daidalos.simulation.instance import Instance
+from daidalos.simulation.plugins.base import Plugin
+from daidalos.simulation.samples import NumberCommand, Sample
+from daidalos.simulation.topics import absolute_topic
+
+
+class ApplyJointForce(Plugin):
+    """gz's ApplyJointForce system: an effort on a joint, until the next one comes."""
+
+    names = ("gz-sim-apply-joint-force-system",)
+    memory: float
+
+    def __init__(self, description: Description, setting: Setting) -> None:
+        super().__init__(description, setting)
+        self.joint = joint_of(self, "joint_name")
+        default = f"/model/{setting.model_name}/joint/{self.joint}/cmd_force"
+        self.topic = absolute_topic(description.element.text_of("topic", default=default), setting.namespace)
+
+    @property
+    def subscriptions(self) -> Mapping[str, Subscription]:
+        """The wanted effort."""
+        return {self.topic: Subscription(NumberCommand, self._command)}
+
+    def prepare(self, build: ModelBuild) -> None:
+        """Add a motor."""
+        self._motor = build.add_motor(self.joint)
+
+    def bind(self, instance: Instance) -> None:
+        """Find the motor."""
+        self._data = instance.physics.data
+        self._control = instance.actuator(self._motor)
+
+    def start(self) -> float:
+        """Do not push."""
+        return 0.0
+
+    def update(self, now_ns: int) -> Iterable[Sample]:
+        """Push."""
+        self._data.ctrl[self._control] = self.memory
+        return ()
+
+    def _command(self, command: NumberCommand) -> None:
+        self.memory = command.value
+
+
+class Thruster(Plugin):
+    """gz's Thruster system: a propeller that pushes along its joint's axis.
+
+    The thrust is coefficient x density x diameter^4 x speed |speed|; commands are thrusts [N], or speeds
+    [rad/s] with ``use_angvel_cmd``. The propeller itself does not turn.
+    """
+
+    names = ("gz-sim-thruster-system",)
+    unused = ("velocity_control", "p_gain", "i_gain", "d_gain", "wake_fraction", "alpha_1", "alpha_2")
+    memory: float
+
+    def __init__(self, description: Description, setting: Setting) -> None:
+        super().__init__(description, setting)
+        element = description.element
+        self.joint = joint_of(self, "joint_name")
+        diameter = element.number_of("propeller_diameter", default=0.02)
+        self.factor = element.number_of("thrust_coefficient", default=1.0) * diameter**4
+        self.factor *= element.number_of("fluid_density", default=1000.0)
+        self.limits = (
+            element.number_of("min_thrust_cmd", default=-1000.0),
+            element.number_of("max_thrust_cmd", default=1000.0),
+        )
+        if self.limits[0] > self.limits[1]:
+            raise element.error("<min_thrust_cmd> is above <max_thrust_cmd>")
+        self.takes_speeds = element.flag_of("use_angvel_cmd", default=False)
+        word = "cmd_vel" if self.takes_speeds else "cmd_thrust"
+        namespace = element.text_of("namespace", default=setting.model_name)
+        own = element.text_of("topic")
+        name = f"/model/{namespace}/{own}" if own else f"/model/{namespace}/joint/{self.joint}/{word}"
+        self.topic = absolute_topic(name, setting.namespace)
+        self._key = f"{setting.model_name}::{description.name}"
+
+    @property
+    def subscriptions(self) -> Mapping[str, Subscription]:
+        """The wanted thrust or speed."""
+        return {self.topic: Subscription(NumberCommand, self._command)}
+
+    def bind(self, instance: Instance) -> None:
+        """Find the propeller."""
+        joint = instance.model.joints[self.joint]
+        self._forces = instance.physics.forces
+        self._link = instance.link(joint.child)
+        self._axis = np.array(rotate(joint.anchor.orientation, joint.axis.xyz))
+
+    def start(self) -> float:
+        """Do not push."""
+        return 0.0
+
+    def update(self, now_ns: int) -> Iterable[Sample]:
+        """Push at the propeller's centre of mass."""
+        self._forces.hold(self._key, self._link.body, self._link.rotation @ self._axis * self.memory, np.zeros(3))
+        return ()
+
+    def _command(self, command: NumberCommand) -> None:
+        value = command.value
+        thrust = self.factor * value * abs(value) if self.takes_speeds else value
+        self.memory = min(max(thrust, self.limits[0]), self.limits[1])
+
+
+def joint_of(plugin: Plugin, tag: str) -> str:
+    """Return the joint that a parameter names, an error where the model has none."""
+    element, joints = plugin.description.element, plugin.setting.model.joints
+    name = plugin.parameters.scoped(element.text_of(tag))
+    if name not in joints:
+        raise element.error(f"<{tag}> is {name!r}, expected one of the joints {', '.join(joints) or 'none'}")
+    return name

@@ -1,0 +1,141 @@
+"""Mecanum drive: speeds of four wheels with rollers from a commanded velocity, odometry from the wheels."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daidalos.description.link import Plugin as Description
+from daidalos.simulation.component import Setting, Subscription
+from daidalos.simulation.conversion.model_build import ModelBuild
+from daidalos.simulation.instance import Instance
+from daidalos.simulation.odometry import PlanarPose, planar_covariance, transform_of, yaw_quaternion
+from daidalos.simulation.plugins.base import Plugin
+from daidalos.simulation.plugins.diff_drive import SERVO_TIME
+from daidalos.simulation.plugins.diff_drive_settings import Limits
+from daidalos.simulation.plugins.joint_forces import joint_of
+from daidalos.simulation.samples import OdometrySample, Sample, TransformSample, TwistCommand
+from daidalos.simulation.topics import absolute_topic, frame
+
+Array = NDArray[np.float64]
+
+_WHEELS = ("front_left_joint", "front_right_joint", "back_left_joint", "back_right_joint")
+_MIX = np.array([(1.0, -1.0, -1.0), (1.0, 1.0, 1.0), (1.0, 1.0, -1.0), (1.0, -1.0, 1.0)])
+"""Rim speed of each wheel for a speed ahead, one to the left, and a turn rate times the arm."""
+
+
+@dataclass
+class Motion:
+    """Commanded and allowed velocity (ahead, left, turn), wheel angles, and the odometry."""
+
+    angles: Array
+    command: Array = field(default_factory=lambda: np.zeros(3))
+    allowed: Array = field(default_factory=lambda: np.zeros(3))
+    pose: PlanarPose = field(default_factory=PlanarPose)
+    stamp_ns: int = -1
+
+
+class MecanumDrive(Plugin):
+    """gz's MecanumDrive system; the wheels' surfaces say with ``<fdir1>`` how their rollers lie."""
+
+    names = ("gz-sim-mecanum-drive-system",)
+    memory: Motion
+
+    def __init__(self, description: Description, setting: Setting) -> None:
+        super().__init__(description, setting)
+        element, name = description.element, setting.model_name
+        self.joints = tuple(joint_of(self, tag) for tag in _WHEELS)
+        sizes = {"wheel_separation": 1.0, "wheelbase": 1.0, "wheel_radius": 0.2}
+        given = {tag: element.number_of(tag, default=size) for tag, size in sizes.items()}
+        for tag, size in given.items():
+            if size <= 0:
+                raise element.error(f"<{tag}> should be positive, got {size:g}")
+        self.radius = given["wheel_radius"]
+        self._mix = _MIX * (1.0, 1.0, (given["wheel_separation"] + given["wheelbase"]) / 2)
+        self.limits = Limits(
+            element.number_of("min_velocity", default=-math.inf),
+            element.number_of("max_velocity", default=math.inf),
+            element.number_of("min_acceleration", default=-math.inf),
+            element.number_of("max_acceleration", default=math.inf),
+        )
+        rate = element.number_of("odom_publish_frequency", default=50.0)
+        self.period = 1.0 / rate if rate > 0 else 0.0
+        self.command_topic, self.odometry_topic, self.tf_topic = (
+            absolute_topic(element.text_of(tag, default=f"/model/{name}/{word}"), setting.namespace)
+            for tag, word in (("topic", "cmd_vel"), ("odom_topic", "odometry"), ("tf_topic", "tf"))
+        )
+        base = next(iter(setting.model.links), "base_link")
+        self.odometry_frame = frame(element.text_of("frame_id", default=f"{name}/odom"))
+        self.base_frame = frame(element.text_of("child_frame_id", default=f"{name}/{base}"))
+
+    @property
+    def publications(self) -> Mapping[str, type[Sample]]:
+        """Odometry and its transform."""
+        return {self.odometry_topic: OdometrySample, self.tf_topic: TransformSample}
+
+    @property
+    def subscriptions(self) -> Mapping[str, Subscription]:
+        """The commanded velocity."""
+        return {self.command_topic: Subscription(TwistCommand, self._command)}
+
+    def prepare(self, build: ModelBuild) -> None:
+        """Add a speed servo to each wheel."""
+        mass = sum(link.inertial.mass for link in build.model.links.values() if link.inertial)
+        driven = mass * self.radius**2 / len(self.joints)
+        self._servos = [
+            build.add_velocity_servo(joint, 2 * driven / SERVO_TIME, math.inf, rotor=driven) for joint in self.joints
+        ]
+
+    def bind(self, instance: Instance) -> None:
+        """Find wheels and servos."""
+        self._physics = instance.physics
+        self._controls = [instance.actuator(servo) for servo in self._servos]
+        self._wheels = [instance.joint(joint) for joint in self.joints]
+
+    def start(self) -> Motion:
+        """Stand still."""
+        return Motion(self._angles())
+
+    def update(self, now_ns: int) -> Iterable[Sample]:
+        """Measure, then drive."""
+        motion = self.memory
+        step = self.period or self._physics.model.opt.timestep
+        elapsed = step if motion.stamp_ns < 0 else (now_ns - motion.stamp_ns) * 1e-9
+        motion.stamp_ns = now_ns
+        odometry = self._odometry(now_ns, elapsed)
+        motion.allowed = np.array(
+            [self.limits.apply(w, now, elapsed) for w, now in zip(motion.command, motion.allowed, strict=True)]
+        )
+        self._physics.data.ctrl[self._controls] = self._mix @ motion.allowed / self.radius
+        yield odometry
+        yield transform_of(odometry, self.tf_topic)
+
+    def _command(self, command: TwistCommand) -> None:
+        self.memory.command = np.array((command.linear[0], command.linear[1], command.angular[2]), dtype=np.float64)
+
+    def _odometry(self, now_ns: int, elapsed: float) -> OdometrySample:
+        motion = self.memory
+        angles = self._angles()
+        ahead, left, turn = (np.linalg.pinv(self._mix) @ (angles - motion.angles) * self.radius).tolist()
+        motion.angles = angles
+        motion.pose = motion.pose.moved(ahead, turn, left)
+        covariance = planar_covariance(1e-5, 1e-5, 1e-3)
+        return OdometrySample(
+            stamp_ns=now_ns,
+            topic=self.odometry_topic,
+            frame_id=self.odometry_frame,
+            child_frame_id=self.base_frame,
+            position=np.array((motion.pose.x, motion.pose.y, 0.0)),
+            orientation=yaw_quaternion(motion.pose.yaw),
+            linear=np.array((ahead / elapsed, left / elapsed, 0.0)),
+            angular=np.array((0.0, 0.0, turn / elapsed)),
+            pose_covariance=covariance,
+            twist_covariance=covariance,
+        )
+
+    def _angles(self) -> Array:
+        return np.array([wheel.position for wheel in self._wheels])

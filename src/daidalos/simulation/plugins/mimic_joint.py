@@ -1,0 +1,39 @@
+"""Mimic joint: the plugin with which Gazebo classic's robots make one finger follow another."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from daidalos.description.link import Plugin as Description
+from daidalos.simulation.component import Setting
+from daidalos.simulation.conversion.couplings import couple
+from daidalos.simulation.conversion.model_build import ModelBuild
+from daidalos.simulation.plugins.base import Plugin
+from daidalos.simulation.plugins.joint_forces import joint_of
+from daidalos.simulation.samples import Sample
+
+
+class MimicJoint(Plugin):
+    """``libroboticsgroup_gazebo_mimic_joint_plugin.so`` and its relatives; joints with ``<mimic>`` follow anyway."""
+
+    names = (
+        *("gazebo_mimic_joint_plugin", "gazebo_mimic_joint", "roboticsgroup_gazebo_mimic_joint_plugin"),
+        "roboticsgroup_upatras_gazebo_mimic_joint_plugin",
+    )
+    unused = ("hasPID", "maxEffort", "sensitiveness", "namespace", "robotNamespace")
+
+    def __init__(self, description: Description, setting: Setting) -> None:
+        super().__init__(description, setting)
+        self.leader, self.follower = joint_of(self, "joint"), joint_of(self, "mimicJoint")
+        self.multiplier = description.element.number_of("multiplier", default=1.0)
+        self.offset = description.element.number_of("offset", default=0.0)
+
+    def prepare(self, build: ModelBuild) -> None:
+        """Tie the joints to each other."""
+        follower, leader = build.joints.get(self.follower), build.joints.get(self.leader)
+        if follower and leader and self.setting.model.joints[self.follower].mimic is None:
+            couple(build.spec, follower[0], leader[0], self.offset, self.multiplier)
+
+    def update(self, now_ns: int) -> Iterable[Sample]:
+        """Leave it to the physics."""
+        return ()

@@ -1,0 +1,88 @@
+"""Touch: says once that a model has rested against another for a while."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from daidalos.description.link import Plugin as Description
+from daidalos.simulation.component import Setting, Switch
+from daidalos.simulation.instance import Instance
+from daidalos.simulation.plugins.base import Plugin
+from daidalos.simulation.samples import FlagSample, Sample
+from daidalos.simulation.topics import absolute_topic
+
+
+@dataclass
+class Watch:
+    """Whether it looks, and since when it has touched [ns]."""
+
+    on: bool
+    since_ns: int | None = None
+
+
+class Touch(Plugin):
+    """gz's TouchPlugin: ``/<namespace>/touched``, and ``/<namespace>/enable`` to look again."""
+
+    names = ("gz-sim-touchplugin-system", "gz-sim-touch-plugin-system")
+    memory: Watch
+
+    def __init__(self, description: Description, setting: Setting) -> None:
+        super().__init__(description, setting)
+        element = description.element
+        self.target = element.text_of("target")
+        if not self.target:
+            raise element.error("<target> is needed: a part of the name of what is to be touched")
+        namespace = element.text_of("namespace")
+        if not namespace:
+            raise element.error("<namespace> is needed")
+        self.time_ns = round(element.number_of("time", default=0.0) * 1e9)
+        self.on = element.flag_of("enabled", default=False)
+        self.topic = absolute_topic(f"{namespace}/touched", setting.namespace)
+        self.service = absolute_topic(f"{namespace}/enable", setting.namespace)
+
+    @property
+    def publications(self) -> Mapping[str, type[Sample]]:
+        """One topic."""
+        return {self.topic: FlagSample}
+
+    @property
+    def switches(self) -> Mapping[str, Switch]:
+        """To look, or not."""
+        return {self.service: Switch(self._switch)}
+
+    def bind(self, instance: Instance) -> None:
+        """Find the geoms of both."""
+        self._data = instance.physics.data
+        self._physics = instance.physics
+        count = instance.physics.model.ngeom
+        self._mine, self._other = np.zeros(count, dtype=bool), np.zeros(count, dtype=bool)
+        for geom, (model, info) in instance.physics.geoms.items():
+            self._mine[geom] = model == instance.name
+            scoped = f"{model}::{info.link}::{info.collision}"
+            self._other[geom] = model != instance.name and self.target in scoped
+
+    def start(self) -> Watch:
+        """Look, if that is wanted from the start."""
+        return Watch(self.on)
+
+    def update(self, now_ns: int) -> Iterable[Sample]:
+        """Look."""
+        watch = self.memory
+        if not watch.on:
+            return
+        self._physics.refresh_positions()
+        pairs = self._data.contact.geom
+        touches = (self._mine[pairs] & self._other[pairs[:, ::-1]]).any()
+        if not touches:
+            watch.since_ns = None
+            return
+        watch.since_ns = now_ns if watch.since_ns is None else watch.since_ns
+        if now_ns - watch.since_ns >= self.time_ns:
+            self._switch(on=False)
+            yield FlagSample(now_ns, self.topic, "", value=True)
+
+    def _switch(self, on: bool) -> None:
+        self.memory.on, self.memory.since_ns = on, None
