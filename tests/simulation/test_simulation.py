@@ -295,6 +295,14 @@ def test_what_is_not_known_is_named_and_the_rest_runs():
     assert any(isinstance(s, ImuSample) for s in simulation.step())
 
 
+def test_plugins_of_a_model_without_links_are_left_out():
+    plugins = (
+        "<plugin name='p' filename='libgazebo_ros_planar_move.so'/><plugin name='q' filename='gz-sim-imu-system'/>"
+    )
+    simulation = Simulation(world(f"<model name='empty'>{plugins}</model>"))
+    assert [line.partition(": ")[2] for line in simulation.warnings] == ["plugin 'p' has no links, left out"]
+
+
 def test_what_the_simulator_does_by_itself_is_no_unknown_plugin():
     names = ("libgazebo_ros_init.so", "gz-sim-physics-system", "libignition-gazebo-sensors-system.so")
     plugins = "".join(f"<plugin name='p' filename='{name}'/>" for name in names)

@@ -38,7 +38,10 @@ def make_components(model: Model, setting: Callable[[str], Setting]) -> list[Com
     if directed_surfaces(model):
         components.append(DirectionalFriction(setting("friction")))
     for plugin in model.plugins:
-        components += _plugin(plugin, setting(plugin.name))
+        if model.links:
+            components += _plugin(plugin, setting(plugin.name))
+        elif not is_built_in(plugin):
+            setting(plugin.name).warn(f"{plugin.element.where}: plugin {plugin.name!r} has no links, left out")
     for link, joint, sensor in _sensors(model):
         components += _sensor(sensor, link, joint, setting(f"{joint or link}::{sensor.name}"))
     return components

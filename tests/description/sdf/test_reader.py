@@ -330,6 +330,16 @@ def test_a_saved_world_stands_as_it_was_when_it_was_saved():
     assert world.lights[0].pose.position == (0, 0, 5)
 
 
+def test_what_fell_out_of_the_world_is_left_out():
+    world = sdf.parse(
+        """<sdf version="1.6"><world name="w"><model name="near"><link name="l"/></model>
+<model name="lost"><pose>1 2 -7.5e+08 0 0 0</pose><link name="l"/></model></world></sdf>""",
+        "w.sdf",
+    )
+    assert [model.name for model in world.models] == ["near"]
+    assert world.warnings == ("w.sdf:2: <model name=\"lost\">: 'lost' is 7.5e+08 m away, left out",)
+
+
 def test_an_actor_can_be_included(tmp_path):
     (tmp_path / "walker").mkdir()
     (tmp_path / "walker/model.sdf").write_text(

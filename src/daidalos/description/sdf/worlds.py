@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 
 from daidalos.description.joint import Joint
@@ -28,6 +29,8 @@ from daidalos.description.world import (
 )
 
 ROOT = "world"
+FARTHEST = 1e6
+"""What stands farther off [m] fell through its floor before it was saved; forces would grow beyond all numbers."""
 
 
 def read_world(element: Element, context: Context) -> World:
@@ -60,7 +63,7 @@ class _WorldReader:
         physics = _default_physics(element)
         return World(
             name=element.attribute("name", base.name),
-            models=tuple(self._placed(model, child) for model, child in self._models),
+            models=tuple(self._placed()),
             lights=tuple(
                 replace(light, pose=self._graph.place(pose, ROOT, child)) for light, pose, child in self._lights
             ),
@@ -143,8 +146,14 @@ class _WorldReader:
         self._models.append((model, element))
         place_nested(self._graph, model, self._saved.get(model.name, pose), element)
 
-    def _placed(self, model: Model, element: Element) -> Model:
-        return replace(model, pose=self._graph.pose(model.name, element))
+    def _placed(self) -> Iterator[Model]:
+        for model, element in self._models:
+            pose = self._graph.pose(model.name, element)
+            farthest = max(map(abs, pose.position))
+            if farthest > FARTHEST:
+                self._context.warn(element, f"{model.name!r} is {farthest:.3g} m away, left out")
+            else:
+                yield replace(model, pose=pose)
 
     def _joint(self, element: Element) -> Joint:
         return read_joint(element, self._context, element.name(), self._graph.pose, self._link_of, ROOT)
