@@ -211,3 +211,7 @@ def _all_is_taken_back(browser: Chromium) -> None:
     _wait_for_pose(browser, f"z < {large - 0.02}")
     browser.press("Delete")
     browser.wait_for(f"{_MODELS} === '3 models' && {_SELECTED} === ''")
+    browser.press("z", ctrl=True)
+    browser.wait_for(f"{_MODELS} === '4 models' && {_SELECTED} === 'sphere'")
+    browser.click_on("[data-test=delete]")
+    browser.wait_for(f"{_MODELS} === '3 models' && {_SELECTED} === ''")

@@ -4,7 +4,7 @@ import math
 
 import pytest
 from builtin_interfaces.msg import Duration
-from daidalos_msgs.srv import SetFriction
+from daidalos_msgs.srv import BringBack, SetFriction
 from gazebo_msgs import srv
 from gazebo_msgs.msg import EntityState, ODEJointProperties
 from geometry_msgs.msg import Point, Pose, Quaternion, Twist, Vector3, Wrench
@@ -274,6 +274,30 @@ def test_shapes_are_inserted_and_scaled(shop):
     assert not shop.call(
         ScaleEntity, "/gazebo/scale_entity", name="nobody", factors=Vector3(x=2.0, y=2.0, z=2.0)
     ).success
+
+
+def test_what_was_deleted_comes_back_as_it_was(shop):
+    def bring_back(name):
+        return shop.call(BringBack, "/gazebo/bring_back", name=name)
+
+    assert spawn(shop, "arm", ARM, at(1.0, 2.0, 0.0), robot_namespace="left").success
+    bend = {"model_name": "arm", "joint_names": ["j"], "joint_positions": [0.7]}
+    assert shop.call(srv.SetModelConfiguration, "/set_model_configuration", **bend).success
+    moved = EntityState(name="shelf", pose=at(-3.0))
+    assert shop.call(srv.SetEntityState, "/set_entity_state", state=moved).success
+    for name in ("arm", "shelf"):
+        assert shop.call(srv.DeleteEntity, "/delete_entity", name=name).success
+    for name in ("shelf", "arm"):
+        assert bring_back(name).success
+    assert state(shop, "shelf").state.pose.position.x == pytest.approx(-3.0)
+    assert state(shop, "arm").state.pose.position.y == pytest.approx(2.0)
+    joint = shop.call(srv.GetJointProperties, "/get_joint_properties", joint_name="arm::j")
+    assert joint.position == pytest.approx([0.7])
+    assert shop.server._host.spawned == {"arm"}
+    assert "no model 'arm' was deleted" in bring_back("arm").status_message
+    assert shop.call(srv.DeleteEntity, "/delete_entity", name="shelf").success
+    assert spawn(shop, "shelf").success
+    assert "in the simulation already" in bring_back("shelf").status_message
 
 
 def test_looks_of_models_are_told(shop):

@@ -25,11 +25,12 @@ class EditingServices:
     """
 
     def __init__(self, node: Any, host: Host, group: Any) -> None:
-        from daidalos_msgs.srv import GetShapes, InsertShape, ScaleEntity, SetFriction
+        from daidalos_msgs.srv import BringBack, GetShapes, InsertShape, ScaleEntity, SetFriction
 
         self._host = host
         node.create_service(InsertShape, "~/insert_shape", _told(self._insert), callback_group=group)
         node.create_service(GetShapes, "~/get_shapes", _told(self._shapes), callback_group=group)
+        node.create_service(BringBack, "~/bring_back", _told(self._bring_back), callback_group=group)
         node.create_service(ScaleEntity, "~/scale_entity", _told(self._scale), callback_group=group)
         node.create_service(SetFriction, "~/set_friction", _told(self._set_friction), callback_group=group)
 
@@ -37,6 +38,9 @@ class EditingServices:
         color = color_of(request.color) if request.color.a > 0 else (0.6, 0.6, 0.6, 1.0)
         model = primitive(request.shape, vector_of(request.size), request.mass, color)
         response.name = self._host.insert(model, request.name or None, pose_of(request.pose), rename=True)
+
+    def _bring_back(self, request: Any, response: Any) -> None:
+        self._host.bring_back(request.name)
 
     def _scale(self, request: Any, response: Any) -> None:
         self._host.scale(request.name, vector_of(request.factors))
@@ -66,7 +70,7 @@ def _told(work: Callable[[Any, Any], None]) -> Callable[[Any, Any], Any]:
         try:
             work(request, response)
             response.success = True
-        except (SimulationError, ValueError) as error:
+        except (SimulationError, ValueError, LookupError) as error:
             response.success, response.status_message = False, str(error)
         return response
 

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from daidalos.description.joint import JointType
 from daidalos.description.pose import Pose, Vector
 from daidalos.description.world import Physics
 from daidalos.nodes.gazebo_ros._entities import find_entity
@@ -22,6 +24,21 @@ if TYPE_CHECKING:
 EMPTY_WORLD = """<sdf version="1.6"><world name="default">
 <include><uri>model://ground_plane</uri></include><include><uri>model://sun</uri></include>
 </world></sdf>"""
+
+
+_MOST_DELETED = 100
+_ONE_NUMBER = (JointType.REVOLUTE, JointType.CONTINUOUS, JointType.PRISMATIC)
+
+
+@dataclass(frozen=True)
+class _Deleted:
+    """What it takes to put a model back."""
+
+    model: Model
+    pose: Pose
+    namespace: str
+    joints: dict[str, float]
+    was_spawned: bool
 
 
 class Host:
@@ -49,6 +66,7 @@ class Host:
         self._saved: Any = None
         self._stepping = threading.Lock()
         self.spawned: set[str] = set()
+        self._deleted: dict[str, _Deleted] = {}
 
     def spawn(
         self, text: str, name: str | None, pose: Pose, reference: str = "", namespace: str = "", rename: bool = False
@@ -114,8 +132,46 @@ class Host:
         """
 
         def work(simulation: Simulation) -> None:
+            deleted = self._as_it_is(simulation, name)
             simulation.delete(name)
+            self._deleted.pop(name, None)
+            self._deleted[name] = deleted
+            if len(self._deleted) > _MOST_DELETED:
+                del self._deleted[next(iter(self._deleted))]
             self.spawned.discard(name)
+            self._changed(simulation)
+
+        self.paced.call(work)
+
+    def _as_it_is(self, simulation: Simulation, name: str) -> _Deleted:
+        instance = simulation.instance(name)
+        joints = {
+            joint: simulation.joint(name, joint).position
+            for joint, parts in instance.build.joints.items()
+            if parts and instance.model.joints[joint].type in _ONE_NUMBER
+        }
+        return _Deleted(instance.model, instance.pose, instance.namespace, joints, name in self.spawned)
+
+    def bring_back(self, name: str) -> None:
+        """Put a model back that was deleted, where and as it was then, at rest.
+
+        Raises
+        ------
+        LookupError
+            When none of this name was deleted from this world.
+        SimulationError
+        """
+
+        def work(simulation: Simulation) -> None:
+            deleted = self._deleted.get(name)
+            if deleted is None:
+                raise LookupError(f"no model '{name}' was deleted from this world")
+            simulation.spawn(deleted.model, name, deleted.pose, deleted.namespace)
+            for joint, position in deleted.joints.items():
+                simulation.set_joint(name, joint, position)
+            del self._deleted[name]
+            if deleted.was_spawned:
+                self.spawned.add(name)
             self._changed(simulation)
 
         self.paced.call(work)
@@ -138,6 +194,7 @@ class Host:
         def work(_: Simulation) -> None:
             self.paced.replace(simulation)
             self.spawned.clear()
+            self._deleted.clear()
             self._saved = None
             self.world_path = path
             self._changed(simulation)

@@ -306,7 +306,7 @@ function EditBar({ tools: { simulator, editor, stage } }: { tools: Tools }) {
         title="Delete what is selected (Delete)"
         data-test="delete"
         disabled={!stage.selected.value}
-        onClick={() => editor.remove()}
+        onClick={() => void editor.remove()}
       >
         <Icon name="trash" />
       </button>

@@ -85,15 +85,14 @@ export class Editor {
   }
 
   /** Take what is selected out of the world. */
-  remove(): void {
+  async remove(): Promise<void> {
     const name = this.stage.selected.value;
-    if (name) {
-      this.undoing.forget(name);
-      void this.do(() => this.simulator.remove(name));
+    if (name && (await this.do(() => this.simulator.remove(name)))) {
+      this.undoing.note(name, "delete", () => this.bringBack(name));
     }
   }
 
-  /** Take back what was done last: what was put goes, what was moved, turned or scaled is as before. */
+  /** Take back what was done last: what was put goes, what was deleted comes back, all else is as before. */
   undo(): void {
     const last = this.undoing.take();
     if (last) {
@@ -362,6 +361,12 @@ export class Editor {
     }
   }
 
+  private async bringBack(name: string): Promise<void> {
+    await this.simulator.bringBack(name);
+    this.stage.show(await this.simulator.look());
+    this.stage.select(name);
+  }
+
   private focusOn(event: MouseEvent): void {
     const { x, y } = this.at(event);
     const hit = this.stage.pick(x, y);
@@ -381,7 +386,7 @@ export class Editor {
     } else if (ctrlKey || metaKey || altKey) {
       return;
     } else if (key === "Delete" || key === "Backspace") {
-      this.remove();
+      void this.remove();
     } else if (mode) {
       this.take(mode);
     } else if (key === "Escape") {

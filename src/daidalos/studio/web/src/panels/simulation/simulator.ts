@@ -119,6 +119,11 @@ export class Simulator {
     await this.call("delete_entity", { entity });
   }
 
+  /** Put back what was deleted, as it was. */
+  async bringBack(name: string): Promise<void> {
+    await this.call("bring_back", { name });
+  }
+
   async look(): Promise<Looks> {
     return (await this.call("get_shapes", { names: [] })) as Looks;
   }

@@ -27,9 +27,4 @@ export class Undoing {
     this.deeds.value = this.deeds.value.slice(0, -1);
     return last;
   }
-
-  /** A model is gone: nothing of it can be taken back. */
-  forget(name: string): void {
-    this.deeds.value = this.deeds.value.filter((deed) => deed.name !== name);
-  }
 }
