@@ -1,7 +1,5 @@
 """A TurtleBot3 on an empty ground; the environment variable TURTLEBOT3_MODEL is waffle or burger."""
 
-import os
-
 from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument, IncludeLaunchDescription
 from launch.substitutions import LaunchConfiguration, PathJoinSubstitution
@@ -9,29 +7,13 @@ from launch_ros.substitutions import FindPackageShare
 
 
 def generate_launch_description():
-    model = os.environ.get("TURTLEBOT3_MODEL", "waffle")
-    model = "burger" if model == "burger" else "waffle"
-    passed = {name: LaunchConfiguration(name) for name in ("x_pose", "y_pose", "yaw", "seed")}
+    place = ("x_pose", "y_pose")
     return LaunchDescription(
         [
-            DeclareLaunchArgument("use_sim_time", default_value="true", description="accepted: it always is"),
-            DeclareLaunchArgument("x_pose", default_value="0.0", description="where the robot stands [m]"),
-            DeclareLaunchArgument("y_pose", default_value="0.0", description="where the robot stands [m]"),
-            DeclareLaunchArgument("yaw", default_value="0.0", description="where it looks [rad]"),
-            DeclareLaunchArgument("seed", default_value="0", description="of all random numbers"),
-            DeclareLaunchArgument("gui", default_value="true", description="whether to serve the studio"),
+            *(DeclareLaunchArgument(n, default_value="0.0", description="where the robot stands [m]") for n in place),
             IncludeLaunchDescription(
-                PathJoinSubstitution([FindPackageShare("turtlebot3_gazebo"), "launch", "turtlebot3_arena.launch.py"]),
-                launch_arguments={
-                    "world": "",
-                    "urdf": f"turtlebot3_{model}.urdf.xacro",
-                    "name": model,
-                    **passed,
-                }.items(),
-            ),
-            IncludeLaunchDescription(
-                PathJoinSubstitution([FindPackageShare("gazebo_ros"), "launch", "gzclient.launch.py"]),
-                launch_arguments={"gui": LaunchConfiguration("gui")}.items(),
+                PathJoinSubstitution([FindPackageShare("turtlebot3_gazebo"), "launch", "turtlebot3_world.launch.py"]),
+                launch_arguments={"world": "", **{name: LaunchConfiguration(name) for name in place}}.items(),
             ),
         ]
     )

@@ -13,11 +13,12 @@ from launch_ros.substitutions import FindPackageShare
 def generate_launch_description():
     model = os.environ.get("TURTLEBOT3_MODEL", "waffle")
     model = "burger" if model == "burger" else "waffle"
-    worlds = Path(get_package_share_directory("turtlebot3_gazebo")) / "worlds"
-    passed = {name: LaunchConfiguration(name) for name in ("x_pose", "y_pose", "yaw", "seed")}
+    hexagon = Path(get_package_share_directory("turtlebot3_gazebo")) / "worlds" / "hexagon.world"
+    passed = {name: LaunchConfiguration(name) for name in ("world", "x_pose", "y_pose", "yaw", "seed")}
     return LaunchDescription(
         [
             DeclareLaunchArgument("use_sim_time", default_value="true", description="accepted: it always is"),
+            DeclareLaunchArgument("world", default_value=str(hexagon), description="SDF world to simulate"),
             DeclareLaunchArgument("x_pose", default_value="-2.0", description="where the robot stands [m]"),
             DeclareLaunchArgument("y_pose", default_value="-0.5", description="where the robot stands [m]"),
             DeclareLaunchArgument("yaw", default_value="0.0", description="where it looks [rad]"),
@@ -25,12 +26,7 @@ def generate_launch_description():
             DeclareLaunchArgument("gui", default_value="true", description="whether to serve the studio"),
             IncludeLaunchDescription(
                 PathJoinSubstitution([FindPackageShare("turtlebot3_gazebo"), "launch", "turtlebot3_arena.launch.py"]),
-                launch_arguments={
-                    "world": str(worlds / "hexagon.world"),
-                    "urdf": f"turtlebot3_{model}.urdf.xacro",
-                    "name": model,
-                    **passed,
-                }.items(),
+                launch_arguments={"urdf": f"turtlebot3_{model}.urdf.xacro", "name": model, **passed}.items(),
             ),
             IncludeLaunchDescription(
                 PathJoinSubstitution([FindPackageShare("gazebo_ros"), "launch", "gzclient.launch.py"]),
