@@ -34,6 +34,13 @@ from . import packages
         ("message_generation", Answer.HERE, ""),
         ("map_server", Answer.HERE, ""),
         ("tf", Answer.HERE, ""),
+        ("launch_testing_ros", Answer.HERE, ""),
+        ("nav2_common", Answer.HERE, ""),
+        ("vision_opencv", Answer.HERE, ""),
+        ("ackermann_msgs", Answer.HERE, ""),
+        ("teleop_twist_joy", Answer.HERE, ""),
+        ("rviz_default_plugins", Answer.COMPILED, ""),
+        ("compressed_image_transport", Answer.COMPILED, ""),
         ("no_such_package", Answer.UNKNOWN, ""),
     ],
 )

@@ -17,9 +17,12 @@ _BUILD = re.compile(
 )
 _COMPILED = re.compile(
     r"rclcpp.*|pluginlib|class_loader|rcl|rcl_.*|rcutils|rcpputils|libstatistics_collector|eigen3?|eigen3_cmake_module|"
-    r"roscpp.*|nodelet.*|urdf|boost|lib[a-z].*|qt.*|pcl.*|tf2|tf2_eigen|tf2_kdl|kdl.*|orocos_kdl.*|urdfdom.*|image_transport|console_bridge.*|"
-    r"spdlog.*|tinyxml.*|yaml[-_]cpp.*|rviz_(common|rendering|ogre_vendor)|controller_interface|hardware_interface|gtest|"
-    r"nav2_(core|util|costmap_2d)|behaviortree_cpp.*|gazebo(_dev)?|resource_retriever|cv_bridge_cpp|ceres-solver"
+    r"roscpp.*|nodelet.*|urdf|boost|lib[a-z].*|qt.*|pcl.*|tf2|tf2_(bullet|eigen|kdl)|kdl.*|orocos_kdl.*|urdfdom.*|"
+    r"(compressed_|theora_)?image_transport(_plugins)?|console_bridge.*|spdlog.*|tinyxml.*|yaml[-_]cpp.*|"
+    r"rviz_(common|rendering|ogre_vendor|default_plugins|visual_tools)|gtest|"
+    r"controller_interface|hardware_interface|transmission_interface|realtime_tools|control_toolbox|"
+    r"nav2_(core|util|costmap_2d|rviz_plugins)|generate_parameter_library|behaviortree_cpp.*|gazebo(_dev)?|"
+    r"resource_retriever|cv_bridge_cpp|ceres-solver"
 )
 _OF_ROS1 = {
     "actionlib": "rclpy",
