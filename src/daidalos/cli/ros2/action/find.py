@@ -8,6 +8,7 @@ from daidalos.cli.ros2.completion import complete_types
 from daidalos.cli.ros2.direct import add_graph_arguments, graph_view
 from daidalos.cli.ros2.extension import Status, Verb
 from daidalos.cli.ros2.graph import all_actions
+from daidalos.cli.ros2.listings import print_names
 
 
 class FindVerb(Verb):
@@ -31,9 +32,5 @@ class FindVerb(Verb):
         """Print the names of the actions of the type, or how many there are."""
         with graph_view(args) as graph:
             found = [name for name, types in all_actions(graph) if args.action_type in types]
-        if args.count_actions:
-            print(len(found))
-            return 0
-        for name in found:
-            print(name)
+        print_names(found, count=args.count_actions)
         return 0

@@ -7,6 +7,7 @@ from argparse import ArgumentParser, Namespace
 from daidalos.cli.ros2.direct import add_graph_arguments, graph_view
 from daidalos.cli.ros2.extension import Status, Verb
 from daidalos.cli.ros2.graph import all_actions
+from daidalos.cli.ros2.listings import print_found
 
 
 class ListVerb(Verb):
@@ -24,9 +25,5 @@ class ListVerb(Verb):
         """Print the names as asked."""
         with graph_view(args) as graph:
             found = all_actions(graph)
-        if args.count_actions:
-            print(len(found))
-            return 0
-        for name, types in found:
-            print(f"{name} [{', '.join(types)}]" if args.show_types else name)
+        print_found(found, show_types=args.show_types, count=args.count_actions)
         return 0

@@ -7,6 +7,7 @@ from argparse import ArgumentParser, Namespace
 from daidalos.cli.ros2.direct import add_graph_arguments, graph_view
 from daidalos.cli.ros2.extension import Status, Verb
 from daidalos.cli.ros2.lifecycles import managed_nodes
+from daidalos.cli.ros2.listings import print_names
 
 
 class NodesVerb(Verb):
@@ -24,9 +25,5 @@ class NodesVerb(Verb):
         """Print the full names, or how many there are."""
         with graph_view(args) as graph:
             found = managed_nodes(graph, args.all)
-        if args.count_nodes:
-            print(len(found))
-            return 0
-        for name in found:
-            print(name)
+        print_names(found, count=args.count_nodes)
         return 0

@@ -8,6 +8,7 @@ from daidalos.cli.ros2.completion import complete_types
 from daidalos.cli.ros2.direct import graph_view
 from daidalos.cli.ros2.extension import Status, Verb
 from daidalos.cli.ros2.graph import services
+from daidalos.cli.ros2.listings import print_names
 
 
 class FindVerb(Verb):
@@ -35,9 +36,5 @@ class FindVerb(Verb):
             found = [
                 name for name, types in services(graph, args.include_hidden_services) if args.service_type in types
             ]
-        if args.count_services:
-            print(len(found))
-            return 0
-        for name in found:
-            print(name)
+        print_names(found, count=args.count_services)
         return 0

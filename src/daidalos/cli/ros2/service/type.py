@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import sys
 from argparse import ArgumentParser, Namespace
 
 from daidalos.cli.ros2.completion import complete_services
 from daidalos.cli.ros2.direct import graph_view
 from daidalos.cli.ros2.extension import Status, Verb
-from daidalos.cli.ros2.graph import absolute, services, types_of
-from daidalos.cli.ros2.suggestions import hint_line
+from daidalos.cli.ros2.graph import absolute, services
+from daidalos.cli.ros2.listings import print_types
 
 
 class TypeVerb(Verb):
@@ -28,9 +27,4 @@ class TypeVerb(Verb):
         name = absolute(args.service_name)
         with graph_view(args) as graph:
             known = services(graph)
-        types = types_of(known, name)
-        for one in types:
-            print(one)
-        if not types:
-            sys.stderr.write(hint_line(name, (other for other, _ in known)))
-        return 0 if types else 1
+        return print_types(known, name)

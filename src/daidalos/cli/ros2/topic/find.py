@@ -8,6 +8,7 @@ from daidalos.cli.ros2.completion import complete_types
 from daidalos.cli.ros2.direct import add_graph_arguments, graph_view
 from daidalos.cli.ros2.extension import Status, Verb
 from daidalos.cli.ros2.graph import topics
+from daidalos.cli.ros2.listings import print_names
 
 
 class FindVerb(Verb):
@@ -33,9 +34,5 @@ class FindVerb(Verb):
         """Print the names of the topics of the type, or how many there are."""
         with graph_view(args) as graph:
             found = [name for name, types in topics(graph, args.include_hidden_topics) if args.topic_type in types]
-        if args.count_topics:
-            print(len(found))
-            return 0
-        for name in found:
-            print(name)
+        print_names(found, count=args.count_topics)
         return 0

@@ -7,6 +7,7 @@ from argparse import SUPPRESS, ArgumentParser, Namespace
 from daidalos.cli.ros2.direct import add_graph_arguments, graph_view
 from daidalos.cli.ros2.extension import Status, Verb
 from daidalos.cli.ros2.graph import topics
+from daidalos.cli.ros2.listings import print_found
 from daidalos.transport.graph import EndpointKind, Graph
 
 
@@ -42,11 +43,7 @@ class ListVerb(Verb):
                 _print_side("Subscribed topics:", "subscriber", graph, EndpointKind.SUBSCRIPTION, names)
                 print()
                 return 0
-        if args.count_topics:
-            print(len(found))
-            return 0
-        for name, types in found:
-            print(f"{name} [{', '.join(types)}]" if args.show_types else name)
+        print_found(found, show_types=args.show_types, count=args.count_topics)
         return 0
 
 

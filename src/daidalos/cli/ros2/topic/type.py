@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import sys
 from argparse import ArgumentParser, Namespace
 
 from daidalos.cli.ros2.completion import complete_topics
 from daidalos.cli.ros2.direct import add_graph_arguments, graph_view
 from daidalos.cli.ros2.extension import Status, Verb
-from daidalos.cli.ros2.graph import absolute, topics, types_of
-from daidalos.cli.ros2.suggestions import hint_line
+from daidalos.cli.ros2.graph import absolute, topics
+from daidalos.cli.ros2.listings import print_types
 
 
 class TypeVerb(Verb):
@@ -25,9 +24,4 @@ class TypeVerb(Verb):
         name = absolute(args.topic_name)
         with graph_view(args) as graph:
             known = topics(graph, args.include_hidden_topics)
-        types = types_of(known, name)
-        for one in types:
-            print(one)
-        if not types:
-            sys.stderr.write(hint_line(name, (other for other, _ in known)))
-        return 0 if types else 1
+        return print_types(known, name)

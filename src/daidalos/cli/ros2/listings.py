@@ -1,0 +1,34 @@
+"""What verbs print of the graph: names, their types, or how many there are."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Collection
+
+from daidalos.cli.ros2.extension import Status
+from daidalos.cli.ros2.graph import NamesAndTypes, types_of
+from daidalos.cli.ros2.suggestions import hint_line
+
+
+def print_names(names: Collection[str], *, count: bool) -> None:
+    """Print names, or how many there are."""
+    if count:
+        print(len(names))
+        return
+    for name in names:
+        print(name)
+
+
+def print_found(found: NamesAndTypes, *, show_types: bool, count: bool) -> None:
+    """Print names, with their types where asked, or how many there are."""
+    print_names([f"{name} [{', '.join(types)}]" if show_types else name for name, types in found], count=count)
+
+
+def print_types(found: NamesAndTypes, name: str) -> Status:
+    """Print the types of a name; without any print what may have been meant, and return 1."""
+    types = types_of(found, name)
+    for one in types:
+        print(one)
+    if not types:
+        sys.stderr.write(hint_line(name, (other for other, _ in found)))
+    return 0 if types else 1
