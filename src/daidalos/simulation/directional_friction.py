@@ -14,7 +14,7 @@ from daidalos.description.world import Model
 from daidalos.simulation.component import Component, Setting
 from daidalos.simulation.conversion.contact import MAX_FRICTION, friction_of, set_friction
 from daidalos.simulation.conversion.model_build import ModelBuild
-from daidalos.simulation.instance import Instance, LinkView
+from daidalos.simulation.instance import Instance
 from daidalos.simulation.samples import Sample
 
 Array = NDArray[np.float64]
@@ -25,7 +25,8 @@ class DirectionalFriction(Component):
 
     MuJoCo's contacts rub the same in all directions, so they keep the smaller coefficient. The rest is a force
     against the slip of the contact along the direction, up to Coulomb's limit. It is as stiff as a step can
-    integrate.
+    integrate when it follows from the step before: bringing everything up to date in each step would take longer
+    than the step itself.
 
     Parameters
     ----------
@@ -46,80 +47,74 @@ class DirectionalFriction(Component):
                 set_friction(build.spec.geom(name), replace(surface, mu=least, mu2=least))
 
     def bind(self, instance: Instance) -> None:
-        """Find the links, and how stiff their grip may be."""
+        """Find the links, and how heavy each is where it grips."""
         self._instance = instance
-        self._links = {name: instance.link(name) for name in self._surfaces}
-        self._frames = {name: instance.link(one.direction_frame) for name, one in self._surfaces.items()}
-        self._owner = {
-            geom: info.link
-            for geom, (model, info) in instance.physics.geoms.items()
-            if model == instance.name and info.link in self._links
-        }
-        joints = {joint.child: joint.name for joint in instance.model.joints.values()}
         compiled = instance.physics.model
-        self._moments = {}
-        for name, link in self._links.items():
-            self._moments[name] = float(compiled.body_inertia[link.body].max())
-            if instance.build.joints.get(joints.get(name, "")):
-                self._moments[name] += float(compiled.dof_armature[instance.joint(joints[name]).dof])
+        self._keys = [f"{instance.name}::{name}/friction" for name in self._surfaces]
+        self._bodies = np.array([instance.link(name).body for name in self._surfaces], dtype=np.intp)
+        surfaces = self._surfaces.values()
+        self._frames = np.array([instance.link(one.direction_frame).body for one in surfaces], dtype=np.intp)
+        self._directions = np.array([one.direction for one in surfaces])
+        pairs = np.array([_pair(one) for one in surfaces])
+        self._turned, self._friction = pairs[:, 0] < pairs[:, 1], np.abs(pairs[:, 0] - pairs[:, 1])
+        self._share = len(self._bodies) / compiled.body_subtreemass[compiled.body_rootid[self._bodies]]
+        joints = {joint.child: joint.name for joint in instance.model.joints.values()}
+        moving = [
+            instance.joint(joints[n]) if instance.build.joints.get(joints.get(n, "")) else None for n in self._surfaces
+        ]
+        self._moments = compiled.body_inertia[self._bodies].max(axis=1)
+        self._moments += [0.0 if one is None else compiled.dof_armature[one.dof] for one in moving]
+        rows = {name: row for row, name in enumerate(self._surfaces)}
+        self._row_of = np.full(compiled.ngeom, -1)
+        for geom, (model, info) in instance.physics.geoms.items():
+            if model == instance.name:
+                self._row_of[geom] = rows.get(info.link, -1)
 
     def update(self, now_ns: int) -> Iterable[Sample]:
         """Push each link that touches something against its slip."""
-        forces = self._instance.physics.forces
-        touching = self._touching()
-        for name, link in self._links.items():
-            key = f"{self._instance.name}::{name}/friction"
-            if name in touching:
-                point, normal, load = touching[name]
-                force = self._force(name, point, normal, load)
-                arm = point - self._instance.physics.data.xipos[link.body]
-                forces.hold(key, link.body, force, np.cross(arm, force))
+        physics = self._instance.physics
+        points, normals, loads = self._touching()
+        grips = self._grips(points, normals, loads)
+        arms = points - physics.data.xipos[self._bodies]
+        torques = _cross(arms, grips)
+        for row, key in enumerate(self._keys):
+            if loads[row] > 0:
+                physics.forces.hold(key, int(self._bodies[row]), grips[row], torques[row])
             else:
-                forces.release(key)
+                physics.forces.release(key)
         return ()
 
-    def _touching(self) -> dict[str, tuple[Array, Array, float]]:
-        """Return the middle of each link's contacts, their normal and the force in it [N]."""
-        physics = self._instance.physics
-        physics.refresh()
-        model, data = physics.model, physics.data
-        pairs = data.contact.geom
-        mine = np.flatnonzero(np.isin(pairs, list(self._owner)).any(axis=1))
-        sums: dict[str, tuple[Array, Array, float]] = {}
-        wrench = np.zeros(6)
-        for row in mine:
-            contact = data.contact[row]
-            first, second = (int(geom) for geom in pairs[row])
-            name = self._owner.get(first) or self._owner[second]
-            mujoco.mj_contactForce(model, data, row, wrench)
-            point, normal, load = sums.get(name, (np.zeros(3), np.zeros(3), 0.0))
-            weight = max(float(wrench[0]), 1e-9)
-            sums[name] = (point + weight * contact.pos, normal + weight * contact.frame[:3], load + weight)
-        return {name: (point / load, normal / load, load) for name, (point, normal, load) in sums.items()}
+    def _touching(self) -> tuple[Array, Array, Array]:
+        """Return the middle (n, 3) of each link's contacts, their normal (n, 3) and the force (n,) in them [N]."""
+        data = self._instance.physics.data
+        contact = data.contact
+        rows = self._row_of[contact.geom].max(axis=1, initial=-1)
+        chosen = np.flatnonzero((rows >= 0) & (contact.efc_address >= 0))
+        rows, count = rows[chosen], len(self._keys)
+        # The first number of a contact with an elliptic cone is the force along its normal.
+        weights = data.efc_force[contact.efc_address[chosen]]
+        loads = np.bincount(rows, weights, count).astype(np.float64)
+        sums = np.zeros((count, 6))
+        np.add.at(sums, rows, weights[:, None] * np.hstack((contact.pos[chosen], contact.frame[chosen, :3])))
+        sums /= np.where(loads > 0, loads, 1.0)[:, None]
+        return sums[:, :3], sums[:, 3:], loads
 
-    def _force(self, name: str, point: Array, normal: Array, load: float) -> Array:
-        surface, link, frame = self._surfaces[name], self._links[name], self._frames[name]
-        along, across = _pair(surface)
-        direction = frame.rotation @ np.array(surface.direction)
-        if along < across:
-            direction = np.cross(normal, direction)
-        direction = direction - (direction @ normal) * normal
-        length = float(np.linalg.norm(direction))
-        if length < 1e-6:
-            return np.zeros(3)
-        direction /= length
-        linear, angular = link.velocity()
-        slip = float((linear + np.cross(angular, point - np.array(link.pose.position))) @ direction)
-        most = abs(along - across) * load
-        force: Array = direction * min(max(-self._stiffness(name, link, point) * slip, -most), most)
-        return force
-
-    def _stiffness(self, name: str, link: LinkView, point: Array) -> float:
-        model = self._instance.physics.model
-        mass = float(model.body_subtreemass[model.body_rootid[link.body]])
-        reach = float(np.linalg.norm(point - np.array(link.pose.position)))
-        share = 1 / (len(self._links) / mass + reach**2 / self._moments[name])
-        return 0.5 * share / float(model.opt.timestep)
+    def _grips(self, points: Array, normals: Array, loads: Array) -> Array:
+        """Return the forces (n, 3) against the slip at contacts."""
+        model, data = self._instance.physics.model, self._instance.physics.data
+        directions = np.einsum("nij,nj->ni", data.xmat[self._frames].reshape(-1, 3, 3), self._directions)
+        directions = np.where(self._turned[:, None], _cross(normals, directions), directions)
+        directions -= np.sum(directions * normals, axis=1)[:, None] * normals
+        directions /= np.maximum(np.linalg.norm(directions, axis=1), 1e-9)[:, None]
+        arms = points - data.xpos[self._bodies]
+        motions = np.zeros((len(arms), 6))
+        for row, body in enumerate(self._bodies):
+            mujoco.mj_objectVelocity(model, data, mujoco.mjtObj.mjOBJ_XBODY, body, motions[row], 0)
+        slips = np.sum((motions[:, 3:] + _cross(motions[:, :3], arms)) * directions, axis=1)
+        masses = 1 / (self._share + np.sum(arms * arms, axis=1) / self._moments)
+        most = self._friction * loads
+        grips: Array = directions * np.clip(-0.5 * masses / model.opt.timestep * slips, -most, most)[:, None]
+        return grips
 
 
 def directed_surfaces(model: Model) -> dict[str, Surface]:
@@ -146,3 +141,9 @@ def _pair(surface: Surface) -> tuple[float, float]:
     """Return the coefficients along the direction and across it."""
     along, across = (friction_of(replace(surface, mu=value, mu2=value)) for value in (surface.mu, surface.mu2))
     return min(along, MAX_FRICTION), min(across, MAX_FRICTION)
+
+
+def _cross(first: Array, second: Array) -> Array:
+    """Return the cross products (n, 3) of rows; numpy's own is slow for a few."""
+    (a, b, c), (x, y, z) = first.T, second.T
+    return np.stack((b * z - c * y, c * x - a * z, a * y - b * x), axis=1)

@@ -106,7 +106,8 @@ class Forces:
         """Write the forces of the step to come."""
         if not (self.pushes or self._dirty):
             return
-        physics.refresh_positions()
+        if self.pushes:
+            physics.refresh_positions()
         data = physics.data
         data.xfrc_applied[:] = 0.0
         data.qfrc_applied[:] = 0.0
