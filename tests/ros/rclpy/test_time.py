@@ -236,6 +236,28 @@ def test_a_rate_needs_nobody_who_spins(node: Node) -> None:
     assert 0.04 <= time.monotonic() - begin < LONG
 
 
+def test_a_rate_lets_a_loop_of_spin_once_go_on(node: Node) -> None:
+    rate, ticks, done = node.create_rate(100.0), [], threading.Event()
+
+    def loop() -> None:
+        for _ in range(5):
+            rate.sleep()
+            ticks.append(time.monotonic())
+        done.set()
+
+    thread = threading.Thread(target=loop)
+    thread.start()
+    while not done.is_set():
+        rclpy.spin_once(node)
+    thread.join(LONG)
+    assert len(ticks) == 5
+    assert node.destroy_rate(rate)
+    begin = time.monotonic()
+    rclpy.spin_once(node, timeout_sec=0.1)  # what may still have been queued
+    rclpy.spin_once(node, timeout_sec=0.1)
+    assert time.monotonic() - begin >= 0.1
+
+
 def test_a_rate_of_a_simulation_needs_nobody_who_spins(simulator: Simulator, simulated: Node) -> None:
     rate, slept = simulated.create_rate(100.0), threading.Semaphore(0)
 

@@ -132,11 +132,7 @@ class NodeMembers:
 
     def destroy_rate(self, rate: Rate) -> bool:
         """Destroy a rate; False when it is none of the node's."""
-        if rate not in self._rcl_members["rate"]:
-            return False
-        self._rcl_members["rate"].remove(rate)
-        rate.destroy()
-        return True
+        return self._rcl_destroy_member("rate", rate)
 
     def _rcl_destroy_member(self, kind: str, entity: Any) -> bool:
         if not self._rcl_remove(kind, entity):
@@ -147,9 +143,10 @@ class NodeMembers:
 
 def attach(entity: Any, executor: Executor) -> None:
     """Direct what becomes ready in an entity to an executor."""
+    entity = _ready_part(entity)
     hook = getattr(entity, "_rcl_hook", None)
     if hook is None:
-        return  # publishers and rates run nothing
+        return  # publishers run nothing
     hook.attach(executor._put)
     if isinstance(entity, Timer):
         entity.handle.attach(executor._schedule)
@@ -159,6 +156,7 @@ def attach(entity: Any, executor: Executor) -> None:
 
 def detach(entity: Any) -> None:
     """Direct it nowhere."""
+    entity = _ready_part(entity)
     hook = getattr(entity, "_rcl_hook", None)
     if hook is None:
         return
@@ -167,3 +165,8 @@ def detach(entity: Any) -> None:
         entity.handle.attach(None)
     elif hasattr(entity, "_rcl_adapter"):
         entity._rcl_adapter.attach(None)
+
+
+def _ready_part(entity: Any) -> Any:
+    """Return what becomes ready in an entity: of a rate its timer, at whose ticks `spin_once` returns."""
+    return entity._timer if isinstance(entity, Rate) else entity
