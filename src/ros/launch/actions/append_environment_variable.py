@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 from typing import TYPE_CHECKING, Any
 
-from ..action import Action
 from ..frontend.expose import expose_action
 from ..some_substitutions_type import SomeSubstitutionsType
 from ..substitution import Substitution
@@ -15,6 +14,7 @@ from ..utilities.type_utils import (
     normalize_typed_substitution,
     perform_typed_substitution,
 )
+from ._named import NamedValueAction
 
 if TYPE_CHECKING:
     from ..frontend.entity import Entity
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 @expose_action("append_env")
-class AppendEnvironmentVariable(Action):
+class AppendEnvironmentVariable(NamedValueAction):
     """Adds a value to an environment variable that is a list, such as PATH, for the processes started later.
 
     Parameters
@@ -48,9 +48,7 @@ class AppendEnvironmentVariable(Action):
         separator: SomeSubstitutionsType = os.pathsep,
         **kwargs: Any,
     ) -> None:
-        super().__init__(**kwargs)
-        self.__name = normalize_to_list_of_substitutions(name)
-        self.__value = normalize_to_list_of_substitutions(value)
+        super().__init__(name, value, **kwargs)
         self.__prepend = normalize_typed_substitution(prepend, bool)
         self.__separator = normalize_to_list_of_substitutions(separator)
 
@@ -58,8 +56,6 @@ class AppendEnvironmentVariable(Action):
     def parse(cls, entity: Entity, parser: Parser) -> tuple[type[AppendEnvironmentVariable], dict[str, Any]]:
         """Read an element `append_env`."""
         _, kwargs = super().parse(entity, parser)
-        kwargs["name"] = parser.parse_substitution(entity.get_attr("name"))
-        kwargs["value"] = parser.parse_substitution(entity.get_attr("value"))
         prepend = entity.get_attr("prepend", optional=True, data_type=bool, can_be_str=True)
         if prepend is not None:
             kwargs["prepend"] = parser.parse_if_substitutions(prepend)
@@ -67,16 +63,6 @@ class AppendEnvironmentVariable(Action):
         if separator is not None:
             kwargs["separator"] = parser.parse_substitution(separator)
         return cls, kwargs
-
-    @property
-    def name(self) -> list[Substitution]:
-        """The variable's name."""
-        return self.__name
-
-    @property
-    def value(self) -> list[Substitution]:
-        """What is added."""
-        return self.__value
 
     @property
     def prepend(self) -> NormalizedValueType:
