@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from daidalos.description import sdf, urdf
+from daidalos.description.joint import JointType
 from daidalos.description.kinematics import KinematicTree
 from daidalos.description.pose import Pose
 from daidalos.simulation import Simulation
@@ -14,6 +15,7 @@ from description.robots import SHARE, share_of
 from simulation.models import world
 
 SECOND = 1_000_000_000
+TRUCK = "truck_description/urdf/truck.urdf.xacro"
 ROBOTS = [
     "urdf_tutorial/urdf/simple_link.urdf",
     "urdf_tutorial/urdf/simple_joint.urdf",
@@ -22,7 +24,7 @@ ROBOTS = [
     "urdf_tutorial/urdf/robot_example_xacro_external.urdf.xacro",
     "urdf_tutorial_r2d2/urdf/r2d2.urdf.xml",
     "humanoid_description/urdf/humanoid.urdf.xacro",
-    "truck_description/urdf/truck.urdf.xacro",
+    TRUCK,
     "tb3_description/urdf/turtlebot3_waffle_base.urdf.xacro",
     "turtlebot3_description/urdf/turtlebot3_burger.urdf.xacro",
 ]
@@ -41,6 +43,14 @@ def test_it_loads_into_the_simulator_without_a_word(path):
     assert np.isfinite(simulation.pose(name).position).all()
     # The first links of a course have no inertia yet.
     assert [line for line in said if "has no mass" not in line and "inertia" not in line] == []
+
+
+@pytest.mark.parametrize("path", ["humanoid_description/urdf/humanoid.urdf.xacro", TRUCK])
+def test_every_joint_that_moves_is_told_of(path):
+    """Whoever is not among the joint states has no transform, and RViz complains of its link."""
+    robot = load(path)
+    told = {joint.name() for control in robot.ros2_control for joint in control.all("joint")}
+    assert told == {joint.name for joint in robot.joints.values() if joint.type is not JointType.FIXED}
 
 
 def test_the_three_ways_to_write_the_robot_are_one_robot():
