@@ -11,6 +11,7 @@ from ..substitution import Substitution
 from ..utilities import normalize_to_list_of_substitutions
 from ..utilities.type_utils import perform_typed_substitution
 from ._arguments import describe_text, expect_arguments
+from ._pair import PairSubstitution
 from .substitution_failure import SubstitutionFailure
 
 if TYPE_CHECKING:
@@ -68,47 +69,15 @@ class NotSubstitution(Substitution):
         return _as_text(not perform_bool(context, self.value))
 
 
-class _Pair(Substitution):
-    """Two truths.
-
-    Parameters
-    ----------
-    left, right
-        The two.
-    """
-
-    frontend_name = ""
-
-    def __init__(self, left: SomeSubstitutionsType, right: SomeSubstitutionsType) -> None:
-        self.__left = normalize_to_list_of_substitutions(left)
-        self.__right = normalize_to_list_of_substitutions(right)
-
-    @classmethod
-    def parse(cls, data: Sequence[SomeSubstitutionsType]) -> tuple[type[_Pair], dict[str, Any]]:
-        """Read `$(name left right)`."""
-        expect_arguments(cls.frontend_name, data, 2)
-        return cls, {"left": data[0], "right": data[1]}
-
-    @property
-    def left(self) -> list[Substitution]:
-        """The first."""
-        return self.__left
-
-    @property
-    def right(self) -> list[Substitution]:
-        """The second."""
-        return self.__right
-
-    def describe(self) -> str:
-        """Return the substitution in words."""
-        return f"{type(self).__name__}({describe_text(self.left)} {describe_text(self.right)})"
+class _Truths(PairSubstitution):
+    """Two truths."""
 
     def _perform_both(self, context: LaunchContext) -> tuple[bool, bool]:
         return perform_bool(context, self.left), perform_bool(context, self.right)
 
 
 @expose_substitution("and")
-class AndSubstitution(_Pair):
+class AndSubstitution(_Truths):
     """True if two truths are."""
 
     frontend_name = "and"
@@ -119,7 +88,7 @@ class AndSubstitution(_Pair):
 
 
 @expose_substitution("or")
-class OrSubstitution(_Pair):
+class OrSubstitution(_Truths):
     """True if one of two truths is."""
 
     frontend_name = "or"

@@ -3,22 +3,21 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..frontend.expose import expose_substitution
-from ..some_substitutions_type import SomeSubstitutionsType
 from ..substitution import Substitution
 from ..utilities import normalize_to_list_of_substitutions, perform_substitutions
-from ._arguments import describe_text, expect_arguments
+from ._pair import PairSubstitution
 
 if TYPE_CHECKING:
     from ..launch_context import LaunchContext
 
 
 @expose_substitution("equals")
-class EqualsSubstitution(Substitution):
+class EqualsSubstitution(PairSubstitution):
     """'true' if two values are equal, else 'false'.
 
     Texts that mean true or false are compared as such in any case, numbers as numbers, all else as text.
@@ -33,28 +32,7 @@ class EqualsSubstitution(Substitution):
     frontend_name = "equals"
 
     def __init__(self, left: Any | Iterable[Any] | None, right: Any | Iterable[Any] | None) -> None:
-        self.__left = _as_substitutions(left)
-        self.__right = _as_substitutions(right)
-
-    @classmethod
-    def parse(cls, data: Sequence[SomeSubstitutionsType]) -> tuple[type[EqualsSubstitution], dict[str, Any]]:
-        """Read `$(equals left right)`."""
-        expect_arguments(cls.frontend_name, data, 2)
-        return cls, {"left": data[0], "right": data[1]}
-
-    @property
-    def left(self) -> list[Substitution]:
-        """The first value."""
-        return self.__left
-
-    @property
-    def right(self) -> list[Substitution]:
-        """The second value."""
-        return self.__right
-
-    def describe(self) -> str:
-        """Return the substitution in words."""
-        return f"{type(self).__name__}({describe_text(self.left)} {describe_text(self.right)})"
+        super().__init__(_as_substitutions(left), _as_substitutions(right))
 
     def perform(self, context: LaunchContext) -> str:
         """Compare the values."""
