@@ -470,7 +470,10 @@ def test_ros1s_control_takes_its_joints_from_transmissions():
     parts += [TRANSMISSION.format(joint="a_j", interface="PositionJointInterface")]
     parts += [TRANSMISSION.format(joint="b_j", interface="VelocityJointInterface")]
     parts += ["<gazebo><plugin name='c' filename='libgazebo_ros_control.so'><robotNamespace>/r</robotNamespace>"]
-    parts += ["<robotSimType>gazebo_ros_control/DefaultRobotHWSim</robotSimType></plugin></gazebo>"]
+    parts += [
+        "<robotSimType>gazebo_ros_control/DefaultRobotHWSim</robotSimType>"
+        "<legacyModeNS>true</legacyModeNS></plugin></gazebo>"
+    ]
     simulation = Simulation(world())
     robot = urdf.parse(f"<robot name='r'><link name='base'/>{''.join(parts)}</robot>")
     name = simulation.spawn(robot)

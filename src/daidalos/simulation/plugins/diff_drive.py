@@ -67,7 +67,7 @@ class DiffDrive(Plugin):
     """``libgazebo_ros_diff_drive.so`` of ROS 1 and 2, ROS 1's skid steer drive, and gz's DiffDrive system."""
 
     names = ("gazebo_ros_diff_drive", "gazebo_ros_skid_steer_drive", "gz-sim-diff-drive-system")
-    unused = ("num_wheel_pairs", "legacyModeNS")
+    unused = ("num_wheel_pairs",)
     memory: Motion
 
     def __init__(self, description: Description, setting: Setting) -> None:

@@ -48,7 +48,7 @@ class Ros2Control(Plugin):
     names = ("gazebo_ros2_control", "gazebo_ros_control", "gz_ros2_control-system", "ign_ros2_control-system")
     unused = (
         *("robot_param", "robot_param_node", "robotSimType", "robot_sim_type", "controlPeriod", "control_period"),
-        "position_proportional_gain",
+        *("position_proportional_gain", "legacyModeNS"),
     )
     memory: DriveState
 
