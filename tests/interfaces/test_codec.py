@@ -11,8 +11,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from geometry_msgs.msg import Pose
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from nav_msgs.msg import Path as NavigationPath
 from rcl_interfaces.msg import Parameter, ParameterEvent
 from rosbags.interfaces import Nodetype
 from rosbags.typesys import Stores, get_typestore
@@ -229,6 +231,20 @@ def test_what_slipped_into_a_list_is_named_when_it_is_sent():
 def test_a_message_of_another_type_is_no_message_of_this_one():
     with pytest.raises(TypeError, match="expected a message of type 'std_msgs/msg/String', not 'Int32'"):
         codec_of(String).encode(Int32())
+
+
+@pytest.mark.parametrize("function", ["encode", "parts", "snapshot"])
+@pytest.mark.parametrize("error", [TypeError, CdrError])
+def test_a_wrong_part_is_named(function: str, error: type[Exception]) -> None:
+    path = NavigationPath()
+    path.poses.append(Pose())  # no setter sees it
+    words = r"nav_msgs/msg/Path: The 'poses' field must be a sub message of type 'PoseStamped', not 'Pose'"
+    with pytest.raises(error, match=words):
+        getattr(codec_of(NavigationPath), function)(path)
+    array = JointState()
+    array._position = None
+    with pytest.raises(error, match="sensor_msgs/msg/JointState: The 'position' field"):
+        getattr(codec_of(JointState), function)(array)
 
 
 def test_snapshots_share_nothing_that_can_change():

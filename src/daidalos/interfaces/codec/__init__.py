@@ -26,6 +26,10 @@ class CdrError(ValueError):
     """Bytes that are no serialised message of the type, or a message that cannot be serialised."""
 
 
+class FieldError(CdrError, TypeError):
+    """A message that cannot be serialised or copied, as a field holds what its type cannot."""
+
+
 class Codec:
     """Serialises and deserialises one message class.
 
@@ -41,7 +45,7 @@ class Codec:
     snapshot
         ``snapshot(message) -> message``: a deep copy.
 
-    `encode` and `decode` raise `CdrError`.
+    `decode` raises `CdrError`, the others `FieldError`.
     """
 
     __slots__ = ("_wide", "decode", "encode", "message_type", "parts", "snapshot")
@@ -75,7 +79,7 @@ class Codec:
             try:
                 return join(parts(message))
             except (struct.error, TypeError, AttributeError, ValueError, OverflowError) as error:
-                raise CdrError(_explain(message, error)) from None
+                raise self._unfit(message, error) from None
 
         def checked_parts(message: Any) -> list[Any]:
             if message.__class__ is not kind:
@@ -84,7 +88,7 @@ class Codec:
                 buffers: list[Any] = parts(message)
                 return buffers
             except (struct.error, TypeError, AttributeError, ValueError, OverflowError) as error:
-                raise CdrError(_explain(message, error)) from None
+                raise self._unfit(message, error) from None
 
         self.encode, self.parts = encode, checked_parts
 
@@ -133,8 +137,12 @@ class Codec:
         except (struct.error, IndexError, ValueError, OverflowError) as error:
             raise CdrError(_truncated(self.message_type, data, error)) from None
 
+    def _unfit(self, message: Any, error: Exception) -> FieldError:
+        """Return an error that says which field of a message holds what its type cannot."""
+        return FieldError(_explain(message, error))
+
     def _first_snapshot(self, message: Any) -> Any:
-        self.snapshot = _compile("snapshot", Snapshot(self.message_type).source())
+        self.snapshot = _compile("snapshot", Snapshot(self.message_type, self._unfit).source())
         return self.snapshot(message)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 from daidalos.interfaces.codec._text import Generator, Variant
@@ -9,14 +10,29 @@ from daidalos.interfaces.message import TYPECODES, Message
 
 
 class Snapshot(Generator):
-    """Writes ``snapshot(m) -> message``: immutable values are shared, all else is made anew."""
+    """Writes ``snapshot(m) -> message``: immutable values are shared, all else is made anew.
 
-    def __init__(self, root: type[Message]) -> None:
+    Parameters
+    ----------
+    root
+        The message's class.
+    unfit
+        Makes the error to raise of a message that cannot be copied and of what went wrong.
+    """
+
+    def __init__(self, root: type[Message], unfit: Callable[[Any, Exception], Exception]) -> None:
         super().__init__(root, Variant())
+        self.names.scope["unfit"] = unfit
 
     def source(self) -> tuple[str, dict[str, Any]]:
+        self.emit("try:")
+        self.indent = 2
         result = self.copy(self.root, "m")
         self.emit(f"return {result}")
+        self.indent = 1
+        self.emit("except (AttributeError, TypeError) as error:")
+        self.indent = 2
+        self.emit("raise unfit(m, error) from None")
         main = ["def snapshot(m):", *self.lines]
         text: list[str] = []
         while self.pending:
