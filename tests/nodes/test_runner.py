@@ -1,6 +1,8 @@
 """How programs end."""
 
 import signal
+import subprocess
+import sys
 
 import pytest
 import rclpy
@@ -53,6 +55,20 @@ def test_an_interrupt_in_the_import_of_a_compiled_module_is_no_error():
         raise ImportError("initialization failed") from KeyboardInterrupt()
 
     assert run_program(body) == 0
+
+
+def test_a_reader_who_has_seen_enough_ends_it_without_a_word():
+    program = (
+        "from daidalos.nodes.runner import run_program\n"
+        "def body():\n"
+        "    while True: print('x' * 10_000)\n"
+        "raise SystemExit(run_program(body))"
+    )
+    with subprocess.Popen([sys.executable, "-c", program], stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+        process.stdout.readline()
+        process.stdout.close()
+        assert process.wait(30) == 1
+        assert process.stderr.read() == b""
 
 
 @pytest.mark.parametrize("error", [ImportError("no module named x"), ValueError("a bug")])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import signal
 import sys
 import threading
@@ -48,6 +49,9 @@ def run_program(body: Callable[[], None], interrupted: int = 0) -> int:
             raise
         print(f"error: {error}", file=sys.stderr)
         return 2
+    except BrokenPipeError:  # whoever reads what is printed has seen enough, as `head` has
+        sys.stdout = io.StringIO()  # nothing is left to be written at the end
+        return 1
     except BaseException as error:
         if not is_orderly(error):
             raise
