@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from functools import partial
 
 from daidalos.description.link import Plugin as PluginDescription
 from daidalos.description.link import Sensor as SensorDescription
@@ -92,13 +93,13 @@ def _sensor(description: SensorDescription, link: str, joint: str, setting: Sett
             f"{description.type!r}, left out"
         )
         return
-    sensor = cls(description, link, setting, joint)
-    for plugin in description.plugins:
-        _configure(sensor, plugin, setting)
-    yield sensor
+    make = partial(cls, description, link, setting, joint)
+    spoken_for = [sensor for plugin in description.plugins for sensor in _spoken_for(make, plugin, setting)]
+    yield from spoken_for or (make(),)
 
 
-def _configure(sensor: Sensor, plugin: PluginDescription, setting: Setting) -> None:
+def _spoken_for(make: Callable[[], Sensor], plugin: PluginDescription, setting: Setting) -> Iterator[Sensor]:
+    """Make a sensor that speaks as a plugin says: each of a sensor's plugins tells of the same measurement."""
     if is_built_in(plugin):
         return
     cls = plugin_class(plugin)
@@ -106,8 +107,10 @@ def _configure(sensor: Sensor, plugin: PluginDescription, setting: Setting) -> N
         setting.warn(_unknown(plugin))
     elif issubclass(cls, SensorPlugin):
         element = ReadElement(plugin.element)
+        sensor = make()
         cls().configure(sensor, Parameters(replace(plugin, element=element), setting))
         _warn_of_unread(plugin, element, cls, setting)
+        yield sensor
     else:
         setting.warn(f"{plugin.element.where}: plugin {plugin.name!r} does not belong inside a <sensor>")
 

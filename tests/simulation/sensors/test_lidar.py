@@ -201,6 +201,22 @@ def test_ros_plugins_name_topic_frame_and_message(plugin, topic, frame, sample):
     assert (first.topic, first.frame_id, type(first)) == (topic, frame, sample)
 
 
+def test_every_plugin_of_a_sensor_tells_of_the_same_measurement():
+    plugins = "".join(
+        f"<plugin name='{name}' filename='libgazebo_ros_ray_sensor.so'><ros><remapping>~/out:={name}</remapping></ros>"
+        f"<output_type>sensor_msgs/{kind}</output_type></plugin>"
+        for name, kind in (("one", "LaserScan"), ("two", "LaserScan"), ("cloud", "PointCloud2"))
+    )
+    noise = "<noise><type>gaussian</type><stddev>0.1</stddev></noise>"
+    wall = box("wall", "3.5 0 0.5 0 0 0", "1 20 1", static=True)
+    text = world(wall, carrier(noise=noise).replace("</ray>", f"</ray>{plugins}"))
+    simulation = Simulation(text)
+    assert simulation.publications == {"/one": LaserScanSample, "/two": LaserScanSample, "/cloud": PointCloudSample}
+    one, two, _ = simulation.advance(100_000_000)
+    np.testing.assert_array_equal(one.ranges, two.ranges)
+    assert one.ranges[2] != pytest.approx(3, abs=1e-4)
+
+
 def square(half):
     points = ((-half, -half), (half, -half), (half, half), (-half, half))
     return f"<polyline><height>1</height>{''.join(f'<point>{x} {y}</point>' for x, y in points)}</polyline>"
