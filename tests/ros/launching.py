@@ -1,4 +1,4 @@
-"""What the tests of launch, its markup and its ROS actions share: an environment of their own, and running text."""
+"""What the tests of all packages of launch share: an environment of their own, and running text."""
 
 import os
 
@@ -13,7 +13,8 @@ def sandbox(tmp_path, monkeypatch):
 
     environment = dict(os.environ)
     monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path / "log"))
-    monkeypatch.delenv("OVERRIDE_LAUNCH_PROCESS_OUTPUT", raising=False)
+    for name in ("OVERRIDE_LAUNCH_PROCESS_OUTPUT", "OVERRIDE_LAUNCH_SCREEN_FORMAT", "OVERRIDE_LAUNCH_LOG_FORMAT"):
+        monkeypatch.delenv(name, raising=False)
     launch.logging.reset()
     yield
     launch.logging.reset()

@@ -1,25 +1,12 @@
 """What the tests of launch share: log files and an environment of their own, and a way to run descriptions."""
 
-import os
 import sys
 
 import pytest
 
+from ros.launching import sandbox
 
-@pytest.fixture(autouse=True)
-def sandbox(tmp_path, monkeypatch):
-    """Give each test its own log files and environment."""
-    import launch.logging
-
-    environment = dict(os.environ)
-    monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path / "log"))
-    for name in ("OVERRIDE_LAUNCH_PROCESS_OUTPUT", "OVERRIDE_LAUNCH_SCREEN_FORMAT", "OVERRIDE_LAUNCH_LOG_FORMAT"):
-        monkeypatch.delenv(name, raising=False)
-    launch.logging.reset()
-    yield
-    launch.logging.reset()
-    os.environ.clear()
-    os.environ.update(environment)
+__all__ = ["python", "run_launch", "sandbox"]
 
 
 @pytest.fixture

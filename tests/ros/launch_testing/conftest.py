@@ -1,22 +1,13 @@
-"""What the tests of this package share: log files and an environment of their own, as far as they need one."""
-
-import os
+"""Each test has its own log files and environment; runs of pytest within it name the plugin that they need."""
 
 import pytest
 
+from ros.launching import sandbox
+
+__all__ = ["no_plugins", "sandbox"]
+
 
 @pytest.fixture(autouse=True)
-def sandbox(tmp_path, monkeypatch):
-    """Give each test its own log files and environment."""
-    import launch.logging
-
-    environment = dict(os.environ)
-    monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path / "log"))
-    monkeypatch.delenv("OVERRIDE_LAUNCH_PROCESS_OUTPUT", raising=False)
-    # Runs of pytest within a test name the plugin that they need.
+def no_plugins(sandbox, monkeypatch):
+    """Let pytest find no plugins by itself in the runs that a test makes."""
     monkeypatch.setenv("PYTEST_DISABLE_PLUGIN_AUTOLOAD", "1")
-    launch.logging.reset()
-    yield
-    launch.logging.reset()
-    os.environ.clear()
-    os.environ.update(environment)
