@@ -55,6 +55,13 @@ def test_meshes_keep_their_colours_unless_sdf_overrides_them(painted):
     assert visual_parts(Visual(plain, material=RED))[0].color == (1, 0, 0, 1)
 
 
+@pytest.mark.filterwarnings("error")
+def test_a_scale_of_zero_leaves_nothing_to_draw(painted):
+    flat = Mesh("green.glb", painted / "green.glb", scale=(1, 0, 1), where="r.urdf:7")
+    with pytest.raises(DescriptionError, match=r"r.urdf:7: mesh green.glb has a scale of zero"):
+        visual_parts(Visual(flat))
+
+
 def test_textures(tmp_path):
     image = pytest.importorskip("PIL.Image")
     picture = tmp_path / "t.png"

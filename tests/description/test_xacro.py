@@ -98,6 +98,14 @@ def test_an_own_m_pi_wins(files):
         ("r.urdf.xacro", "xacro:wheel", "xacro:wheal", "r.urdf.xacro:7", "unknown macro name: xacro:wheal"),
         ("r.urdf.xacro", ' side="left"', "", "r.urdf.xacro:7", "undefined parameters [side]"),
         ("wheel.xacro", "</joint>", "", "wheel.xacro:11", "mismatched tag"),
+        ("r.urdf.xacro", "wheel.xacro", "r.urdf.xacro", "r.urdf.xacro:5", "the file includes itself"),
+        (
+            "wheel.xacro",
+            "</joint>",
+            '</joint><xacro:wheel side="x"><origin/></xacro:wheel>',
+            "r.urdf.xacro:7",
+            "<xacro:wheel>: the macro calls itself without end",
+        ),
     ],
 )
 def test_mistakes_are_named_with_their_place(files, file, old, new, place, words):

@@ -133,6 +133,8 @@ def _textured(geometry: Any, transform: NDArray[np.float64]) -> Part:
 def _shaped(part: Part, mesh: Mesh) -> Part:
     """Apply the description's centring and scale."""
     scale = np.array(mesh.scale, dtype=np.float32)
+    if not scale.all():
+        raise DescriptionError(f"mesh {mesh.uri} has a scale of zero", mesh.where)
     vertices = part.vertices
     if mesh.center:
         vertices = vertices - (vertices.min(axis=0) + vertices.max(axis=0)) / 2

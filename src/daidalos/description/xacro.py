@@ -171,6 +171,8 @@ def _error(problem: BaseException, xacro: Any, files: list[str]) -> DescriptionE
     words = words[:1].lower() + words[1:] if words[:2].istitle() else words
     source, line = _innermost_origin(problem.__traceback__, files)
     stack = xacro.macrostack or []
+    if isinstance(problem, RecursionError):
+        words = "the macro calls itself without end" if stack else "the file includes itself"
     macro = f"<xacro:{stack[-1].body.getAttribute('name')}>" if stack else ""
     return DescriptionError(words, source or str(xacro.filestack[-1]), line, macro)
 
