@@ -190,6 +190,23 @@ def test_gzs_controllers_hold_a_joint(kind):
     assert (joint.position if "position" in kind else joint.velocity) == pytest.approx(0.7, abs=0.01)
 
 
+@pytest.mark.parametrize(("limit", "reached"), [(20, True), (1, False)])
+def test_gzs_position_controller_takes_what_gravity_pulls_away(limit, reached):
+    parameters = "<joint_name>j</joint_name><topic>wanted</topic><p_gain>50</p_gain><d_gain>5</d_gain>"
+    parameters += f"<i_gain>50</i_gain><i_max>{limit}</i_max><i_min>-{limit}</i_min>"
+    simulation = Simulation(world(with_plugin(ARM, "gz-sim-joint-position-controller-system", parameters)))
+    simulation.gravity = (0, -9.8, 0)  # across the arm, which turns about z
+    simulation.advance(5 * SECOND)
+    assert (abs(simulation.joint("arm", "j").position) < 0.005) is reached
+
+
+def test_gzs_odometry_publisher_may_err():
+    parameters = "<gaussian_noise>0.1</gaussian_noise>"
+    model = with_plugin(box("b", "0 0 0.5 0 0 0"), "gz-sim-odometry-publisher-system", parameters)
+    told = [s.position[0] for s in Simulation(world(model)).advance(5 * SECOND) if isinstance(s, OdometrySample)]
+    assert np.std(told) == pytest.approx(0.1, rel=0.2)
+
+
 @pytest.mark.parametrize("library", ["gazebo_ros_p3d", "gazebo_ros_force", "gazebo_ros_vacuum_gripper"])
 def test_an_unknown_link_is_named(library):
     parameters = "<body_name>tail</body_name><link_name>tail</link_name><bodyName>tail</bodyName>"

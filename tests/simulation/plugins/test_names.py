@@ -134,7 +134,8 @@ IN_MODELS = [
     ("gz-sim-joint-controller-system", "<joint_name>fl_j</joint_name>", {"/model/cart/joint/fl_j/cmd_vel"}),
     (
         "ignition::gazebo::systems::JointPositionController",
-        "<joint_name>fl_steer</joint_name><p_gain>10</p_gain><d_gain>1</d_gain>",
+        "<joint_name>fl_steer</joint_name><p_gain>10</p_gain><d_gain>1</d_gain><i_gain>1</i_gain><i_max>1</i_max>"
+        "<i_min>-1</i_min><cmd_max>100</cmd_max><cmd_min>-100</cmd_min>",
         {"/model/cart/joint/fl_steer/0/cmd_pos"},
     ),
     (

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 
 from daidalos.description.link import Plugin as Description
 from daidalos.simulation.component import Setting, Subscription
@@ -13,6 +14,8 @@ from daidalos.simulation.plugins.base import Plugin
 from daidalos.simulation.samples import NumberCommand, Sample, TrajectoryCommand
 from daidalos.simulation.topics import absolute_topic
 
+_GAINS = ("p_gain", "i_gain", "d_gain", "i_min", "i_max", "cmd_min", "cmd_max", "cmd_offset")
+
 
 class JointPoseTrajectory(Plugin):
     """``libgazebo_ros_joint_pose_trajectory.so``: puts joints where a trajectory says, without any force.
@@ -21,7 +24,10 @@ class JointPoseTrajectory(Plugin):
     """
 
     names = ("gazebo_ros_joint_pose_trajectory", "gz-sim-joint-trajectory-controller-system")
-    unused = ("serviceName",)
+    unused = (
+        *("serviceName", "joint_name", "initial_position", "use_header_start_time"),
+        *(f"{kind}_{what}" for kind in ("position", "velocity") for what in _GAINS),
+    )
     memory: Course | None
 
     def __init__(self, description: Description, setting: Setting) -> None:
@@ -66,10 +72,25 @@ class JointPoseTrajectory(Plugin):
         self.memory = Course(command, self._now_ns)
 
 
+@dataclass
+class Hold:
+    """What is wanted of a joint, and the integral part of the effort."""
+
+    target: float
+    integral: float = 0.0
+    stamp_ns: int = -1
+
+
 class JointController(Plugin):
-    """gz's JointController (speeds) and JointPositionController (positions): one joint, one number."""
+    """gz's JointController (speeds) and JointPositionController (positions): one joint, one number.
+
+    A speed is held without any gains. A position is held by a PID loop whose proportional and derivative parts
+    belong to the physics, which keeps stiff ones stable.
+    """
 
     names = ("gz-sim-joint-controller-system", "gz-sim-joint-position-controller-system")
+    unused = ("use_force_commands", *_GAINS)
+    memory: Hold
 
     def __init__(self, description: Description, setting: Setting) -> None:
         super().__init__(description, setting)
@@ -87,6 +108,10 @@ class JointController(Plugin):
         self.topic = absolute_topic(element.text_of("topic", default=default), setting.namespace)
         self.gain = element.number_of("p_gain", default=1.0)
         self.damping = element.number_of("d_gain", default=0.1)
+        self.integral_gain = element.number_of("i_gain", default=0.1) if self.holds_position else 0.0
+        self.integral_limits = element.number_of("i_min", default=-1.0), element.number_of("i_max", default=1.0)
+        if self.integral_limits[0] > self.integral_limits[1]:
+            raise element.error("<i_min> is above <i_max>")
         self.effort = element.number_of("cmd_max", default=float("inf"))
         self.initial = element.number_of("initial_position", "initial_velocity", default=0.0)
 
@@ -108,14 +133,25 @@ class JointController(Plugin):
         """Find the servo."""
         self._data = instance.physics.data
         self._control = instance.actuator(self._servo)
+        self._joint = instance.joint(self.joint)
 
-    def start(self) -> None:
+    def start(self) -> Hold:
         """Begin as the description says."""
-        self._data.ctrl[self._control] = self.initial
+        return Hold(self.initial)
 
     def update(self, now_ns: int) -> Iterable[Sample]:
-        """Leave the joint to its servo."""
+        """Tell the servo; what the integral adds to the effort is told as more of the position."""
+        hold = self.memory
+        value = hold.target
+        if self.integral_gain > 0 and self.gain > 0:
+            elapsed = (now_ns - hold.stamp_ns) * 1e-9 if hold.stamp_ns >= 0 else 0.0
+            lower, upper = self.integral_limits
+            more = self.integral_gain * (hold.target - self._joint.position) * elapsed
+            hold.integral = min(max(hold.integral + more, lower), upper)
+            value += hold.integral / self.gain
+        hold.stamp_ns = now_ns
+        self._data.ctrl[self._control] = value
         return ()
 
     def _command(self, command: NumberCommand) -> None:
-        self._data.ctrl[self._control] = command.value
+        self.memory.target = command.value

@@ -68,7 +68,7 @@ class OdometryPublisher(Plugin):
     """gz's OdometryPublisher system: the model's odometry since it came, without wheels."""
 
     names = ("gz-sim-odometry-publisher-system",)
-    unused = ("dimensions",)
+    unused = ("dimensions", "odom_covariance_topic")
 
     def __init__(self, description: Description, setting: Setting) -> None:
         super().__init__(description, setting)
@@ -77,6 +77,7 @@ class OdometryPublisher(Plugin):
         self.odometry_frame = frame(element.text_of("odom_frame", default=f"{name}/odom"))
         self.base_frame = frame(element.text_of("robot_base_frame", default=f"{name}/base_footprint"))
         self.link = base
+        self.noise = element.number_of("gaussian_noise", default=0.0)
         self.offset = _read_offset(element)
         topic = element.text_of("odom_topic", default=f"/model/{name}/odometry")
         self.topic = absolute_topic(topic, setting.namespace)
@@ -101,6 +102,14 @@ class OdometryPublisher(Plugin):
         """Say where the model is."""
         frames = self.odometry_frame, self.base_frame
         odometry = _moved(true_odometry(self._link, now_ns, self.topic, *frames, start=self.memory), self.offset)
+        if self.noise:
+            noise = self.random.normal(0.0, self.noise, (3, 3))
+            odometry = replace(
+                odometry,
+                position=odometry.position + noise[0],
+                linear=odometry.linear + noise[1],
+                angular=odometry.angular + noise[2],
+            )
         yield odometry
         yield transform_of(odometry, self.tf_topic)
 

@@ -46,7 +46,7 @@ class PlanarMove(Plugin):
         self.odometry_frame = frame(element.text_of("odometryFrame", "odometry_frame", default="odom"))
         self.base_frame = frame(element.text_of("robotBaseFrame", "robot_base_frame", default="base_footprint"))
         self.publishes = element.flag_of("publish_odom", default=True)
-        self.publishes_tf = element.flag_of("publish_odom_tf", default=True)
+        self.publishes_tf = element.flag_of("publish_odom_tf", "broadcastTF", default=True)
         self.covariance = (
             element.number_of("covariance_x", default=1e-5),
             element.number_of("covariance_y", default=1e-5),
