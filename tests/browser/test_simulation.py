@@ -99,7 +99,7 @@ def test_world_is_edited_while_it_runs(browser: Chromium, tmp_path: Path, monkey
     _write_model(tmp_path)
     monkeypatch.setenv("GAZEBO_MODEL_PATH", str(tmp_path))
     with (
-        Terminal("run", "gazebo_ros", "gzserver", domain=_DOMAIN),
+        Terminal("run", "gazebo_ros", "gzserver", domain=_DOMAIN) as simulator,
         Terminal("run", "rqt_gui", "rqt_gui", "--headless", "--port", "0", domain=_DOMAIN) as studio,
     ):
         url = studio.wait_for("^window: ")[0].split()[1].split("?")[0]
@@ -114,6 +114,8 @@ def test_world_is_edited_while_it_runs(browser: Chromium, tmp_path: Path, monkey
         _models_are_put(browser)
         _all_is_taken_back(browser)
         assert browser.evaluate("document.querySelector('.complaint-text')?.textContent ?? ''") == ""
+        simulator.interrupt()
+        browser.wait_for("document.body.textContent.includes('No simulator runs')")
         assert browser.errors == []
 
 

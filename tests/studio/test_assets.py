@@ -72,6 +72,18 @@ def test_files_need_a_description_that_names_them(resolver, tmp_path):
         resolver.read("file:///etc/passwd")
 
 
+def test_what_a_simulator_shows_may_be_read(resolver, tmp_path):
+    part = tmp_path / "world" / "rock.png"
+    part.parent.mkdir()
+    part.write_bytes(b"rock")
+    for uri in ("", "model://rock", part.with_suffix(".txt").as_uri()):
+        resolver.allow(uri)
+    with pytest.raises(AssetError):
+        resolver.read(part.as_uri())
+    resolver.allow(part.as_uri())
+    assert resolver.read(part.as_uri()) == b"rock"
+
+
 def test_follows_links_that_a_symlinked_install_makes(resolver, share, tmp_path):
     source = tmp_path / "source.stl"
     source.write_bytes(b"source")

@@ -9,6 +9,7 @@ import sys
 import webbrowser
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 from urllib.parse import urlencode
 
 from rclpy.node import Node
@@ -55,7 +56,7 @@ class Studio:
         self._node = node
         self._graph = node.handle.graph
         self._assets = AssetResolver(_share_directory, default_model_path())
-        self._source = RosGraphSource(node)
+        self._source = RosGraphSource(node, self._read_shapes)
         self._server = StudioServer(
             self._source,
             port=port,
@@ -94,6 +95,15 @@ class Studio:
         for topic in {name for name in published if name.endswith("/robot_description")} - self._read:
             self._read.add(topic)
             self._node.create_subscription(String, topic, lambda text: self._assets.allow_meshes_of(text.data), latched)
+
+    def _read_shapes(self, response: Any) -> None:
+        """Let the page have the meshes and textures of what a simulator shows it."""
+        from daidalos_msgs.srv import GetShapes
+
+        if isinstance(response, GetShapes.Response):
+            for shape in response.shapes:
+                self._assets.allow(shape.mesh_resource)
+                self._assets.allow(shape.texture_resource)
 
 
 def open_in_browser(url: str) -> bool:

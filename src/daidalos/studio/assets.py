@@ -43,9 +43,13 @@ class AssetResolver:
         Folders, because a mesh has its textures beside it; the list of extensions still holds.
         """
         for uri in _FILE_REFERENCE.findall(description):
-            path = _file_path(uri)
-            if path.suffix.lower() in EXTENSIONS:
-                self._directories.add(path.parent)
+            self.allow(uri)
+
+    def allow(self, uri: str) -> None:
+        """Admit the folder of a mesh or texture that is named by ``file://``; other addresses change nothing."""
+        path = _file_path(uri) if uri.startswith("file://") else None
+        if path is not None and path.suffix.lower() in EXTENSIONS:
+            self._directories.add(path.parent)
 
     def read(self, uri: str) -> bytes:
         """Return the bytes of an asset.

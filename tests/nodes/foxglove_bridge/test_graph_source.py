@@ -4,14 +4,20 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Sequence
+from pathlib import Path
 
+import pytest
+from daidalos_msgs.srv import GetShapes
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
+from rclpy.serialization import serialize_message
 from rosgraph_msgs.msg import Clock
 from std_msgs.msg import String
+from visualization_msgs.msg import Marker
 
 from daidalos.nodes.foxglove_bridge._graph_source import RosGraphSource
 from daidalos.nodes.studio import Studio
+from daidalos.studio.assets import AssetError
 from daidalos.studio.source import Parameter
 from ros.graph import graph, node, spinning  # noqa: F401
 
@@ -73,4 +79,22 @@ def test_descriptions_are_read_when_they_come(node: Node) -> None:  # noqa: F811
         reached = node.handle.graph.wait_for(lambda: publisher.get_subscription_count() == 1, 10.0)
         assert reached, "nobody reads the description"
         assert studio.url("plot", topic="/a b").endswith("/?panel=plot&topic=/a+b")
+        studio.close()
+
+
+def test_meshes_that_a_simulator_shows_may_be_fetched(node: Node, tmp_path: Path) -> None:  # noqa: F811
+    mesh = tmp_path / "rock.stl"
+    mesh.write_bytes(b"rock")
+
+    def answer(request: GetShapes.Request, response: GetShapes.Response) -> GetShapes.Response:
+        response.shapes = [Marker(mesh_resource=mesh.as_uri())]
+        return response
+
+    node.create_service(GetShapes, "/gazebo/get_shapes", answer)
+    with spinning(node):
+        studio = Studio(node, port=0)
+        with pytest.raises(AssetError):
+            studio._assets.read(mesh.as_uri())
+        studio._source.call("/gazebo/get_shapes", serialize_message(GetShapes.Request())).result(10.0)
+        assert studio._assets.read(mesh.as_uri()) == b"rock"
         studio.close()

@@ -2,6 +2,7 @@
 
 import math
 
+import numpy as np
 import pytest
 from builtin_interfaces.msg import Duration
 from daidalos_msgs.srv import BringBack, SetFriction
@@ -316,6 +317,37 @@ def test_looks_of_models_are_told(shop):
     wrong = shop.call(GetShapes, "/gazebo/get_shapes", names=["nobody"])
     assert not wrong.success
     assert "nobody" in wrong.status_message
+
+
+def test_every_shape_is_told_as_it_looks(shop, tmp_path):
+    from daidalos_msgs.srv import GetShapes
+
+    image = tmp_path / "sign.png"
+    image.write_bytes(b"")
+    sign = f"<material><pbr><metal><albedo_map>{image}</albedo_map></metal></pbr></material>"
+    shapes = (
+        ("<box><size>1 1 1</size></box>", sign),
+        ("<capsule><radius>0.2</radius><length>1</length></capsule>", ""),
+        ("<cone><radius>0.5</radius><length>2</length></cone>", ""),
+        ("<polyline><point>0 0</point><point>1 0</point><point>1 1</point><height>0.5</height></polyline>", ""),
+    )
+    visuals = (
+        f"<visual name='v{i}'><geometry>{shape}</geometry>{look}</visual>" for i, (shape, look) in enumerate(shapes)
+    )
+    xml = f"<sdf version='1.11'><model name='zoo'><link name='l'>{''.join(visuals)}</link></model></sdf>"
+    assert spawn(shop, "zoo", xml).success
+    box, middle, low, high, *others = shop.call(GetShapes, "/gazebo/get_shapes", names=["zoo"]).shapes
+    assert (box.type, box.texture_resource, box.color.r) == (box.CUBE, image.as_uri(), 1.0)
+    assert (middle.type, middle.scale.z) == (middle.CYLINDER, 1.0)
+    assert [(end.type, end.scale.x, end.pose.position.z) for end in (low, high)] == [
+        (low.SPHERE, 0.4, -0.5),
+        (low.SPHERE, 0.4, 0.5),
+    ]
+    extents = []
+    for each in others:
+        assert (each.type, len(each.points) % 3) == (each.TRIANGLE_LIST, 0)
+        extents.append([np.ptp([getattr(point, axis) for point in each.points]) for axis in "xyz"])
+    assert np.array(extents) == pytest.approx(np.array([[1, 1, 2], [1, 1, 0.5]]), abs=0.02)
 
 
 def test_the_state_plugin_may_name_a_place_of_its_own(shop):

@@ -35,10 +35,18 @@ _CLOCK = "/clock"
 
 
 class RosGraphSource:
-    """See `daidalos.studio.source.GraphSource`. The node must be spun for parameters to be answered."""
+    """See `daidalos.studio.source.GraphSource`. The node must be spun for parameters to be answered.
 
-    def __init__(self, node: Node) -> None:
+    Parameters
+    ----------
+    node : Node
+    answered : callable
+        Takes every response to a client's call, before the client does.
+    """
+
+    def __init__(self, node: Node, answered: Callable[[Any], None] = lambda response: None) -> None:
         self._node = node
+        self._answered = answered
         self._handle = node.handle
         self._graph = node.handle.graph
         self._clients: dict[str, AsyncParameterClient] = {}
@@ -171,7 +179,7 @@ class RosGraphSource:
                 caller = self._callers.get((service, type_name))
                 if caller is None:
                     kind = _class_of(get_service, type_name)
-                    caller = self._callers[service, type_name] = _Caller(self._handle, kind, service)
+                    caller = self._callers[service, type_name] = _Caller(self._handle, kind, service, self._answered)
             caller.call(request, answer)
         except (SourceError, ValueError) as error:
             answer.set_exception(SourceError(str(error)))
@@ -266,7 +274,8 @@ class _Publication(_Closing):
 class _Caller:
     """Calls one service with bytes."""
 
-    def __init__(self, node: Any, kind: Any, name: str) -> None:
+    def __init__(self, node: Any, kind: Any, name: str, answered: Callable[[Any], None]) -> None:
+        self._answered = answered
         self._handle = ClientHandle(node, kind, name, QoSProfile(depth=_DEPTH))
         self._request = codec_of(kind.Request)
         self._response = codec_of(kind.Response)
@@ -286,6 +295,7 @@ class _Caller:
             with self._lock:
                 answer = self._waiting.pop(header.request_id.sequence_number, None)
             if answer is not None:
+                self._answered(response)
                 answer.set_result(self._response.encode(response))
             taken = self._handle.take_response()
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from functools import lru_cache
 from typing import Any
 
 from daidalos.description.geometry import (
@@ -17,14 +18,15 @@ from daidalos.description.geometry import (
     Polyline,
     Sphere,
 )
-from daidalos.description.link import Link, Material, Rgba
+from daidalos.description.link import Link, Material, Rgba, Visual
 from daidalos.description.pose import Pose, Vector
 from daidalos.description.robot import Robot
+from daidalos.description.visuals import GREY, WHITE, visual_parts
 from daidalos.description.world import Model
 from daidalos.nodes.gazebo_ros._states import color_message, pose_message
 
-_GREY = (0.7, 0.7, 0.7, 1.0)
-_CUBE, _SPHERE, _CYLINDER, _MESH = 1, 2, 3, 10
+_CUBE, _SPHERE, _CYLINDER, _MESH, _TRIANGLES = 1, 2, 3, 10, 11
+_SEGMENTS = 32
 _THIN = 0.002
 
 
@@ -39,34 +41,48 @@ def shape_markers(model: Robot | Model, name: str) -> list[Any]:
     name : str
         The model's in the simulation; frames are called ``name::link``.
     """
-    from geometry_msgs.msg import Vector3
-    from visualization_msgs.msg import Marker
-
     markers: list[Any] = []
     for link in model.links.values():
-        for geometry, pose, material, opacity in _seen(link):
-            shape = _shape(geometry)
-            if shape is None:
-                continue
-            marker_type, (x, y, z) = shape
-            red, green, blue, alpha = _color(material)
-            marker = Marker(ns=name, id=len(markers), type=marker_type, pose=pose_message(pose))
-            marker.header.frame_id = f"{name}::{link.name}"
-            marker.scale = Vector3(x=float(x), y=float(y), z=float(z))
-            marker.color = color_message((red, green, blue, alpha * opacity))
-            if isinstance(geometry, Mesh):
-                marker.mesh_resource = _address(geometry)
-                marker.mesh_use_embedded_materials = material is None
-            markers.append(marker)
+        for visual in _seen(link):
+            for marker in _markers(visual):
+                marker.ns, marker.id = name, len(markers)
+                marker.header.frame_id = f"{name}::{link.name}"
+                markers.append(marker)
     return markers
 
 
-def _seen(link: Link) -> Iterator[tuple[Geometry, Pose, Material | None, float]]:
-    for visual in link.visuals:
-        yield visual.geometry, visual.pose, visual.material, 1.0 - visual.transparency
-    if not link.visuals:
-        for collision in link.collisions:
-            yield collision.geometry, collision.pose, None, 1.0
+def _seen(link: Link) -> Iterable[Visual]:
+    return link.visuals or [Visual(collision.geometry, collision.pose) for collision in link.collisions]
+
+
+@lru_cache(maxsize=64)
+def _corners(geometry: Geometry) -> list[Any]:
+    """Return the corners of the triangles of a shape that no other marker shows, three by three."""
+    from geometry_msgs.msg import Point
+
+    corners = [part.vertices[part.faces].reshape(-1, 3) for part in visual_parts(Visual(geometry), _SEGMENTS)]
+    return [Point(x=float(x), y=float(y), z=float(z)) for part in corners for x, y, z in part]
+
+
+def _markers(visual: Visual) -> Iterator[Any]:
+    """Yield what shows a visual, in the link's frame."""
+    from geometry_msgs.msg import Vector3
+    from visualization_msgs.msg import Marker
+
+    geometry, material = visual.geometry, visual.material
+    red, green, blue, alpha = _color(material)
+    for marker_type, (x, y, z), pose in _shapes(geometry):
+        marker = Marker(type=marker_type, pose=pose_message(visual.pose @ pose))
+        marker.scale = Vector3(x=float(x), y=float(y), z=float(z))
+        marker.color = color_message((red, green, blue, alpha * (1.0 - visual.transparency)))
+        if isinstance(geometry, Mesh):
+            marker.mesh_resource = _address(geometry)
+            marker.mesh_use_embedded_materials = material is None
+        elif marker_type == _TRIANGLES:
+            marker.points = _corners(geometry)
+        if material is not None and material.texture_path is not None:
+            marker.texture_resource = material.texture_path.absolute().as_uri()
+        yield marker
 
 
 def _address(mesh: Mesh) -> str:
@@ -77,27 +93,30 @@ def _address(mesh: Mesh) -> str:
 
 
 def _color(material: Material | None) -> Rgba:
-    return material.color if material is not None and material.color is not None else _GREY
+    if material is None:
+        return GREY
+    return material.color or (GREY if material.texture_path is None else WHITE)
 
 
-def _shape(geometry: Geometry) -> tuple[int, Vector] | None:
-    """Return a marker's type and the lengths of its sides; None for what no marker shows."""
+def _shapes(geometry: Geometry) -> Iterator[tuple[int, Vector, Pose]]:
+    """Yield a marker's type, the lengths of its sides and its pose in the visual; nothing where no marker shows it."""
+    here = Pose()
     match geometry:
         case Box(size):
-            return _CUBE, size
+            yield _CUBE, size, here
         case Sphere(radius):
-            return _SPHERE, (2 * radius,) * 3
+            yield _SPHERE, (2 * radius,) * 3, here
         case Ellipsoid((x, y, z)):
-            return _SPHERE, (2 * x, 2 * y, 2 * z)
-        case Cylinder(radius, length) | Cone(radius, length):
-            return _CYLINDER, (2 * radius, 2 * radius, length)
+            yield _SPHERE, (2 * x, 2 * y, 2 * z), here
+        case Cylinder(radius, length):
+            yield _CYLINDER, (2 * radius, 2 * radius, length), here
         case Capsule(radius, length):
-            return _CYLINDER, (2 * radius, 2 * radius, length + 2 * radius)
+            yield _CYLINDER, (2 * radius, 2 * radius, length), here
+            for end in (-length / 2, length / 2):
+                yield _SPHERE, (2 * radius,) * 3, Pose((0.0, 0.0, end))
         case Plane((_, _, z), (width, depth)) if z > 0:
-            return _CUBE, (width, depth, _THIN)
-        case Polyline(outlines, height):
-            reach = max(abs(value) for outline in outlines for point in outline for value in point)
-            return _CUBE, (2 * reach, 2 * reach, height)
+            yield _CUBE, (width, depth, _THIN), here
+        case Cone() | Polyline():
+            yield _TRIANGLES, (1.0, 1.0, 1.0), here
         case Mesh():
-            return _MESH, geometry.scale
-    return None
+            yield _MESH, geometry.scale, here

@@ -24,6 +24,7 @@ import { LineSegments2 } from "three/examples/jsm/lines/LineSegments2.js";
 import { LineSegmentsGeometry } from "three/examples/jsm/lines/LineSegmentsGeometry.js";
 import type { ColorRGBA, Marker } from "../ros/messages";
 import type { Assets } from "../scene/assets";
+import { wrapBox, wrapRound } from "../scene/wrapping";
 import { PointSprites } from "../scene/point_sprites";
 import { arrowGeometry, Label } from "../scene/shapes";
 
@@ -68,11 +69,11 @@ function shapeOf(marker: Marker, context: MarkerContext): Object3D | undefined {
     case MarkerType.ARROW:
       return arrow(marker);
     case MarkerType.CUBE:
-      return solid(new BoxGeometry(scale.x, scale.y, scale.z), marker);
+      return sized(new BoxGeometry(), marker, context);
     case MarkerType.SPHERE:
-      return solid(new SphereGeometry(0.5, 32, 20).scale(scale.x, scale.y, scale.z), marker);
+      return sized(new SphereGeometry(0.5, 32, 20).rotateX(Math.PI / 2), marker, context);
     case MarkerType.CYLINDER:
-      return solid(new CylinderGeometry(0.5, 0.5, 1, 32).rotateX(Math.PI / 2).scale(scale.x, scale.y, scale.z), marker);
+      return sized(new CylinderGeometry(0.5, 0.5, 1, 32).rotateX(Math.PI / 2), marker, context);
     case MarkerType.LINE_STRIP:
     case MarkerType.LINE_LIST:
       return lines(marker);
@@ -92,7 +93,28 @@ function shapeOf(marker: Marker, context: MarkerContext): Object3D | undefined {
   return undefined;
 }
 
-function solid(geometry: BufferGeometry, marker: Marker): Mesh {
+/** A shape of unit size, as large as the marker says and with its image. */
+function sized(geometry: BufferGeometry, marker: Marker, { assets, changed, complain }: MarkerContext): Mesh {
+  const { type, scale, texture_resource: image } = marker;
+  if (image) {
+    (type === MarkerType.CUBE ? wrapBox : wrapRound)(geometry);
+  }
+  const object = solid(geometry.scale(scale.x, scale.y, scale.z), marker);
+  const { material: look } = object;
+  if (image) {
+    assets
+      .texture(image)
+      .then((texture) => {
+        look.map = texture;
+        look.needsUpdate = true;
+        changed();
+      })
+      .catch((error: Error) => complain(error.message));
+  }
+  return object;
+}
+
+function solid(geometry: BufferGeometry, marker: Marker): Mesh<BufferGeometry, MeshStandardMaterial> {
   const object = new Mesh(geometry, material(marker.color));
   object.castShadow = marker.color.a >= 1;
   object.userData.pickable = true;

@@ -125,6 +125,8 @@ export interface Marker extends Stamped {
   frame_locked: boolean;
   points: Vector3[];
   colors: ColorRGBA[];
+  /** Absent in what the page makes itself, and in the messages of older ROS. */
+  texture_resource?: string;
   text: string;
   mesh_resource: string;
   mesh_use_embedded_materials: boolean;

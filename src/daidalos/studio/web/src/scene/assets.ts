@@ -1,5 +1,17 @@
 // Meshes by URI: fetched through the connection, read by three.js' loaders, kept for the next who asks.
-import { Color, Group, LoadingManager, Mesh, MeshStandardMaterial, type Material, type Object3D } from "three";
+import {
+  Color,
+  Group,
+  LoadingManager,
+  Mesh,
+  MeshStandardMaterial,
+  RepeatWrapping,
+  SRGBColorSpace,
+  TextureLoader,
+  type Material,
+  type Object3D,
+  type Texture,
+} from "three";
 import { ColladaLoader } from "three/examples/jsm/loaders/ColladaLoader.js";
 import { STLLoader } from "three/examples/jsm/loaders/STLLoader.js";
 import { mergeVertices } from "three/examples/jsm/utils/BufferGeometryUtils.js";
@@ -37,6 +49,20 @@ export class Assets {
   async imageUrl(uri: string): Promise<string> {
     const type = TEXTURE_TYPES[extensionOf(uri)] ?? "application/octet-stream";
     return URL.createObjectURL(new Blob([await this.session.fetchAsset(uri)], { type }));
+  }
+
+  /** Load an image to put onto shapes; every call returns a texture of its own. */
+  async texture(uri: string): Promise<Texture> {
+    const url = await this.imageUrl(uri);
+    try {
+      const texture = await new TextureLoader().loadAsync(url);
+      texture.colorSpace = SRGBColorSpace;
+      texture.wrapS = texture.wrapT = RepeatWrapping;
+      texture.anisotropy = 4;
+      return texture;
+    } finally {
+      URL.revokeObjectURL(url);
+    }
   }
 
   clear(): void {

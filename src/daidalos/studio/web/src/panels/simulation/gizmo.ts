@@ -116,7 +116,11 @@ export class Gizmo {
 
   dispose(): void {
     this.controls.detach();
-    this.controls.dispose();
+    // The library's own way of ending takes its listeners from an element, which these controls do not have.
+    const helper = this.controls.getHelper();
+    helper.dispose();
+    helper.removeFromParent();
+    this.handle.removeFromParent();
   }
 
   /** As the library's own events have it: from -1 to 1 across the canvas. */
