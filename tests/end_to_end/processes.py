@@ -7,13 +7,13 @@ import re
 import signal
 import subprocess
 import sys
-import threading
-import time
 import uuid
 from types import TracebackType
 from typing import Self
 
 import psutil
+
+from printed import Printed
 
 DAIDALOS = [sys.executable, "-m", "daidalos.cli.daidalos"]
 ROS2 = [sys.executable, "-m", "daidalos.cli.ros2"]
@@ -34,8 +34,6 @@ class Command:
     """
 
     def __init__(self, *words: str, domain: int) -> None:
-        self.lines: list[str] = []
-        self._news = threading.Condition()
         self._mark = uuid.uuid4().hex
         self._process = subprocess.Popen(
             words,
@@ -46,8 +44,9 @@ class Command:
             env=os.environ | {"ROS_DOMAIN_ID": str(domain), "PYTHONUNBUFFERED": "1", _MARK: self._mark},
             start_new_session=True,
         )
-        self._reader = threading.Thread(target=self._read, daemon=True)
-        self._reader.start()
+        assert self._process.stdout is not None
+        self._printed = Printed(self._process.stdout)
+        self.lines = self._printed.lines
 
     def __enter__(self) -> Self:
         return self
@@ -65,15 +64,11 @@ class Command:
 
     def wait_for_line(self, pattern: str) -> str:
         """Return the first line that a pattern is found in."""
-        deadline = time.monotonic() + PATIENCE_S
-        with self._news:
-            while True:
-                found = next((line for line in self.lines if re.search(pattern, line)), None)
-                if found is not None:
-                    return found
-                left = deadline - time.monotonic()
-                if left <= 0 or not self._reader.is_alive() or not self._news.wait(left):
-                    raise AssertionError(f"no line with {pattern!r} in:\n{self.text}")
+        found = self._printed.wait(
+            lambda: next((line for line in self.lines if re.search(pattern, line)), None), PATIENCE_S
+        )
+        assert found is not None, f"no line with {pattern!r} in:\n{self.text}"
+        return found
 
     def interrupt(self) -> int:
         """Press Ctrl-C, as a terminal does for the whole group; returns the exit status once all have ended."""
@@ -92,7 +87,7 @@ class Command:
         assert not alive, f"still running after {END_S} s: {names}, after:\n{self.text}"
         assert not self._members(), "processes were left behind"
         status = self._process.wait()
-        self._reader.join()
+        self._printed.join()
         return status
 
     def _members(self) -> list[psutil.Process]:
@@ -105,15 +100,6 @@ class Command:
             except psutil.Error:
                 continue
         return members
-
-    def _read(self) -> None:
-        assert self._process.stdout is not None
-        for line in self._process.stdout:
-            with self._news:
-                self.lines.append(line.rstrip())
-                self._news.notify_all()
-        with self._news:
-            self._news.notify_all()
 
 
 def finished(*words: str, domain: int, timeout: float = 240.0) -> subprocess.CompletedProcess[str]:

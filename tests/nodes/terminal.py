@@ -10,12 +10,14 @@ import signal
 import subprocess
 import sys
 import termios
-import threading
 import time
+from collections.abc import Iterator
 from types import TracebackType
 from typing import Self
 
 import psutil
+
+from printed import Printed
 
 PATIENCE_S = 60.0
 END_S = 10.0
@@ -32,8 +34,6 @@ class Terminal:
     """
 
     def __init__(self, *words: str, domain: int, folder: str | os.PathLike[str] | None = None) -> None:
-        self.lines: list[str] = []
-        self._news = threading.Condition()
         self._screen, self._line = pty.openpty()
         self._before = termios.tcgetattr(self._line)
         environment = {name: value for name, value in os.environ.items() if name not in _NO_SCREEN}
@@ -47,8 +47,8 @@ class Terminal:
             cwd=folder,
             start_new_session=True,
         )
-        self._reader = threading.Thread(target=self._read, daemon=True)
-        self._reader.start()
+        self._printed = Printed(self._read())
+        self.lines = self._printed.lines
 
     def __enter__(self) -> Self:
         return self
@@ -61,7 +61,7 @@ class Terminal:
                 member.kill()
         self._process.wait()
         os.close(self._line)  # the last one of the terminal's far side: the reader sees its end
-        self._reader.join()
+        self._printed.join()
         os.close(self._screen)
 
     @property
@@ -70,16 +70,14 @@ class Terminal:
 
     def wait_for(self, pattern: str, count: int = 1, after: int = 0) -> list[str]:
         """Return the first lines that a pattern is found in, after as many as were there before."""
-        deadline = time.monotonic() + PATIENCE_S
-        with self._news:
-            while True:
-                found = [line for line in self.lines[after:] if re.search(pattern, line)]
-                if len(found) >= count:
-                    return found[:count]
-                left = deadline - time.monotonic()
-                ended = self._process.poll() is not None
-                if left <= 0 or (not self._news.wait(min(left, 0.5)) and ended):
-                    raise AssertionError(f"no {count} lines with {pattern!r} in:\n{self.text}")
+
+        def find() -> list[str] | None:
+            found = [line for line in self.lines[after:] if re.search(pattern, line)]
+            return found[:count] if len(found) >= count else None
+
+        found = self._printed.wait(find, PATIENCE_S, has_ended=lambda: self._process.poll() is not None)
+        assert found is not None, f"no {count} lines with {pattern!r} in:\n{self.text}"
+        return found
 
     def press(self, keys: str) -> None:
         """Press keys, as the terminal sends them."""
@@ -103,8 +101,7 @@ class Terminal:
             raise AssertionError(f"still running after {patience_s} s:\n{self.text}") from None
         assert not self._members(), "processes were left behind"
         assert termios.tcgetattr(self._line) == self._before, "the terminal is not as it was"
-        with self._news:
-            self._news.wait_for(lambda: False, 0.1)  # the screen may be a moment behind
+        self._printed.wait(lambda: None, 0.1)  # the screen may be a moment behind
         assert "Traceback" not in self.text, self.text
         assert "KeyboardInterrupt" not in self.text, self.text
         return status
@@ -119,19 +116,17 @@ class Terminal:
                 continue
         return members
 
-    def _read(self) -> None:
+    def _read(self) -> Iterator[str]:
         rest = ""
         while True:
             try:
                 content = os.read(self._screen, 4096)
             except OSError:
-                break
+                return
             if not content:
-                break
+                return
             *lines, rest = (rest + content.decode(errors="replace")).split("\n")
-            with self._news:
-                self.lines += [line.rstrip("\r") for line in lines]
-                self._news.notify_all()
+            yield from lines
 
 
 def until_shown(pattern: str, *words: str, domain: int) -> str:

@@ -6,11 +6,11 @@ import os
 import signal
 import subprocess
 import sys
-import threading
-import time
 from pathlib import Path
 from types import TracebackType
 from typing import Self
+
+from printed import Printed
 
 PATIENCE_S = 30.0
 _SCRIPT = Path(__file__).with_name("peer.py")
@@ -32,8 +32,6 @@ class Peer:
     """
 
     def __init__(self, role: str, *prefix: str, script: Path = _SCRIPT, **environment: str) -> None:
-        self.lines: list[str] = []
-        self._news = threading.Condition()
         self.process = subprocess.Popen(
             [*prefix, sys.executable, "-P", str(script), role],
             stdin=subprocess.DEVNULL,
@@ -42,8 +40,9 @@ class Peer:
             text=True,
             env=os.environ | environment | {"PYTHONPATH": os.pathsep.join(sys.path)},
         )
-        self._reader = threading.Thread(target=self._read, daemon=True)
-        self._reader.start()
+        assert self.process.stdout is not None
+        self._printed = Printed(self.process.stdout)
+        self.lines = self._printed.lines
 
     def __enter__(self) -> Self:
         return self
@@ -59,7 +58,7 @@ class Peer:
             self.process.send_signal(signal.SIGCONT)
             self.process.kill()
         self.process.wait()
-        self._reader.join()
+        self._printed.join()
 
     def ready(self) -> Self:
         """Wait until it is ready."""
@@ -68,22 +67,8 @@ class Peer:
 
     def wait_for(self, text: str, after: int = 0, timeout_s: float = PATIENCE_S) -> int:
         """Wait for a line with a text; return the number of the line that follows it."""
-        deadline = time.monotonic() + timeout_s
-        with self._news:
-            while True:
-                for number, line in enumerate(self.lines[after:], after):
-                    if text in line:
-                        return number + 1
-                left = deadline - time.monotonic()
-                if left <= 0 or (self.process.poll() is not None and not self._reader.is_alive()):
-                    raise AssertionError(f"no '{text}' after line {after} in {self.lines[-20:]}")
-                self._news.wait(min(left, 0.2))
-
-    def _read(self) -> None:
-        assert self.process.stdout is not None
-        for line in self.process.stdout:
-            with self._news:
-                self.lines.append(line.rstrip())
-                self._news.notify_all()
-        with self._news:
-            self._news.notify_all()
+        found = self._printed.wait(
+            lambda: next((n + 1 for n, line in enumerate(self.lines[after:], after) if text in line), None), timeout_s
+        )
+        assert found is not None, f"no '{text}' after line {after} in {self.lines[-20:]}"
+        return found
