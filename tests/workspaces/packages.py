@@ -27,19 +27,7 @@ def python_package(
     return write(
         folder / name,
         {
-            "package.xml": f"""
-                <?xml version="1.0"?>
-                <package format="3">
-                  <name>{name}</name>
-                  <version>0.0.0</version>
-                  <description>A package</description>
-                  <maintainer email="me@example.org">me</maintainer>
-                  <license>Apache-2.0</license>
-                  {depends}
-                  <test_depend>python3-pytest</test_depend>
-                  <export><build_type>ament_python</build_type></export>
-                </package>
-                """,
+            "package.xml": package_xml(name, "ament_python", f"{depends}<test_depend>python3-pytest</test_depend>"),
             "setup.py": f"""
                 import os
                 from glob import glob
@@ -80,25 +68,31 @@ def python_package(
     )
 
 
+def package_xml(name: str, build_type: str, depends: str) -> str:
+    """Return the description of a package, with these elements for what it depends on."""
+    return f"""
+        <?xml version="1.0"?>
+        <package format="3">
+          <name>{name}</name>
+          <version>0.0.0</version>
+          <description>A package</description>
+          <maintainer email="me@example.org">me</maintainer>
+          <license>Apache-2.0</license>
+          {depends}
+          <export><build_type>{build_type}</build_type></export>
+        </package>
+        """
+
+
 def cmake_package(folder: Path, name: str, body: str, files: dict[str, str], more_xml: str = "") -> Path:
     """Write a package of build type ament_cmake with these commands in its CMakeLists.txt."""
     more_xml = " ".join(more_xml.split())
     return write(
         folder / name,
         {
-            "package.xml": f"""
-                <?xml version="1.0"?>
-                <package format="3">
-                  <name>{name}</name>
-                  <version>0.0.0</version>
-                  <description>A package</description>
-                  <maintainer email="me@example.org">me</maintainer>
-                  <license>Apache-2.0</license>
-                  <buildtool_depend>ament_cmake</buildtool_depend>
-                  {more_xml}
-                  <export><build_type>ament_cmake</build_type></export>
-                </package>
-                """,
+            "package.xml": package_xml(
+                name, "ament_cmake", f"<buildtool_depend>ament_cmake</buildtool_depend>{more_xml}"
+            ),
             "CMakeLists.txt": "cmake_minimum_required(VERSION 3.8)\n"
             f"project({name})\n"
             "find_package(ament_cmake REQUIRED)\n" + textwrap.dedent(body) + "\nament_package()\n",
