@@ -10,6 +10,7 @@ from daidalos.simulation import Simulation
 from daidalos.simulation.plugins.diff_drive_settings import Limits
 from daidalos.simulation.samples import JointStateSample, OdometrySample, TransformSample, TwistCommand
 from simulation.models import turtlebot, world
+from simulation.plugins import vehicles
 
 SECOND = 1_000_000_000
 
@@ -199,6 +200,30 @@ def test_several_wheels_on_a_side():
     assert odometry.position[0] == pytest.approx(simulation.pose("r").position[0], abs=2e-3)
 
 
+def test_wheels_of_two_sizes_roll_together():
+    """The rims of a big and of a small pair go equally fast."""
+    parts = [
+        vehicles.WHEEL.format(name=f"{place}{side}", x=x, y=y, r=radius)
+        + f"<joint name='{place}{side}_j' type='revolute'><parent>chassis</parent><child>{place}{side}</child>"
+        "<axis><xyz>0 0 1</xyz></axis></joint>"
+        for place, x, radius in (("front", 0.3, 0.2), ("rear", -0.3, 0.1))
+        for side, y in (("l", 0.25), ("r", -0.25))
+    ]
+    joints = "".join(
+        f"<left_joint>{place}l_j</left_joint><right_joint>{place}r_j</right_joint>"
+        f"<wheel_separation>0.5</wheel_separation><wheel_diameter>{diameter}</wheel_diameter>"
+        for place, diameter in (("front", 0.4), ("rear", 0.2))
+    )
+    plugin = f"<plugin name='p' filename='libgazebo_ros_diff_drive.so'>{joints}</plugin>"
+    chassis = f"<link name='chassis'><pose>0 0 0.3 0 0 0</pose>{vehicles.inertia(10, 0.4)}</link>"
+    simulation = Simulation(world(f"<model name='cart'>{chassis}{''.join(parts)}{plugin}</model>"))
+    simulation.command("/cmd_vel", twist(0.5))
+    odometry = last(simulation.advance(2 * SECOND), OdometrySample)
+    speeds = [simulation.joint("cart", name).velocity for name in ("frontl_j", "rearl_j")]
+    assert speeds == pytest.approx([2.5, 5], rel=0.02)
+    assert odometry.position[0] == pytest.approx(simulation.pose("cart").position[0], abs=5e-3)
+
+
 def test_ros1_swaps_the_sides_unless_told_otherwise():
     lines = []
     simulation = spawned("libgazebo_ros_diff_drive.so", ROS1, warn=lines.append)
@@ -239,6 +264,10 @@ def test_wheel_transforms_and_silence():
 @pytest.mark.parametrize(
     ("parameters", "words"),
     [
+        (
+            ROS2 + "<wheel_diameter>0.3</wheel_diameter>",
+            "expected one <wheel_diameter>, or one above zero for each pair",
+        ),
         ("", "<left_joint> and <right_joint> are needed"),
         (
             ROS2.replace("left_joint<", "lft_joint<"),

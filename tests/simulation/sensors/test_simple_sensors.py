@@ -59,6 +59,15 @@ def test_a_gps_tells_place_and_speed():
     assert last(simulation, NavSatSample, 10_000_000).velocity[2] == pytest.approx(5, abs=0.2)
 
 
+@pytest.mark.parametrize("heading", [0, 180])
+def test_worlds_for_gazebo_classic_mean_no_heading_by_180_degrees(heading):
+    plugin = "<gps/><plugin name='p' filename='libgazebo_ros_gps_sensor.so'/>"
+    place = PLACE.replace("<heading_deg>0", f"<heading_deg>{heading}")
+    sample = last(Simulation(world(place, box("b", "100 50 0.5 0 0 0", extra=sensor("gps", plugin)))), NavSatSample)
+    assert sample.longitude > 8.9
+    assert sample.latitude > float(PLACE.partition("<latitude_deg>")[2].partition("<")[0])
+
+
 def test_a_gps_has_the_noise_that_was_asked_for():
     settings = (
         "<gps><position_sensing>" + noise("horizontal", 2.0) + noise("vertical", 4.0) + "</position_sensing></gps>"

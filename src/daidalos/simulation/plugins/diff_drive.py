@@ -84,10 +84,11 @@ class DiffDrive(Plugin):
         settings = self.settings
         mass = sum(link.inertial.mass for link in build.model.links.values() if link.inertial)
         wheels = (*settings.left, *settings.right)
-        driven = mass * (settings.diameter / 2) ** 2 / len(wheels)
-        self._servos = [
-            build.add_velocity_servo(joint, 2 * driven / SERVO_TIME, settings.torque, rotor=driven) for joint in wheels
-        ]
+        self._radii = np.array(settings.diameters * (len(wheels) // len(settings.diameters))) / 2
+        self._servos = []
+        for joint, radius in zip(wheels, self._radii, strict=True):
+            driven = float(mass * radius**2 / len(wheels))
+            self._servos.append(build.add_velocity_servo(joint, 2 * driven / SERVO_TIME, settings.torque, rotor=driven))
 
     def bind(self, instance: Instance) -> None:
         """Find the wheels, their servos and the base."""
@@ -161,13 +162,13 @@ class DiffDrive(Plugin):
         wanted = np.array((speed - turn * settings.separation / 2, speed + turn * settings.separation / 2))
         reach = settings.wheel_acceleration * elapsed
         motion.rims = motion.rims + np.clip(wanted - motion.rims, -reach, reach)
-        speeds = motion.rims[self._sides] * 2 / settings.diameter
+        speeds = motion.rims[self._sides] / self._radii
         self._instance.physics.data.ctrl[self._controls] = speeds
 
     def _odometry(self, now_ns: int, elapsed: float) -> OdometrySample:
         settings, motion = self.settings, self.memory
         angles = self._angles()
-        travel = (angles - motion.angles) * settings.diameter / 2
+        travel = (angles - motion.angles) * self._radii
         motion.angles = angles
         travel = settings.encoder.measure(travel, self.random)
         left, right = travel[self._sides == 0].mean(), travel[self._sides == 1].mean()

@@ -34,8 +34,10 @@ class Settings:
     ----------
     left, right : tuple of str
         Joints of the wheels on each side.
-    separation, diameter : float
+    separation : float
         [m].
+    diameters : tuple of float
+        Of all wheels, or of each pair of them [m].
     torque : float
         Of each wheel [N m].
     wheel_acceleration : float
@@ -59,7 +61,7 @@ class Settings:
     left: tuple[str, ...]
     right: tuple[str, ...]
     separation: float
-    diameter: float
+    diameters: tuple[float, ...]
     torque: float
     period: float
     command_topic: str
@@ -122,7 +124,7 @@ def _read_classic(parameters: Parameters, setting: Setting) -> Settings:
         left=tuple(parameters.scoped(name) for name in left),
         right=tuple(parameters.scoped(name) for name in right),
         separation=_positive(parameters, 0.34, "wheelSeparation", "wheel_separation"),
-        diameter=_positive(parameters, 0.15, "wheelDiameter", "wheel_diameter"),
+        diameters=_diameters(parameters, 0.15, len(left), len(right)),
         torque=_positive(parameters, 5.0, "wheelTorque", "torque", "max_wheel_torque"),
         period=1.0 / rate if rate > 0 else 0.0,
         command_topic=parameters.topic(element.text_of("commandTopic", "command_topic", default="cmd_vel")),
@@ -159,7 +161,7 @@ def _read_skid_steer(parameters: Parameters) -> Settings:
         left=tuple(parameters.scoped(joints[place]) for place in ("leftFront", "leftRear")),
         right=tuple(parameters.scoped(joints[place]) for place in ("rightFront", "rightRear")),
         separation=_positive(parameters, 0.4, "wheelSeparation"),
-        diameter=_positive(parameters, 0.15, "wheelDiameter"),
+        diameters=(_positive(parameters, 0.15, "wheelDiameter"),),
         torque=_positive(parameters, 5.0, "torque"),
         period=1.0 / rate if rate > 0 else 0.0,
         command_topic=parameters.topic(element.text_of("commandTopic", default="cmd_vel")),
@@ -195,7 +197,7 @@ def _read_gz(parameters: Parameters, setting: Setting) -> Settings:
         left=tuple(left),
         right=tuple(right),
         separation=_positive(parameters, 1.0, "wheel_separation"),
-        diameter=2 * _positive(parameters, 0.2, "wheel_radius"),
+        diameters=(2 * _positive(parameters, 0.2, "wheel_radius"),),
         torque=math.inf,
         period=1.0 / rate if rate > 0 else 0.0,
         command_topic=topics["topic"],
@@ -231,6 +233,17 @@ def _encoder(parameters: Parameters) -> EncoderError:
     if noise < 0:
         raise element.error("<encoderNoise> should not be negative")
     return EncoderError(noise, element.number_of("encoderSlip", "encoder_slip", default=0.0))
+
+
+def _diameters(parameters: Parameters, default: float, *wheels: int) -> tuple[float, ...]:
+    """Read the diameter of all wheels, or one for each pair of them as ROS 2's plugin takes it."""
+    first = _positive(parameters, default, "wheelDiameter", "wheel_diameter")
+    diameters = tuple(child.number() for child in parameters.element.all("wheelDiameter", "wheel_diameter"))
+    if len(set(diameters)) < 2:
+        return (first,)
+    if min(diameters) <= 0 or any(count != len(diameters) for count in wheels):
+        raise parameters.element.error("expected one <wheel_diameter>, or one above zero for each pair of wheels")
+    return diameters
 
 
 def _positive(parameters: Parameters, default: float, *tags: str) -> float:

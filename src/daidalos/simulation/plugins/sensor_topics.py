@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from daidalos.simulation.plugins.base import Parameters, SensorPlugin
 from daidalos.simulation.sensors.base import Sensor
 from daidalos.simulation.sensors.contact import ContactSensor
+from daidalos.simulation.sensors.navsat import NavSat
 from daidalos.simulation.topics import frame
 
 
@@ -16,11 +19,16 @@ class NamesTopic(SensorPlugin):
         *("gazebo_ros_magnetometer", "gazebo_ros_altimeter"),
     )
 
+    # Gazebo classic takes x for west and y for south where the heading is 0; worlds for it say 180 to mean none.
+    _CLASSIC_NORTH = 180.0
+
     def configure(self, sensor: Sensor, parameters: Parameters) -> None:
         """Take topic and frame."""
         element = parameters.element
         sensor.topic = parameters.topic(element.text_of("topicName", "topic_name", default="~/out"))
         sensor.frame_id = frame(element.text_of("frameName", "frame_name", "frameId", default=sensor.frame_id))
+        if isinstance(sensor, NavSat) and sensor.origin.heading == self._CLASSIC_NORTH:
+            sensor.origin = replace(sensor.origin, heading=0.0)
 
 
 class Bumper(SensorPlugin):
