@@ -135,6 +135,14 @@ def test_a_reset_may_take_spawned_entities_away(shop):
     assert "crate" not in ask(shop, srv.GetEntities, "get_entities").entities
 
 
+def test_a_whole_reset_is_as_if_the_world_was_loaded_anew(shop):
+    assert ask(shop, srv.DeleteEntity, "delete_entity", entity="shelf").result.result == OK
+    assert spawn(shop, "crate").result.result == OK
+    assert ask(shop, srv.ResetSimulation, "reset_simulation").result.result == OK
+    assert sorted(ask(shop, srv.GetEntities, "get_entities").entities) == ["ground_plane", "shelf"]
+    assert ask(shop, srv.GetEntityState, "get_entity_state", entity="shelf").state.pose.position.x == pytest.approx(2.0)
+
+
 def test_steps_are_an_action(shop):
     client = ActionClient(shop.client, SimulateSteps, "/gazebo/simulate_steps")
     assert client.wait_for_server(5.0)

@@ -181,6 +181,24 @@ class Host:
         for name in sorted(self.spawned):
             self.delete(name)
 
+    def complete_world(self) -> None:
+        """Put back what the world began with and was deleted, to where it came in.
+
+        Raises
+        ------
+        SimulationError
+            When another model has a name of them now.
+        """
+
+        def work(simulation: Simulation) -> None:
+            for name, deleted in list(self._deleted.items()):
+                if not deleted.was_spawned:
+                    simulation.spawn(deleted.model, name, deleted.model.pose, deleted.namespace)
+                    del self._deleted[name]
+            self._changed(simulation)
+
+        self.paced.call(work)
+
     def load_world(self, world: World, path: Path | None = None) -> None:
         """Exchange the world.
 

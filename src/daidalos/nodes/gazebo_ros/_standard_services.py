@@ -236,6 +236,8 @@ class StandardServices:
         scope = request.scope or 255
         if scope & 4:
             self._host.delete_spawned()
+        if scope == 255:
+            self._host.complete_world()
         if scope & 3:
             self._host.paced.call(lambda simulation: simulation.reset(keep_time=not scope & 1))
 

@@ -18,9 +18,11 @@ describe("the simulator", () => {
     const { asked, made } = simulator({ result: { result: 1, error_message: "" } });
     await made.step(10);
     await made.play(false);
+    await made.reset();
     expect(asked).toEqual([
       ["/gazebo/step_simulation", { steps: 10n }],
       ["/gazebo/set_simulation_state", { state: { state: 2 } }],
+      ["/gazebo/reset_simulation", { scope: 3 }], // what was spawned stays
     ]);
     expect(made.isPlaying.value).toBe(false);
   });

@@ -8,6 +8,8 @@ export const SIMULATOR_TYPE = "simulation_interfaces/srv/SetSimulationState";
 const STATE = { stopped: 0, playing: 1, paused: 2 } as const;
 const RESULT_OK = 1;
 const KEEP = 1;
+/** Without the scope of what was spawned: what the user put, and the robot, stay. */
+const [SCOPE_TIME, SCOPE_STATE] = [1, 2] as const;
 
 export interface EntityStates {
   name: string[];
@@ -76,8 +78,9 @@ export class Simulator {
     await this.call("step_simulation", { steps: BigInt(steps) });
   }
 
+  /** Begin anew: time at zero, every model where it came in. */
   async reset(): Promise<void> {
-    await this.call("reset_simulation", { scope: 0 });
+    await this.call("reset_simulation", { scope: SCOPE_TIME | SCOPE_STATE });
   }
 
   async insert(shape: string, at: Vector3, size: number, mass: number, color: ColorRGBA): Promise<string> {
