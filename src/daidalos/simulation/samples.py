@@ -404,6 +404,13 @@ class SignalCommand:
     """That something should happen now."""
 
 
+@dataclass(frozen=True)
+class FlagCommand:
+    """Whether something should be so."""
+
+    value: bool = False
+
+
 @dataclass(frozen=True, eq=False)
 class NumberCommand:
     """A wanted position, speed or effort of one joint."""

@@ -6,6 +6,7 @@ from daidalos.description import urdf
 from daidalos.description.errors import DescriptionError
 from daidalos.simulation import Simulation
 from daidalos.simulation.plugins.ros2_control import Ros2Control
+from daidalos.simulation.samples import FlagCommand, ImageSample, SignalCommand
 from simulation.models import box, world
 from simulation.plugins.vehicles import four_wheels
 
@@ -410,6 +411,25 @@ def test_what_the_simulator_does_by_itself_needs_no_plugin(name):
     names = [f"gz-sim-{kebab}-system", f"ignition::gazebo::systems::{name}"]
     plugins = "".join(plugin(file, "<engine><filename>any</filename></engine>") for file in names)
     simulation = Simulation(world(plugins, box("b", extra="").replace("</model>", f"{plugins}</model>")))
+    assert not simulation.warnings
+
+
+@pytest.mark.parametrize(
+    ("camera", "plugin_inside", "topic", "command"),
+    [
+        ("", "<camera_name>eye</camera_name><triggered>true</triggered>", "/eye/image_trigger", SignalCommand()),
+        ("<triggered>true</triggered><trigger_topic>look</trigger_topic>", "", "/look", FlagCommand(True)),
+    ],
+)
+def test_a_triggered_camera_looks_when_it_is_told(camera, plugin_inside, topic, command):
+    inside = CAMERA.replace("</camera>", f"{camera}</camera>")
+    inside += plugin("libgazebo_ros_camera.so", plugin_inside) if plugin_inside else ""
+    sensor = f"<sensor name='s' type='camera'><update_rate>10</update_rate>{inside}</sensor>"
+    simulation = Simulation(world(box("b", extra=sensor)))
+    assert not simulation.advance(500_000_000)
+    assert simulation.command(topic, command) == 1
+    samples = simulation.advance(500_000_000)
+    assert [sample.stamp_ns for sample in samples if isinstance(sample, ImageSample)] == [600_000_000]
     assert not simulation.warnings
 
 

@@ -150,6 +150,7 @@ INCOMING: dict[type, Incoming] = {
     samples.TwistCommand: Incoming(named("geometry_msgs", "Twist"), _twist),
     samples.WrenchCommand: Incoming(named("geometry_msgs", "Wrench"), _wrench),
     samples.SignalCommand: Incoming(named("std_msgs", "Empty"), lambda message: samples.SignalCommand()),
+    samples.FlagCommand: Incoming(named("std_msgs", "Bool"), lambda message: samples.FlagCommand(message.data)),
     samples.NumberCommand: Incoming(named("std_msgs", "Float64"), _number),
     samples.TrajectoryCommand: Incoming(_trajectory_type, trajectory_of),
 }

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from daidalos.description.markup import Element
 from daidalos.simulation.plugins.base import Parameters, SensorPlugin
+from daidalos.simulation.samples import SignalCommand
 from daidalos.simulation.sensors.base import Sensor
 from daidalos.simulation.sensors.camera import Camera, Lens
 from daidalos.simulation.topics import frame
@@ -22,7 +23,7 @@ class CameraOfSensor(SensorPlugin):
     )
     unused = (
         *("CxPrime", "Cx", "Cy", "focalLength", "autoDistortion", "auto_distortion", "borderCrop", "border_crop"),
-        *("pollServiceName", "triggerTopicName", "triggered"),
+        "pollServiceName",
     )
 
     def configure(self, sensor: Sensor, parameters: Parameters) -> None:
@@ -45,6 +46,9 @@ class CameraOfSensor(SensorPlugin):
             # Of several eyes the first is the one that the others' distances are told from.
             if lens is not sensor.lenses[0] or len(sensor.lenses) == 1:
                 lens.baseline = element.number_of("hackBaseline", "hack_baseline", default=0.0) or lens.baseline
+        if element.flag_of("triggered", default="triggered" in parameters.library):
+            topic = element.text_of("triggerTopicName", default="image_trigger")
+            sensor.trigger = parameters.topic(_remapped(parameters, [name], topic)), SignalCommand
 
 
 _ROS1 = ("imageTopicName", "cameraInfoTopicName", "cameraName", "frameName", "depthImageTopicName")

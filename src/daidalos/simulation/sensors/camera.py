@@ -11,9 +11,16 @@ from numpy.typing import NDArray
 
 from daidalos.description.link import Sensor as Description
 from daidalos.description.markup import Element
-from daidalos.simulation.component import Setting
+from daidalos.simulation.component import Setting, Subscription
 from daidalos.simulation.rendering.pool import Pool
-from daidalos.simulation.samples import CameraInfoSample, ImageSample, PointCloudSample, Sample
+from daidalos.simulation.samples import (
+    CameraInfoSample,
+    FlagCommand,
+    ImageSample,
+    PointCloudSample,
+    Sample,
+    SignalCommand,
+)
 from daidalos.simulation.sensors.base import Sensor
 from daidalos.simulation.sensors.camera_settings import CameraSettings, read_camera
 from daidalos.simulation.topics import absolute_topic
@@ -64,13 +71,24 @@ class Lens:
         return {topic: kind for topic, kind in topics.items() if topic}
 
 
+@dataclass
+class Trigger:
+    """Whether a camera was told to look."""
+
+    due: bool = False
+
+
 class Camera(Sensor):
     """A camera of one or several eyes, drawn by the software renderer.
 
     Attributes
     ----------
     lenses : list of Lens
+    trigger : tuple of (str, type) or None
+        The topic, and the class of its commands, that makes it look; None where it looks by itself.
     """
+
+    memory: Trigger
 
     types = (
         *("camera", "depth", "depth_camera", "rgbd", "rgbd_camera", "multicamera"),
@@ -89,20 +107,35 @@ class Camera(Sensor):
             # To the right of the first eye, as a stereo pair's projection matrices tell it.
             lens.baseline = -(self.lenses[0].settings.pose.inverse @ lens.settings.pose).position[1]
         self._eyes: list[Eye] = []
+        first = self.lenses[0].settings
+        trigger = absolute_topic(first.trigger_topic or f"{self.topic}/trigger", setting.namespace)
+        self.trigger: tuple[str, type] | None = (trigger, FlagCommand) if first.triggered else None
 
     @property
     def publications(self) -> Mapping[str, type[Sample]]:
         """Images, calibrations and points of all eyes."""
         return {topic: kind for lens in self.lenses for topic, kind in lens.topics().items()}
 
-    def start(self) -> None:
+    @property
+    def subscriptions(self) -> Mapping[str, Subscription]:
+        """What makes it look, where it does not look by itself."""
+        return {self.trigger[0]: Subscription(self.trigger[1], self._pull_trigger)} if self.trigger else {}
+
+    def _pull_trigger(self, command: FlagCommand | SignalCommand) -> None:
+        self.memory.due = isinstance(command, SignalCommand) or command.value
+
+    def start(self) -> Trigger:
         """Make the eyes anew, so that a plugin may have changed their settings."""
         self._eyes = []
         self._pool = Pool()
         self._rays: dict[int, NDArray[np.float32]] = {}
+        return Trigger()
 
     def update(self, now_ns: int) -> Iterable[Sample]:
         """Look with the eyes that somebody listens to."""
+        if self.trigger and not self.memory.due:
+            return
+        self.memory.due = False
         heard = self.instance.heard
         for number, lens in enumerate(self.lenses):
             wanted = {topic for topic in lens.topics() if heard(topic)}

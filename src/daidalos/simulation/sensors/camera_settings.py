@@ -58,7 +58,7 @@ class CameraSettings:
         A segmentation camera tells instances apart.
     tx, ty : float
         Of the projection matrix.
-    topic, info_topic, optical_frame : str
+    topic, info_topic, trigger_topic, optical_frame : str
         Empty where the description leaves them out.
     """
 
@@ -79,6 +79,8 @@ class CameraSettings:
     ty: float = 0.0
     topic: str = ""
     info_topic: str = ""
+    trigger_topic: str = ""
+    triggered: bool = False
     optical_frame: str = ""
 
 
@@ -116,6 +118,8 @@ def read_camera(element: Element) -> CameraSettings:
         ty=projection.number_of("ty", default=0.0),
         topic=element.text_of("topic"),
         info_topic=element.text_of("camera_info_topic"),
+        trigger_topic=element.text_of("trigger_topic"),
+        triggered=element.flag_of("triggered", default=False),
         optical_frame=element.text_of("optical_frame_id"),
     )
 
