@@ -49,13 +49,6 @@ class Library:
                 return [f"{package}/{path.suffix[1:]}/{path.stem}" for path in found]
         return []
 
-    def path_of_package(self, package: str) -> Path | None:
-        """Return the folder of a package that defines interfaces, None when there is none."""
-        for share in self._shares:
-            if any((share / package / kind).is_dir() for kind in KINDS):
-                return share / package
-        return None
-
     def path(self, name: str) -> Path:
         """Return the file that defines ``package/kind/Name``.
 

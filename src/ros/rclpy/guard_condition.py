@@ -30,7 +30,6 @@ class GuardCondition:
         self.__handle = GuardConditionHandle(context.handle, self._rcl_hook)
         self.callback = callback
         self.callback_group = callback_group
-        self._executor_event = False
 
     def trigger(self) -> None:
         """Have the callback run.

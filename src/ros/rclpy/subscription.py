@@ -61,7 +61,6 @@ class Subscription:
         self.topic = topic
         self.callback = callback
         self.callback_group = callback_group
-        self._executor_event = False
         self.qos_profile = qos_profile
         self.raw = raw
         self._take_one = self._impl.take_raw if raw else self._impl.take

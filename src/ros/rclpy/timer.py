@@ -64,7 +64,6 @@ class Timer:
         self.timer_period_ns = timer_period_ns
         self.callback = callback
         self.callback_group = callback_group
-        self._executor_event = False
 
     @property
     def handle(self) -> TimerHandle:

@@ -70,7 +70,6 @@ class Waitable:
     def __init__(self, callback_group: CallbackGroup) -> None:
         self.callback_group = callback_group
         self.callback_group.add_entity(self)
-        self._executor_event = False
         self._futures: list[Future] = []
         self._rcl_node: Any = None
 

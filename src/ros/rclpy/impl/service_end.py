@@ -30,7 +30,6 @@ class ServiceEnd:
         self.srv_name = srv_name
         self.qos_profile = qos_profile
         self.callback_group = callback_group
-        self._executor_event = False
 
     @property
     def handle(self) -> Any:

@@ -146,13 +146,6 @@ class Partner:
         for number in numbers:
             publisher.publish(String(data=str(number)))
 
-    def subscribed(self, topic: str) -> None:
-        """Wait until somebody else has subscribed to a topic."""
-        graph = self.node.handle.graph
-        assert graph.wait_for(
-            lambda: any(one.kind.value == "subscription" for one in graph.endpoints(name=topic)), PATIENCE_S
-        )
-
 
 @pytest.fixture
 def partner(env: dict[str, str]) -> Iterator[Partner]:
