@@ -457,6 +457,7 @@ def test_a_parameter_that_nobody_reads_is_named_once():
         ("libgazebo_ros_p3d.so", "<body_name>nose</body_name>", "'nose', expected one of the links chassis"),
         ("libgazebo_ros_p3d.so", "<xyz_offset>1 2</xyz_offset>", "<xyz_offset>: .* 3 numbers"),
         ("libgazebo_ros_ft_sensor.so", "<joint_name>nose</joint_name>", "'nose', expected one of the joints"),
+        ("libgazebo_ros_ft_sensor.so", "<body_name>chassis</body_name>", "'chassis', expected a link that hangs"),
         ("libgazebo_ros_ackermann_drive.so", STEER, "there is no joint ''"),
         ("libgazebo_ros_planar_move.so", "<publish_odom>perhaps</publish_odom>", "<publish_odom>: .*'perhaps'"),
         ("libhector_gazebo_ros_imu.so", "<rateOffset>1 2</rateOffset>", "<rateOffset>: .* 3 numbers"),

@@ -168,9 +168,10 @@ def test_the_other_direction_is_the_opposite():
     assert sample.force == pytest.approx([0, 0, 2 * 9.8], abs=0.05)
 
 
-def test_the_plugin_of_a_joint_measures_what_the_joint_does_to_its_child():
+@pytest.mark.parametrize("place", ["<joint_name>j</joint_name>", "<body_name>arm</body_name>"])
+def test_the_plugin_of_a_joint_measures_what_the_joint_does_to_its_child(place):
     plugin = (
-        "<plugin name='ft' filename='libgazebo_ros_ft_sensor.so'><joint_name>j</joint_name>"
+        f"<plugin name='ft' filename='libgazebo_ros_ft_sensor.so'>{place}"
         "<update_rate>100</update_rate><ros><remapping>wrench:=ft</remapping></ros></plugin>"
     )
     sample = last(Simulation(arm(plugin=plugin)), WrenchSample, SECOND)

@@ -15,7 +15,7 @@ from daidalos.simulation.topics import frame
 
 
 class ForceTorqueOfJoint(Plugin):
-    """``libgazebo_ros_ft_sensor.so``: what a joint carries, on ``wrench``."""
+    """``libgazebo_ros_ft_sensor.so``: what a joint carries, or the joint of a link, on ``wrench``."""
 
     names = ("gazebo_ros_ft_sensor",)
 
@@ -24,10 +24,7 @@ class ForceTorqueOfJoint(Plugin):
         """Make the sensor itself."""
         parameters = Parameters(description, setting)
         element = description.element
-        joint = parameters.scoped(element.text_of("jointName", "joint_name"))
-        if joint not in setting.model.joints:
-            known = ", ".join(setting.model.joints) or "none"
-            raise element.error(f"<joint_name> is {joint!r}, expected one of the joints {known}")
+        joint = _joint(parameters, setting)
         child = setting.model.joints[joint].child
         rate = element.number_of("updateRate", "update_rate", default=0.0)
         source = Element("sensor", {"name": description.name}, source=element.source, line=element.line)
@@ -41,3 +38,19 @@ class ForceTorqueOfJoint(Plugin):
         if stddev > 0:
             sensor.set_noise(Noise(stddev=stddev))
         return (sensor,)
+
+
+def _joint(parameters: Parameters, setting: Setting) -> str:
+    """Return the joint that is named, or the one that holds the link that is."""
+    element, joints = parameters.element, setting.model.joints
+    named = parameters.scoped(element.text_of("jointName", "joint_name"))
+    body = parameters.scoped(element.text_of("bodyName", "body_name"))
+    if named in joints:
+        return named
+    if named or not body:
+        known = ", ".join(joints) or "none"
+        raise element.error(f"<joint_name> is {named!r}, expected one of the joints {known}")
+    above = next((joint.name for joint in joints.values() if joint.child == body), "")
+    if not above:
+        raise element.error(f"<body_name> is {body!r}, expected a link that hangs on a joint")
+    return above
