@@ -38,6 +38,20 @@ def test_files_say_types_and_parameters(graph: Context, tmp_path: Path, monkeypa
         assert one.states() == {}
 
 
+def test_parameters_of_a_launch_file_and_ros_arguments_reach_the_controller(
+    graph: Context,  # noqa: F811
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    file = parameter_file(tmp_path, "it", type=FORWARD, joints=["elbow"], interface_name="position")
+    given = ("-r nothing:=much", "--ros-args -r ~/commands:=/bend")
+    words = [word for each in given for word in ("--controller-ros-args", each)]
+    with rig() as one:
+        spawn(one, monkeypatch, "it", *words, "--ros-args", "-r", "__node:=s", "--params-file", file)
+        assert one.states() == {"it": "active"}
+        assert one.user.count_subscribers("/bend") == 1
+
+
 def test_chains_start_as_a_group(graph: Context, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: F811
     top = parameter_file(tmp_path, "top", type=FORWARD, joints=["low/elbow"], interface_name="position")
     low = parameter_file(tmp_path, "low", type=FORWARD, joints=["elbow"], interface_name="position")

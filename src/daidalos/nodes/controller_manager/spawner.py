@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import argparse
 import sys
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
-from rclpy.utilities import remove_ros_args
+from rclpy.impl.arguments import split_ros_args
 
 from daidalos.nodes.controller_manager._client import ManagerClient, add_manager_arguments
 from daidalos.nodes.runner import UserError, run_program
@@ -32,12 +33,20 @@ def _arguments() -> argparse.Namespace:
     parser.add_argument("--activate-as-group", action="store_true", help="start all of them at once: for chains")
     parser.add_argument("--switch-asap", action=argparse.BooleanOptionalAction, default=True, help=argparse.SUPPRESS)
     parser.add_argument(
-        "--controller-ros-args", default="", metavar="ARGS", help="ROS arguments for the controllers' nodes"
+        "--controller-ros-args",
+        action="append",
+        default=[],
+        metavar="ARGS",
+        help="ROS arguments for the controllers' nodes; it may be given several times",
     )
     parser.add_argument(
         "-u", "--unload-on-kill", action="store_true", help="wait for Ctrl-C, then stop and unload them"
     )
-    return parser.parse_args(remove_ros_args(sys.argv)[1:])
+    words, rest = split_ros_args(sys.argv[1:])
+    arguments = parser.parse_args(rest)
+    # What a launch file gives the spawner as parameters is meant for the controllers.
+    arguments.param_file += [file for flag, file in pairwise(words) if flag == "--params-file"]
+    return arguments
 
 
 def _type_in(files: list[str], name: str, namespace: str) -> str:
@@ -74,8 +83,8 @@ def _load(manager: ManagerClient, arguments: argparse.Namespace, name: str, name
     if files:
         manager.set_parameter(f"{name}.params_file", files)
     if arguments.controller_ros_args:
-        words = [word for word in arguments.controller_ros_args.split() if word != "--ros-args"]
-        manager.set_parameter(f"{name}.node_options_args", words)
+        words = [word for given in arguments.controller_ros_args for word in given.split()]
+        manager.set_parameter(f"{name}.node_options_args", [word for word in words if word != "--ros-args"])
     if not manager.ask(LoadController, "load_controller", name=name).ok:
         raise UserError(f"loading controller '{name}' failed; see the controller manager's log")
 
