@@ -11,6 +11,7 @@ from pathlib import Path
 
 from daidalos.bags.compression import FILE, FORMATS, MESSAGE, decompress_file
 from daidalos.bags.errors import BagError
+from daidalos.bags.formats import open_reader, open_writer, storage_of
 from daidalos.bags.message import BagMessage
 from daidalos.bags.metadata import BagFile, BagMetadata, TopicCount, parse_metadata, total, write_metadata
 from daidalos.bags.storage import (
@@ -21,9 +22,6 @@ from daidalos.bags.storage import (
     ZSTD_SUFFIX,
     StorageOptions,
     StorageReader,
-    open_reader,
-    open_writer,
-    storage_of,
 )
 
 

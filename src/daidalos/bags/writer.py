@@ -12,9 +12,10 @@ from typing import Self
 
 from daidalos.bags.compression import FILE, MESSAGE, Compression, compress_file, message_compressor
 from daidalos.bags.errors import BagError
+from daidalos.bags.formats import open_writer
 from daidalos.bags.message import BagMessage, Topic
 from daidalos.bags.metadata import BagFile, BagMetadata, TopicCount, format_metadata, total, write_metadata
-from daidalos.bags.storage import DEFAULT, SUFFIXES, StorageOptions, StorageWriter, open_writer
+from daidalos.bags.storage import DEFAULT, SUFFIXES, StorageOptions, StorageWriter
 
 _DISTRO = "jazzy"
 """The distribution whose formats are written."""
