@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable
 from typing import Any
 
 from daidalos.cli.ros2 import graph as graphs
-from daidalos.cli.ros2.direct import direct_node, graph_view
+from daidalos.cli.ros2.direct import graph_view
 from daidalos.transport.graph import Graph
 
 Completer = Callable[..., Iterable[str]]
@@ -93,18 +93,6 @@ def complete_executables(action: Action, package_key: str = "package_name") -> A
         from daidalos.nodes.executables import executables
 
         return executables(getattr(parsed_args, package_key))
-
-    return complete(action, names)
-
-
-def complete_parameters(action: Action, node_key: str = "node_name") -> Action:
-    """Complete to the parameters of the node that another argument names."""
-
-    def names(parsed_args: Namespace, **_: Any) -> list[str]:
-        from daidalos.cli.ros2.parameters import list_parameters
-
-        with direct_node(parsed_args) as node:
-            return list_parameters(node, graphs.absolute(getattr(parsed_args, node_key)))
 
     return complete(action, names)
 

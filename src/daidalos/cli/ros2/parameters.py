@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import sys
-from argparse import ArgumentParser, Namespace
+from argparse import Action, ArgumentParser, Namespace
 from typing import TYPE_CHECKING, Any
 
-from daidalos.cli.ros2.completion import complete_nodes
+from daidalos.cli.ros2.completion import complete, complete_nodes
+from daidalos.cli.ros2.direct import direct_node
 from daidalos.cli.ros2.errors import CliError
 from daidalos.cli.ros2.graph import absolute, nodes
 from daidalos.cli.ros2.services import call
@@ -26,6 +27,16 @@ def add_node_arguments(parser: ArgumentParser, **options: Any) -> None:
     """Declare which node is meant."""
     complete_nodes(parser.add_argument("node_name", help="Name of the ROS node", **options))
     parser.add_argument("--include-hidden-nodes", action="store_true", help="Consider hidden nodes as well")
+
+
+def complete_parameters(action: Action, node_key: str = "node_name") -> Action:
+    """Complete to the parameters of the node that another argument names."""
+
+    def names(parsed_args: Namespace, **_: Any) -> list[str]:
+        with direct_node(parsed_args) as node:
+            return list_parameters(node, absolute(getattr(parsed_args, node_key)))
+
+    return complete(action, names)
 
 
 def add_timeout_argument(parser: ArgumentParser) -> None:

@@ -2,55 +2,16 @@
 
 from __future__ import annotations
 
-import keyword
-import re
 from collections.abc import Iterator
-from dataclasses import dataclass
 
+from daidalos.cli.ros2.new_package.package import Entry, NewPackage
 
-@dataclass(frozen=True)
-class NewPackage:
-    """What is to be created; `build_type` is ``ament_python``, ``ament_cmake`` or ``cmake``."""
-
-    name: str
-    package_format: int
-    description: str
-    maintainer_name: str
-    maintainer_email: str
-    license: str
-    build_type: str
-    dependencies: tuple[str, ...] = ()
-    node_name: str | None = None
-    library_name: str | None = None
-
-    def fault(self) -> str | None:
-        """Return what is wrong with the names, None when they can be used."""
-        if not re.fullmatch(r"[a-zA-Z][a-zA-Z0-9_-]*", self.name):
-            return (
-                f"'{self.name}' is not a valid package name: it must begin with a letter and consist of letters, "
-                "digits, '_' and '-'"
-            )
-        if self.build_type == "ament_python" and not (self.name.isidentifier() and not keyword.iskeyword(self.name)):
-            return f"'{self.name}' is not a valid name of a Python package"
-        if self.build_type == "ament_python" and self.name == "test":
-            return "a package of type 'ament_python' can not be named 'test', as the folder of its tests is"
-        for what, name in (("node", self.node_name), ("library", self.library_name)):
-            if name and not re.fullmatch(r"[a-zA-Z_]\w*", name):
-                return f"'{name}' is not a valid {what} name: it must consist of letters, digits and '_'"
-        return None
-
-
-@dataclass(frozen=True)
-class Entry:
-    """A file, or a folder where `text` is None; `note` is said before it is made."""
-
-    path: str
-    text: str | None = None
-    note: str = ""
+__all__ = ["Entry", "NewPackage", "files_of"]
 
 
 def files_of(package: NewPackage) -> Iterator[Entry]:
     """Yield the files and folders of a package in the order in which they are made."""
+    # Every command loads this module, and few write XML.
     from daidalos.cli.ros2.new_package import cmake, python
     from daidalos.cli.ros2.new_package.manifest import package_xml
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from xml.sax.saxutils import escape, quoteattr
 
-from daidalos.cli.ros2.new_package import NewPackage
+from daidalos.cli.ros2.new_package.package import NewPackage
 
 _TEST_DEPENDENCIES = {
     "ament_python": ("ament_copyright", "ament_flake8", "ament_pep257", "python3-pytest"),

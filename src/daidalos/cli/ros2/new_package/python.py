@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from daidalos.cli.ros2.new_package import Entry, NewPackage
+from daidalos.cli.ros2.new_package.package import Entry, NewPackage
 
 
 def files(package: NewPackage) -> Iterator[Entry]:

@@ -4,11 +4,17 @@ from __future__ import annotations
 
 from argparse import ArgumentParser, Namespace
 
-from daidalos.cli.ros2.completion import complete_parameters
 from daidalos.cli.ros2.direct import add_graph_arguments, direct_node
 from daidalos.cli.ros2.errors import CliError
 from daidalos.cli.ros2.extension import Status, Verb
-from daidalos.cli.ros2.parameters import add_node_arguments, add_timeout_argument, find_node, get_parameters, suggest
+from daidalos.cli.ros2.parameters import (
+    add_node_arguments,
+    add_timeout_argument,
+    complete_parameters,
+    find_node,
+    get_parameters,
+    suggest,
+)
 
 _LABELS = (
     "Parameter not set.", "Boolean value is:", "Integer value is:", "Double value is:", "String value is:",

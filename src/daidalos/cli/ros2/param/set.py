@@ -5,7 +5,6 @@ from __future__ import annotations
 import sys
 from argparse import ArgumentParser, Namespace
 
-from daidalos.cli.ros2.completion import complete_parameters
 from daidalos.cli.ros2.direct import add_graph_arguments, direct_node
 from daidalos.cli.ros2.errors import CliError
 from daidalos.cli.ros2.extension import Status, Verb
@@ -13,6 +12,7 @@ from daidalos.cli.ros2.interfaces import parse_yaml
 from daidalos.cli.ros2.parameters import (
     add_node_arguments,
     add_timeout_argument,
+    complete_parameters,
     find_node,
     report,
     set_parameters,
