@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import replace
 
-import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
@@ -15,6 +14,7 @@ from daidalos.simulation.component import Component, Setting
 from daidalos.simulation.conversion.contact import MAX_FRICTION, friction_of, set_friction
 from daidalos.simulation.conversion.model_build import ModelBuild
 from daidalos.simulation.instance import Instance
+from daidalos.simulation.last_step import cross, velocities
 from daidalos.simulation.samples import Sample
 
 Array = NDArray[np.float64]
@@ -76,7 +76,7 @@ class DirectionalFriction(Component):
         points, normals, loads = self._touching()
         grips = self._grips(points, normals, loads)
         arms = points - physics.data.xipos[self._bodies]
-        torques = _cross(arms, grips)
+        torques = cross(arms, grips)
         for row, key in enumerate(self._keys):
             if loads[row] > 0:
                 physics.forces.hold(key, int(self._bodies[row]), grips[row], torques[row])
@@ -103,14 +103,12 @@ class DirectionalFriction(Component):
         """Return the forces (n, 3) against the slip at contacts."""
         model, data = self._instance.physics.model, self._instance.physics.data
         directions = np.einsum("nij,nj->ni", data.xmat[self._frames].reshape(-1, 3, 3), self._directions)
-        directions = np.where(self._turned[:, None], _cross(normals, directions), directions)
+        directions = np.where(self._turned[:, None], cross(normals, directions), directions)
         directions -= np.sum(directions * normals, axis=1)[:, None] * normals
         directions /= np.maximum(np.linalg.norm(directions, axis=1), 1e-9)[:, None]
         arms = points - data.xpos[self._bodies]
-        motions = np.zeros((len(arms), 6))
-        for row, body in enumerate(self._bodies):
-            mujoco.mj_objectVelocity(model, data, mujoco.mjtObj.mjOBJ_XBODY, body, motions[row], 0)
-        slips = np.sum((motions[:, 3:] + _cross(motions[:, :3], arms)) * directions, axis=1)
+        linear, angular = velocities(self._instance.physics, self._bodies)
+        slips = np.sum((linear + cross(angular, arms)) * directions, axis=1)
         masses = 1 / (self._share + np.sum(arms * arms, axis=1) / self._moments)
         most = self._friction * loads
         grips: Array = directions * np.clip(-0.5 * masses / model.opt.timestep * slips, -most, most)[:, None]
@@ -141,9 +139,3 @@ def _pair(surface: Surface) -> tuple[float, float]:
     """Return the coefficients along the direction and across it."""
     along, across = (friction_of(replace(surface, mu=value, mu2=value)) for value in (surface.mu, surface.mu2))
     return min(along, MAX_FRICTION), min(across, MAX_FRICTION)
-
-
-def _cross(first: Array, second: Array) -> Array:
-    """Return the cross products (n, 3) of rows; numpy's own is slow for a few."""
-    (a, b, c), (x, y, z) = first.T, second.T
-    return np.stack((b * z - c * y, c * x - a * z, a * y - b * x), axis=1)

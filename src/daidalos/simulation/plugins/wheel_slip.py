@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
@@ -17,7 +16,8 @@ from daidalos.description.pose import rotate
 from daidalos.simulation.component import Setting
 from daidalos.simulation.conversion.contact import DEFAULT_FRICTION, set_friction
 from daidalos.simulation.conversion.model_build import ModelBuild
-from daidalos.simulation.instance import Instance, JointView, LinkView
+from daidalos.simulation.instance import Instance
+from daidalos.simulation.last_step import cross, velocities
 from daidalos.simulation.plugins.base import Plugin
 from daidalos.simulation.samples import Sample, WheelSlipSample
 
@@ -83,16 +83,18 @@ class WheelSlip(Plugin):
     def bind(self, instance: Instance) -> None:
         """Find the wheels, and how stiff their grip may be."""
         self._instance = instance
-        self._views: list[tuple[Wheel, LinkView, JointView]] = [
-            (wheel, instance.link(wheel.link), instance.joint(wheel.joint)) for wheel in self.wheels
-        ]
-        model = instance.physics.model
-        mass = float(model.body_subtreemass[model.body_rootid[self._views[0][1].body]]) if self._views else 0.0
-        self._limits = []
-        for wheel, link, joint in self._views:
-            moment = float(model.dof_armature[joint.dof] + model.body_inertia[link.body].max())
-            share = 1 / (len(self._views) / mass + wheel.radius**2 / moment)
-            self._limits.append(0.5 * share / model.opt.timestep)
+        model, wheels = instance.physics.model, self.wheels
+        self._bodies = np.array([instance.link(wheel.link).body for wheel in wheels], dtype=np.intp)
+        self._dofs = np.array([instance.joint(wheel.joint).dof for wheel in wheels], dtype=np.intp)
+        joints = [instance.model.joints[wheel.joint] for wheel in wheels]
+        axes = [rotate(joint.anchor.orientation, joint.axis.xyz) for joint in joints]
+        self._axes = np.array(axes).reshape(-1, 3)
+        self._radii = np.array([wheel.radius for wheel in wheels])
+        self._compliances = np.array([(w.lateral / w.normal_force, w.longitudinal / w.normal_force) for w in wheels])
+        self._most = np.array([wheel.friction * wheel.normal_force for wheel in wheels])
+        moments = model.dof_armature[self._dofs] + model.body_inertia[self._bodies].max(axis=1)
+        masses = model.body_subtreemass[model.body_rootid[self._bodies]]
+        self._limits = 0.5 / (len(wheels) / masses + self._radii**2 / moments) / model.opt.timestep
 
     def start(self) -> int:
         """Report at once."""
@@ -100,43 +102,50 @@ class WheelSlip(Plugin):
 
     def update(self, now_ns: int) -> Iterable[Sample]:
         """Hold each wheel that touches against its slip."""
-        touching = self._touching()
-        shares = np.zeros((len(self._views), 2))
-        for row, (wheel, link, joint) in enumerate(self._views):
-            if link.body in touching:
-                slip = self._grip(wheel, link, joint, self._limits[row])
-                shares[row] = _shares(slip, joint.velocity * wheel.radius, link)
+        if not self.wheels:
+            return
+        physics = self._instance.physics
+        touching = np.isin(self._bodies, physics.model.geom_bodyid[physics.data.contact.geom.ravel()])
+        linear, angular = velocities(physics, self._bodies)
+        slips, ahead = self._slips(linear, angular)
+        rims = physics.data.qvel[self._dofs] * self._radii
+        grips = self._grips(slips, rims)
+        forces = grips[:, :1] * _left_of(ahead) + grips[:, 1:] * ahead
+        arms = physics.data.xpos[self._bodies] + self._below - physics.data.xipos[self._bodies]
+        torques = cross(arms, forces)
+        for row, wheel in enumerate(self.wheels):
+            key = f"{self._key}/{wheel.link}"
+            if touching[row]:
+                physics.forces.hold(key, int(self._bodies[row]), forces[row], torques[row])
             else:
-                self._instance.physics.forces.release(f"{self._key}/{wheel.link}")
+                physics.forces.release(key)
         if now_ns >= self.memory:
             self.memory = now_ns + 100_000_000
             names = tuple(wheel.link for wheel in self.wheels)
+            shares = np.where(touching[:, None], _shares(slips, rims, linear), 0.0)
             yield WheelSlipSample(now_ns, self.topic, "", names, shares[:, 0], shares[:, 1])
 
-    def _grip(self, wheel: Wheel, link: LinkView, joint: JointView, limit: float) -> Array:
-        """Push against a wheel's slip; return its slip speeds to the side and ahead."""
-        data = self._instance.physics.data
-        linear, angular = link.velocity()
-        below = np.array((0.0, 0.0, -wheel.radius))
-        patch = linear + np.cross(angular, below)
-        axis = np.array(rotate(link.pose.orientation, self.setting.model.joints[wheel.joint].axis.xyz))
-        ahead = np.cross(axis, _UP)
-        ahead /= max(float(np.linalg.norm(ahead)), 1e-9)
-        slips = np.array((float(patch @ np.cross(_UP, ahead)), float(patch @ ahead)))
-        rim = abs(joint.velocity) * wheel.radius
-        compliances = np.array((wheel.lateral, wheel.longitudinal)) * max(rim, 1e-3) / wheel.normal_force
-        grips = -slips * np.minimum(1 / np.maximum(compliances, 1e-9), limit)
-        most = wheel.friction * wheel.normal_force
-        grips *= min(1.0, most / max(float(np.linalg.norm(grips)), 1e-9))
-        force = grips[0] * np.cross(_UP, ahead) + grips[1] * ahead
-        arm = np.array(link.pose.position) + below - data.xipos[link.body]
-        self._instance.physics.forces.hold(f"{self._key}/{wheel.link}", link.body, force, np.cross(arm, force))
-        return slips
+    @property
+    def _below(self) -> Array:
+        """From each wheel's middle to the ground (n, 3)."""
+        return np.outer(-self._radii, _UP)
 
-    def _touching(self) -> set[int]:
-        physics = self._instance.physics
-        physics.refresh_positions()
-        return set(physics.model.geom_bodyid[physics.data.contact.geom.ravel()].tolist())
+    def _slips(self, linear: Array, angular: Array) -> tuple[Array, Array]:
+        """Return each contact's speeds (n, 2) to the left and ahead, and where ahead is (n, 3)."""
+        turns = self._instance.physics.data.xmat[self._bodies].reshape(-1, 3, 3)
+        axes = np.einsum("nij,nj->ni", turns, self._axes)
+        ahead = cross(axes, np.tile(_UP, (len(axes), 1)))
+        ahead /= np.maximum(np.linalg.norm(ahead, axis=1), 1e-9)[:, None]
+        patches = linear + cross(angular, self._below)
+        return np.stack([np.sum(patches * way, axis=1) for way in (_left_of(ahead), ahead)], axis=1), ahead
+
+    def _grips(self, slips: Array, rims: Array) -> Array:
+        """Return the forces (n, 2) to the left and ahead that hold the contacts."""
+        compliances = self._compliances * np.maximum(np.abs(rims), 1e-3)[:, None]
+        grips = -slips * np.minimum(1 / np.maximum(compliances, 1e-9), self._limits[:, None])
+        scale = np.minimum(1.0, self._most / np.maximum(np.linalg.norm(grips, axis=1), 1e-9))
+        held: Array = grips * scale[:, None]
+        return held
 
     def _wheel(self, element: Element) -> Wheel:
         model = self.setting.model
@@ -159,11 +168,18 @@ class WheelSlip(Plugin):
         )
 
 
-def _shares(slip: Array, rim: float, link: LinkView) -> Array:
-    """Return the angle between where a wheel points and where it goes, and its slip as a share of its speed."""
-    speed = float(np.linalg.norm(link.velocity()[0]))
-    angle = math.asin(min(max(float(slip[0]) / speed, -1.0), 1.0)) if speed > 1e-3 else 0.0
-    return np.array((angle, abs(float(slip[1])) / abs(rim) if abs(rim) > 1e-3 else 0.0))
+def _left_of(ahead: Array) -> Array:
+    """Return what is to the left of directions (n, 3) in the plane."""
+    return np.stack((-ahead[:, 1], ahead[:, 0], np.zeros(len(ahead))), axis=1)
+
+
+def _shares(slips: Array, rims: Array, linear: Array) -> Array:
+    """Return (n, 2): the angle between where a wheel points and where it goes, and its slip as a share of its speed."""
+    speeds = np.linalg.norm(linear, axis=1)
+    angles = np.arcsin(np.clip(slips[:, 0] / np.maximum(speeds, 1e-3), -1.0, 1.0))
+    moving, turning = speeds > 1e-3, np.abs(rims) > 1e-3
+    shares = np.abs(slips[:, 1]) / np.maximum(np.abs(rims), 1e-3)
+    return np.stack((np.where(moving, angles, 0.0), np.where(turning, shares, 0.0)), axis=1)
 
 
 def _radius(link: Link, element: Element) -> float:
