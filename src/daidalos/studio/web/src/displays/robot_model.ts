@@ -1,5 +1,17 @@
 // RobotModel: the robot's links, each where TF says that it is.
-import { Color, Group, Mesh, SRGBColorSpace, type Material, type MeshPhongMaterial, type Object3D } from "three";
+import {
+  CapsuleGeometry,
+  Color,
+  CylinderGeometry,
+  Group,
+  Mesh,
+  SphereGeometry,
+  SRGBColorSpace,
+  type Material,
+  type MeshPhongMaterial,
+  type MeshStandardMaterial,
+  type Object3D,
+} from "three";
 import URDFLoader, { type URDFCollider, type URDFLink, type URDFVisual } from "urdf-loader";
 import type { StringMessage } from "../ros/messages";
 import { plainMaterial } from "../scene/assets";
@@ -74,6 +86,12 @@ class RobotModel extends TopicDisplay<StringMessage> {
     loader.parseCollision = true;
     loader.packages = (name) => `package://${name}`;
     loader.loadMeshCb = (uri, _manager, material, done) => {
+      const capsule = capsuleNamed(uri);
+      if (capsule) {
+        paint(capsule, material);
+        done(capsule);
+        return;
+      }
       this.waiting++;
       this.context.assets
         .load(uri)
@@ -93,10 +111,14 @@ class RobotModel extends TopicDisplay<StringMessage> {
         });
     };
     try {
-      const robot = loader.parse(robotElement(description));
+      const element = robotElement(description);
+      nameCapsules(element);
+      const textures = takeTextures(element);
+      const robot = loader.parse(element);
       for (const [name, link] of Object.entries(robot.links)) {
         this.addLink(name, link);
       }
+      textures.forEach((uri, material) => this.texture(uri, material, description));
     } catch (error) {
       this.problems.push(`robot description: ${error instanceof Error ? error.message : String(error)}`);
     }
@@ -115,6 +137,28 @@ class RobotModel extends TopicDisplay<StringMessage> {
     }
     this.links.set(name, group);
     this.object.add(group);
+  }
+
+  /** Put an image onto the shapes of a material, as soon as it is there. */
+  private texture(uri: string, material: string, description: string): void {
+    this.context.assets
+      .texture(uri)
+      .then((map) => {
+        if (this.description === description) {
+          this.object.traverse((object) => {
+            if (object instanceof Mesh && !object.userData.sharesGeometry) {
+              const surface = object.material as MeshStandardMaterial;
+              if (surface.name === material) {
+                surface.map = map;
+                surface.color.set(0xffffff);
+                surface.needsUpdate = true;
+              }
+            }
+          });
+          this.context.invalidate();
+        }
+      })
+      .catch((error: Error) => this.problems.push(error.message));
   }
 
   private style(): void {
@@ -142,6 +186,41 @@ function robotElement(description: string): Element {
   return root;
 }
 
+const CAPSULE = "capsule:";
+
+/** The loader knows no capsules: let it take them for meshes, of which the name says all. */
+function nameCapsules(robot: Element): void {
+  for (const element of [...robot.getElementsByTagName("capsule")]) {
+    const mesh = element.ownerDocument.createElement("mesh");
+    const size = ["radius", "length"].map((key) => element.getAttribute(key) ?? "0");
+    mesh.setAttribute("filename", `package://${CAPSULE}/${size.join(" ")}`);
+    element.replaceWith(mesh);
+  }
+}
+
+/** Make the capsule that a mesh's name stands for, along z. */
+function capsuleNamed(uri: string): Mesh | null {
+  const [, size] = uri.split(`${CAPSULE}/`);
+  const [radius, length] = (size ?? "").split(" ").map(Number);
+  return radius && length !== undefined
+    ? new Mesh(new CapsuleGeometry(radius, length, 12, 32).rotateX(Math.PI / 2))
+    : null;
+}
+
+/** Return the images of materials by the materials' names, and leave none to the loader, which knows no `package://`. */
+export function takeTextures(robot: Element): Map<string, string> {
+  const found = new Map<string, string>();
+  for (const element of [...robot.getElementsByTagName("texture")]) {
+    const material = element.parentElement;
+    const [name, uri] = [material?.getAttribute("name"), element.getAttribute("filename")];
+    if (material?.nodeName === "material" && name && uri) {
+      found.set(name, uri);
+      element.remove();
+    }
+  }
+  return found;
+}
+
 /** The loader's materials are Phong with colours taken as linear; URDF's are what a screen shows. */
 function useStandardMaterials(root: Object3D): void {
   const made = new Map<Material, Material>();
@@ -151,8 +230,18 @@ function useStandardMaterials(root: Object3D): void {
       const material = made.get(old) ?? standardFrom(old);
       made.set(old, material);
       object.material = material;
+      smooth(object);
     }
   });
+}
+
+/** The loader's round shapes have so few sides that a ball on a post of its width shows teeth. */
+function smooth(object: Mesh): void {
+  if (object.geometry instanceof SphereGeometry) {
+    object.geometry = new SphereGeometry(1, 96, 48);
+  } else if (object.geometry instanceof CylinderGeometry) {
+    object.geometry = new CylinderGeometry(1, 1, 1, 96);
+  }
 }
 
 function standardFrom(old: MeshPhongMaterial): Material {
@@ -160,7 +249,7 @@ function standardFrom(old: MeshPhongMaterial): Material {
   // White is what the loader gives to shapes without a material of their own.
   const material =
     old.name || r + g + b < 3 ? plainMaterial(new Color().setRGB(r, g, b, SRGBColorSpace)) : plainMaterial();
-  material.map = old.map;
+  material.name = old.name;
   material.opacity = old.opacity;
   material.userData.opacity = old.opacity;
   return material;
