@@ -340,6 +340,39 @@ def test_what_fell_out_of_the_world_is_left_out():
     assert world.warnings == ("w.sdf:2: <model name=\"lost\">: 'lost' is 7.5e+08 m away, left out",)
 
 
+LABEL = "<plugin filename='gz-sim-label-system' name='gz::sim::systems::Label'><label>{}</label></plugin>"
+
+
+def test_labels_of_models_and_includes_are_those_of_their_visuals(tmp_path):
+    visual = "<visual name='{}'><geometry><sphere><radius>1</radius></sphere></geometry>{}</visual>"
+    links = f"<link name='l'>{visual.format('a', '')}{visual.format('b', LABEL.format(3))}</link>"
+    (tmp_path / "ball").mkdir()
+    (tmp_path / "ball/model.sdf").write_text(f"<sdf version='1.9'><model name='ball'>{links}</model></sdf>")
+    inner = "<include><uri>model://ball</uri></include>"
+    world = included(
+        tmp_path,
+        f"<model name='one'>{links}{inner}{LABEL.format(1)}</model>"
+        f"<include><uri>model://ball</uri>{LABEL.format(2)}</include>{inner.replace('</uri>', '</uri><name>c</name>')}",
+    )
+    labels = [[v.label for link in model.links.values() for v in link.visuals] for model in world.models]
+    assert labels == [[1, 3, 1, 3], [2, 3], [None, 3]]
+    assert not world.warnings
+
+
+def test_what_has_no_effect_on_a_link_is_named():
+    world = sdf.parse(
+        """<sdf version="1.6"><world name="w"><model name="m"><link name="l">
+<projector name="p"/>
+<visual name="v"><geometry><sphere/></geometry>
+<plugin name="blink" filename="libBlinkVisualPlugin.so"/></visual></link></model></world></sdf>""",
+        "w.sdf",
+    )
+    assert world.warnings == (
+        'w.sdf:2: <projector name="p">: has no effect, left out',
+        'w.sdf:4: <plugin name="blink">: plugins of visuals (libBlinkVisualPlugin.so) have no effect, left out',
+    )
+
+
 def test_an_actor_can_be_included(tmp_path):
     (tmp_path / "walker").mkdir()
     (tmp_path / "walker/model.sdf").write_text(

@@ -14,7 +14,7 @@ from daidalos.description.pose import Pose
 from daidalos.description.sdf.actors import read_actor
 from daidalos.description.sdf.context import Context
 from daidalos.description.sdf.frames import FrameGraph, RelativePose, read_pose
-from daidalos.description.sdf.links import read_light, read_plugin
+from daidalos.description.sdf.links import labelled, read_label, read_light, read_plugin
 from daidalos.description.world import Actor, Model
 
 NEWEST = (1, 11)
@@ -63,6 +63,7 @@ def read_include(element: Element, context: Context, read_model: Callable[[Eleme
     model = replace(
         content,
         name=element.text_of("name", default=content.name),
+        links=labelled(content.links, read_label(element)),
         static=element.flag_of("static", default=content.static),
         placement_frame=element.text_of("placement_frame", default=content.placement_frame),
         plugins=(*content.plugins, *(read_plugin(child) for child in element.all("plugin"))),

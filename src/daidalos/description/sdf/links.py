@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 from daidalos.description.inertia import WATER, link_properties
@@ -25,6 +25,8 @@ from daidalos.description.sdf.materials import read_color, read_material
 Placer = Callable[[Element], Pose]
 """Takes an element with a ``<pose>``, returns that pose in the frame of the link that carries it."""
 
+_UNUSED = ("projector", "particle_emitter", "audio_source", "audio_sink")
+
 
 def read_link(element: Element, context: Context, pose: Pose, place: Placer) -> Link:
     """Read a link.
@@ -43,6 +45,7 @@ def read_link(element: Element, context: Context, pose: Pose, place: Placer) -> 
     decay = element.first("velocity_decay") or Element("velocity_decay")
     self_collide = element.first("self_collide")
     automatic = inertial is not None and inertial.attribute("auto", "false") in ("true", "1")
+    _warn_of_unused(element, context)
     link = Link(
         name=element.name(),
         pose=pose,
@@ -83,6 +86,22 @@ def read_sensor(element: Element, place: Placer) -> Sensor:
 def read_plugin(element: Element) -> Plugin:
     """Read a plugin's name and file; its parameters stay in `Plugin.element`."""
     return Plugin(element.attribute("name", ""), element.attribute("filename", ""), element)
+
+
+def read_label(element: Element) -> int | None:
+    """Return the class that a segmentation camera sees: gz's Label system of a visual, a model or an include."""
+    labels = (plugin.integer_of("label", default=0) for plugin in element.all("plugin") if _is_label(plugin))
+    return next(labels, None)
+
+
+def labelled(links: Mapping[str, Link], label: int | None) -> dict[str, Link]:
+    """Return links whose visuals have a label, their own or else this one."""
+    if label is None:
+        return dict(links)
+    return {
+        name: replace(link, visuals=tuple(v if v.label is not None else replace(v, label=label) for v in link.visuals))
+        for name, link in links.items()
+    }
 
 
 def read_light(element: Element, pose: Pose) -> Light:
@@ -146,16 +165,23 @@ def _visual(element: Element, context: Context, place: Placer) -> Visual:
         transparency=element.number_of("transparency", default=0.0),
         cast_shadows=element.flag_of("cast_shadows", default=True),
         visibility_flags=int(flags),
-        label=_label(element),
+        label=read_label(element),
     )
 
 
-def _label(element: Element) -> int | None:
-    """Return the class that a segmentation camera sees (gz's Label system on a visual)."""
-    for plugin in element.all("plugin"):
-        if "label" in plugin.attribute("filename", "").lower():
-            return plugin.integer_of("label", default=0)
-    return None
+def _warn_of_unused(element: Element, context: Context) -> None:
+    """Name what a link can have in Gazebo and has no effect here."""
+    for child in element.all(*_UNUSED):
+        context.warn(child, "has no effect, left out")
+    for visual in element.all("visual"):
+        for plugin in visual.all("plugin"):
+            if not _is_label(plugin):
+                file = plugin.attribute("filename", "")
+                context.warn(plugin, f"plugins of visuals ({file}) have no effect, left out")
+
+
+def _is_label(plugin: Element) -> bool:
+    return "label" in plugin.attribute("filename", "").lower() or plugin.attribute("name", "").endswith("::Label")
 
 
 def _collision(element: Element, context: Context, place: Placer) -> Collision:

@@ -12,7 +12,7 @@ from daidalos.description.sdf.context import Context
 from daidalos.description.sdf.frames import FrameGraph, RelativePose, read_pose
 from daidalos.description.sdf.includes import read_include, settle_missing
 from daidalos.description.sdf.joints import read_joint
-from daidalos.description.sdf.links import read_link, read_plugin
+from daidalos.description.sdf.links import labelled, read_label, read_link, read_plugin
 from daidalos.description.world import Model
 
 ROOT = "__model__"
@@ -85,7 +85,7 @@ class _ModelReader:
         return Model(
             name=element.name(),
             pose=read_pose(element).pose,
-            links=links,
+            links=labelled(links, read_label(element)),
             joints=joints,
             frames={name: self._graph.pose(name, element) for name in self._graph.names()},
             carriers=self._carriers(),
