@@ -98,6 +98,7 @@ def test_hardware_and_interfaces_are_listed(graph: Context) -> None:  # noqa: F8
     [
         ({"joints": ["elbow"]}, "controller 'it' can not be configured: parameter 'interface_name' must not be empty"),
         ({"joints": "elbow", "interface_name": "position"}, "parameter 'joints' can not be declared"),
+        ({"joins": ["elbow"], "interface_name": "position"}, "parameter 'joins' is not known; did you mean 'joints'?"),
     ],
 )
 def test_wrong_parameters_are_said_in_a_line(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import threading
 from collections.abc import Callable
 from typing import Any
@@ -72,7 +73,21 @@ class ControllerNode(Node):
         ParameterError
             When a value is of the wrong type, or not allowed.
         """
-        return read_parameters(kind, self._declared)
+        try:
+            return read_parameters(kind, self._declared)
+        finally:
+            self._warn_of_slips()
+
+    def _warn_of_slips(self) -> None:
+        """Name given parameters that nobody reads and that are spelled nearly like one that is not given.
+
+        Others may be meant for somebody else, since a section of a file may be for many nodes.
+        """
+        given = self._parameter_overrides
+        missing = [name for name in self._parameters if name not in given]
+        for name in (one for one in given if one not in self._parameters):
+            for near in difflib.get_close_matches(name, missing, 1, 0.85):
+                self.warn(f"parameter '{name}' is not known; did you mean '{near}'?")
 
     def _declared(self, leaf: Leaf) -> Any:
         from rcl_interfaces.msg import ParameterDescriptor
