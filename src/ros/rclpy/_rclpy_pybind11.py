@@ -32,7 +32,8 @@ from rclpy.impl.errors import (
     UnknownROSArgsError,
     UnsupportedEventTypeError,
 )
-from rclpy.impl.events import EventSource, QoSPublisherEventType, QoSSubscriptionEventType, event_source
+from rclpy.impl.event_statuses import QoSPublisherEventType, QoSSubscriptionEventType
+from rclpy.impl.events import EventSource, event_source
 from rclpy.impl.handle import Destroyable
 from rclpy.impl.log_output import OUTPUT
 from rclpy.impl.logging_severity import LoggingSeverity

@@ -11,8 +11,7 @@ import rclpy.logging
 from rclpy.callback_groups import CallbackGroup
 from rclpy.impl.entities import EndpointHandle
 from rclpy.impl.errors import UnsupportedEventTypeError as UnsupportedEventTypeError
-from rclpy.impl.events import (
-    EventSource,
+from rclpy.impl.event_statuses import (
     IncompatibleTypeStatus,
     LivelinessChangedStatus,
     LivelinessLostStatus,
@@ -24,8 +23,8 @@ from rclpy.impl.events import (
     QoSSubscriptionEventType,
     RequestedDeadlineMissedStatus,
     RequestedIncompatibleQosStatus,
-    event_source,
 )
+from rclpy.impl.events import EventSource, event_source
 from rclpy.impl.ready import ReadyHook
 from rclpy.qos import qos_policy_name_from_kind
 from rclpy.waitable import Waitable
