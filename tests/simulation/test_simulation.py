@@ -3,6 +3,7 @@ import pytest
 
 from daidalos.description import sdf, urdf
 from daidalos.description.errors import DescriptionError
+from daidalos.description.link import Inertial
 from daidalos.description.pose import Pose
 from daidalos.simulation import Simulation
 from daidalos.simulation.errors import NameTakenError, SimulationError, UnknownNameError
@@ -255,6 +256,24 @@ def test_saved_states_replay_bit_for_bit():
     assert simulation.time_ns == SECOND
     assert numbers(simulation.advance(SECOND)) == first
     simulation.delete("robot")
+    with pytest.raises(SimulationError, match="models came or went"):
+        simulation.restore(state)
+
+
+def test_states_outlive_changes_of_friction_and_mass():
+    simulation = Simulation(world(box("crate", "0 0 2 0 0 0")))
+    simulation.advance(100_000_000)
+    state, height = simulation.save(), simulation.pose("crate").position[2]
+    simulation.set_friction("crate", 0.2)
+    simulation.set_link_properties("crate", "link", Inertial(5.0, inertia=(0.8, 0.0, 0.0, 0.8, 0.0, 0.8)), True)
+    simulation.advance(1_000_000_000)
+    simulation.restore(state)
+    assert simulation.time_ns == 100_000_000
+    assert simulation.pose("crate").position[2] == height
+    simulation.advance(1_000_000)
+    assert simulation.velocity("crate")[0][2] == pytest.approx(-9.8 * 0.101, rel=1e-3)
+    simulation.delete("crate")
+    simulation.spawn(sdf.parse_model(f"<sdf version='1.9'>{box('crate')}</sdf>"), "crate")
     with pytest.raises(SimulationError, match="models came or went"):
         simulation.restore(state)
 

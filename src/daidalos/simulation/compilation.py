@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 import mujoco
+import numpy as np
 
 from daidalos.description.joint import Joint
 from daidalos.description.pose import Pose
@@ -48,7 +49,8 @@ class Compilation:
     forces : Forces
         What pushes them from outside.
     number : int
-        Counts the changes to what there is; a state from before one does not fit after it.
+        Counts the changes to what there is; a state from before one does not fit after it. What only weighs
+        or rubs otherwise is no such change.
     """
 
     def __init__(
@@ -59,6 +61,7 @@ class Compilation:
         self.stage = Stage(world, warn)
         self.forces = Forces()
         self.number = 0
+        self._layout = b""
         self._assets = Assets(self.spec)
         self._heard = heard
         self._warn = warn
@@ -139,7 +142,10 @@ class Compilation:
         self._bind(model, data)
 
     def _bind(self, model: Any, data: Any) -> None:
-        self.number += 1
+        layout = _layout(model)
+        if layout != self._layout:
+            self._layout = layout
+            self.number += 1
         geoms = {
             model.geom(geom).id: (instance.name, info)
             for instance in self.instances.values()
@@ -150,6 +156,12 @@ class Compilation:
         for instance in self.instances.values():
             instance.bind(self._physics)
         self.stage.bind(self.instances.values())
+
+
+def _layout(model: Any) -> bytes:
+    """Return what tells whether a state of one model fits another: names, sizes, and where parts are attached."""
+    sizes = np.array((model.nq, model.nv, model.na, model.nu, model.nmocap, model.ngeom, model.nsensor, model.narena))
+    return b"".join((model.names, sizes.tobytes(), model.body_pos.tobytes(), model.body_quat.tobytes()))
 
 
 def _one_line(problem: ValueError) -> str:
