@@ -119,14 +119,49 @@ def test_a_xacro_file_may_be_called_urdf(tmp_path):
     assert urdf.load(file, {"side": "3"}).links["base"].visuals[0].geometry == Box((1, 1, 3))
 
 
-def test_a_loop_is_no_tree():
-    joints = "".join(
-        f"<joint name='{p}{c}' type='fixed'><parent link='{p}'/><child link='{c}'/></joint>" for p, c in ("ab", "ba")
+@pytest.mark.parametrize(
+    ("links", "pairs", "line", "ways"),
+    [
+        ("ab", ("ab", "ba"), 2, "a -> b -> a|b -> a -> b"),
+        ("rab", ("ab", "ba"), 2, "a -> b -> a|b -> a -> b"),
+        ("abcd", ("ab", "bc", "ca", "ad"), 3, "a -> b -> c -> a|b -> c -> a -> b|c -> a -> b -> c"),
+    ],
+)
+def test_a_loop_is_no_tree(links, pairs, line, ways):
+    text = "".join(f"<link name='{name}'/>" for name in links) + "\n".join(
+        f"<joint name='{p}{c}' type='fixed'><parent link='{p}'/><child link='{c}'/></joint>" for p, c in pairs
     )
-    with pytest.raises(DescriptionError, match="form a loop"):
-        urdf.parse(f"<robot name='r'><link name='a'/><link name='b'/>{joints}</robot>")
-    with pytest.raises(DescriptionError, match="does not reach: a, b"):
-        urdf.parse(f"<robot name='r'><link name='r'/><link name='a'/><link name='b'/>{joints}</robot>")
+    with pytest.raises(
+        DescriptionError, match=rf"^r.urdf:{line}: <joint name=\"..\">: the joints form a loop: ({ways})$"
+    ):
+        urdf.parse(f"<robot name='r'>{text}</robot>", "r.urdf")
+
+
+@pytest.mark.parametrize("leaders", [{"a": "a"}, {"a": "b", "b": "a"}, {"a": "b", "b": "c", "c": "b"}])
+def test_a_joint_that_follows_itself_does_not(leaders):
+    names = "abc"
+    links = "".join(f"<link name='{name}'/>" for name in "r" + names)
+    joints = "".join(
+        f"<joint name='{name}' type='continuous'><parent link='r'/><child link='{name}'/>"
+        + (f"<mimic joint='{leaders[name]}'/>" if name in leaders else "")
+        + "</joint>"
+        for name in names
+    )
+    robot = urdf.parse(f"<robot name='r'>{links}{joints}</robot>", "r.urdf")
+    assert [line.partition(": ")[2].partition(" mimics")[2] for line in robot.warnings] == [" itself"]
+    for name in names:
+        seen = set()
+        while (mimic := robot.joints[name].mimic) is not None:
+            assert name not in seen
+            seen.add(name)
+            name = mimic.joint
+
+
+def test_a_material_that_nobody_defines_is_noted():
+    text = "<robot name='r'><link name='a'>\n<visual><geometry><sphere radius='1'/></geometry><material name='{}'/>"
+    text += "</visual></link><material name='red'><color rgba='1 0 0 1'/></material></robot>"
+    assert urdf.parse(text.format("red")).warnings == ()
+    assert urdf.parse(text.format("rde"), "r.urdf").warnings == ("r.urdf:2: material 'rde' is not defined",)
 
 
 @pytest.mark.parametrize(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import replace
 
 from daidalos.description.joint import Axis, Calibration, Joint, JointType, Mimic, Safety
@@ -25,7 +26,20 @@ def read_joints(root: Element, warnings: list[str]) -> dict[str, Joint]:
         if joint.mimic is not None and joint.mimic.joint not in joints:
             warnings.append(f"{joint.where}: joint {name!r} mimics {joint.mimic.joint!r}, which does not exist")
             joints[name] = replace(joint, mimic=None)
+    for name, joint in joints.items():
+        if _follows_itself(joint, joints):
+            warnings.append(f"{joint.where}: joint {name!r} mimics itself")
+            joints[name] = replace(joint, mimic=None)
     return joints
+
+
+def _follows_itself(joint: Joint, joints: Mapping[str, Joint]) -> bool:
+    leader, steps = joint, 0
+    while leader.mimic is not None and steps <= len(joints):
+        leader, steps = joints[leader.mimic.joint], steps + 1
+        if leader is joint:
+            return True
+    return False
 
 
 def _joint(element: Element, warnings: list[str]) -> Joint:

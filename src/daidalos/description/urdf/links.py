@@ -70,6 +70,8 @@ def _visual(
     child = element.first("material")
     material = None if child is None else _material(child, resolve)
     if material is not None and material.color is None and not material.texture:
+        if material.name and material.name not in materials:
+            warnings.append(f"{element.where}: material {material.name!r} is not defined")
         material = materials.get(material.name, material)
     return Visual(
         geometry=_geometry(element.require("geometry"), resolve, warnings),

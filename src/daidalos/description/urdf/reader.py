@@ -116,38 +116,41 @@ def _world(links: Mapping[str, Link], joints: Mapping[str, Joint], warnings: lis
 
 def _check_tree(root: Element, links: Mapping[str, Link], joints: Mapping[str, Joint]) -> str:
     """Return the one root link; raise when links and joints are no tree."""
-    parent_of: dict[str, str] = {}
+    above: dict[str, Joint] = {}
     elements = {element.name(): element for element in root.all("joint")}
     for joint in joints.values():
         element = elements[joint.name]
         for end, name in (("parent", joint.parent), ("child", joint.child)):
             if name not in links:
                 raise element.error(f"its {end} link {name!r} does not exist")
-        if joint.child in parent_of:
+        if joint.child in above:
             raise element.error(f"link {joint.child!r} is the child of more than one joint")
-        parent_of[joint.child] = joint.parent
-    roots = [name for name in links if name not in parent_of]
-    if not roots:
-        raise root.error("the joints form a loop: every link is the child of another")
+        above[joint.child] = joint
+    loop = _loop(links, above)
+    if loop:
+        closing = max(loop, key=list(joints.values()).index)
+        way = " -> ".join([*(joint.child for joint in reversed(loop)), loop[-1].child])
+        raise elements[closing.name].error(f"the joints form a loop: {way}")
+    roots = [name for name in links if name not in above]
     if len(roots) > 1:
         raise root.error(f"the robot should have one root link, these are nobody's child: {', '.join(roots)}")
-    reached = _reached_from(roots[0], joints.values())
-    if len(reached) < len(links):
-        rest = ", ".join(name for name in links if name not in reached)
-        raise root.error(f"the joints form a loop that the root link does not reach: {rest}")
     return roots[0]
 
 
-def _reached_from(start: str, joints: Iterable[Joint]) -> set[str]:
-    children: dict[str, list[str]] = {}
-    for joint in joints:
-        children.setdefault(joint.parent, []).append(joint.child)
-    reached, waiting = {start}, [start]
-    while waiting:
-        for child in children.get(waiting.pop(), ()):
-            reached.add(child)
-            waiting.append(child)
-    return reached
+def _loop(links: Iterable[str], above: Mapping[str, Joint]) -> list[Joint]:
+    """Return joints that go round in a circle, from below upwards; none when every way up ends."""
+    ended: set[str] = set()
+    for link in links:
+        way: list[Joint] = []
+        seen: dict[str, int] = {}
+        while link in above and link not in ended:
+            if link in seen:
+                return way[seen[link] :]
+            seen[link] = len(way)
+            way.append(above[link])
+            link = above[link].parent
+        ended.update(seen)
+    return []
 
 
 def _is_xacro(text: bytes) -> bool:
