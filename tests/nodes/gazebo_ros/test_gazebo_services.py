@@ -7,7 +7,7 @@ import pytest
 from builtin_interfaces.msg import Duration
 from daidalos_msgs.srv import BringBack, SetFriction
 from gazebo_msgs import srv
-from gazebo_msgs.msg import EntityState, ODEJointProperties
+from gazebo_msgs.msg import EntityState, LinkState, ModelState, ODEJointProperties
 from geometry_msgs.msg import Point, Pose, Quaternion, Twist, Vector3, Wrench
 from rclpy.parameter import Parameter
 from std_msgs.msg import ColorRGBA
@@ -72,6 +72,21 @@ def test_poses_may_be_relative(shop):
     assert (answer.state.pose.position.x, answer.state.pose.position.y) == pytest.approx((2.0, 1.0))
     assert answer.state.twist.linear.x == pytest.approx(1.0)
     assert not state(shop, "nobody").success
+
+
+def test_ros1s_states_are_those_of_models_and_links(shop):
+    spawn(shop)
+    model = ModelState(model_name="crate", pose=at(0.0, 1.0), twist=Twist(linear=Vector3(x=1.0)))
+    assert shop.call(srv.SetModelState, "/gazebo/set_model_state", model_state=model).success
+    link = shop.call(srv.GetLinkState, "/gazebo/get_link_state", link_name="crate::body", reference_frame="shelf")
+    assert link.success
+    assert (link.link_state.link_name, link.link_state.reference_frame) == ("crate::body", "shelf")
+    assert (link.link_state.pose.position.x, link.link_state.pose.position.y) == pytest.approx((-2.0, 1.0))
+    assert link.link_state.twist.linear.x == pytest.approx(1.0)
+    moved = LinkState(link_name="crate::body", pose=at(0.0, 2.0))
+    assert shop.call(srv.SetLinkState, "/gazebo/set_link_state", link_state=moved).success
+    assert state(shop, "crate").state.pose.position.y == pytest.approx(2.0)
+    assert not shop.call(srv.GetLinkState, "/gazebo/get_link_state", link_name="crate::nothing").success
 
 
 def test_orientations_need_no_length_of_one(shop):
@@ -147,19 +162,26 @@ def test_a_speed_that_can_not_be_is_refused(shop, value):
     assert shop.server._paced.real_time_factor == 1.0
 
 
-def test_links_are_pushed(shop):
+@pytest.mark.parametrize(
+    ("apply", "clear", "kind", "field"),
+    [
+        (srv.ApplyLinkWrench, srv.LinkRequest, "link", "link_name"),
+        (srv.ApplyBodyWrench, srv.BodyRequest, "body", "body_name"),
+    ],
+)
+def test_links_are_pushed(shop, apply, clear, kind, field):
     spawn(shop, pose=at(0.0, 0.0, 5.0))
+    link = {field: "crate::body"}
     wrench = Wrench(force=Vector3(x=4.0, z=2 * 9.8))
-    fields = {"link_name": "crate::body", "wrench": wrench, "duration": Duration(sec=0, nanosec=500_000_000)}
-    assert shop.call(srv.ApplyLinkWrench, "/apply_link_wrench", **fields).success
+    half_a_second = Duration(sec=0, nanosec=500_000_000)
+    assert shop.call(apply, f"/apply_{kind}_wrench", **link, wrench=wrench, duration=half_a_second).success
     step(shop, 500)
     assert state(shop, "crate").state.twist.linear.x == pytest.approx(1.0, rel=1e-3)
-    fields["duration"] = Duration(sec=-1)
-    shop.call(srv.ApplyLinkWrench, "/apply_link_wrench", **fields)
-    shop.call(srv.LinkRequest, "/clear_link_wrenches", link_name="crate::body")
+    shop.call(apply, f"/apply_{kind}_wrench", **link, wrench=wrench, duration=Duration(sec=-1))
+    shop.call(clear, f"/clear_{kind}_wrenches", **link)
     step(shop, 100)
     assert state(shop, "crate").state.twist.linear.x == pytest.approx(1.0, rel=1e-3)
-    assert not shop.call(srv.ApplyLinkWrench, "/apply_link_wrench", link_name="crate::tail").success
+    assert not shop.call(apply, f"/apply_{kind}_wrench", **{field: "crate::tail"}).success
 
 
 def test_joints_have_properties_and_take_efforts(shop):
@@ -348,6 +370,26 @@ def test_every_shape_is_told_as_it_looks(shop, tmp_path):
         assert (each.type, len(each.points) % 3) == (each.TRIANGLE_LIST, 0)
         extents.append([np.ptp([getattr(point, axis) for point in each.points]) for axis in "xyz"])
     assert np.array(extents) == pytest.approx(np.array([[1, 1, 2], [1, 1, 0.5]]), abs=0.02)
+
+
+def test_terrain_is_told_by_its_larger_forms(shop, tmp_path):
+    from daidalos_msgs.srv import GetShapes
+    from PIL import Image
+
+    heights = np.add.outer(np.zeros(129), np.linspace(0, 255, 129)).astype(np.uint8)
+    Image.fromarray(heights).save(tmp_path / "ramp.png")
+    shape = f"<heightmap><uri>{tmp_path}/ramp.png</uri><size>20 10 3</size></heightmap>"
+    xml = (
+        f"<sdf version='1.9'><model name='hill'><static>true</static><link name='l'><visual name='v'><geometry>{shape}"
+    )
+    assert spawn(shop, "hill", f"{xml}</geometry></visual></link></model></sdf>", at(0.0, 0.0, 0.0)).success
+    (ramp,) = shop.call(GetShapes, "/gazebo/get_shapes", names=["hill"]).shapes
+    points = np.array([(point.x, point.y, point.z) for point in ramp.points])
+    assert len(points) == 6 * 40 * 40
+    assert np.ptp(points, axis=0) == pytest.approx((20, 10, 3))
+    assert points[:, 2] == pytest.approx((points[:, 0] / 20 + 0.5) * 3, abs=0.02)
+    a, b, c = points.reshape(-1, 3, 3).swapaxes(0, 1)
+    assert (np.cross(b - a, c - a)[:, 2] > 0).all(), "seen from above"
 
 
 def test_the_state_plugin_may_name_a_place_of_its_own(shop):
