@@ -6,6 +6,9 @@ from collections.abc import Iterable, Iterator
 from functools import lru_cache
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from daidalos.description.geometry import (
     Box,
     Capsule,
@@ -13,11 +16,13 @@ from daidalos.description.geometry import (
     Cylinder,
     Ellipsoid,
     Geometry,
+    Heightmap,
     Mesh,
     Plane,
     Polyline,
     Sphere,
 )
+from daidalos.description.images import read_grey
 from daidalos.description.link import Link, Material, Rgba, Visual
 from daidalos.description.pose import Pose, Vector
 from daidalos.description.robot import Robot
@@ -27,13 +32,14 @@ from daidalos.nodes.gazebo_ros._states import color_message, pose_message
 
 _CUBE, _SPHERE, _CYLINDER, _MESH, _TRIANGLES = 1, 2, 3, 10, 11
 _SEGMENTS = 32
+_TERRAIN_LINES = 41
 _THIN = 0.002
 
 
 def shape_markers(model: Robot | Model, name: str) -> list[Any]:
     """Return what is seen of a model as ``visualization_msgs/msg/Marker``, each in the frame of its link.
 
-    What has no visual shape is shown by what is solid of it. Height maps are left out.
+    What has no visual shape is shown by what is solid of it, and terrain by its larger forms.
 
     Parameters
     ----------
@@ -60,8 +66,20 @@ def _corners(geometry: Geometry) -> list[Any]:
     """Return the corners of the triangles of a shape that no other marker shows, three by three."""
     from geometry_msgs.msg import Point
 
-    corners = [part.vertices[part.faces].reshape(-1, 3) for part in visual_parts(Visual(geometry), _SEGMENTS)]
-    return [Point(x=float(x), y=float(y), z=float(z)) for part in corners for x, y, z in part]
+    (part,) = visual_parts(Visual(geometry), _SEGMENTS)
+    triangles = _thinned(part.vertices, geometry) if isinstance(geometry, Heightmap) else part.vertices[part.faces]
+    return [Point(x=float(x), y=float(y), z=float(z)) for x, y, z in triangles.reshape(-1, 3)]
+
+
+def _thinned(vertices: NDArray[np.float32], terrain: Heightmap) -> NDArray[np.float32]:
+    """Return the triangles (n, 3, 3) of a terrain that has fewer rows and columns than its image."""
+    if terrain.path is None:
+        return np.zeros((0, 3, 3), dtype=np.float32)
+    rows, columns = read_grey(terrain.path, terrain.where).shape
+    kept = (np.unique(np.linspace(0, count - 1, _TERRAIN_LINES).round().astype(int)) for count in (rows, columns))
+    grid = vertices.reshape(rows, columns, 3)[np.ix_(*kept)]
+    a, b, c, d = grid[:-1, :-1], grid[:-1, 1:], grid[1:, 1:], grid[1:, :-1]
+    return np.stack((a, b, c, a, c, d), axis=2).reshape(-1, 3, 3)
 
 
 def _markers(visual: Visual) -> Iterator[Any]:
@@ -116,7 +134,9 @@ def _shapes(geometry: Geometry) -> Iterator[tuple[int, Vector, Pose]]:
                 yield _SPHERE, (2 * radius,) * 3, Pose((0.0, 0.0, end))
         case Plane((_, _, z), (width, depth)) if z > 0:
             yield _CUBE, (width, depth, _THIN), here
-        case Cone() | Polyline():
+        case Heightmap() if geometry.path is None:
+            return
+        case Cone() | Polyline() | Heightmap():
             yield _TRIANGLES, (1.0, 1.0, 1.0), here
         case Mesh():
             yield _MESH, geometry.scale, here
