@@ -78,6 +78,8 @@ def _sequence(base: Any, value: Any, header_auto: bool, time_now: bool, stampers
     if isinstance(base, str):
         if base in TYPECODES and isinstance(value, (array.array, bytes)):
             return value
+        if isinstance(value, Mapping) and all(item is None for item in value.values()):
+            value = list(value)  # YAML's ``{a, b}``, a set
         if isinstance(value, (str, Mapping)) or not hasattr(value, "__iter__"):
             raise TypeError(f"Value '{value}' is expected to be a list but is a {type(value).__name__}")
         return [_primitive(base, item) for item in value]

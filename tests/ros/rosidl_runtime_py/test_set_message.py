@@ -5,6 +5,7 @@ from builtin_interfaces.msg import Time
 from geometry_msgs.msg import Point, Pose
 from rosidl_runtime_py import set_message_fields
 from std_msgs.msg import Header
+from trajectory_msgs.msg import JointTrajectory
 
 
 class Stamped:
@@ -37,3 +38,12 @@ def test_what_looks_like_a_message_is_set_like_one() -> None:
     assert (message.header, message.count) == (Header(stamp=Time(sec=1), frame_id="map"), 3)
     with pytest.raises(TypeError, match=r"^Value 'auto' is expected to be a dictionary but is a str$"):
         set_message_fields(message, {"header": "auto"})
+
+
+def test_yamls_sets_are_lists_as_gazebos_demonstrations_write_them() -> None:
+    message = JointTrajectory()
+    set_message_fields(message, {"joint_names": {"arm": None}, "points": [{"positions": {-1.57: None}}]})
+    assert message.joint_names == ["arm"]
+    assert list(message.points[0].positions) == [-1.57]
+    with pytest.raises(TypeError, match=r"expected to be a list but is a dict"):
+        set_message_fields(message, {"joint_names": {"arm": 1}})
