@@ -284,9 +284,7 @@ class InteractiveMarkerServer:
         if callback is not None:
             callback(feedback)
 
-    def getInteractiveMarkersCallback(
-        self, request: GetInteractiveMarkers.Request, response: GetInteractiveMarkers.Response
-    ) -> GetInteractiveMarkers.Response:
+    def getInteractiveMarkersCallback(self, request: Any, response: Any) -> Any:
         """Answer a client that wants all markers."""
         with self.mutex:
             response.sequence_number = self.sequence_number

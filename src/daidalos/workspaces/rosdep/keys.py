@@ -22,7 +22,7 @@ _COMPILED = re.compile(
     r"rviz_(common|rendering|ogre_vendor|default_plugins|visual_tools)|gtest|"
     r"controller_interface|hardware_interface|transmission_interface|realtime_tools|control_toolbox|"
     r"nav2_(core|util|costmap_2d|rviz_plugins)|generate_parameter_library|behaviortree_cpp.*|gazebo(_dev)?|"
-    r"resource_retriever|cv_bridge_cpp|ceres-solver"
+    r"cv_bridge_cpp|ceres-solver"
 )
 _OF_ROS1 = {
     "actionlib": "rclpy",

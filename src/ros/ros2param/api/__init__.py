@@ -11,7 +11,6 @@ from ros2cli.node.direct import DirectNode
 
 if TYPE_CHECKING:
     from rcl_interfaces.msg import Parameter, ParameterValue
-    from rcl_interfaces.srv import DescribeParameters, GetParameters, ListParameters, SetParameters
 
 
 def get_value(*, parameter_value: ParameterValue) -> Any:
@@ -28,10 +27,8 @@ def get_parameter_type_string(parameter_type: int) -> str:
     return TYPE_NAMES[parameter_type]
 
 
-def call_list_parameters(
-    *, node: Any, node_name: str, prefixes: Sequence[str] | None = None
-) -> ListParameters.Response:
-    """Ask a node for the names of its parameters.
+def call_list_parameters(*, node: Any, node_name: str, prefixes: Sequence[str] | None = None) -> Any:
+    """Ask a node for the names of its parameters, and return the response of its service.
 
     Parameters
     ----------
@@ -53,7 +50,7 @@ def call_list_parameters(
     return _call(node, ListParameters, node_name, "list_parameters", request)
 
 
-def call_get_parameters(*, node: Any, node_name: str, parameter_names: Sequence[str]) -> GetParameters.Response:
+def call_get_parameters(*, node: Any, node_name: str, parameter_names: Sequence[str]) -> Any:
     """Ask a node for the values of parameters; see `call_list_parameters`."""
     from rcl_interfaces.srv import GetParameters
 
@@ -61,9 +58,7 @@ def call_get_parameters(*, node: Any, node_name: str, parameter_names: Sequence[
     return _call(node, GetParameters, node_name, "get_parameters", request)
 
 
-def call_describe_parameters(
-    *, node: Any, node_name: str, parameter_names: Sequence[str] | None = None
-) -> DescribeParameters.Response:
+def call_describe_parameters(*, node: Any, node_name: str, parameter_names: Sequence[str] | None = None) -> Any:
     """Ask a node for the descriptions of parameters; see `call_list_parameters`."""
     from rcl_interfaces.srv import DescribeParameters
 
@@ -71,7 +66,7 @@ def call_describe_parameters(
     return _call(node, DescribeParameters, node_name, "describe_parameters", request)
 
 
-def call_set_parameters(*, node: Any, node_name: str, parameters: Sequence[Parameter]) -> SetParameters.Response:
+def call_set_parameters(*, node: Any, node_name: str, parameters: Sequence[Parameter]) -> Any:
     """Have a node set parameters; see `call_list_parameters`."""
     from rcl_interfaces.srv import SetParameters
 

@@ -1,0 +1,1 @@
+"""Stamps on velocities, as ROS 2 offers them."""
