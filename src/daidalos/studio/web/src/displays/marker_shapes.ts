@@ -260,7 +260,10 @@ function triangles(marker: Marker): Object3D {
   const style = material(painted ? { r: 1, g: 1, b: 1, a: marker.color.a || 1 } : marker.color);
   style.vertexColors = painted;
   style.side = 2;
-  return new Mesh(geometry, style as Material);
+  const object = new Mesh(geometry, style as Material);
+  object.castShadow = marker.color.a >= 1;
+  object.userData.pickable = true;
+  return object;
 }
 
 function material({ r, g, b, a }: ColorRGBA): MeshStandardMaterial {
