@@ -15,6 +15,7 @@ from description.robots import SHARE, share_of
 from simulation.models import world
 
 SECOND = 1_000_000_000
+HUMANOID = "humanoid_description/urdf/humanoid.urdf.xacro"
 TRUCK = "truck_description/urdf/truck.urdf.xacro"
 ROBOTS = [
     "urdf_tutorial/urdf/simple_link.urdf",
@@ -22,8 +23,16 @@ ROBOTS = [
     "urdf_tutorial/urdf/robot_example.urdf",
     "urdf_tutorial/urdf/robot_example_xacro_internal.urdf.xacro",
     "urdf_tutorial/urdf/robot_example_xacro_external.urdf.xacro",
+    "urdf_tutorial/urdf/01-myfirst.urdf",
+    "urdf_tutorial/urdf/02-multipleshapes.urdf",
+    "urdf_tutorial/urdf/03-origins.urdf",
+    "urdf_tutorial/urdf/04-materials.urdf",
+    "urdf_tutorial/urdf/05-visual.urdf",
+    "urdf_tutorial/urdf/06-flexible.urdf",
+    "urdf_tutorial/urdf/07-physics.urdf",
+    "urdf_tutorial/urdf/08-macroed.urdf.xacro",
     "urdf_tutorial_r2d2/urdf/r2d2.urdf.xml",
-    "humanoid_description/urdf/humanoid.urdf.xacro",
+    HUMANOID,
     TRUCK,
     "tb3_description/urdf/turtlebot3_waffle_base.urdf.xacro",
     "turtlebot3_description/urdf/turtlebot3_burger.urdf.xacro",
@@ -45,7 +54,7 @@ def test_it_loads_into_the_simulator_without_a_word(path):
     assert [line for line in said if "has no mass" not in line and "inertia" not in line] == []
 
 
-@pytest.mark.parametrize("path", ["humanoid_description/urdf/humanoid.urdf.xacro", TRUCK])
+@pytest.mark.parametrize("path", [HUMANOID, TRUCK])
 def test_every_joint_that_moves_is_told_of(path):
     """Whoever is not among the joint states has no transform, and RViz complains of its link."""
     robot = load(path)
@@ -74,7 +83,7 @@ def test_the_right_finger_is_the_left_one_in_a_mirror():
 
 def seen_by_the_humanoid():
     simulation = Simulation(sdf.load(SHARE / "humanoid_description/worlds/ball.world"))
-    simulation.spawn(load(ROBOTS[6]))
+    simulation.spawn(load(HUMANOID))
     samples = simulation.advance(SECOND // 5)
     return simulation, {sample.topic: sample for sample in samples}
 
