@@ -127,7 +127,7 @@ def test_the_trucks_rear_axle_drives_the_arc_of_its_command():
     )
     from daidalos.description.xacro import load_xacro
 
-    text = load_xacro(SHARE / ROBOTS[7], resolve=share_of)
+    text = load_xacro(SHARE / TRUCK, resolve=share_of)
     before, _, rest = text.partition("<ros2_control")
     after = rest.partition("</ros2_control>")[2]
     head, _, tail = after.partition("<plugin")
