@@ -505,3 +505,38 @@ def test_ros1s_control_takes_its_joints_from_transmissions():
     assert info.command_names == ("a_j/position", "b_j/velocity")
     assert info.state_names == tuple(f"{one}_j/{what}" for one in "ab" for what in ("position", "velocity", "effort"))
     assert not simulation.warnings
+
+
+@pytest.mark.parametrize(
+    ("text", "rate"),
+    [
+        ("controller_manager: {ros__parameters: {update_rate: 250}}", 250),
+        ("/**: {ros__parameters: {update_rate: 250}}", 250),
+        ("/**: {controller_manager: {ros__parameters: {update_rate: 250}}}", 250),
+        ("/**/controller_manager: {ros__parameters: {update_rate: 250}}", 250),
+        ("/*/controller_manager: {ros__parameters: {update_rate: 250}}", 250),
+        ("r: {controller_manager: {ros__parameters: {update_rate: 250}}}", 250),
+        (
+            "/r/controller_manager: {ros__parameters: {update_rate: 250}}\n"
+            "/other/controller_manager: {ros__parameters: {update_rate: 50}}\n"
+            "controller_manager: {ros__parameters: {update_rate: 20}}",
+            250,
+        ),
+        ("/other/controller_manager: {ros__parameters: {update_rate: 50}}", 100),
+    ],
+)
+def test_a_managers_rate_is_the_one_of_its_namespace(tmp_path, text, rate):
+    file = tmp_path / "control.yaml"
+    file.write_text(text)
+    robot = urdf.parse(
+        "<robot name='r'><link name='base'/><link name='a'><inertial><mass value='1'/>"
+        "<inertia ixx='.1' iyy='.1' izz='.1' ixy='0' ixz='0' iyz='0'/></inertial></link><joint name='j' "
+        "type='continuous'><parent link='base'/><child link='a'/></joint><ros2_control name='c' type='system'>"
+        "<hardware><plugin>gz_ros2_control/GazeboSimSystem</plugin></hardware><joint name='j'>"
+        "<command_interface name='velocity'/></joint></ros2_control><gazebo><plugin name='c' "
+        f"filename='gz_ros2_control-system'><parameters>{file}</parameters><ros><namespace>r</namespace></ros>"
+        "</plugin></gazebo></robot>"
+    )
+    simulation = Simulation(world())
+    components = simulation.instance(simulation.spawn(robot)).components
+    assert [one.rate for one in components if isinstance(one, Ros2Control)] == [rate]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any
@@ -65,7 +66,7 @@ class Ros2Control(Plugin):
         ros = element.first("ros") or Element("ros")
         self.remappings = tuple(child.text.strip() for child in ros.all("remapping") if ":=" in child.text)
         self.holds = element.flag_of("hold_joints", default=True)
-        self.rate = _update_rate(self.files, self.manager_name)
+        self.rate = _update_rate(self.files, f"{self.parameters.namespace.rstrip('/')}/{self.manager_name}")
         self.period = 1.0 / self.rate
         self.cycle: Callable[[int], None] | None = None
         joints = [(info.plugin, joint) for info in self.hardware for joint in info.joints if _moves(joint)]
@@ -160,10 +161,10 @@ def _file(element: Element) -> Path:
 
 
 def _update_rate(files: Iterable[Path], manager: str) -> float:
-    """Return the manager's rate from its parameter files [Hz]."""
+    """Return a manager's rate from its parameter files [Hz]; its full name counts, else that without namespace."""
     import yaml
 
-    rate = DEFAULT_RATE
+    rates = {"named": math.nan, "bare": math.nan}
     for file in files:
         try:
             content = yaml.safe_load(file.read_text(encoding="utf-8"))
@@ -171,17 +172,26 @@ def _update_rate(files: Iterable[Path], manager: str) -> float:
             continue  # whoever reads all parameters says what is wrong
         for name, section in _sections(content):
             value = section.get("update_rate")
-            if name in (manager, "/**", "**", "*") and isinstance(value, int | float) and value > 0:
-                rate = float(value)
-    return rate
+            if isinstance(value, int | float) and value > 0:
+                if _matches(name, manager):
+                    rates["named"] = float(value)
+                elif name == f"/{manager.rpartition('/')[2]}":
+                    rates["bare"] = float(value)
+    return next((rate for rate in rates.values() if not math.isnan(rate)), DEFAULT_RATE)
+
+
+def _matches(pattern: str, name: str) -> bool:
+    """Tell whether a node's name in a file, with ``*`` and ``**`` as wildcards, means a node."""
+    text = re.escape(pattern).replace(r"/\*\*", "(?:/[^/]+)*").replace(r"\*", "[^/]+")
+    return re.fullmatch(text, name) is not None
 
 
 def _sections(content: Any, name: str = "") -> Iterable[tuple[str, dict[str, Any]]]:
-    """Yield each node's name, without namespace, with its parameters."""
+    """Yield each node's name, as the file writes it, with its parameters."""
     if not isinstance(content, dict):
         return
     for key, value in content.items():
         if key == "ros__parameters" and isinstance(value, dict):
             yield name, value
         elif key != "ros__parameters":
-            yield from _sections(value, str(key).rstrip("/").rpartition("/")[2] if str(key) != "/**" else "/**")
+            yield from _sections(value, f"{name}/{str(key).strip('/')}")
