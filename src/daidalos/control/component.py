@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from daidalos.control.errors import HardwareError, StateError
 from daidalos.control.hardware.base import Hardware
+from daidalos.control.interfaces import Interfaces
 from daidalos.control.limits import CommandLimiter
 from daidalos.control.pulse import Pulse
 
@@ -44,6 +45,10 @@ class Component:
     def tells_states(self) -> bool:
         """Whether its state interfaces are available."""
         return self.state in (INACTIVE, ACTIVE)
+
+    def interfaces(self, kind: str) -> Interfaces:
+        """Return all interfaces of a kind, ``command`` or ``state``."""
+        return self.hardware.commands if kind == "command" else self.hardware.states
 
     def go_to(self, target: str) -> None:
         """Pass through the states up to `target`.

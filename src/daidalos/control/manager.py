@@ -12,11 +12,12 @@ from daidalos.control.component import ACTIVE, FINALIZED, INACTIVE, UNCONFIGURED
 from daidalos.control.controllers.base import ControllerSetting
 from daidalos.control.errors import ControlError, HardwareError, StateError, SwitchError, UnknownError
 from daidalos.control.hardware.base import Hardware
-from daidalos.control.interfaces import Interfaces, Loan
+from daidalos.control.interfaces import Interfaces
 from daidalos.control.loaded_controller import LoadedController, Reader, prefixed
 from daidalos.control.plugins import controller_class
 from daidalos.control.pulse import Pulse
-from daidalos.control.switching import Candidate, Strictness, Switch, plan_switch, update_order
+from daidalos.control.switcher import Switcher
+from daidalos.control.switching import Strictness, Switch
 from daidalos.simulation.samples import Sample
 
 _log = logging.getLogger(__name__)
@@ -61,15 +62,15 @@ class ControllerManager:
         self.controllers: dict[str, LoadedController] = {}
         self.time_ns = 0
         self._log = _log.warning if log is None else log
-        self._order: tuple[LoadedController, ...] = ()
+        self._switcher = Switcher(self.components, self.controllers, self._log)
         self._started = False
         for one in hardware:
             self._add(Component(one, enforce_limits), (initial_states or {}).get(one.info.name, ACTIVE))
 
     def _add(self, component: Component, state: str) -> None:
         for kind in ("command", "state"):
-            taken = {name: one.name for one in self.components.values() for name in _interfaces(one, kind).names}
-            for name in _interfaces(component, kind).names:
+            taken = {name: one.name for one in self.components.values() for name in one.interfaces(kind).names}
+            for name in component.interfaces(kind).names:
                 if name in taken:
                     raise ControlError(f"hardware '{component.name}' and '{taken[name]}' both have {kind} {name}")
         self.components[component.name] = component
@@ -94,12 +95,12 @@ class ControllerManager:
         """
         component = _find(self.components, "hardware", name)
         kept = {ACTIVE: ("command", "state"), INACTIVE: ("state",)}.get(target, ())
-        self._stop_users(component, kept, f"hardware '{name}' becomes {target}")
+        self._switcher.stop_users(component, kept, f"hardware '{name}' becomes {target}", self.time_ns)
         component.go_to(target)
 
     def claimed(self, interface: str) -> str:
         """Return which active controller holds a command interface, nothing where none does."""
-        return next((one.name for one in self._active() if interface in one.running.command_names), "")
+        return next((one.name for one in self._switcher.active if interface in one.running.command_names), "")
 
     # Controllers
 
@@ -188,10 +189,10 @@ class ControllerManager:
         StateError
             When some are active, unless they are forced to stop.
         """
-        active = [one.name for one in self._active()]
+        active = [one.name for one in self._switcher.active]
         if active and not force:
             raise StateError(f"controllers are active: {', '.join(active)}")
-        self._carry_out(Switch(stop=tuple(active), start=()))
+        self._switcher.stop(active, self.time_ns)
         for name in list(self.controllers):
             self.unload(name)
 
@@ -213,9 +214,7 @@ class ControllerManager:
         SwitchError
             When it can not be done; nothing has changed then.
         """
-        plan = plan_switch(self._candidates(), start, stop, strictness, self._problem_with)
-        self._carry_out(plan)
-        return plan
+        return self._switcher.switch(start, stop, strictness, self.time_ns)
 
     def chained_to(self, name: str) -> dict[str, tuple[str, ...]]:
         """Return whom a controller commands: references by the name of their controller."""
@@ -248,9 +247,9 @@ class ControllerManager:
         for component in self.components.values():
             self._guard(component, component.read, now_ns, period)
         if went_back:
-            self._restart()
+            self._switcher.restart(now_ns)
         said: list[tuple[str, Sample]] = []
-        for loaded in self._order:
+        for loaded in self._switcher.order:
             if loaded.state == ACTIVE and (loaded.pulse is None or loaded.pulse.due(now_ns)):
                 said += self._update_one(loaded, now_ns, nominal)
         for component in self.components.values():
@@ -283,7 +282,7 @@ class ControllerManager:
 
     def _fail(self, loaded: LoadedController, reason: str) -> None:
         self._log(reason)
-        self._carry_out(Switch(stop=self._with_those_above(loaded.name), start=()))
+        self._switcher.stop(self._switcher.with_those_above(loaded.name), self.time_ns)
         if loaded.fallbacks:
             try:
                 self.switch(start=loaded.fallbacks)
@@ -299,144 +298,11 @@ class ControllerManager:
             reason = f"hardware '{component.name}' failed: {error}"
             self._log(reason)
             component.state = UNCONFIGURED
-            self._stop_users(component, (), reason)
-
-    def _stop_users(self, component: Component, kept: Sequence[str], reason: str) -> None:
-        """Stop the controllers that use interfaces of hardware which it does not keep."""
-        lost = {kind: () if kind in kept else _interfaces(component, kind).names for kind in ("command", "state")}
-        users = [
-            one.name
-            for one in self._active()
-            if set(lost["command"]) & set(one.running.command_names)
-            or set(lost["state"]) & set(one.running.state_names)
-        ]
-        stop = [name for user in users for name in self._with_those_above(user)]
-        if stop:
-            self._log(f"{reason}; stopped are {', '.join(dict.fromkeys(stop))}")
-            self._carry_out(Switch(stop=tuple(dict.fromkeys(stop)), start=()))
-
-    def _with_those_above(self, name: str) -> tuple[str, ...]:
-        """Return a controller after all active ones that need it."""
-        stop = [name]
-        for one in stop:  # grows on the way
-            offers = {*self.controllers[one].references.names, *self.controllers[one].exported.names}
-            stop += [
-                other.name
-                for other in self._active()
-                if other.name not in stop and offers & {*other.running.command_names, *other.running.state_names}
-            ]
-        return tuple(reversed(stop))
-
-    def _carry_out(self, plan: Switch) -> None:
-        released = [name for one in plan.stop for name in self.controllers[one].running.command_names]
-        wanted = [name for one in plan.start for name in self.controllers[one].running.command_names]
-        if wanted:  # stopping is never refused
-            self._switch_hardware(wanted, released, commit=False)
-        for name in plan.stop:
-            self._stop_one(self.controllers[name])
-        self._release(set(released) - set(wanted))
-        self._switch_hardware(wanted, released, commit=True)
-        started: list[str] = []
-        try:
-            for name in plan.start:
-                self._start_one(self.controllers[name])
-                started.append(name)
-        except ControlError as error:
-            for name in reversed(started):
-                self._stop_one(self.controllers[name])
-            raise SwitchError(str(error)) from error
-        finally:
-            self._settle()
-
-    def _switch_hardware(self, start: Sequence[str], stop: Sequence[str], commit: bool) -> None:
-        for component in self.components.values():
-            own = component.hardware.commands
-            mine = [[name for name in names if name in own] for names in (start, stop)]
-            if not any(mine):
-                continue
-            try:
-                (component.hardware.switch if commit else component.hardware.prepare_switch)(*mine)
-            except HardwareError as error:
-                if not commit:
-                    raise SwitchError(f"hardware '{component.name}' refuses: {error}") from error
-                self._log(f"hardware '{component.name}' did not switch: {error}")
-
-    def _start_one(self, loaded: LoadedController) -> None:
-        controller = loaded.running
-        commands = [one.hardware.commands for one in self.components.values()]
-        states = [one.hardware.states for one in self.components.values()]
-        commands += [other.references for other in self.controllers.values() if other is not loaded]
-        states += [other.exported for other in self.controllers.values() if other is not loaded]
-        controller.assign(Loan(controller.command_names, commands), Loan(controller.state_names, states))
-        loaded.updated_ns = -1
-        if loaded.pulse is not None:
-            loaded.pulse.restart()
-        controller.now_ns = self.time_ns
-        controller.activate(self.time_ns)
-        loaded.state = ACTIVE
-
-    def _stop_one(self, loaded: LoadedController) -> None:
-        loaded.state = INACTIVE
-        loaded.running.deactivate()
-
-    def _release(self, names: Iterable[str]) -> None:
-        """Let nobody's commands be none."""
-        for name in names:
-            for component in self.components.values():
-                if name in component.hardware.commands:
-                    component.hardware.commands[name] = float("nan")
-
-    def _settle(self) -> None:
-        """After a switch: find the order and who is commanded by whom."""
-        self._order = tuple(self.controllers[name] for name in update_order(self._candidates()))
-        commanded = {name for one in self._active() for name in one.running.command_names}
-        for loaded in self.controllers.values():
-            if loaded.controller is None:
-                continue
-            chained = bool(commanded & set(loaded.references.names))
-            if chained != loaded.controller.chained:
-                loaded.controller.chained = chained
-                loaded.references.values[:] = float("nan")
-
-    def _restart(self) -> None:
-        """Let active controllers forget what was before time went back."""
-        self._release(name for one in self._active() for name in one.running.command_names)
-        for loaded in reversed(self._order):
-            if loaded.state == ACTIVE:
-                loaded.running.deactivate()
-                self._start_one(loaded)
+            self._switcher.stop_users(component, (), reason, now_ns)
 
     def _forget(self, loaded: LoadedController) -> None:
         loaded.state, loaded.controller = UNCONFIGURED, None
         loaded.references, loaded.exported = Interfaces(), Interfaces()
-
-    def _active(self) -> list[LoadedController]:
-        return [one for one in self.controllers.values() if one.state == ACTIVE]
-
-    def _candidates(self) -> dict[str, Candidate]:
-        return {name: one.candidate for name, one in self.controllers.items()}
-
-    def _problem_with(self, kind: str, interface: str) -> str:
-        for component in self.components.values():
-            if interface in _interfaces(component, kind):
-                available = component.takes_commands if kind == "command" else component.tells_states
-                return "" if available else f"hardware '{component.name}' is {component.state}"
-        owner = next(
-            (
-                one.name
-                for one in self.controllers.values()
-                if interface in (*one.references.names, *one.exported.names)
-            ),
-            "",
-        )
-        if owner:
-            return f"controller '{owner}' is not active"
-        known = [name for one in self.components.values() for name in _interfaces(one, kind).names]
-        return str(UnknownError(f"{kind} interface", interface, known))
-
-
-def _interfaces(component: Component, kind: str) -> Interfaces:
-    return component.hardware.commands if kind == "command" else component.hardware.states
 
 
 def _find(known: Mapping[str, T], what: str, name: str) -> T:
