@@ -173,6 +173,35 @@ def test_joints_follow_a_trajectory(library, topic):
     assert simulation.joint("arm", "j").position == pytest.approx(0.5, abs=0.01)
 
 
+@pytest.mark.parametrize("names", ["", "<joint_name>j</joint_name>"])
+def test_gzs_trajectory_controller_holds_the_start_and_the_end(names):
+    parameters = f"{names}<initial_position>0.3</initial_position><position_p_gain>9</position_p_gain>"
+    simulation = Simulation(world(with_plugin(ARM, "gz-sim-joint-trajectory-controller-system", parameters)))
+    assert not simulation.warnings
+    simulation.gravity = (0, -9.8, 0)  # across the arm, which turns about z
+    simulation.advance(SECOND)
+    assert simulation.joint("arm", "j").position == pytest.approx(0.3, abs=0.01)
+    command = TrajectoryCommand(("j",), np.array((0.5,)), np.array(((1.0,),)))
+    simulation.command("/model/arm/joint_trajectory", command)
+    simulation.advance(2 * SECOND)
+    assert simulation.joint("arm", "j").position == pytest.approx(1, abs=0.01)
+
+
+@pytest.mark.parametrize(
+    ("parameters", "words"),
+    [
+        ("<joint_name>k</joint_name>", "'k', expected one of the joints j"),
+        (
+            "<initial_position>0</initial_position><initial_position>1</initial_position>",
+            "at most 1 <initial_position>",
+        ),
+    ],
+)
+def test_mistakes_of_gzs_trajectory_controller_are_named(parameters, words):
+    with pytest.raises(DescriptionError, match=words):
+        Simulation(world(with_plugin(ARM, "gz-sim-joint-trajectory-controller-system", parameters)))
+
+
 def test_a_trajectory_of_unknown_joints_is_ignored_with_a_warning():
     said = []
     simulation = Simulation(world(with_plugin(ARM, "libgazebo_ros_joint_pose_trajectory.so")), warn=said.append)

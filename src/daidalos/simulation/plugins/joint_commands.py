@@ -5,7 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
+import numpy as np
+
+from daidalos.description.joint import JointType
 from daidalos.description.link import Plugin as Description
+from daidalos.description.markup import Element
 from daidalos.simulation.component import Setting, Subscription
 from daidalos.simulation.conversion.model_build import ModelBuild
 from daidalos.simulation.courses import Course, place_joints
@@ -20,12 +24,13 @@ _GAINS = ("p_gain", "i_gain", "d_gain", "i_min", "i_max", "cmd_min", "cmd_max", 
 class JointPoseTrajectory(Plugin):
     """``libgazebo_ros_joint_pose_trajectory.so``: puts joints where a trajectory says, without any force.
 
-    gz's JointTrajectoryController is taken for the same; its gains are not needed.
+    gz's JointTrajectoryController does the same and holds the joints at the end, and at the start where that says
+    where; its gains are not needed.
     """
 
     names = ("gazebo_ros_joint_pose_trajectory", "gz-sim-joint-trajectory-controller-system")
     unused = (
-        *("serviceName", "joint_name", "initial_position", "use_header_start_time"),
+        *("serviceName", "use_header_start_time"),
         *(f"{kind}_{what}" for kind in ("position", "velocity") for what in _GAINS),
     )
     memory: Course | None
@@ -33,7 +38,10 @@ class JointPoseTrajectory(Plugin):
     def __init__(self, description: Description, setting: Setting) -> None:
         super().__init__(description, setting)
         element = description.element
-        if self.parameters.library.startswith("gz-"):
+        self._holds = self.parameters.library.startswith("gz-")
+        self._initial: Course | None = None
+        if self._holds:
+            self._initial = self._initial_course(element)
             topic = element.text_of("topic", default=f"/model/{setting.model_name}/joint_trajectory")
             self.topic = absolute_topic(topic, setting.namespace)
         else:
@@ -48,6 +56,10 @@ class JointPoseTrajectory(Plugin):
         """The trajectory."""
         return {self.topic: Subscription(TrajectoryCommand, self._command)}
 
+    def start(self) -> Course | None:
+        """Hold the joints where the description has them, if it says so."""
+        return self._initial
+
     def bind(self, instance: Instance) -> None:
         """Note which joints move."""
         self._instance = instance
@@ -59,7 +71,7 @@ class JointPoseTrajectory(Plugin):
         course = self.memory
         if course is None:
             return ()
-        if place_joints(self._instance, course, now_ns, self.parameters.scoped):
+        if place_joints(self._instance, course, now_ns, self.parameters.scoped) and not self._holds:
             self.memory = None
         return ()
 
@@ -70,6 +82,23 @@ class JointPoseTrajectory(Plugin):
             self.setting.warn(f"{self.topic}: the trajectory is ignored, {words}")
             return
         self.memory = Course(command, self._now_ns)
+
+    def _initial_course(self, element: Element) -> Course | None:
+        """Return a course that stands still at the initial positions, which are in the order of the joints."""
+        scope = f"{self.parameters.scope}::" if self.parameters.scope else ""
+        joints = self.setting.model.joints.values()
+        turning = [joint.name for joint in joints if joint.type is not JointType.FIXED]
+        movable = [name.removeprefix(scope) for name in turning if name.startswith(scope)]
+        names = [child.text.strip() for child in element.all("joint_name")] or movable
+        positions = [child.number() for child in element.all("initial_position")]
+        unknown = [name for name in names if name not in movable]
+        if unknown:
+            raise element.error(f"<joint_name> is {unknown[0]!r}, expected one of the joints {', '.join(movable)}")
+        if len(positions) > len(names):
+            raise element.error(f"expected at most {len(names)} <initial_position>, got {len(positions)}")
+        if not positions:
+            return None
+        return Course(TrajectoryCommand(tuple(names[: len(positions)]), np.zeros(1), np.array([positions])), 0)
 
 
 @dataclass
