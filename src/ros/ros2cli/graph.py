@@ -1,10 +1,12 @@
-"""What topics and services have in common where commands ask about them."""
+"""What topics, services and nodes have in common where commands ask about them."""
 
 from __future__ import annotations
 
 from argparse import Namespace
 from collections.abc import Callable
 from typing import Any
+
+from ros2cli.node.strategy import NodeStrategy
 
 NamesAndTypes = list[tuple[str, list[str]]]
 
@@ -62,3 +64,55 @@ def class_of(
 def is_set(parsed_args: Namespace, key: str | None) -> bool:
     """Tell whether a switch was given, if there is such a switch."""
     return bool(key and getattr(parsed_args, key, False))
+
+
+class NameCompleter:
+    """Returns the names that an argument may be.
+
+    Parameters
+    ----------
+    names
+        Returns them, of a node and of whether hidden ones are among them.
+    include_hidden_key
+        The argument that says whether they are.
+    """
+
+    def __init__(self, names: Callable[[Any, bool], list[str]], include_hidden_key: str | None) -> None:
+        self._names = names
+        self._include_hidden_key = include_hidden_key
+
+    def __call__(self, prefix: str, parsed_args: Namespace, **kwargs: Any) -> list[str]:
+        """Return them."""
+        with NodeStrategy(parsed_args) as node:
+            return self._names(node, is_set(parsed_args, self._include_hidden_key))
+
+
+class TypeCompleter:
+    """Returns the types that an argument may be: those of what another argument names, or all.
+
+    Parameters
+    ----------
+    types_of
+        Returns the types of a name, asked by a node; none where nobody knows it.
+    all_types
+        Returns all.
+    name_key
+        The other argument.
+    """
+
+    def __init__(
+        self, types_of: Callable[[Any, str], list[str]], all_types: Callable[[], list[str]], name_key: str | None
+    ) -> None:
+        self._types_of = types_of
+        self._all_types = all_types
+        self._name_key = name_key
+
+    def __call__(self, prefix: str, parsed_args: Namespace, **kwargs: Any) -> list[str]:
+        """Return them."""
+        name = getattr(parsed_args, self._name_key, None) if self._name_key else None
+        if name:
+            with NodeStrategy(parsed_args) as node:
+                found = self._types_of(node, name)
+            if found:
+                return found
+        return self._all_types()

@@ -1,6 +1,7 @@
 """The functions behind `ros2 topic`, `node`, `service`, `param`, `pkg` and `run` that other packages import."""
 
 import argparse
+import contextlib
 import sys
 
 import pytest
@@ -97,6 +98,19 @@ def test_completion_that_needs_no_graph():
     assert topics.TopicMessagePrototypeCompleter(topic_type_key="kind")("", chosen) == ["{data: 0}"]
     assert "turtlesim_node" in runs.ExecutableNameCompleter(package_name_key="package")("", chosen)
     assert topics.TopicTypeCompleter()("", chosen) == topics.message_type_completer()
+
+
+def test_completion_by_the_graph(node, robot, monkeypatch):
+    monkeypatch.setattr("ros2cli.graph.NodeStrategy", lambda args: contextlib.nullcontext(node))
+    chosen = argparse.Namespace(topic="/robot/speech", service="/robot/reset", other="/none", hidden=True)
+    names = topics.TopicNameCompleter(include_hidden_topics_key="hidden")("", chosen)
+    assert {"/robot/speech", "/robot/_secret"} <= set(names)
+    assert "/robot/_secret" not in topics.TopicNameCompleter()("", chosen)
+    assert topics.TopicTypeCompleter(topic_name_key="topic")("", chosen) == ["std_msgs/msg/String"]
+    assert topics.TopicTypeCompleter(topic_name_key="other")("", chosen) == topics.message_type_completer()
+    assert "/robot/reset" in services.ServiceNameCompleter()("", chosen)
+    assert services.ServiceTypeCompleter(service_name_key="service")("", chosen) == ["std_srvs/srv/Trigger"]
+    assert "/robot/driver" in nodes.NodeNameCompleter(include_hidden_nodes_key="hidden")("", chosen)
 
 
 def test_services(node, robot):

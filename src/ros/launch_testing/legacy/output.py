@@ -27,6 +27,20 @@ def get_rmw_output_filter(rmw_implementation: str, filter_type: str) -> list[str
     return content.splitlines()
 
 
+def output_filters(
+    filtered_prefixes: Iterable[str] | None,
+    filtered_patterns: Iterable[str] | None,
+    filtered_rmw_implementation: str | None,
+) -> tuple[list[str], list[str]]:
+    """Return the prefixes and the patterns of lines to take out; see `create_output_lines_filter`."""
+    prefixes = list(get_default_filtered_prefixes() if filtered_prefixes is None else filtered_prefixes)
+    patterns = list(get_default_filtered_patterns() if filtered_patterns is None else filtered_patterns)
+    if filtered_rmw_implementation:
+        prefixes += get_rmw_output_filter(filtered_rmw_implementation, "prefixes")
+        patterns += get_rmw_output_filter(filtered_rmw_implementation, "patterns")
+    return prefixes, patterns
+
+
 def create_output_lines_filter(
     filtered_prefixes: Iterable[str] | None = None,
     filtered_patterns: Iterable[str] | None = None,
@@ -43,11 +57,7 @@ def create_output_lines_filter(
     filtered_rmw_implementation
         A middleware whose own output is taken out, too.
     """
-    prefixes = list(get_default_filtered_prefixes() if filtered_prefixes is None else filtered_prefixes)
-    patterns = list(get_default_filtered_patterns() if filtered_patterns is None else filtered_patterns)
-    if filtered_rmw_implementation:
-        prefixes += get_rmw_output_filter(filtered_rmw_implementation, "prefixes")
-        patterns += get_rmw_output_filter(filtered_rmw_implementation, "patterns")
+    prefixes, patterns = output_filters(filtered_prefixes, filtered_patterns, filtered_rmw_implementation)
     encoded = tuple(prefix.encode() for prefix in prefixes)
     compiled = [re.compile(pattern.encode()) for pattern in patterns]
 

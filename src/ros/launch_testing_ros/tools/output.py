@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 
 from launch_testing.legacy.output import get_rmw_output_filter as get_rmw_output_filter
+from launch_testing.legacy.output import output_filters
 from launch_testing.tools import basic_output_filter as _basic_output_filter
-from launch_testing.tools.output import get_default_filtered_patterns, get_default_filtered_prefixes
 
 
 def basic_output_filter(
@@ -25,9 +25,5 @@ def basic_output_filter(
     filtered_rmw_implementation
         A middleware whose own output is taken out, too.
     """
-    prefixes = list(get_default_filtered_prefixes() if filtered_prefixes is None else filtered_prefixes)
-    patterns = list(get_default_filtered_patterns() if filtered_patterns is None else filtered_patterns)
-    if filtered_rmw_implementation:
-        prefixes += get_rmw_output_filter(filtered_rmw_implementation, "prefixes")
-        patterns += get_rmw_output_filter(filtered_rmw_implementation, "patterns")
+    prefixes, patterns = output_filters(filtered_prefixes, filtered_patterns, filtered_rmw_implementation)
     return _basic_output_filter(prefixes, patterns)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from argparse import Namespace
 from collections import namedtuple
 from collections.abc import Callable, Iterable
 from typing import Any
@@ -11,7 +10,7 @@ from rclpy.action import (
     get_action_client_names_and_types_by_node,
     get_action_server_names_and_types_by_node,
 )
-from ros2cli.graph import is_set, visible
+from ros2cli.graph import NameCompleter, visible
 from ros2cli.node.strategy import NodeStrategy
 
 NodeName = namedtuple("NodeName", ("name", "namespace", "full_name"))
@@ -147,7 +146,7 @@ def get_action_client_info(*, node: Any, remote_node_name: str, include_hidden: 
     )
 
 
-class NodeNameCompleter:
+class NodeNameCompleter(NameCompleter):
     """Returns the full names of the nodes that an argument may be.
 
     Parameters
@@ -157,13 +156,11 @@ class NodeNameCompleter:
     """
 
     def __init__(self, *, include_hidden_nodes_key: str | None = None) -> None:
-        self.include_hidden_nodes_key = include_hidden_nodes_key
+        super().__init__(_full_names, include_hidden_nodes_key)
 
-    def __call__(self, prefix: str, parsed_args: Namespace, **kwargs: Any) -> list[str]:
-        """Return them."""
-        hidden = is_set(parsed_args, self.include_hidden_nodes_key)
-        with NodeStrategy(parsed_args) as node:
-            return [one.full_name for one in get_node_names(node=node, include_hidden_nodes=hidden)]
+
+def _full_names(node: Any, include_hidden: bool) -> list[str]:
+    return [one.full_name for one in get_node_names(node=node, include_hidden_nodes=include_hidden)]
 
 
 def _node(node: Any) -> Any:

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import argparse
 from typing import Any
 
-from ros2cli.graph import NamesAndTypes, class_of, is_set, visible
-from ros2cli.node.strategy import NodeStrategy
+from ros2cli.graph import NameCompleter, NamesAndTypes, TypeCompleter, class_of, visible
 
 
 def get_service_names_and_types(*, node: Any, include_hidden_services: bool = False) -> NamesAndTypes:
@@ -62,7 +60,7 @@ def service_type_completer(**kwargs: Any) -> list[str]:
     return interface_names("srv")
 
 
-class ServiceNameCompleter:
+class ServiceNameCompleter(NameCompleter):
     """Returns the services that an argument may be.
 
     Parameters
@@ -72,17 +70,14 @@ class ServiceNameCompleter:
     """
 
     def __init__(self, *, include_hidden_services_key: str | None = None) -> None:
-        self.include_hidden_services_key = include_hidden_services_key
-
-    def __call__(self, prefix: str, parsed_args: argparse.Namespace, **kwargs: Any) -> list[str]:
-        """Return them."""
-        hidden = is_set(parsed_args, self.include_hidden_services_key)
-        with NodeStrategy(parsed_args) as node:
-            return get_service_names(node=node, include_hidden_services=hidden)
+        super().__init__(
+            lambda node, hidden: get_service_names(node=node, include_hidden_services=hidden),
+            include_hidden_services_key,
+        )
 
 
-class ServiceTypeCompleter:
-    """Returns the types that an argument may be: that of the service which another argument names, or all.
+class ServiceTypeCompleter(TypeCompleter):
+    """Returns the types that an argument may be: those of the service which another argument names, or all.
 
     Parameters
     ----------
@@ -91,15 +86,10 @@ class ServiceTypeCompleter:
     """
 
     def __init__(self, *, service_name_key: str | None = None) -> None:
-        self.service_name_key = service_name_key
+        super().__init__(_types_of, service_type_completer, service_name_key)
 
-    def __call__(self, prefix: str, parsed_args: argparse.Namespace, **kwargs: Any) -> list[str]:
-        """Return them."""
-        service = getattr(parsed_args, self.service_name_key, None) if self.service_name_key else None
-        if service:
-            with NodeStrategy(parsed_args) as node:
-                found = dict(get_service_names_and_types(node=node, include_hidden_services=True))
-                types = found.get(node.resolve_service_name(service))
-            if types:
-                return types
-        return service_type_completer()
+
+def _types_of(node: Any, service: str) -> list[str]:
+    return dict(get_service_names_and_types(node=node, include_hidden_services=True)).get(
+        node.resolve_service_name(service), []
+    )

@@ -5,8 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING, Any
 
-from ros2cli.graph import NamesAndTypes, class_of, is_set, visible
-from ros2cli.node.strategy import NodeStrategy
+from ros2cli.graph import NameCompleter, NamesAndTypes, TypeCompleter, class_of, visible
 
 if TYPE_CHECKING:
     from rclpy.qos import QoSProfile
@@ -138,7 +137,7 @@ def message_type_completer(**kwargs: Any) -> list[str]:
     return interface_names("msg")
 
 
-class TopicNameCompleter:
+class TopicNameCompleter(NameCompleter):
     """Returns the topics that an argument may be.
 
     Parameters
@@ -148,17 +147,13 @@ class TopicNameCompleter:
     """
 
     def __init__(self, *, include_hidden_topics_key: str | None = None) -> None:
-        self.include_hidden_topics_key = include_hidden_topics_key
-
-    def __call__(self, prefix: str, parsed_args: argparse.Namespace, **kwargs: Any) -> list[str]:
-        """Return them."""
-        hidden = is_set(parsed_args, self.include_hidden_topics_key)
-        with NodeStrategy(parsed_args) as node:
-            return get_topic_names(node=node, include_hidden_topics=hidden)
+        super().__init__(
+            lambda node, hidden: get_topic_names(node=node, include_hidden_topics=hidden), include_hidden_topics_key
+        )
 
 
-class TopicTypeCompleter:
-    """Returns the types that an argument may be: that of the topic which another argument names, or all.
+class TopicTypeCompleter(TypeCompleter):
+    """Returns the types that an argument may be: those of the topic which another argument names, or all.
 
     Parameters
     ----------
@@ -167,18 +162,7 @@ class TopicTypeCompleter:
     """
 
     def __init__(self, *, topic_name_key: str | None = None) -> None:
-        self.topic_name_key = topic_name_key
-
-    def __call__(self, prefix: str, parsed_args: argparse.Namespace, **kwargs: Any) -> list[str]:
-        """Return them."""
-        topic = getattr(parsed_args, self.topic_name_key, None) if self.topic_name_key else None
-        if topic:
-            with NodeStrategy(parsed_args) as node:
-                found = dict(get_topic_names_and_types(node=node, include_hidden_topics=True))
-                types = found.get(node.resolve_topic_name(topic))
-            if types:
-                return types
-        return message_type_completer()
+        super().__init__(_types_of, message_type_completer, topic_name_key)
 
 
 class TopicMessagePrototypeCompleter:
@@ -198,6 +182,12 @@ class TopicMessagePrototypeCompleter:
         from daidalos.cli.ros2.interfaces import prototype
 
         return [prototype(getattr(parsed_args, self.topic_type_key))]
+
+
+def _types_of(node: Any, topic: str) -> list[str]:
+    return dict(get_topic_names_and_types(node=node, include_hidden_topics=True)).get(
+        node.resolve_topic_name(topic), []
+    )
 
 
 def _number(string: str, kind: Any, is_good: Any, words: str) -> Any:
