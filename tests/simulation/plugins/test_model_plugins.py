@@ -16,6 +16,7 @@ from daidalos.simulation.samples import (
     WrenchCommand,
 )
 from simulation.models import box, world
+from simulation.plugins.vehicles import four_wheels
 
 SECOND = 1_000_000_000
 
@@ -217,6 +218,15 @@ def test_gzs_controllers_hold_a_joint(kind):
     simulation.advance(3 * SECOND)
     joint = simulation.joint("arm", "j")
     assert (joint.position if "position" in kind else joint.velocity) == pytest.approx(0.7, abs=0.01)
+
+
+def test_gzs_joint_controller_may_have_several_joints():
+    wheels = "".join(f"<joint_name>{wheel}_j</joint_name>" for wheel in ("fl", "fr", "rl", "rr"))
+    drive = f"<plugin name='p' filename='gz-sim-joint-controller-system'>{wheels}</plugin>"
+    simulation = Simulation(world(four_wheels(drive, radius=0.1)))
+    simulation.command("/model/cart/joint/fl_j/cmd_vel", NumberCommand(3.0))
+    simulation.advance(2 * SECOND)
+    assert simulation.velocity("cart")[0][0] == pytest.approx(0.3, abs=0.01)
 
 
 @pytest.mark.parametrize(("limit", "reached"), [(20, True), (1, False)])

@@ -103,15 +103,15 @@ class JointPoseTrajectory(Plugin):
 
 @dataclass
 class Hold:
-    """What is wanted of a joint, and the integral part of the effort."""
+    """What is wanted of joints, and the integral part of the effort on each."""
 
     target: float
-    integral: float = 0.0
+    integrals: list[float]
     stamp_ns: int = -1
 
 
 class JointController(Plugin):
-    """gz's JointController (speeds) and JointPositionController (positions): one joint, one number.
+    """gz's JointController (speeds) and JointPositionController (positions): one number, for one joint or several.
 
     A speed is held without any gains. A position is held by a PID loop whose proportional and derivative parts
     belong to the physics, which keeps stiff ones stable.
@@ -120,20 +120,22 @@ class JointController(Plugin):
     names = ("gz-sim-joint-controller-system", "gz-sim-joint-position-controller-system")
     unused = ("use_force_commands", *_GAINS)
     memory: Hold
+    period = 0.01
 
     def __init__(self, description: Description, setting: Setting) -> None:
         super().__init__(description, setting)
         element, joints = description.element, setting.model.joints
-        self.joint = self.parameters.scoped(element.text_of("joint_name"))
-        if self.joint not in joints:
-            known = ", ".join(joints) or "none"
-            raise element.error(f"<joint_name> is {self.joint!r}, expected one of the joints {known}")
+        self.joints = [self.parameters.scoped(child.text.strip()) for child in element.all("joint_name")]
+        for joint in self.joints or [""]:
+            if joint not in joints:
+                known = ", ".join(joints) or "none"
+                raise element.error(f"<joint_name> is {joint!r}, expected one of the joints {known}")
         self.holds_position = "position" in self.parameters.library
         model = f"/model/{setting.model_name}"
         axis = element.integer_of("joint_index", default=0)
         words = f"{axis}/cmd_pos" if self.holds_position else "cmd_vel"
         below = element.text_of("sub_topic")
-        default = f"{model}/{below}" if below else f"{model}/joint/{self.joint}/{words}"
+        default = f"{model}/{below}" if below else f"{model}/joint/{self.joints[0]}/{words}"
         self.topic = absolute_topic(element.text_of("topic", default=default), setting.namespace)
         self.gain = element.number_of("p_gain", default=1.0)
         self.damping = element.number_of("d_gain", default=0.1)
@@ -150,37 +152,45 @@ class JointController(Plugin):
         return {self.topic: Subscription(NumberCommand, self._command)}
 
     def prepare(self, build: ModelBuild) -> None:
-        """Add a servo."""
+        """Add a servo to each joint."""
         effort = self.effort if self.effort > 0 else float("inf")
-        if self.holds_position:
-            self._servo = build.add_position_servo(self.joint, self.gain, self.damping, effort)
-        else:
-            weight = sum(link.inertial.mass for link in build.model.links.values() if link.inertial)
-            self._servo = build.add_velocity_servo(self.joint, max(self.gain, 10 * weight), effort)
+        weight = sum(link.inertial.mass for link in build.model.links.values() if link.inertial)
+        self._servos = [
+            build.add_position_servo(joint, self.gain, self.damping, effort)
+            if self.holds_position
+            else build.add_velocity_servo(joint, max(self.gain, 10 * weight), effort)
+            for joint in self.joints
+        ]
 
     def bind(self, instance: Instance) -> None:
-        """Find the servo."""
+        """Find joints and servos."""
         self._data = instance.physics.data
-        self._control = instance.actuator(self._servo)
-        self._joint = instance.joint(self.joint)
+        self._controls = [instance.actuator(servo) for servo in self._servos]
+        self._views = [instance.joint(joint) for joint in self.joints]
 
     def start(self) -> Hold:
         """Begin as the description says."""
-        return Hold(self.initial)
+        hold = Hold(self.initial, [0.0] * len(self.joints))
+        self._tell(hold)
+        return hold
 
     def update(self, now_ns: int) -> Iterable[Sample]:
-        """Tell the servo; what the integral adds to the effort is told as more of the position."""
+        """Add to the integrals."""
         hold = self.memory
-        value = hold.target
-        if self.integral_gain > 0 and self.gain > 0:
-            elapsed = (now_ns - hold.stamp_ns) * 1e-9 if hold.stamp_ns >= 0 else 0.0
-            lower, upper = self.integral_limits
-            more = self.integral_gain * (hold.target - self._joint.position) * elapsed
-            hold.integral = min(max(hold.integral + more, lower), upper)
-            value += hold.integral / self.gain
+        elapsed = (now_ns - hold.stamp_ns) * 1e-9 if hold.stamp_ns >= 0 else 0.0
         hold.stamp_ns = now_ns
-        self._data.ctrl[self._control] = value
+        if self.integral_gain > 0:
+            lower, upper = self.integral_limits
+            more = (self.integral_gain * (hold.target - view.position) * elapsed for view in self._views)
+            hold.integrals = [min(max(i + m, lower), upper) for i, m in zip(hold.integrals, more, strict=True)]
+            self._tell(hold)
         return ()
+
+    def _tell(self, hold: Hold) -> None:
+        """Tell the servos; what an integral adds to the effort is told as more of the position."""
+        for control, integral in zip(self._controls, hold.integrals, strict=True):
+            self._data.ctrl[control] = hold.target + (integral / self.gain if self.gain > 0 else 0.0)
 
     def _command(self, command: NumberCommand) -> None:
         self.memory.target = command.value
+        self._tell(self.memory)
