@@ -27,7 +27,7 @@ from daidalos.navigation.plugins import find_plugin
 from daidalos.nodes.action_results import TransformFailed, set_error
 from daidalos.nodes.conversions import duration_message, pose2_of_transform, seconds, twist_message
 from daidalos.nodes.cycles import Cycle
-from daidalos.nodes.nav2_costmap_2d._costmap_node import costmap_of
+from daidalos.nodes.nav2_costmap_2d._costmap_messages import costmap_of
 from daidalos.nodes.parameters import declare_plugin
 from daidalos.nodes.runner import run
 

@@ -7,7 +7,6 @@ import time
 from dataclasses import fields
 from typing import Any
 
-import numpy as np
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
 from rclpy.node import Node
@@ -36,11 +35,11 @@ from daidalos.nodes.conversions import (
     grid_message,
     pose2_of,
     pose2_of_transform,
-    pose_message,
     scan_data,
     seconds,
 )
 from daidalos.nodes.cycles import Cycle
+from daidalos.nodes.nav2_costmap_2d._costmap_messages import costmap_message, footprint_message
 from daidalos.nodes.parameters import declare_dataclass, declare_plugin
 from daidalos.nodes.transforms import PatientBuffer
 from daidalos.nodes.warming import warm_up_in_background
@@ -325,44 +324,11 @@ class CostmapNode(LifecycleNode):
                 grid_message(values, costmap.resolution, costmap.origin, self.global_frame, stamp)
             )
         if self._raw_publisher.handle.impl.is_heard:
-            self._raw_publisher.publish(self._raw_message(stamp))
-        self._publish_footprint(stamp)
-
-    def _raw_message(self, stamp: Any) -> Any:
-        from array import array
-
-        from nav2_msgs.msg import Costmap as CostmapMessage
-        from nav2_msgs.msg import CostmapMetaData
-        from std_msgs.msg import Header
-
-        costmap = self.snapshot()
-        data = array("B")
-        data.frombytes(np.ascontiguousarray(costmap.costs).tobytes())
-        metadata = CostmapMetaData(
-            map_load_time=stamp,
-            update_time=stamp,
-            layer="master",
-            resolution=costmap.resolution,
-            size_x=costmap.width,
-            size_y=costmap.height,
-            origin=pose_message((*costmap.origin, 0.0)),
-        )
-        return CostmapMessage(header=Header(frame_id=self.global_frame, stamp=stamp), metadata=metadata, data=data)
-
-    def _publish_footprint(self, stamp: Any) -> None:
-        if not self._footprint_publisher.handle.impl.is_heard:
-            return
-        from geometry_msgs.msg import Point32, Polygon, PolygonStamped
-        from std_msgs.msg import Header
-
-        pose = self.robot_pose()
-        if pose is None:
-            return
-        cos, sin = np.cos(pose[2]), np.sin(pose[2])
-        corners = self.footprint.polygon @ np.array([[cos, sin], [-sin, cos]]) + pose[:2]
-        points = [Point32(x=float(x), y=float(y), z=0.0) for x, y in corners]
-        header = Header(frame_id=self.global_frame, stamp=stamp)
-        self._footprint_publisher.publish(PolygonStamped(header=header, polygon=Polygon(points=points)))
+            self._raw_publisher.publish(costmap_message(self.snapshot(), self.global_frame, stamp))
+        if self._footprint_publisher.handle.impl.is_heard:
+            pose = self.robot_pose()
+            if pose is not None:
+                self._footprint_publisher.publish(footprint_message(self.footprint, pose, self.global_frame, stamp))
 
     # Services.
 
@@ -387,7 +353,7 @@ class CostmapNode(LifecycleNode):
         return response
 
     def _on_get_costmap(self, request: Any, response: Any) -> Any:
-        response.map = self._raw_message(self.get_clock().now().to_msg())
+        response.map = costmap_message(self.snapshot(), self.global_frame, self.get_clock().now().to_msg())
         return response
 
 
@@ -395,11 +361,3 @@ def _warm_up(progress: Any) -> None:
     from daidalos import navigation
 
     navigation.warm_up(progress)
-
-
-def costmap_of(message: Any) -> Costmap:
-    """Return the costmap that a ``nav2_msgs/msg/Costmap`` holds."""
-    metadata = message.metadata
-    costs = np.frombuffer(message.data, dtype=np.uint8).reshape(metadata.size_y, metadata.size_x)
-    origin = (metadata.origin.position.x, metadata.origin.position.y)
-    return Costmap(costs.copy(), metadata.resolution, origin)
