@@ -14,6 +14,7 @@ from daidalos.simulation.directional_friction import DirectionalFriction, direct
 from daidalos.simulation.plugins.base import COMMON_PARAMETERS, Parameters, Plugin, ReadElement, SensorPlugin
 from daidalos.simulation.registry import is_built_in, plugin_class, sensor_class
 from daidalos.simulation.sensors.base import Sensor
+from daidalos.simulation.standing_pushes import StandingPushes, check_standing_pushes, standing_pushes
 
 
 def make_components(model: Model, setting: Callable[[str], Setting]) -> list[Component]:
@@ -38,6 +39,9 @@ def make_components(model: Model, setting: Callable[[str], Setting]) -> list[Com
     components: list[Component] = []
     if directed_surfaces(model):
         components.append(DirectionalFriction(setting("friction")))
+    first = setting("pushes")
+    if standing_pushes(model, first.world):
+        components.append(StandingPushes(first))
     for plugin in model.plugins:
         if model.links:
             components += _plugin(plugin, setting(plugin.name))
@@ -50,6 +54,7 @@ def make_components(model: Model, setting: Callable[[str], Setting]) -> list[Com
 
 def check_world_plugins(world: World, warn: Callable[[str], None]) -> None:
     """Warn of a world's plugins that do nothing there; those that do something are built in."""
+    check_standing_pushes(world, warn)
     for plugin in world.plugins:
         if is_built_in(plugin):
             continue

@@ -1,0 +1,82 @@
+"""Pushes that a world describes: the ``<persistent>`` wrenches of gz's ApplyLinkWrench system."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+
+from daidalos.description.markup import Element
+from daidalos.description.pose import Vector
+from daidalos.description.world import Model, World
+from daidalos.simulation.component import Component, Setting
+from daidalos.simulation.forces import Push
+from daidalos.simulation.instance import Instance
+from daidalos.simulation.plugins.base import library_of
+from daidalos.simulation.samples import Sample
+
+LIBRARY = "gz-sim-apply-link-wrench-system"
+_NEVER = 1e6  # seconds between two updates, in which there is nothing to do
+
+
+class StandingPushes(Component):
+    """Begins to push the links of its model when the simulation starts.
+
+    Parameters
+    ----------
+    setting : Setting
+    """
+
+    period = _NEVER
+
+    def __init__(self, setting: Setting) -> None:
+        super().__init__(setting)
+        self._pushes = standing_pushes(setting.model, setting.world)
+
+    def bind(self, instance: Instance) -> None:
+        """Find where pushes are kept."""
+        self._forces = instance.physics.forces
+
+    def start(self) -> None:
+        """Begin to push; a reset ended all pushes."""
+        for push in self._pushes:
+            self._forces.add(push)
+
+    def update(self, now_ns: int) -> Iterable[Sample]:
+        """Leave that to the pushes."""
+        return ()
+
+
+def standing_pushes(model: Model, world: World) -> list[Push]:
+    """Return what a world pushes a model's links with; a push on the model is one on its first link.
+
+    Raises
+    ------
+    DescriptionError
+        When a force or torque is no vector.
+    """
+    named = {f"{model.name}::{link}": link for link in model.links}
+    named[model.name] = next(iter(model.links), "")
+    pushes = ((named.get(_name(element), ""), element) for element in _persistent(world))
+    return [Push(model.name, link, _vector(one, "force"), _vector(one, "torque")) for link, one in pushes if link]
+
+
+def check_standing_pushes(world: World, warn: Callable[[str], None]) -> None:
+    """Warn of pushes on what is not in the world."""
+    known = {name for model in world.models for name in (model.name, *(f"{model.name}::{li}" for li in model.links))}
+    for element in _persistent(world):
+        if _name(element) not in known:
+            warn(f"{element.where}: there is no {_name(element)!r} to push, left out")
+
+
+def _persistent(world: World) -> Iterator[Element]:
+    for plugin in world.plugins:
+        if library_of(plugin) == LIBRARY:
+            yield from plugin.element.all("persistent")
+
+
+def _name(element: Element) -> str:
+    return element.text_of("entity_name")
+
+
+def _vector(element: Element, tag: str) -> Vector:
+    x, y, z = element.vector_of(tag, size=3, default=(0.0, 0.0, 0.0))
+    return x, y, z
