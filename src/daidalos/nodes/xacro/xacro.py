@@ -1,16 +1,54 @@
-"""`xacro`: expands a robot description with macros; the real command of the xacro package."""
+"""`xacro`: expands a robot description with macros; the real command, which says where a mistake is as well."""
 
 from __future__ import annotations
 
+import contextlib
+import io
 import sys
+
+_IN_ORDER = ("--inorder", "-i")
+"""Options of ROS 1, which ROS 2's command takes with a complaint that launch files stumble over."""
+
+_WAY = ("when ", "in file", "included from", "instantiated from")
+_SHOWN = 8
 
 
 def main() -> int:
     """Run the command."""
+    import xml.parsers.expat  # noqa: F401  (xacro uses it without importing it, when a file is missing)
+
     from xacro import main as expand
 
-    expand()
+    sys.argv = ["xacro", *(word for word in sys.argv[1:] if word not in _IN_ORDER)]
+    said = io.StringIO()
+    try:
+        with contextlib.redirect_stderr(said):
+            expand()
+    except SystemExit as end:
+        words = said.getvalue()
+        usage = "Usage:" in words
+        print(words if usage or not end.code else _located(words), end="", file=sys.stderr)
+        return 2 if end.code else 0
+    print(said.getvalue(), end="", file=sys.stderr)
     return 0
+
+
+def _located(said: str) -> str:
+    """Return what xacro said of a mistake with the file and the line of it first, and the way that led there."""
+    from xacro.cli import process_args
+
+    from daidalos.description.errors import DescriptionError
+    from daidalos.description.xacro import load_xacro
+    from daidalos.nodes.packages import package_share
+
+    options, file = process_args(sys.argv[1:])
+    try:
+        load_xacro(file, options.mappings, package_share)
+    except DescriptionError as error:
+        way = [line for line in said.splitlines() if line.startswith(_WAY)]
+        more = [f"... and {len(way) - _SHOWN} more"] if len(way) > _SHOWN else []
+        return "\n".join([f"error: {error}", *way[:_SHOWN], *more]) + "\n"
+    return said  # such as an M_PI that nobody defines, which is known elsewhere
 
 
 if __name__ == "__main__":
