@@ -43,5 +43,5 @@ def test_what_is_not_there_is_named():
 
 
 def test_a_wrong_force_is_an_error_with_its_place():
-    with pytest.raises(DescriptionError, match="<force>: .* 3 numbers"):
+    with pytest.raises(DescriptionError, match=r"<force>: .* 3 numbers"):
         Simulation(world(pushing("<entity_name>b</entity_name><force>1 0</force>"), box("b")))
