@@ -1,0 +1,1 @@
+"""Depth images as flat scans, as ROS 2 offers them."""
