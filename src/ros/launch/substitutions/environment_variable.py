@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from ..frontend.expose import expose_substitution
-from ..some_substitutions_type import SomeSubstitutionsType
-from ..substitution import Substitution
-from ..utilities import normalize_to_list_of_substitutions, perform_substitutions
-from ._arguments import describe_text, expect_arguments
+from ..utilities import perform_substitutions
+from ._arguments import describe_text
+from ._named import NamedSubstitution
 from .substitution_failure import SubstitutionFailure
 
 if TYPE_CHECKING:
@@ -17,7 +15,7 @@ if TYPE_CHECKING:
 
 
 @expose_substitution("env")
-class EnvironmentVariable(Substitution):
+class EnvironmentVariable(NamedSubstitution):
     """The value of a variable of the launch's environment.
 
     Parameters
@@ -28,28 +26,7 @@ class EnvironmentVariable(Substitution):
         The value where it is not set. Without one, that is an error.
     """
 
-    def __init__(self, name: SomeSubstitutionsType, *, default_value: SomeSubstitutionsType | None = None) -> None:
-        self.__name = normalize_to_list_of_substitutions(name)
-        self.__default_value = None if default_value is None else normalize_to_list_of_substitutions(default_value)
-
-    @classmethod
-    def parse(cls, data: Sequence[SomeSubstitutionsType]) -> tuple[type[EnvironmentVariable], dict[str, Any]]:
-        """Read `$(env name default)`."""
-        expect_arguments("env", data, 1, 2)
-        kwargs = {"name": data[0]}
-        if len(data) == 2:
-            kwargs["default_value"] = data[1]
-        return cls, kwargs
-
-    @property
-    def name(self) -> list[Substitution]:
-        """The variable's name."""
-        return self.__name
-
-    @property
-    def default_value(self) -> list[Substitution] | None:
-        """The value where the variable is not set."""
-        return self.__default_value
+    frontend_name = "env"
 
     def describe(self) -> str:
         """Return the substitution in words."""

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 from ..frontend.expose import expose_substitution
 from ..some_substitutions_type import SomeSubstitutionsType
-from ..substitution import Substitution
-from ..utilities import normalize_to_list_of_substitutions, perform_substitutions
+from ..utilities import perform_substitutions
 from ._arguments import describe_text, expect_arguments
+from ._named import NamedSubstitution
 from .substitution_failure import SubstitutionFailure
 
 if TYPE_CHECKING:
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 @expose_substitution("for-var")
-class ForEachVar(Substitution):
+class ForEachVar(NamedSubstitution):
     """A value of the present round of a `ForEach` action.
 
     Parameters
@@ -28,33 +28,12 @@ class ForEachVar(Substitution):
         The value in rounds that do not have it. Without one, that is an error.
     """
 
-    def __init__(self, name: SomeSubstitutionsType, *, default_value: SomeSubstitutionsType | None = None) -> None:
-        self.__name = normalize_to_list_of_substitutions(name)
-        self.__default_value = None if default_value is None else normalize_to_list_of_substitutions(default_value)
-
-    @classmethod
-    def parse(cls, data: Sequence[SomeSubstitutionsType]) -> tuple[type[ForEachVar], dict[str, Any]]:
-        """Read `$(for-var name default)`."""
-        expect_arguments("for-var", data, 1, 2)
-        kwargs = {"name": data[0]}
-        if len(data) == 2:
-            kwargs["default_value"] = data[1]
-        return cls, kwargs
+    frontend_name = "for-var"
 
     @classmethod
     def get_local_arg_name(cls, name: str) -> str:
         """Return the name under which the loop keeps the value in the context's locals."""
         return f"{cls.__name__}__{name}"
-
-    @property
-    def name(self) -> list[Substitution]:
-        """The value's name."""
-        return self.__name
-
-    @property
-    def default_value(self) -> list[Substitution] | None:
-        """The value in rounds that do not have it."""
-        return self.__default_value
 
     def describe(self) -> str:
         """Return the substitution in words."""
