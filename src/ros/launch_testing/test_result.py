@@ -53,7 +53,25 @@ class TestResult(unittest.TextTestResult):
         self.__times.update(results.testTimes)
 
 
-class FailResult(unittest.TestResult):
+class _NotRun(unittest.TestResult):
+    """The results of a run that there was not."""
+
+    def __init__(self, test_run: TestRun) -> None:
+        super().__init__()
+        self.__test_run = test_run
+
+    @property
+    def testCases(self) -> list[unittest.TestCase]:
+        """The test cases."""
+        return list(self.__test_run.all_cases())
+
+    @property
+    def testTimes(self) -> dict[unittest.TestCase, float]:
+        """The seconds that each took: none."""
+        return dict.fromkeys(self.testCases, 0.0)
+
+
+class FailResult(_NotRun):
     """The results of a run that could not be made: all its tests failed.
 
     Parameters
@@ -65,27 +83,16 @@ class FailResult(unittest.TestResult):
     """
 
     def __init__(self, test_run: TestRun, message: str) -> None:
-        super().__init__()
-        self.__test_run = test_run
+        super().__init__(test_run)
         self.failures = [(case, message) for case in test_run.all_cases()]
         self.testsRun = len(self.failures)
-
-    @property
-    def testCases(self) -> list[unittest.TestCase]:
-        """The test cases."""
-        return list(self.__test_run.all_cases())
-
-    @property
-    def testTimes(self) -> dict[unittest.TestCase, float]:
-        """The seconds that each took: none."""
-        return dict.fromkeys(self.testCases, 0.0)
 
     def wasSuccessful(self) -> bool:
         """Return that they failed."""
         return False
 
 
-class SkipResult(unittest.TestResult):
+class SkipResult(_NotRun):
     """The results of a run that was not to be made: all its tests were skipped.
 
     Parameters
@@ -97,20 +104,9 @@ class SkipResult(unittest.TestResult):
     """
 
     def __init__(self, test_run: TestRun, skip_reason: str = "") -> None:
-        super().__init__()
-        self.__test_run = test_run
+        super().__init__(test_run)
         self.skipped = [(case, skip_reason) for case in test_run.all_cases()]
         self.testsRun = len(self.skipped)
-
-    @property
-    def testCases(self) -> list[unittest.TestCase]:
-        """The test cases."""
-        return list(self.__test_run.all_cases())
-
-    @property
-    def testTimes(self) -> dict[unittest.TestCase, float]:
-        """The seconds that each took: none."""
-        return dict.fromkeys(self.testCases, 0.0)
 
     def wasSuccessful(self) -> bool:
         """Return that none failed."""
