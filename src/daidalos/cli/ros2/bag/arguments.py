@@ -85,6 +85,17 @@ def input_bags(inputs: list[list[str]]) -> list[StorageOptions]:
     return bags
 
 
+def add_start_offset(parser: ArgumentParser) -> None:
+    """Declare where playing begins."""
+    parser.add_argument(
+        "--start-offset",
+        type=positive_float,
+        default=0.0,
+        metavar="SECONDS",
+        help="Start so far into the bag",
+    )
+
+
 def add_topic_arguments(parser: ArgumentParser) -> None:
     """Declare which topics and services are played, and as what."""
     parser.add_argument(

@@ -18,13 +18,7 @@ class BurstVerb(Verb):
         """Declare the verb's arguments."""
         common.add_bags_arguments(parser)
         common.add_topic_arguments(parser)
-        parser.add_argument(
-            "--start-offset",
-            type=common.positive_float,
-            default=0.0,
-            metavar="SECONDS",
-            help="Start so far into the bag",
-        )
+        common.add_start_offset(parser)
         parser.add_argument(
             "-n",
             "--num-messages",

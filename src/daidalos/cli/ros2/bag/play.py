@@ -101,13 +101,7 @@ def _add_timing(parser: ArgumentParser) -> None:
         metavar="SECONDS",
         help="Wait so long before playing, each time where it loops",
     )
-    parser.add_argument(
-        "--start-offset",
-        type=common.positive_float,
-        default=0.0,
-        metavar="SECONDS",
-        help="Start so far into the bag",
-    )
+    common.add_start_offset(parser)
     parser.add_argument(
         "--playback-duration",
         type=float,
