@@ -1,32 +1,14 @@
 """All children in turn, as long as they succeed."""
 
-from collections.abc import Iterator
-from typing import Any
-
 from py_trees.common import Status
 
-from daidalos.navigation.trees.node import Control
+from daidalos.navigation.trees.control.in_turn import InTurn
 
 
-class Sequence(Control):
+class Sequence(InTurn):
     """Ticks one child after the other, going on with the one that runs; fails with the first that fails."""
 
-    reactive = False
-
-    def tick(self) -> Iterator[Any]:
-        """Tick children until one does not succeed."""
-        if self.status != Status.RUNNING:
-            self.current_child = None
-        first = self.children.index(self.current_child) if self.current_child and not self.reactive else 0
-        for child in self.children[first:]:
-            yield from child.tick()
-            if child.status != Status.SUCCESS:
-                self.current_child = child
-                self.conclude(child.status, runs=child)
-                yield self
-                return
-        self.conclude(Status.SUCCESS)
-        yield self
+    goes_on_after = Status.SUCCESS
 
 
 class ReactiveSequence(Sequence):
