@@ -11,12 +11,13 @@ from transport.peers import Peer
 
 LOSS_S = 30.0
 RETURN_S = 30.0
-# A link that is lost without a word is noticed when a lease runs out; here soon, so that the tests are short.
+# A link that is lost without a word is noticed when a lease runs out; here soon, so that the tests are short, yet not
+# while a busy machine lets a process wait for a second or two.
 QUICK_LEASES = {
     "CYCLONEDDS_URI": (
-        "<CycloneDDS><Domain><Discovery><LeaseDuration>2s</LeaseDuration></Discovery></Domain></CycloneDDS>"
+        "<CycloneDDS><Domain><Discovery><LeaseDuration>4s</LeaseDuration></Discovery></Domain></CycloneDDS>"
     ),
-    "ZENOH_CONFIG_OVERRIDE": "transport/link/tx/lease=2000",
+    "ZENOH_CONFIG_OVERRIDE": "transport/link/tx/lease=4000;transport/link/tx/keep_alive=4",
 }
 _ROUTER = Path(__file__).with_name("router.py")
 

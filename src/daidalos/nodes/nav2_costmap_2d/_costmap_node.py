@@ -46,6 +46,7 @@ from daidalos.nodes.warming import warm_up_in_background
 
 _LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 _ASKING_HZ = 20.0
+_FIRST_UPDATE_S = 15.0
 _DEFAULT_PLUGINS = {
     "static_layer": "nav2_costmap_2d::StaticLayer",
     "obstacle_layer": "nav2_costmap_2d::ObstacleLayer",
@@ -265,7 +266,8 @@ class CostmapNode(LifecycleNode):
         node : Node
             The node whose executor waits.
         limit_s : float
-            How long [s] it may take once the algorithms are compiled.
+            How long [s] it may take once the algorithms are compiled; the very first update may take longer, as
+            servers are active here before their costmaps have seen anything.
 
         Raises
         ------
@@ -274,6 +276,7 @@ class CostmapNode(LifecycleNode):
         """
         await self._compiled
         begun = time.monotonic()
+        limit_s = limit_s if self._updates else max(limit_s, _FIRST_UPDATE_S)
         with Cycle(node, _ASKING_HZ) as cycle:
             while not self._is_current():
                 if time.monotonic() - begun > limit_s:
