@@ -114,6 +114,8 @@ def test_world_is_edited_while_it_runs(browser: Chromium, tmp_path: Path, monkey
         _models_are_put(browser)
         _all_is_taken_back(browser)
         assert browser.evaluate("document.querySelector('.complaint-text')?.textContent ?? ''") == ""
+        browser.open(f"{url}?front=simulation")
+        browser.wait_for(f"{_MODELS} === '3 models' && document.querySelector('[data-panel=displays]') !== null")
         simulator.interrupt()
         browser.wait_for("document.body.textContent.includes('No simulator runs')")
         assert browser.errors == []

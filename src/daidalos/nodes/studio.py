@@ -71,9 +71,20 @@ class Studio:
         self._stop_noting = self._graph.listen(self._note)
         self._unread.trigger()
 
-    def url(self, panel: str = "", **details: str) -> str:
-        """Return the page's address for a browser on this machine, that of one panel where it is named."""
-        query = urlencode({"panel": panel, **details}, safe="/") if panel else ""
+    def url(self, panel: str = "", front: str = "", **details: str) -> str:
+        """Return the page's address for a browser on this machine.
+
+        Parameters
+        ----------
+        panel : str
+            One panel as a window of its own.
+        front : str
+            Of the whole page the panel that is to be in front.
+        **details
+            For the panel.
+        """
+        asked = {"panel": panel, **details} if panel else {"front": front} if front else {}
+        query = urlencode(asked, safe="/")
         return f"{self._server.url}?{query}" if query else self._server.url
 
     def close(self) -> None:

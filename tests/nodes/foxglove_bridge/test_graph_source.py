@@ -79,6 +79,7 @@ def test_descriptions_are_read_when_they_come(node: Node) -> None:  # noqa: F811
         reached = node.handle.graph.wait_for(lambda: publisher.get_subscription_count() == 1, 10.0)
         assert reached, "nobody reads the description"
         assert studio.url("plot", topic="/a b").endswith("/?panel=plot&topic=/a+b")
+        assert studio.url(front="simulation").endswith("/?front=simulation")
         studio.close()
 
 

@@ -123,7 +123,7 @@ def _launch(path: Path | None, args: argparse.Namespace) -> int:
     studio = Node(
         package="foxglove_bridge",
         executable="foxglove_bridge",
-        parameters=[{"port": args.port, "open_browser": True}],
+        parameters=[{"port": args.port, "open_browser": True, "front": "simulation"}],
         output="screen",
     )
     service = LaunchService()

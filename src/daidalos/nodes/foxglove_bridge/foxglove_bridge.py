@@ -17,7 +17,7 @@ class FoxgloveBridge(Node):
     """Serves the studio on ``http://localhost:<port>/``.
 
     Parameters of the node: ``port`` (the next free one is taken where it is used), ``address`` (loopback unless
-    told otherwise), ``open_browser``.
+    told otherwise), ``open_browser``, ``front`` (the panel that the page opens with).
 
     Raises
     ------
@@ -30,14 +30,16 @@ class FoxgloveBridge(Node):
         port = self.declare_parameter("port", DEFAULT_PORT).value
         address = self.declare_parameter("address", "").value
         open_browser = self.declare_parameter("open_browser", False).value
+        front = self.declare_parameter("front", "").value
         try:
             self._studio = Studio(self, port, (address,) if address else LOOPBACK)
         except PortError as error:
             super().destroy_node()
             raise UserError(str(error)) from None
-        self.get_logger().info(f"studio: {self._studio.url()}")
+        url = self._studio.url(front=front)
+        self.get_logger().info(f"studio: {url}")
         if open_browser:
-            open_in_browser(self._studio.url())
+            open_in_browser(url)
 
     def destroy_node(self) -> None:
         """Close the page's connections and leave the graph."""

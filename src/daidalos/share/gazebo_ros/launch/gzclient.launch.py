@@ -18,6 +18,7 @@ def view(context):
         executable="foxglove_bridge",
         parameters=[
             {
+                "front": "simulation",
                 "port": ParameterValue(LaunchConfiguration("port"), value_type=int),
                 "open_browser": ParameterValue(LaunchConfiguration("open_browser"), value_type=bool),
             }

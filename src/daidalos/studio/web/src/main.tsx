@@ -15,7 +15,7 @@ import "./styles/call.css";
 import { fetchArrangement } from "./app/arrangement";
 import { Help } from "./app/help";
 import { Layout } from "./app/layout";
-import { readOpening } from "./app/opening";
+import { readFront, readOpening } from "./app/opening";
 import { listenToKeys } from "./app/shortcuts";
 import { Studio } from "./app/studio";
 import { attachedWorld, installTestHooks } from "./app/test_hooks";
@@ -29,6 +29,10 @@ function App({ studio }: { studio: Studio }) {
   const dock = useRef<HTMLDivElement>(null);
   useEffect(() => {
     layout = new Layout(dock.current as HTMLDivElement, studio, opening);
+    const front = readFront(location.search, PANELS);
+    if (front) {
+      layout.open(front);
+    }
     studio.openPanel = (id, params, direction) => layout.openById(id, params, direction);
   }, []);
   return (

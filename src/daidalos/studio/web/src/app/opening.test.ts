@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import type { PanelType } from "../panels/panel";
-import { readOpening } from "./opening";
+import { readFront, readOpening } from "./opening";
 
 const plot = { id: "plot" } as PanelType;
 
@@ -8,6 +8,12 @@ describe("the page's address", () => {
   it("names a panel and what it is to show", () => {
     const opening = readOpening("?panel=plot&window=/turtlesim/_window&connect=ws://robot:8765", [plot]);
     expect(opening).toEqual({ panel: plot, details: { window: "/turtlesim/_window" } });
+  });
+
+  it("may want one to be in front", () => {
+    expect(readFront("?front=plot", [plot])).toBe(plot);
+    expect(readFront("?front=graph", [plot])).toBeUndefined();
+    expect(readOpening("?front=plot", [plot])).toBeUndefined();
   });
 
   it("may name none, or one that does not exist", () => {

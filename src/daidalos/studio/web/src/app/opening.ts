@@ -16,3 +16,9 @@ export function readOpening(search: string, panels: readonly PanelType[]): Openi
   const details = Object.fromEntries([...query].filter(([name]) => !NOT_DETAILS.includes(name)));
   return panel && { panel, details };
 }
+
+/** The panel that an address wants to be in front of the others: ?front=simulation; undefined as above. */
+export function readFront(search: string, panels: readonly PanelType[]): PanelType | undefined {
+  const front = new URLSearchParams(search).get("front");
+  return panels.find(({ id }) => id === front);
+}
