@@ -19,22 +19,30 @@ def read_description(path: Path) -> str:
     Raises
     ------
     UserError
-        When the file cannot be read or expanded.
+        When the file cannot be read or expanded, or expands to what is no robot.
     """
     if path.suffix == ".xacro":
-        from daidalos.description.errors import DescriptionError
-        from daidalos.description.xacro import load_xacro
-
-        try:
-            return load_xacro(path, resolve=package_share)
-        except DescriptionError as error:
-            raise UserError(str(error)) from None
+        return _expanded(path)
     try:
         return path.read_text(encoding="utf-8")
     except OSError as error:
         raise UserError(f"cannot read '{path}': {error.strerror}") from None
     except UnicodeDecodeError:
         raise UserError(f"'{path}' is not a text file") from None
+
+
+def _expanded(path: Path) -> str:
+    from daidalos.description.errors import DescriptionError
+    from daidalos.description.urdf import read_robot
+    from daidalos.description.xacro import expand
+
+    try:
+        root = expand(path, resolve=package_share)
+        if root.tag == "robot":
+            read_robot(root, package_share)  # the lines of faults are still those of the file
+    except DescriptionError as error:
+        raise UserError(str(error)) from None
+    return '<?xml version="1.0"?>\n' + root.to_text()
 
 
 def parse_description(text: str, source: str = "robot_description") -> Robot | Model:

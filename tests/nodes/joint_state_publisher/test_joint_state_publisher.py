@@ -7,7 +7,7 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import String
 from std_srvs.srv import Empty
 
-from daidalos.nodes.joint_state_publisher.joint_state_publisher import JointStatePublisher
+from daidalos.nodes.joint_state_publisher.joint_state_publisher import JointStatePublisher, description_from_arguments
 from daidalos.nodes.joint_state_publisher_gui.joint_state_publisher_gui import JointStatePublisherGui
 from daidalos.nodes.runner import UserError
 from description.test_joint_values import TEXT
@@ -86,6 +86,18 @@ def test_faulty_input_is_named(graph):  # noqa: F811
         JointStatePublisher("<robot/>")
     with pytest.raises(UserError, match="'rate' should be positive"):
         JointStatePublisher(TEXT, **parameters(rate=0.0))
+
+
+def test_faults_are_named_with_the_file_on_the_command_line(graph, tmp_path, monkeypatch):  # noqa: F811
+    """In a xacro file, with its own lines and not those of what it becomes."""
+    broken = TEXT.replace('type="continuous"', 'type="round"').replace("<robot", "\n\n<robot")
+    (tmp_path / "r.urdf").write_text(broken)
+    xacro = broken.replace("<robot", '<robot xmlns:xacro="http://www.ros.org/wiki/xacro"')
+    (tmp_path / "r.xacro").write_text(xacro.replace("<joint", '<xacro:property name="x" value="1"/>\n<joint', 1))
+    for name, line in (("r.urdf", 4), ("r.xacro", 5)):
+        monkeypatch.setattr("sys.argv", ["joint_state_publisher", str(tmp_path / name)])
+        with pytest.raises(UserError, match=f'{name}:{line}: <joint name="turn">: unknown joint type'):
+            JointStatePublisher(**description_from_arguments())
 
 
 def test_sliders_are_parameters_within_the_limits(node):  # noqa: F811

@@ -30,12 +30,20 @@ class JointStatePublisher(Node):
     ----------
     description : str
         The robot's; without it the node waits for ``robot_description``.
+    source : str
+        Where the description comes from, for messages about its faults.
     name : str
     **kwargs
         Of `Node`.
     """
 
-    def __init__(self, description: str = "", name: str = "joint_state_publisher", **kwargs: Any) -> None:
+    def __init__(
+        self,
+        description: str = "",
+        source: str = "robot_description",
+        name: str = "joint_state_publisher",
+        **kwargs: Any,
+    ) -> None:
         super().__init__(
             name, allow_undeclared_parameters=True, automatically_declare_parameters_from_overrides=True, **kwargs
         )
@@ -48,7 +56,7 @@ class JointStatePublisher(Node):
             self.create_subscription(JointState, source, self._on_source, 10)
         text = description or self._setting("robot_description", "")
         if text:
-            self.read(text)
+            self.read(text, source if description else "robot_description")
         else:
             self.get_logger().info("Waiting for robot_description to be published on the robot_description topic...")
         self.create_subscription(String, "robot_description", self._on_description, _LATCHED)
@@ -64,14 +72,14 @@ class JointStatePublisher(Node):
         """The joints; None as long as no robot is known."""
         return self._values
 
-    def read(self, text: str) -> None:
-        """Take a description.
+    def read(self, text: str, source: str = "robot_description") -> None:
+        """Take a description that comes from somewhere.
 
         Raises
         ------
         UserError
         """
-        robot = parse_description(text)
+        robot = parse_description(text, source)
         zeros = {name: float(p.value) for name, p in self.get_parameters_by_prefix("zeros").items()}
         self._values = JointValues(
             robot,
@@ -139,15 +147,15 @@ class JointStatePublisher(Node):
             values.positions[each.name] = position
 
 
-def description_from_arguments() -> str:
-    """Return the description in the file that the command line names, if it does."""
+def description_from_arguments() -> dict[str, str]:
+    """Return the description in the file that the command line names, if it does, and its source."""
     files = remove_ros_args(sys.argv)[1:]
-    return read_description(Path(files[0])) if files else ""
+    return {"description": read_description(Path(files[0])), "source": files[0]} if files else {}
 
 
 def main() -> int:
     """Run the node."""
-    return run(lambda: JointStatePublisher(description_from_arguments()))
+    return run(lambda: JointStatePublisher(**description_from_arguments()))
 
 
 if __name__ == "__main__":

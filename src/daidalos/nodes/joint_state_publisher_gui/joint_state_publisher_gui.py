@@ -18,8 +18,8 @@ class JointStatePublisherGui(JointStatePublisher):
     ``~/center`` puts them back to where they began, ``~/randomize`` anywhere.
     """
 
-    def __init__(self, description: str = "", **kwargs: Any) -> None:
-        super().__init__(description, "joint_state_publisher_gui", **kwargs)
+    def __init__(self, description: str = "", source: str = "robot_description", **kwargs: Any) -> None:
+        super().__init__(description, source, "joint_state_publisher_gui", **kwargs)
         from std_srvs.srv import Empty
 
         self._random = random.Random(0)
@@ -27,11 +27,11 @@ class JointStatePublisherGui(JointStatePublisher):
         self.create_service(Empty, "~/randomize", self._on_randomize)
         self.add_post_set_parameters_callback(self._on_set)
 
-    def read(self, text: str) -> None:
+    def read(self, text: str, source: str = "robot_description") -> None:
         """Take a description, and offer its joints."""
         from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor
 
-        super().read(text)
+        super().read(text, source)
         values = self.values
         for each in values.ranges if values is not None else ():
             limits = [FloatingPointRange(from_value=each.lower, to_value=each.upper)]
@@ -65,7 +65,7 @@ class JointStatePublisherGui(JointStatePublisher):
 def main() -> int:
     """Run the node with its window."""
     return run_with_window(
-        lambda: JointStatePublisherGui(description_from_arguments()),
+        lambda: JointStatePublisherGui(**description_from_arguments()),
         "joints",
         lambda node: {"node": node.get_fully_qualified_name()},
     )
