@@ -1,0 +1,1 @@
+"""Publishers that send controllers their goals."""

@@ -1,0 +1,42 @@
+"""`publisher_forward_position_controller`: sends a controller of positions one goal after the other."""
+
+from __future__ import annotations
+
+import sys
+from typing import Any
+
+from daidalos.nodes.ros2_controllers_test_nodes._goals import GoalPublisher
+from daidalos.nodes.runner import UserError, run
+
+
+class ForwardPositionPublisher(GoalPublisher):
+    """Parameters: ``publish_topic``, ``wait_sec_between_publish``, ``goal_names`` and one array for every goal."""
+
+    def __init__(self, **kwargs: Any) -> None:
+        super().__init__("publisher_forward_position_controller", 5, **kwargs)
+        from std_msgs.msg import Float64MultiArray
+
+        topic = self.declare_parameter("publish_topic", "/position_commands").value
+        goals = [self.numbers(name) for name in self.goal_names]
+        for name, goal in zip(self.goal_names, goals, strict=True):
+            if not goal:
+                raise UserError(f"the parameter '{name}' must hold the positions of that goal, as an array of numbers")
+        self._publisher = self.create_publisher(Float64MultiArray, topic, 1)
+        self.get_logger().info(f"sending {len(goals)} goals to '{topic}', one every {self.wait_s:g} s")
+        self.start(goals)
+
+    def send(self, goal: list[float]) -> None:
+        """Publish the positions of one goal."""
+        from std_msgs.msg import Float64MultiArray
+
+        self.get_logger().info(f"sending {goal}")
+        self._publisher.publish(Float64MultiArray(data=goal))
+
+
+def main() -> int:
+    """Run the node."""
+    return run(ForwardPositionPublisher)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
