@@ -102,6 +102,11 @@ def test_touch_is_told_once():
     assert sum(isinstance(s, FlagSample) for s in simulation.advance(SECOND)) == 1
 
 
+def test_the_models_name_stands_for_a_missing_namespace():
+    plugin = with_plugin(box("b"), "gz-sim-touchplugin-system", "<target>ground</target><enabled>true</enabled>")
+    assert "/b/touched" in Simulation(world(plugin)).publications
+
+
 def test_a_battery_empties_under_its_load():
     parameters = (
         "<battery_name>cell</battery_name><voltage>12</voltage><initial_charge>0.5</initial_charge>"

@@ -24,7 +24,10 @@ class Watch:
 
 
 class Touch(Plugin):
-    """gz's TouchPlugin: ``/<namespace>/touched``, and ``/<namespace>/enable`` to look again."""
+    """gz's TouchPlugin: ``/<namespace>/touched``, and ``/<namespace>/enable`` to look again.
+
+    Without a namespace the model's name is one.
+    """
 
     names = ("gz-sim-touchplugin-system", "gz-sim-touch-plugin-system")
     memory: Watch
@@ -35,9 +38,7 @@ class Touch(Plugin):
         self.target = element.text_of("target")
         if not self.target:
             raise element.error("<target> is needed: a part of the name of what is to be touched")
-        namespace = element.text_of("namespace")
-        if not namespace:
-            raise element.error("<namespace> is needed")
+        namespace = element.text_of("namespace", default=setting.model_name)
         self.time_ns = round(element.number_of("time", default=0.0) * 1e9)
         self.on = element.flag_of("enabled", default=False)
         self.topic = absolute_topic(f"{namespace}/touched", setting.namespace)
