@@ -1,5 +1,6 @@
 """Making transforms for tests, and what they mean according to scipy."""
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -7,10 +8,14 @@ from builtin_interfaces.msg import Time
 from geometry_msgs.msg import Quaternion, Transform, TransformStamped, Vector3
 from hypothesis import strategies as st
 from numpy.typing import NDArray
+from rclpy.time import Time as RosTime
 from scipy.spatial.transform import Rotation
 from std_msgs.msg import Header
+from tf2_py import BufferCore
 
 SECOND = 1_000_000_000
+LATEST = RosTime()
+"""What asks for the newest transform."""
 Numbers = Sequence[float]
 
 coordinates = st.floats(-10.0, 10.0)
@@ -65,3 +70,22 @@ def matrix(xyz: Numbers, xyzw: Numbers) -> NDArray[np.float64]:
 
 def matrix_of(message: TransformStamped) -> NDArray[np.float64]:
     return matrix(translation(message), quaternion(message))
+
+
+def at(seconds: float) -> RosTime:
+    """Return a time."""
+    return RosTime(nanoseconds=round(seconds * SECOND))
+
+
+def quarter_turn() -> tuple[float, float, float, float]:
+    """Return the quaternion of a quarter turn to the left."""
+    return (0.0, 0.0, math.sqrt(0.5), math.sqrt(0.5))
+
+
+def filled() -> BufferCore:
+    buffer = BufferCore()
+    for time in (1, 2):
+        buffer.set_transform(transform("a", "b", time * SECOND), "me")
+    buffer.set_transform(transform("b", "once", SECOND), "me")
+    buffer.set_transform_static(transform("x", "y"), "me")
+    return buffer

@@ -13,20 +13,14 @@ from rclpy.duration import Duration
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.parameter import Parameter
-from rclpy.time import Time
 from rosgraph_msgs.msg import Clock as ClockMessage
 from tf2_msgs.srv import FrameGraph
 from tf2_ros import Buffer, ExtrapolationException, LookupException
 
 from ros.graph import after, spinning
-from ros.transforms import SECOND, stamp, transform
+from ros.transforms import LATEST, SECOND, at, stamp, transform
 
-LATEST = Time()
 LONG = Duration(seconds=30)
-
-
-def at(seconds: float) -> Time:
-    return Time(nanoseconds=round(seconds * SECOND))
 
 
 @pytest.fixture

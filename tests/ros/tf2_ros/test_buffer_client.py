@@ -11,7 +11,6 @@ from rclpy.action.server import GoalResponse
 from rclpy.duration import Duration
 from rclpy.executors import MultiThreadedExecutor, SingleThreadedExecutor
 from rclpy.node import Node
-from rclpy.time import Time
 from tf2_msgs.action import LookupTransform
 from tf2_msgs.msg import TF2Error
 from tf2_ros import (
@@ -27,15 +26,10 @@ from tf2_ros import (
 )
 
 from ros.graph import after, spinning
-from ros.transforms import SECOND, transform, translation
+from ros.transforms import LATEST, SECOND, at, transform, translation
 
-LATEST = Time()
 LONG = Duration(seconds=30)
 SHORT = Duration(seconds=0.05)
-
-
-def at(seconds: float) -> Time:
-    return Time(nanoseconds=round(seconds * SECOND))
 
 
 @pytest.fixture

@@ -24,14 +24,9 @@ from tf2_ros import (
 )
 
 from ros.graph import after, spinning
-from ros.transforms import SECOND, stamp, transform, translation
+from ros.transforms import LATEST, SECOND, at, stamp, transform, translation
 
-LATEST = Time()
 LONG = Duration(seconds=30)
-
-
-def at(seconds: float) -> Time:
-    return Time(nanoseconds=round(seconds * SECOND))
 
 
 @pytest.fixture
