@@ -1,5 +1,7 @@
 """gz's command lines."""
 
+import re
+
 import pytest
 from rclpy.node import Node
 from rclpy.parameter import Parameter
@@ -7,6 +9,7 @@ from rclpy.parameter import Parameter
 from daidalos.nodes.gazebo_ros.spawn_model import translate
 from daidalos.nodes.ros_gz_sim import create, gz_sim
 from daidalos.nodes.runner import UserError
+from end_to_end.processes import ROS2, finished
 from ros.graph import graph  # noqa: F401
 
 
@@ -43,3 +46,17 @@ def test_ros1s_spawner_has_its_own_words():
     assert translate(words) == (["-topic", "robot_description", "-entity", "bot", "-z", "1"], {"elbow": 0.5})
     with pytest.raises(UserError, match="-J takes"):
         translate(["-J", "elbow"])
+
+
+@pytest.mark.parametrize(
+    ("name", "arguments"),
+    [
+        ("gz_sim", {"gz_args", "on_exit_shutdown"}),
+        ("ros_gz_sim", {"world_sdf_file", "world_sdf_string", "bridge_name", "config_file"}),
+        ("ros_gz_spawn_model", {"file", "entity_name", "x", "config_file"}),
+    ],
+)
+def test_launch_files_take_gzs_arguments(domain, name, arguments):
+    told = finished(*ROS2, "launch", "ros_gz_sim", f"{name}.launch.py", "--show-args", domain=domain, timeout=30)
+    assert told.returncode == 0
+    assert arguments <= set(re.findall(r"^ +'(\w+)':$", told.stdout, re.MULTILINE))
