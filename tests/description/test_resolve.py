@@ -44,6 +44,13 @@ def test_packages_that_are_not_installed_are_found_around_the_file(tree):
     assert resolve_uri("package://wrist/b.stl", tree / "src/arm/urdf") is None
     assert resolve_uri("package://arm/meshes/a.stl", tree / "src/arm", lambda name: tree / "nowhere") is not None
     assert resolve_uri("package://arm/meshes/a.stl") is None
+    assert resolve_uri("file://arm/meshes/a.stl", tree / "src/arm/urdf") == tree / "src/arm/meshes/a.stl"
+
+
+def test_models_are_found_beside_the_folder_of_worlds(tree):
+    (tree / "src/house/models/sofa").mkdir(parents=True)
+    (tree / "src/house/worlds").mkdir()
+    assert resolve_uri("model://sofa", tree / "src/house/worlds") == tree / "src/house/models/sofa"
 
 
 @pytest.mark.parametrize("uri", ["package://nowhere/a.stl", "model://nowhere", "missing.stl", "https://x.org/a"])

@@ -79,14 +79,14 @@ def packages_near(name: str, folder: Path) -> Iterator[Path]:
     """Yield the folders that could be a package or model which is not installed.
 
     These are the folders around `folder` that are called so or whose ``package.xml`` says so, and what lies
-    beside one of them under that name, as in the source folder of a workspace; the nearest comes first.
+    beside one of them under that name, as in the source folder of a workspace, or in a folder of ``models``
+    there; the nearest comes first.
     """
     here = folder.absolute()
     for around in (here, *here.parents[:-1]):
         if around.name == name or _package_name(around / "package.xml") == name:
             yield around
-        if (around / name).is_dir():
-            yield around / name
+        yield from (folder for folder in (around / name, around / "models" / name) if folder.is_dir())
 
 
 def _package_name(manifest: Path) -> str:
@@ -105,10 +105,12 @@ def _relative(uri: str, base: Path | None, model_path: Sequence[Path]) -> list[P
     return [folder / path for folder in (*folders, *model_path)]
 
 
-def _file(uri: str, rest: str, base: Path | None, model_path: Sequence[Path]) -> list[Path]:
+def _file(uri: str, rest: str, base: Path | None, model_path: Sequence[Path]) -> Iterator[Path]:
     if rest.startswith("/"):
-        return [Path(url2pathname(urlparse(uri).path))]
-    return _relative(unquote(rest), base, model_path)
+        yield Path(url2pathname(urlparse(uri).path))
+        return
+    yield from _relative(unquote(rest), base, model_path)
+    yield from _near(unquote(rest), base)
 
 
 def _named(
@@ -119,5 +121,10 @@ def _named(
     in_package = [] if share is None else [Path(share) / inside]
     in_models = [folder / rest for folder in model_path]
     yield from in_package + in_models if scheme == "package" else in_models + in_package
+    yield from _near(rest, base)
+
+
+def _near(rest: str, base: Path | None) -> Iterator[Path]:
+    name, _, inside = rest.partition("/")
     if base is not None:
         yield from (folder / inside for folder in packages_near(name, base))
