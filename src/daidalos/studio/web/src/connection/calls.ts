@@ -1,7 +1,7 @@
 // Services: which there are, and the calls that wait for an answer.
 import { attempt, makeReader, makeWriter } from "./codecs";
 import { serviceRequestFrame } from "./frames";
-import type { Output } from "./link";
+import type { Output } from "./output";
 
 export interface Service {
   id: number;

@@ -1,6 +1,6 @@
 // Who talks to whom: asked of the server while somebody in the page looks at it.
 import type { ConnectionGraph } from "./boundary";
-import type { Output } from "./link";
+import type { Output } from "./output";
 
 export interface GraphUpdate {
   publishedTopics?: { name: string; publisherIds: string[] }[];

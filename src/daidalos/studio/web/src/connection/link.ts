@@ -1,10 +1,11 @@
 // The worker's conversation with the server: the protocol's state, independent of what carries it.
-import type { ClockReading, FromWorker, ParameterInfo, Received, ToWorker } from "./boundary";
+import type { ClockReading, ParameterInfo, Received, ToWorker } from "./boundary";
 import { Backlog } from "./backlog";
 import { Calls, type Service } from "./calls";
 import { attempt, emptyMessage, makeReader, type Reader } from "./codecs";
 import { parseFrame } from "./frames";
 import { GraphWatch, type GraphUpdate } from "./graph_watch";
+import type { Output } from "./output";
 import { Publishers } from "./publishers";
 import { TrafficMeter } from "./traffic";
 
@@ -36,11 +37,6 @@ interface Subscription {
   /** The subscription's number at the server and the channel it is for; absent while there is no channel. */
   number?: number;
   channel?: number;
-}
-
-export interface Output {
-  toServer(frame: string | Uint8Array<ArrayBuffer>): void;
-  toPage(message: FromWorker, transfer?: Transferable[]): void;
 }
 
 export class Link {

@@ -2,7 +2,7 @@
 import { DEFINITIONS } from "../ros/definitions";
 import { attempt, makeWriter, type Writer } from "./codecs";
 import { publishFrame } from "./frames";
-import type { Output } from "./link";
+import type { Output } from "./output";
 
 interface Publisher {
   number: number;

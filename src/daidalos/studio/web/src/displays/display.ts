@@ -6,7 +6,7 @@ import type { Session } from "../connection/session";
 import type { Assets } from "../scene/assets";
 import type { View } from "../scene/view";
 import { Transform, type TransformBuffer, type When } from "../tf/buffer";
-import type { Settings } from "./settings";
+import type { Property, Settings } from "./settings";
 
 /** How a display fares: idle has nothing to show yet, and that is no fault. */
 export interface Status {
@@ -120,4 +120,14 @@ function disposeMaterial(material: Material): void {
     }
   }
   material.dispose();
+}
+
+export interface DisplayType {
+  /** RViz's class without its package. */
+  readonly type: string;
+  /** The message types that it shows, in full. */
+  readonly messages: readonly string[];
+  readonly properties: readonly Property[];
+  readonly defaults: Settings;
+  create(context: DisplayContext, settings: Settings): Display;
 }

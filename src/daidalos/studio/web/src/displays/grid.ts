@@ -1,9 +1,8 @@
 // Grid: the ground, with lines that fade out towards the horizon.
 import { BufferGeometry, Color, Float32BufferAttribute, LineBasicMaterial, LineSegments } from "three";
 import { Layer } from "../scene/layers";
-import { Display, disposeTree, place, type DisplayContext, type FrameInfo } from "./display";
+import { Display, disposeTree, place, type DisplayContext, type FrameInfo, type DisplayType } from "./display";
 import { flag, number, text, type Settings } from "./settings";
-import type { DisplayType } from "./registry";
 
 const MAJOR_EVERY = 5;
 /** Each line is cut into pieces, so that its ends can fade. */

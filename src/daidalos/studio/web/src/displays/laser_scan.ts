@@ -1,7 +1,7 @@
 // LaserScan: where the beams ended.
 import type { LaserScan } from "../ros/messages";
+import type { DisplayType } from "./display";
 import { paintByValue, paintFlat, POINT_PROPERTIES, PointsDisplay, type PointWriter } from "./points_display";
-import type { DisplayType } from "./registry";
 import { text } from "./settings";
 
 class LaserScanDisplay extends PointsDisplay<LaserScan> {

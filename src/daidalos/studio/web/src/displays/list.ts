@@ -2,8 +2,8 @@
 import { signal, type Signal } from "@preact/signals";
 import { forget, isRecord, stored } from "../app/stored";
 import type { TopicInfo } from "../connection/boundary";
-import type { Display } from "./display";
-import { displayFor, displayType, type DisplayType } from "./registry";
+import type { Display, DisplayType } from "./display";
+import { displayFor, displayType } from "./registry";
 import type { DisplayConfig, Settings, Value } from "./settings";
 
 const KEY = "displays";

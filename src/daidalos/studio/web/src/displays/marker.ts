@@ -2,10 +2,9 @@
 import { Group } from "three";
 import type { Marker, MarkerArray } from "../ros/messages";
 import { toSeconds } from "../ros/time";
-import { disposeTree, place, type DisplayContext, type FrameInfo } from "./display";
+import { disposeTree, place, type DisplayContext, type FrameInfo, type DisplayType } from "./display";
 import { markerObject } from "./marker_shapes";
 import { frameOf, stampOf } from "./message_filter";
-import type { DisplayType } from "./registry";
 import type { Settings } from "./settings";
 import { TopicDisplay } from "./topic_display";
 

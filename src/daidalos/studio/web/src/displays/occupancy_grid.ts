@@ -14,8 +14,7 @@ import type { OccupancyGrid, OccupancyGridUpdate } from "../ros/messages";
 import { costmapPalette, glowPalette, mapPalette, planPalette, rawPalette, type Palette } from "../scene/colors";
 import { beginsFine } from "../scene/graphics";
 import { Layer } from "../scene/layers";
-import type { DisplayContext, FrameInfo } from "./display";
-import type { DisplayType } from "./registry";
+import type { DisplayContext, DisplayType, FrameInfo } from "./display";
 import { number, text, type Settings } from "./settings";
 import { StampedDisplay } from "./topic_display";
 

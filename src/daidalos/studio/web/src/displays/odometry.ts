@@ -1,9 +1,8 @@
 // Odometry: where the robot has been, as a trail of arrows.
 import { Quaternion, Vector3 } from "three";
 import type { Odometry, Pose } from "../ros/messages";
-import type { DisplayContext } from "./display";
+import type { DisplayContext, DisplayType } from "./display";
 import { Arrows, ARROW_PROPERTIES } from "./poses";
-import type { DisplayType } from "./registry";
 import { number, text, type Settings } from "./settings";
 import { StampedDisplay } from "./topic_display";
 

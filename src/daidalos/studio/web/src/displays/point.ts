@@ -1,8 +1,7 @@
 // PointStamped: a ball, such as the point that was clicked.
 import { Mesh, MeshStandardMaterial, SphereGeometry } from "three";
 import type { PointStamped } from "../ros/messages";
-import type { DisplayContext } from "./display";
-import type { DisplayType } from "./registry";
+import type { DisplayContext, DisplayType } from "./display";
 import { number, text, type Settings } from "./settings";
 import { StampedDisplay } from "./topic_display";
 

@@ -1,7 +1,7 @@
 // PointCloud2: points of any layout, coloured by height, by a field, or by their own colours.
 import type { PointCloud2, PointField } from "../ros/messages";
+import type { DisplayType } from "./display";
 import { paintByValue, paintFlat, POINT_PROPERTIES, PointsDisplay, type PointWriter } from "./points_display";
-import type { DisplayType } from "./registry";
 import { text } from "./settings";
 
 type Getter = (offset: number) => number;

@@ -2,8 +2,7 @@
 import type { PolygonStamped } from "../ros/messages";
 import { Layer } from "../scene/layers";
 import { setLinePoints, thickLine } from "../scene/shapes";
-import type { DisplayContext } from "./display";
-import type { DisplayType } from "./registry";
+import type { DisplayContext, DisplayType } from "./display";
 import { number, text, type Settings } from "./settings";
 import { StampedDisplay } from "./topic_display";
 

@@ -14,8 +14,7 @@ import {
 import type { Pose, PoseArray, PoseStamped, PoseWithCovarianceStamped } from "../ros/messages";
 import { Layer } from "../scene/layers";
 import { arrowGeometry } from "../scene/shapes";
-import type { DisplayContext } from "./display";
-import type { DisplayType } from "./registry";
+import type { DisplayContext, DisplayType } from "./display";
 import { flag, number, text, type Property, type Settings } from "./settings";
 import { StampedDisplay } from "./topic_display";
 

@@ -1,5 +1,5 @@
 // The kinds of displays: adding one means a file beside this one and a line below.
-import type { Display, DisplayContext } from "./display";
+import type { DisplayType } from "./display";
 import { GRID } from "./grid";
 import { LASER_SCAN } from "./laser_scan";
 import { MARKER, MARKER_ARRAY } from "./marker";
@@ -11,18 +11,7 @@ import { POINT_CLOUD } from "./point_cloud";
 import { POLYGON } from "./polygon";
 import { POSE, POSE_ARRAY, POSE_WITH_COVARIANCE } from "./poses";
 import { ROBOT_MODEL } from "./robot_model";
-import type { Property, Settings } from "./settings";
 import { TF } from "./tf";
-
-export interface DisplayType {
-  /** RViz's class without its package. */
-  readonly type: string;
-  /** The message types that it shows, in full. */
-  readonly messages: readonly string[];
-  readonly properties: readonly Property[];
-  readonly defaults: Settings;
-  create(context: DisplayContext, settings: Settings): Display;
-}
 
 export const DISPLAY_TYPES: readonly DisplayType[] = [
   GRID,

@@ -15,8 +15,7 @@ import {
 import URDFLoader, { type URDFCollider, type URDFLink, type URDFVisual } from "urdf-loader";
 import type { StringMessage } from "../ros/messages";
 import { plainMaterial } from "../scene/assets";
-import { disposeTree, place, type DisplayContext, type FrameInfo } from "./display";
-import type { DisplayType } from "./registry";
+import { disposeTree, place, type DisplayContext, type FrameInfo, type DisplayType } from "./display";
 import { flag, number, type Settings } from "./settings";
 import { TopicDisplay } from "./topic_display";
 

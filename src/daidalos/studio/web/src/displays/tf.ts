@@ -13,8 +13,7 @@ import {
 import { Layer } from "../scene/layers";
 import { axesGeometry, Label } from "../scene/shapes";
 import { Transform } from "../tf/buffer";
-import { Display, type DisplayContext, type FrameInfo } from "./display";
-import type { DisplayType } from "./registry";
+import { Display, type DisplayContext, type FrameInfo, type DisplayType } from "./display";
 import { flag, number, type Settings } from "./settings";
 
 const LABEL_PIXELS = 19;
