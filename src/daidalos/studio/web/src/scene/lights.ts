@@ -4,6 +4,10 @@ import { Layer } from "./layers";
 
 /** The shadow is drawn only near what the camera follows: software renderers pay for every pixel of it. */
 const SHADOW_RADIUS_M = 2.5;
+/** Who looks from afar sees it farther, in steps, so that its edges do not creep. */
+const SHADOW_STEP = 1.25;
+const SHADOW_PER_DISTANCE = 0.75;
+const MOST_STEPS = 8;
 const SUN_OFFSET = [1.6, -2.2, 4.2] as const;
 
 export class Lights {
@@ -12,6 +16,7 @@ export class Lights {
   private readonly sky = new HemisphereLight(0xf4f7ff, 0x7d828c);
   private readonly fill = new DirectionalLight(0xbfd4ff);
   private readonly ground: Mesh;
+  private steps = -1;
   private readonly shade = new ShadowMaterial({ color: 0x05080d, opacity: 0.34, depthWrite: false });
 
   constructor() {
@@ -20,16 +25,7 @@ export class Lights {
     this.theme = "dark";
     const { shadow } = this.sun;
     shadow.mapSize.set(1024, 1024);
-    shadow.radius = 5;
     shadow.normalBias = 0.01;
-    const { camera } = shadow;
-    [camera.left, camera.right, camera.bottom, camera.top] = [-1, 1, -1, 1].map((s) => s * SHADOW_RADIUS_M) as [
-      number,
-      number,
-      number,
-      number,
-    ];
-    [camera.near, camera.far] = [0.5, 12];
     this.sun.castShadow = true;
     this.ground = new Mesh(new PlaneGeometry(2 * SHADOW_RADIUS_M, 2 * SHADOW_RADIUS_M), this.shade);
     this.ground.receiveShadow = true;
@@ -49,10 +45,30 @@ export class Lights {
     [this.sun.intensity, this.sky.intensity, this.fill.intensity] = dark ? [2.3, 2.1, 0.9] : [2.1, 1.9, 0.55];
   }
 
-  /** Keep the shadow under what is looked at. */
-  follow(center: Pick<Vector3, "x" | "y">): void {
+  /** Keep the shadow under what is looked at, and as wide as may be seen from a distance in metres. */
+  follow(center: Pick<Vector3, "x" | "y">, distance = 0): void {
+    const wanted = Math.log((distance * SHADOW_PER_DISTANCE) / SHADOW_RADIUS_M) / Math.log(SHADOW_STEP);
+    const steps = Math.min(MOST_STEPS, Math.max(0, Math.round(wanted)));
+    if (steps !== this.steps) {
+      this.steps = steps;
+      this.widen();
+    }
+    const factor = SHADOW_STEP ** steps;
+    const [x, y, z] = SUN_OFFSET.map((offset) => offset * factor) as [number, number, number];
     this.sun.target.position.set(center.x, center.y, 0);
-    this.sun.position.set(center.x + SUN_OFFSET[0], center.y + SUN_OFFSET[1], SUN_OFFSET[2]);
+    this.sun.position.set(center.x + x, center.y + y, z);
     this.ground.position.set(center.x, center.y, 0.004);
+  }
+
+  private widen(): void {
+    const factor = SHADOW_STEP ** this.steps;
+    const radius = SHADOW_RADIUS_M * factor;
+    const { shadow } = this.sun;
+    const { camera } = shadow;
+    shadow.radius = Math.max(2, 5 / factor); // in pixels of the map, which are larger then
+    [camera.left, camera.bottom, camera.right, camera.top] = [-radius, -radius, radius, radius];
+    [camera.near, camera.far] = [0.5 * factor, 12 * factor];
+    camera.updateProjectionMatrix();
+    this.ground.scale.set(factor, factor, 1);
   }
 }

@@ -227,7 +227,8 @@ export class Stage {
       this.drawFrame();
       this.reading.value = this.models.has(this.selected.value) ? this.poses.get(this.selected.value) : undefined;
     }
-    this.viewport.lights.follow(this.viewport.view.focus);
+    const { view } = this.viewport;
+    this.viewport.lights.follow(view.focus, view.reach);
     this.viewport.frame(page);
   }
 
