@@ -16,9 +16,7 @@ from daidalos.bags.formats import open_writer
 from daidalos.bags.message import BagMessage, Topic
 from daidalos.bags.metadata import BagFile, BagMetadata, TopicCount, format_metadata, total, write_metadata
 from daidalos.bags.storage import DEFAULT, SUFFIXES, StorageOptions, StorageWriter
-
-_DISTRO = "jazzy"
-"""The distribution whose formats are written."""
+from daidalos.distribution import DISTRIBUTION
 
 
 @dataclass(frozen=True)
@@ -74,7 +72,7 @@ class BagWriter:
         self.folder = Path(folder)
         self.options = options or WriterOptions()
         self.on_split = on_split
-        self.ros_distro = os.environ.get("ROS_DISTRO") or _DISTRO
+        self.ros_distro = os.environ.get("ROS_DISTRO") or DISTRIBUTION
         self.options.compression.check(self.folder)
         self._topics: dict[str, Topic] = {}
         self._counts: dict[str, int] = {}

@@ -16,14 +16,13 @@ from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
 
 from daidalos.description.resolve import default_model_path
+from daidalos.distribution import DISTRIBUTION
 from daidalos.nodes.foxglove_bridge._graph_source import RosGraphSource
 from daidalos.nodes.packages import package_share
 from daidalos.studio.arrangement import Arrangement
 from daidalos.studio.assets import AssetResolver
 from daidalos.studio.server import DEFAULT_PORT, LOOPBACK, StudioServer
 from daidalos.transport.graph import EndpointInfo, EndpointKind, NodeInfo
-
-_DISTRIBUTION = "jazzy"
 
 
 class Studio:
@@ -63,7 +62,7 @@ class Studio:
             hosts=hosts,
             assets=self._assets,
             arrangement=arrangement,
-            metadata={"ROS_DISTRO": os.environ.get("ROS_DISTRO", _DISTRIBUTION)},
+            metadata={"ROS_DISTRO": os.environ.get("ROS_DISTRO", DISTRIBUTION)},
         )
         self._server.start()
         self._read: set[str] = set()

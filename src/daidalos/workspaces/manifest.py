@@ -8,10 +8,8 @@ from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
+from daidalos.distribution import ENVIRONMENT
 from daidalos.workspaces.errors import WorkspaceError
-
-ENVIRONMENT = {"ROS_VERSION": "2", "ROS_PYTHON_VERSION": "3", "ROS_DISTRO": "jazzy"}
-"""What conditions in manifests ask for, where no ROS 2 has set it."""
 
 
 def read(path: Path) -> Any:

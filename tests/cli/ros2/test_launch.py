@@ -50,6 +50,18 @@ def test_arguments_reach_the_file_and_the_last_one_wins(launch, tmp_path):
     assert "[echo-2]: process has finished cleanly" in log.read_text()
 
 
+@pytest.mark.parametrize(("given", "seen"), [({}, "jazzy 2 3"), ({"ROS_DISTRO": "humble"}, "humble 2 3")])
+def test_files_and_programs_see_which_ros_this_is(env, tmp_path, given, seen):
+    variables = ("ROS_DISTRO", "ROS_VERSION", "ROS_PYTHON_VERSION")
+    read = " ".join(f"$(env {name})" for name in variables)
+    (tmp_path / "which.launch.xml").write_text(f'<launch><executable cmd="echo {read}" output="screen"/></launch>')
+    bare = {name: value for name, value in env.items() if name not in variables}
+    result = ros2(
+        "launch", "which.launch.xml", env={**bare, **given, "ROS_LOG_DIR": str(tmp_path / "log")}, cwd=tmp_path
+    )
+    assert f"[echo-1] {seen}\n" in result.out
+
+
 def test_an_argument_is_missing(launch):
     result = launch("echo.launch.xml", "tims:=1", "other:=2")
     assert result.status == 1

@@ -57,7 +57,9 @@ def _run(argv: list[str]) -> int:
     from daidalos.cli.ros2.commands import commands
     from daidalos.cli.ros2.errors import CliError
     from daidalos.cli.ros2.parser import Parser, make_command
+    from daidalos.distribution import complete_environment
 
+    complete_environment()
     parser = Parser(prog="ros2", description="ros2 is an extensible command-line tool for ROS 2.")
     parser.add_argument(
         "--use-python-default-buffering",

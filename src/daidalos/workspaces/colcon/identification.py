@@ -11,8 +11,9 @@ from colcon_core.package_identification import IgnoreLocationException, PackageI
 from colcon_core.plugin_system import satisfies_version
 from colcon_ros.package_identification.ros import RosPackageIdentification, get_package_with_build_type
 
+from daidalos.distribution import complete_environment
 from daidalos.workspaces.errors import WorkspaceError
-from daidalos.workspaces.manifest import ENVIRONMENT, read
+from daidalos.workspaces.manifest import read
 
 TYPES = {"ament_cmake": "ros.ament_cmake.daidalos", "catkin": "ros.catkin.daidalos"}
 """Our types of packages, by the build type in package.xml."""
@@ -58,8 +59,7 @@ def _prepare_environment() -> None:
 
     The packages of today's courses tell setuptools of their tests as an older one understood; that is no news.
     """
-    for name, value in ENVIRONMENT.items():
-        os.environ.setdefault(name, value)
+    complete_environment()
     quiet = "ignore:Unknown distribution option:UserWarning"
     before = os.environ.get("PYTHONWARNINGS", "")
     if quiet not in before:

@@ -8,12 +8,10 @@ from collections.abc import Iterable
 from importlib.metadata import version
 
 from daidalos.cli.ros2.checkup import Findings, Report, Subject
+from daidalos.distribution import DISTRIBUTION
 from daidalos.transport.environment import read_environment
 from daidalos.transport.graph import Graph
 from daidalos.transport.shared import MIDDLEWARES
-
-_DISTRIBUTION = "jazzy"
-"""The distribution of ROS 2 whose names and behaviour are ours."""
 
 
 class Platform(Subject):
@@ -29,8 +27,8 @@ class Platform(Subject):
             findings.errors.append(
                 f"RMW_IMPLEMENTATION is {middleware}, which is not available; use {' or '.join(MIDDLEWARES)}."
             )
-        distribution = os.environ.get("ROS_DISTRO", _DISTRIBUTION)
-        if distribution != _DISTRIBUTION:
+        distribution = os.environ.get("ROS_DISTRO", DISTRIBUTION)
+        if distribution != DISTRIBUTION:
             findings.warnings.append(
                 f"ROS_DISTRO is {distribution}: the environment of another ROS 2 is set up in this shell, and its "
                 "Python packages may come before ours."
@@ -53,7 +51,7 @@ class Platform(Subject):
         yield Report(
             "ROS 2 INFORMATION",
             (
-                ("distribution name", _DISTRIBUTION),
+                ("distribution name", DISTRIBUTION),
                 ("distribution type", "ros2"),
                 ("distribution status", f"provided by daidalos {version('daidalos')}"),
             ),
