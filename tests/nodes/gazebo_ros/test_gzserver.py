@@ -3,7 +3,9 @@
 from threading import Event
 
 import pytest
+import rclpy
 from rclpy.parameter import Parameter
+from rosgraph_msgs.msg import Clock
 
 from daidalos.nodes.gazebo_ros.gzserver import GzServer, Start
 from daidalos.nodes.runner import UserError
@@ -35,6 +37,22 @@ def test_the_clock_is_told_as_often_as_wanted(graph):  # noqa: F811
         server.destroy_node()
     with pytest.raises(UserError, match="publish_rate"):
         GzServer(parameter_overrides=[Parameter("publish_rate", value=0.0)])
+
+
+def test_two_simulators_in_one_graph_are_pointed_out(graph):  # noqa: F811
+    server, other = GzServer(Start(paused=True)), rclpy.create_node("other")
+    try:
+        server._publish_performance()
+        assert not server._warned
+        clock = other.create_publisher(Clock, "/clock", 1)
+        assert server.handle.graph.wait_for(lambda: server.count_publishers("/clock") == 2, 10.0)
+        server._publish_performance()
+        (warning,) = server._warned
+        assert "another simulator" in warning
+        other.destroy_publisher(clock)
+    finally:
+        server.destroy_node()
+        other.destroy_node()
 
 
 def test_gazebos_launch_arguments_reach_it(domain, tmp_path):

@@ -311,6 +311,8 @@ class GzServer(Node):
         message = PerformanceMetrics(real_time_factor=float(self._paced.measured_factor))
         message.header.stamp = time_message(self._paced.simulation.time_ns)
         self._metrics.publish(message)
+        if self.count_publishers("/clock") > 1:
+            self._warn_once("somebody else tells the time on /clock, too; does another simulator run?")
 
     def destroy_node(self) -> None:
         """End the simulation and leave the graph."""

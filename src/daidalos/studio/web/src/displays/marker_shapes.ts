@@ -229,6 +229,7 @@ function mesh(marker: Marker, { assets, changed, complain }: MarkerContext): Obj
     .then((model) => {
       model.traverse((object) => {
         object.userData.pickable = object instanceof Mesh;
+        object.castShadow = object instanceof Mesh && marker.color.a >= 1;
         if (object instanceof Mesh && !marker.mesh_use_embedded_materials) {
           object.material = material(marker.color);
         }
