@@ -14,6 +14,7 @@ from ros_gz_interfaces.srv import ControlWorld, DeleteEntity, SetEntityPose, Spa
 from simulation_interfaces import srv
 from simulation_interfaces.action import SimulateSteps
 from simulation_interfaces.msg import (
+    Bounds,
     EntityCategory,
     EntityFilters,
     EntityInfo,
@@ -87,8 +88,27 @@ def test_entities_are_filtered(shop):
     filters = EntityFilters()
     filters.tags.tags = ["wooden"]
     assert list(ask(shop, srv.GetEntities, "get_entities", filters=filters).entities) == ["shelf"]
-    wrong = ask(shop, srv.GetEntities, "get_entities", filters=EntityFilters(filter="("))
-    assert wrong.result.result == Result.RESULT_OPERATION_FAILED
+    filters = EntityFilters(filter="^[[:lower:]]+$")
+    assert list(ask(shop, srv.GetEntities, "get_entities", filters=filters).entities) == ["shelf", "crate"]
+    for wrong in (EntityFilters(filter="("), EntityFilters(bounds=Bounds(type=Bounds.TYPE_CONVEX_HULL))):
+        answer = ask(shop, srv.GetEntities, "get_entities", filters=wrong)
+        assert answer.result.result == Result.RESULT_OPERATION_FAILED
+
+
+@pytest.mark.parametrize(
+    ("kind", "points", "found"),
+    [
+        (Bounds.TYPE_BOX, [(1.4, 1.0, 1.0), (-0.4, 0.0, 0.5)], ["crate"]),  # the shelf begins at x = 1.5
+        (Bounds.TYPE_BOX, [(1.6, 1.0, 1.0), (0.6, 0.0, 0.5)], ["shelf"]),  # the crate ends at x = 0.5
+        (Bounds.TYPE_SPHERE, [(1.0, 0.0, 0.5), (0.4, 0.0, 0.0)], []),
+        (Bounds.TYPE_SPHERE, [(1.0, 0.0, 0.5), (0.6, 0.0, 0.0)], ["shelf", "crate"]),
+    ],
+)
+def test_entities_are_found_by_the_room_they_take(shop, kind, points, found):
+    spawn(shop)
+    bounds = Bounds(type=kind, points=[Vector3(x=x, y=y, z=z) for x, y, z in points])
+    filters = EntityFilters(filter="^[sc]", bounds=bounds)
+    assert list(ask(shop, srv.GetEntities, "get_entities", filters=filters).entities) == found
 
 
 def test_states_are_read_and_set(shop):
@@ -188,6 +208,10 @@ def test_worlds_and_places_are_listed(shop):
     worlds = ask(shop, srv.GetAvailableWorlds, "get_available_worlds").worlds
     assert "arena" in [world.name for world in worlds]
     (pose,) = ask(shop, srv.GetNamedPoses, "get_named_poses").poses
+    around = ask(shop, srv.GetNamedPoseBounds, "get_named_pose_bounds", name="door")
+    assert (around.result.result, around.bounds.type) == (OK, Bounds.TYPE_EMPTY)
+    nowhere = ask(shop, srv.GetNamedPoseBounds, "get_named_pose_bounds", name="window")
+    assert nowhere.result.result == Result.RESULT_NOT_FOUND
     assert (pose.name, pose.pose.position.y) == ("door", 4.0)
     features = ask(shop, srv.GetSimulatorFeatures, "get_simulator_features").features
     assert features.STEP_SIMULATION_ACTION in features.features

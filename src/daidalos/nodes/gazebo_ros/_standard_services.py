@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,6 +14,7 @@ from daidalos.description.errors import DescriptionError
 from daidalos.description.resolve import default_model_path, resolve_uri
 from daidalos.nodes.conversions import time_message
 from daidalos.nodes.gazebo_ros._entities import find_entity, motion_of, set_motion
+from daidalos.nodes.gazebo_ros._filters import has_tags, matching
 from daidalos.nodes.gazebo_ros._host import Host, read_entity, read_entity_file, read_world
 from daidalos.nodes.gazebo_ros._states import pose_message, pose_of, twist_message, vector_of
 from daidalos.nodes.gazebo_ros._worlds import world_folders, worlds_in
@@ -22,6 +23,7 @@ from daidalos.simulation import Simulation
 from daidalos.simulation.errors import NameTakenError, SimulationError, UnknownNameError
 
 if TYPE_CHECKING:
+    from daidalos.description.pose import Pose
     from daidalos.description.robot import Robot
     from daidalos.description.world import Model
 
@@ -29,7 +31,38 @@ _NOT_FOUND, _INCORRECT_STATE, _FAILED, _UNSUPPORTED, _OK = 2, 3, 4, 0, 1
 _NAME_TAKEN, _NAME_INVALID, _NO_RESOURCE, _PARSE_ERROR = 101, 102, 104, 106
 _WORLD_NO_RESOURCE, _WORLD_PARSE_ERROR = 102, 103
 _STOPPED, _PLAYING, _PAUSED, _QUITTING = 0, 1, 2, 3
-_FEATURES = (0, 1, 2, 4, 5, 6, 8, 9, 10, 11, 12, 13, 14, 20, 21, 22, 23, 24, 25, 26, 31, 32, 33, 40, 41, 43, 44, 45, 50)
+_FEATURES = (
+    0,
+    1,
+    2,
+    3,
+    4,
+    5,
+    6,
+    8,
+    9,
+    10,
+    11,
+    12,
+    13,
+    14,
+    20,
+    21,
+    22,
+    23,
+    24,
+    25,
+    26,
+    31,
+    32,
+    33,
+    40,
+    41,
+    43,
+    44,
+    45,
+    50,
+)
 
 _ROBOT = re.compile(r"<robot[^>]*\sname=")
 
@@ -75,6 +108,7 @@ class StandardServices:
             (srv.SetEntityInfo, "set_entity_info", self._set_info),
             (srv.GetEntityBounds, "get_entity_bounds", self._bounds),
             (srv.GetNamedPoses, "get_named_poses", self._named_poses),
+            (srv.GetNamedPoseBounds, "get_named_pose_bounds", self._named_pose_bounds),
             (srv.GetSpawnables, "get_spawnables", self._spawnables),
             (srv.ResetSimulation, "reset_simulation", self._reset),
             (srv.GetSimulationState, "get_simulation_state", self._simulation_state),
@@ -198,26 +232,24 @@ class StandardServices:
         response.bounds = Bounds(type=Bounds.TYPE_BOX, points=points)
 
     def _filtered(self, simulation: Simulation, filters: Any) -> list[str]:
-        try:
-            pattern = re.compile(filters.filter)
-        except re.error as error:
-            raise Failure(_FAILED, f"{filters.filter!r} is no regular expression: {error}") from None
-        categories = {each.category for each in filters.categories}
-        names = []
-        for name in simulation.models:
-            info = self._info_of(simulation, name)
-            tags = _has_tags(info.tags, filters.tags)
-            if pattern.search(name) and tags and (not categories or info.category.category in categories):
-                names.append(name)
-        return names
+        return matching(simulation, filters, lambda name: self._info_of(simulation, name))
 
     def _named_poses(self, request: Any, response: Any) -> None:
         from simulation_interfaces.msg import NamedPose
 
+        if has_tags((), request.tags):
+            response.poses = [NamedPose(name=name, pose=pose_message(pose)) for name, pose in self._frames().items()]
+
+    def _named_pose_bounds(self, request: Any, response: Any) -> None:
+        if request.name not in self._frames():
+            raise UnknownNameError("named pose", request.name, self._frames())
+        response.bounds.type = response.bounds.TYPE_EMPTY  # a frame takes up no space
+
+    def _frames(self) -> dict[str, Pose]:
+        """Return the frames that belong to the world itself."""
         world = self._host.paced.simulation.world
         owners = {model.name for model in world.models} | {"world"}
-        named = {name: pose for name, pose in world.frames.items() if name.partition("::")[0] not in owners}
-        response.poses = [NamedPose(name=name, pose=pose_message(pose)) for name, pose in named.items()]
+        return {name: pose for name, pose in world.frames.items() if name.partition("::")[0] not in owners}
 
     def _spawnables(self, request: Any, response: Any) -> None:
         from simulation_interfaces.msg import Resource, Spawnable
@@ -321,6 +353,8 @@ class StandardServices:
     def _available_worlds(self, request: Any, response: Any) -> None:
         from simulation_interfaces.msg import Resource, WorldResource
 
+        if not has_tags((), request.filter):
+            return
         folders = [*map(Path, request.additional_sources), *world_folders()]
         files = [file for folder in folders for file in sorted(worlds_in(folder))]
         response.worlds = [
@@ -376,11 +410,6 @@ def _file(uri: str, missing: int) -> Path:
     if path is None:
         raise Failure(missing, f"there is no resource {uri!r}" if uri else "no resource was given")
     return path
-
-
-def _has_tags(tags: Iterable[str], wanted: Any) -> bool:
-    matches = [tag in tags for tag in wanted.tags]
-    return not matches or (all(matches) if wanted.filter_mode == wanted.FILTER_MODE_ALL else any(matches))
 
 
 def _state(simulation: Simulation, name: str) -> Any:
