@@ -188,6 +188,8 @@ class BagWriter:
     def split(self) -> None:
         """End the present file and begin the next."""
         closed = self._end_file()
+        if self._pool:
+            self._paths.append(self._pool.submit(compress_file, closed))
         self._storage = self._begin_file()
         if self.on_split:
             self.on_split(closed, self._path)
@@ -196,8 +198,6 @@ class BagWriter:
         start = self._start if self._count else 0
         self._files.append(BagFile(self._path.name, start, self._end - start, self._count))
         self._storage.close(format_metadata(self._metadata()))
-        if self._pool:
-            self._paths.append(self._pool.submit(compress_file, self._path))
         return self._path
 
     def _metadata(self) -> BagMetadata:
@@ -216,10 +216,11 @@ class BagWriter:
         """Complete the bag; returns its description."""
         if not self._closed:
             self._closed = True
-            self._end_file()
+            last = self._end_file()
             if self._pool:
                 self._pool.shutdown()
-                packed = [path.result().name for path in self._paths]
+                # At the end of the interpreter the pool would take no more.
+                packed = [*(path.result().name for path in self._paths), compress_file(last).name]
                 self._files = [replace(file, path=name) for file, name in zip(self._files, packed, strict=True)]
             write_metadata(self.folder, self._metadata())
         return self._metadata()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from typing import Any
+from weakref import finalize
 
 from daidalos.bags.cache import SnapshotBuffer
 from daidalos.bags.compression import FORMATS, Compression
@@ -23,6 +24,7 @@ class SequentialWriter:
     def __init__(self) -> None:
         self._bag: BagWriter | None = None
         self._snapshot: SnapshotBuffer | None = None
+        self._completion: finalize[[], SequentialWriter] | None = None
 
     def open(self, storage_options: StorageOptions, converter_options: ConverterOptions) -> None:
         """Begin a bag; RuntimeError where the folder is there already."""
@@ -32,18 +34,16 @@ class SequentialWriter:
         if storage_options.snapshot_mode and storage_options.max_cache_size == 0:
             raise RuntimeError("Max cache size must be greater than 0 when snapshot mode is enabled")
         self._bag = BagWriter(storage_options.uri, storage_options.writer_options(self._compression))
+        # Programs written for ROS 2 let the object go, or simply end, to complete the bag.
+        self._completion = finalize(self, self._bag.close)
         if storage_options.snapshot_mode:
             self._snapshot = SnapshotBuffer(self._bag, storage_options.max_cache_size)
 
     def close(self) -> None:
         """Complete the bag."""
-        bag, self._bag, self._snapshot = self._bag, None, None
-        if bag is not None:
-            bag.close()
-
-    def __del__(self) -> None:
-        # Programs written for ROS 2 let the object go to complete the bag.
-        self.close()
+        self._bag = self._snapshot = None
+        if self._completion is not None:
+            self._completion()
 
     def _opened(self) -> BagWriter:
         if self._bag is None:

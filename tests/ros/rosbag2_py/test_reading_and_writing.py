@@ -1,3 +1,6 @@
+import subprocess
+import sys
+
 import pytest
 import rosbag2_py
 from rclpy.qos import QoSProfile, ReliabilityPolicy
@@ -114,6 +117,44 @@ def test_letting_the_writer_go_completes_the_bag(tmp_path):
     writer.write("/chatter", serialize_message(String(data="7")), 5, 4)
     del writer
     assert numbers(opened(str(tmp_path / "bag"))) == [7]
+
+
+RECORDER = """
+import sys
+import rosbag2_py
+from rclpy.serialization import serialize_message
+from std_msgs.msg import String
+
+class Recorder:
+    def __init__(self, writer):
+        self.writer = writer
+        writer.open(rosbag2_py.StorageOptions(uri=sys.argv[1], storage_id="mcap"), rosbag2_py.ConverterOptions("", ""))
+        writer.create_topic(rosbag2_py.TopicMetadata(0, "/chatter", "std_msgs/msg/String", "cdr"))
+        self.myself = self
+
+    def record(self):
+        self.writer.write("/chatter", serialize_message(String(data="7")), 5)
+        raise KeyboardInterrupt
+
+if sys.argv[2] == "plain":
+    recorder = Recorder(rosbag2_py.SequentialWriter())
+else:
+    options = rosbag2_py.CompressionOptions("zstd", rosbag2_py.CompressionMode.FILE)
+    recorder = Recorder(rosbag2_py.SequentialCompressionWriter(options))
+recorder.record()
+"""
+
+
+@pytest.mark.parametrize("kind", ["plain", "compressed"])
+def test_the_end_of_a_program_completes_the_bag(tmp_path, kind):
+    program = subprocess.run(
+        [sys.executable, "-c", RECORDER, tmp_path / "bag", kind], capture_output=True, text=True, check=False
+    )
+    assert program.stderr.splitlines()[-1] == "KeyboardInterrupt"
+    reader = rosbag2_py.SequentialCompressionReader() if kind == "compressed" else SequentialReader()
+    reader.open(StorageOptions(uri=str(tmp_path / "bag")), ConverterOptions("cdr", "cdr"))
+    assert (tmp_path / "bag" / "metadata.yaml").is_file()
+    assert numbers(reader) == [7]
 
 
 def test_topics_as_humble_makes_them():
