@@ -1,6 +1,6 @@
 import re
 
-from daidalos.description import urdf
+from daidalos.description import sdf, urdf
 from daidalos.description.graph import to_dot, to_svg
 from daidalos.description.markup import parse_markup
 from description.robots import ARM
@@ -46,3 +46,18 @@ def test_graphviz():
     assert '"base" -> "shoulder" [label="xyz: 0 0 1 \\nrpy: 0 0 1.5708"]' in dot
     assert '"shoulder" -> "upper"' in dot
     assert dot.startswith("digraph G {")
+
+
+def test_labels_of_joints_to_the_same_link_do_not_hide_each_other():
+    text = """<sdf version="1.9"><model name="m"><link name="a"/><link name="b"/><link name="c"/><link name="d"/>
+    {}</model></sdf>""".format(
+        "".join(
+            f"<joint name='{p}{c}' type='ball'><parent>{p}</parent><child>{c}</child></joint>"
+            for p, c in ("ab", "bc", "ad", "dc")
+        )
+    )
+    svg = to_svg(sdf.parse_model(text))
+    places = {name: (x, y) for x, y, name in re.findall(r'<text x="([-\d.]+)" y="([-\d.]+)"[^>]*>(\w\w)</text>', svg)}
+    assert set(places) == {"ab", "bc", "ad", "dc"}
+    assert len(set(places.values())) == 4
+    assert svg.index("<path d=", svg.index("</defs>")) < svg.rindex("<path d=") < svg.index(">ab</text>")

@@ -32,7 +32,8 @@ def to_svg(robot: Robot | Model) -> str:
     Each parent stands over the middle of its children, and no two subtrees overlap. Joints that close loops
     are arrows as well.
     """
-    nodes, width = _place(link_tree(robot))
+    tree = link_tree(robot)
+    nodes, width = _place(tree)
     height = max((node.y for node in nodes.values()), default=0.0) + _HEIGHT / 2 + _MARGIN
     parts = [
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width:.0f} {height:.0f}" '
@@ -41,7 +42,12 @@ def to_svg(robot: Robot | Model) -> str:
         '<defs><marker id="tip" viewBox="0 0 8 8" refX="8" refY="4" markerWidth="7" markerHeight="7" '
         'orient="auto"><path d="M0,0 8,4 0,8z" fill="#456"/></marker></defs>',
     ]
-    parts += [_arrow(nodes[joint.parent], nodes[joint.child], joint) for joint in robot.joints.values()]
+    joints = [(joint, nodes[joint.parent], nodes[joint.child]) for joint in robot.joints.values()]
+    parts += [_arrow(parent, child, joint) for joint, parent, child in joints]
+    # A label stands over its child, but that of a joint that closes a loop below its parent: the other place is taken.
+    parts += [
+        _label(parent if joint in tree.closing else child, parent, child, joint) for joint, parent, child in joints
+    ]
     parts += [_box(node) for node in nodes.values()]
     return "\n".join([*parts, "</svg>"]) + "\n"
 
@@ -106,9 +112,16 @@ def _arrow(parent: _Node, child: _Node, joint: Joint) -> str:
     path = f"M{parent.x:.1f},{start:.1f} C{parent.x:.1f},{middle:.1f} {child.x:.1f},{start:.1f} {child.x:.1f},{end:.1f}"
     return (
         f'<path d="{path}" fill="none" stroke="#456" marker-end="url(#tip)"><title>{escape(_origin(joint))}</title>'
-        f'</path><text x="{child.x:.1f}" y="{middle + 6:.1f}" text-anchor="middle" fill="#1b4f9c" stroke="#fff" '
+        "</path>"
+    )
+
+
+def _label(place: _Node, parent: _Node, child: _Node, joint: Joint) -> str:
+    middle = (parent.y + child.y) / 2
+    return (
+        f'<text x="{place.x:.1f}" y="{middle + 6:.1f}" text-anchor="middle" fill="#1b4f9c" stroke="#fff" '
         f'stroke-width="3" paint-order="stroke">{escape(joint.name)}</text>'
-        f'<text x="{child.x:.1f}" y="{middle + 20:.1f}" text-anchor="middle" fill="#789" font-size="10" '
+        f'<text x="{place.x:.1f}" y="{middle + 20:.1f}" text-anchor="middle" fill="#789" font-size="10" '
         f'stroke="#fff" stroke-width="3" paint-order="stroke">{joint.type.value}</text>'
     )
 
