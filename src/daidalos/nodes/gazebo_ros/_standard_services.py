@@ -31,38 +31,7 @@ _NOT_FOUND, _INCORRECT_STATE, _FAILED, _UNSUPPORTED, _OK = 2, 3, 4, 0, 1
 _NAME_TAKEN, _NAME_INVALID, _NO_RESOURCE, _PARSE_ERROR = 101, 102, 104, 106
 _WORLD_NO_RESOURCE, _WORLD_PARSE_ERROR = 102, 103
 _STOPPED, _PLAYING, _PAUSED, _QUITTING = 0, 1, 2, 3
-_FEATURES = (
-    0,
-    1,
-    2,
-    3,
-    4,
-    5,
-    6,
-    8,
-    9,
-    10,
-    11,
-    12,
-    13,
-    14,
-    20,
-    21,
-    22,
-    23,
-    24,
-    25,
-    26,
-    31,
-    32,
-    33,
-    40,
-    41,
-    43,
-    44,
-    45,
-    50,
-)
+_FEATURES = (*range(7), *range(8, 15), *range(20, 27), *range(31, 34), 40, 41, *range(43, 46), 50)
 
 _ROBOT = re.compile(r"<robot[^>]*\sname=")
 
