@@ -22,7 +22,7 @@ class LoadedController:
 
     Parameters
     ----------
-    name, type : str
+    name, type_name : str
     kind : type
         The controller's class.
     read_parameters : callable
