@@ -11,10 +11,19 @@ from daidalos.description.link import Sensor as SensorDescription
 from daidalos.description.world import Model, World
 from daidalos.simulation.component import Component, Setting
 from daidalos.simulation.directional_friction import DirectionalFriction, directed_surfaces
-from daidalos.simulation.plugins.base import COMMON_PARAMETERS, Parameters, Plugin, ReadElement, SensorPlugin
+from daidalos.simulation.plugins.base import (
+    COMMON_PARAMETERS,
+    Parameters,
+    Plugin,
+    ReadElement,
+    SensorPlugin,
+    library_of,
+)
 from daidalos.simulation.registry import is_built_in, plugin_class, sensor_class
 from daidalos.simulation.sensors.base import Sensor
 from daidalos.simulation.standing_pushes import StandingPushes, check_standing_pushes, standing_pushes
+from daidalos.simulation.wind import LIBRARIES as WIND_LIBRARIES
+from daidalos.simulation.wind import Wind, windy_links
 
 
 def make_components(model: Model, setting: Callable[[str], Setting]) -> list[Component]:
@@ -42,6 +51,8 @@ def make_components(model: Model, setting: Callable[[str], Setting]) -> list[Com
     first = setting("pushes")
     if standing_pushes(model, first.world):
         components.append(StandingPushes(first))
+    if windy_links(model, first.world):
+        components.append(Wind(setting("wind")))
     for plugin in model.plugins:
         if model.links:
             components += _plugin(plugin, setting(plugin.name))
@@ -56,7 +67,7 @@ def check_world_plugins(world: World, warn: Callable[[str], None]) -> None:
     """Warn of a world's plugins that do nothing there; those that do something are built in."""
     check_standing_pushes(world, warn)
     for plugin in world.plugins:
-        if is_built_in(plugin):
+        if is_built_in(plugin) or library_of(plugin) in WIND_LIBRARIES:
             continue
         cls = plugin_class(plugin)
         if cls is None:

@@ -373,6 +373,11 @@ def test_what_has_no_effect_on_a_link_is_named():
     )
 
 
+def test_a_road_is_named_as_it_is_not_drawn():
+    world = sdf.parse('<sdf version="1.5"><world name="w"><road name="r"/></world></sdf>', "w.sdf")
+    assert world.warnings == ('w.sdf:1: <road name="r">: has no effect, left out',)
+
+
 def test_an_actor_can_be_included(tmp_path):
     (tmp_path / "walker").mkdir()
     (tmp_path / "walker/model.sdf").write_text(

@@ -100,6 +100,8 @@ class _WorldReader:
                 self._actors.append((read_actor(child, self._context), read_pose(child), child))
             elif child.tag == "population":
                 self._add_population(child)
+            elif child.tag == "road":
+                self._context.warn(child, "has no effect, left out")
             elif child.tag == "frame":
                 default = child.attribute("attached_to", "") or ROOT
                 self._graph.add(child.name(), read_pose(child), default, child)
