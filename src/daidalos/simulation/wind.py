@@ -15,10 +15,10 @@ from daidalos.simulation.component import Component, Setting
 from daidalos.simulation.conversion.model_build import ModelBuild
 from daidalos.simulation.instance import Instance
 from daidalos.simulation.last_step import velocities
-from daidalos.simulation.noise import Noise
+from daidalos.simulation.noise import SILENT, Noise
 from daidalos.simulation.plugins.base import library_of
 from daidalos.simulation.samples import Sample
-from daidalos.simulation.sensors.noisy import SILENT, noise_below
+from daidalos.simulation.sensors.noisy import noise_below
 
 Array = NDArray[np.float64]
 
