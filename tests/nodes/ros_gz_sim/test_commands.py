@@ -6,6 +6,7 @@ import pytest
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 
+from daidalos.nodes.gazebo_ros import spawn_entity
 from daidalos.nodes.gazebo_ros.spawn_model import translate
 from daidalos.nodes.ros_gz_sim import create, gz_sim
 from daidalos.nodes.runner import UserError
@@ -23,6 +24,14 @@ def test_create_takes_one_dash_or_two():
     arguments = create.parse(["-name", "bot", "--file", "a.sdf", "-x", "1.5", "-Y", "-2", "-allow_renaming", "true"])
     assert (arguments.name, arguments.file, arguments.x, arguments.Y) == ("bot", "a.sdf", 1.5, -2.0)
     assert arguments.allow_renaming == "true"
+
+
+def test_numbers_may_be_as_programs_write_them():
+    words = ["-x", "-1.5e-05", "-y=-2e-3", "-z", "-0.5", "-Y", "-3E+0"]
+    arguments = create.parse([*words, "-name", "bot"])
+    assert (arguments.x, arguments.y, arguments.z, arguments.Y) == (-1.5e-05, -2e-3, -0.5, -3.0)
+    spawned = spawn_entity.parse([*words, "-entity", "bot", "-stdin"], "spawn_entity.py")
+    assert (spawned.x, spawned.y, spawned.z, spawned.Y) == (-1.5e-05, -2e-3, -0.5, -3.0)
 
 
 def test_create_leaves_out_what_it_does_not_know(capsys):

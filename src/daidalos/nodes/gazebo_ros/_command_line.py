@@ -1,10 +1,13 @@
-"""The command line of Gazebo classic's server."""
+"""The command line of Gazebo classic's server, and what other command lines of simulators need."""
 
 from __future__ import annotations
 
 import argparse
+import re
 from collections.abc import Sequence
 from importlib.metadata import version
+
+_NEGATIVE = re.compile(r"-(\d+\.?\d*|\.\d+)[eE][-+]?\d+")
 
 
 def parse(words: Sequence[str]) -> argparse.Namespace:
@@ -35,3 +38,14 @@ def parse(words: Sequence[str]) -> argparse.Namespace:
     for names in (("-r", "--record"), ("--lockstep",), ("--minimal_comms",)):
         parser.add_argument(*names, action="store_true", help="accepted, without effect")
     return parser.parse_args(list(words))
+
+
+def bind_numbers(words: Sequence[str]) -> list[str]:
+    """Write ``-x -1e-3`` as ``-x=-1e-3``: without it argparse takes a number with an exponent for an option."""
+    bound: list[str] = []
+    for word in words:
+        if _NEGATIVE.fullmatch(word) and bound and bound[-1].startswith("-") and "=" not in bound[-1]:
+            bound[-1] += f"={word}"
+        else:
+            bound.append(word)
+    return bound

@@ -14,10 +14,12 @@ from rclpy.duration import Duration
 from rclpy.utilities import remove_ros_args
 
 from daidalos.nodes.description_files import read_description
+from daidalos.nodes.gazebo_ros._command_line import bind_numbers
 from daidalos.nodes.runner import UserError, run_program
 
 
-def _arguments(arguments: Sequence[str], prog: str) -> argparse.Namespace:
+def parse(words: Sequence[str], prog: str) -> argparse.Namespace:
+    """Read the command line."""
     parser = argparse.ArgumentParser(prog=prog, description="Spawn an entity in the simulation.")
     source = parser.add_mutually_exclusive_group(required=True)
     source.add_argument("-file", metavar="FILE", help="a URDF, xacro or SDF file")
@@ -34,12 +36,11 @@ def _arguments(arguments: Sequence[str], prog: str) -> argparse.Namespace:
     parser.add_argument(
         "-spawn_service_timeout", type=float, default=None, metavar="SECONDS", help="old name of -timeout"
     )
-    parser.add_argument("-x_vel", type=float, default=0.0, help=argparse.SUPPRESS)
     parser.add_argument("-package_to_model", action="store_true", help="accepted: package:// addresses are understood")
     parser.add_argument("-b", dest="bond", action="store_true", help="delete the entity when this program ends")
     for name in ("x", "y", "z", "R", "P", "Y"):
         parser.add_argument(f"-{name}", type=float, default=0.0, help="pose [m, rad]")
-    return parser.parse_args(arguments)
+    return parser.parse_args(bind_numbers(words))
 
 
 def _description(arguments: argparse.Namespace, node: Any) -> str:
@@ -184,7 +185,7 @@ def spawn(words: Sequence[str], joints: Mapping[str, float], prog: str) -> None:
     """
     import rclpy
 
-    arguments = _arguments(words, prog)
+    arguments = parse(words, prog)
     rclpy.init()
     node = rclpy.create_node("spawn_entity")
     _spawn(arguments, node)

@@ -10,6 +10,7 @@ from typing import Any
 
 from rclpy.utilities import remove_ros_args
 
+from daidalos.nodes.gazebo_ros._command_line import bind_numbers
 from daidalos.nodes.runner import UserError, run_program
 
 _TIMEOUT = 30.0
@@ -32,7 +33,7 @@ def parse(words: Sequence[str]) -> argparse.Namespace:
     for name in _NUMBERS:
         parser.add_argument(f"-{name}", f"--{name}", type=float, help="pose [m, rad]")
     parser.add_argument("-allow_renaming", "--allow_renaming", nargs="?", const="true", help="if taken")
-    arguments, unknown = parser.parse_known_args(list(words))
+    arguments, unknown = parser.parse_known_args(bind_numbers(words))
     if unknown:
         print(f"warning: create does not know {' '.join(unknown)}, left out", file=sys.stderr)
     return arguments
