@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 import numpy as np
 
+from daidalos.control.base_controller import BaseController
 from daidalos.control.base_odometry import BaseOdometry, prefixed_frame
-from daidalos.control.controllers.base import Controller, Subscription
 from daidalos.control.interfaces import Interfaces
 from daidalos.control.parameters import above, not_empty, parameter, size
 from daidalos.control.samples import MecanumSample
-from daidalos.control.velocity_input import VelocityInput
-from daidalos.simulation.samples import OdometrySample, Sample, TransformSample
+from daidalos.simulation.samples import Sample
 
 _ZEROS = (0.0,) * 6
 _WHEELS = ("front_left", "rear_left", "rear_right", "front_right")
@@ -66,12 +65,13 @@ class MecanumParameters:
     pose_covariance_diagonal: tuple[float, ...] = parameter(_ZEROS, size(6), read_only=True)
 
 
-class MecanumDriveController(Controller):
+class MecanumDriveController(BaseController):
     """Drives a base on four mecanum wheels."""
 
     types = ("mecanum_drive_controller/MecanumDriveController",)
     parameters = MecanumParameters
     chainable = True
+    state_sample = MecanumSample
     p: MecanumParameters
 
     def configure(self) -> None:
@@ -86,13 +86,12 @@ class MecanumDriveController(Controller):
         self.state_names = tuple(f"{name}/velocity" for name in states)
         self.references = Interfaces(("linear/x/velocity", "linear/y/velocity", "angular/z/velocity"))
         prefix = (self.setting.namespace, p.tf_frame_prefix, p.tf_frame_prefix_enable)
-        self._odometry = BaseOdometry(
+        self.odometry = BaseOdometry(
             prefixed_frame(p.odom_frame_id, *prefix),
             prefixed_frame(p.base_frame_id, *prefix),
             p.pose_covariance_diagonal,
             p.twist_covariance_diagonal,
         )
-        self._input = VelocityInput(self)
         self._take_parameters()
 
     def reconfigure(self, parameters: MecanumParameters) -> None:
@@ -101,7 +100,7 @@ class MecanumDriveController(Controller):
         self._take_parameters()
 
     def _take_parameters(self) -> None:
-        self._input.timeout = self.p.reference_timeout
+        self.input.timeout = self.p.reference_timeout
         offset, kinematics = self.p.kinematics.base_frame_offset, self.p.kinematics
         cosine, sine = math.cos(offset.theta), math.sin(offset.theta)
         # From the base's velocity to that of the wheels' centre.
@@ -109,32 +108,13 @@ class MecanumDriveController(Controller):
         size_of_base = kinematics.sum_of_robot_center_projection_on_X_Y_axis
         self._to_wheels = np.column_stack((np.ones(4), _SIDE, _TURN * size_of_base)) / kinematics.wheels_radius
 
-    @property
-    def publications(self) -> Mapping[str, type[Sample]]:
-        """Odometry, its transform, and the wheels."""
-        topics: dict[str, type[Sample]] = {"~/odometry": OdometrySample, "~/controller_state": MecanumSample}
-        if self.p.enable_odom_tf:
-            topics["~/tf_odometry"] = TransformSample
-        return topics
-
-    @property
-    def subscriptions(self) -> Mapping[str, Subscription]:
-        """The wanted velocity."""
-        return self._input.subscription("~/reference", self.p.use_stamped_vel)
-
-    def activate(self, now_ns: int) -> None:
-        """Stand at the origin of the odometry."""
-        self._input.reset()
-        self._odometry.reset()
-        self.references.values[:] = np.nan
-
     def deactivate(self) -> None:
         """Stand."""
         self.commands.write(np.zeros(4))
 
     def take_references(self, now_ns: int, period: float) -> None:
         """Take the last velocity that is fresh."""
-        latest = self._input.latest(now_ns)
+        latest = self.input.latest(now_ns)
         if latest is not None:
             self.references.values[:] = latest
 
@@ -144,11 +124,9 @@ class MecanumDriveController(Controller):
         if not np.isnan(wheels).any():
             centre = np.linalg.lstsq(self._to_wheels, wheels, rcond=None)[0]
             ahead, sideways, turn = np.linalg.solve(self._to_centre, centre) * period
-            self._odometry.move(float(ahead), float(turn), period, float(sideways))
+            self.odometry.move(float(ahead), float(turn), period, float(sideways))
         wanted = np.nan_to_num(self.references.values)
         self.commands.write(self._to_wheels @ self._to_centre @ wanted)
-        yield self._odometry.sample(now_ns, "~/odometry")
-        if self.p.enable_odom_tf:
-            yield self._odometry.transform(now_ns, "~/tf_odometry")
+        yield from self.odometry_samples(now_ns)
         if self.setting.heard("~/controller_state"):
-            yield MecanumSample(now_ns, "~/controller_state", self._odometry.base_frame, wheels, wanted)
+            yield MecanumSample(now_ns, "~/controller_state", self.odometry.base_frame, wheels, wanted)

@@ -3,21 +3,20 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
 
+from daidalos.control.base_controller import BaseController
 from daidalos.control.base_odometry import BaseOdometry
-from daidalos.control.controllers.base import Controller, Subscription
 from daidalos.control.errors import ParameterError
 from daidalos.control.interfaces import Interfaces
 from daidalos.control.parameters import above, parameter, size, unique
 from daidalos.control.samples import SteeringSample
 from daidalos.control.steering import SteeredBase, speed_share
-from daidalos.control.velocity_input import VelocityInput
-from daidalos.simulation.samples import OdometrySample, Sample, TransformSample
+from daidalos.simulation.samples import Sample
 
 _ZEROS = (0.0,) * 6
 
@@ -183,12 +182,13 @@ class AckermannParameters(SteeringParameters):
         return SteeredBase(self.wheelbase, radius, traction, steering if steering > 0.0 else traction)
 
 
-class BicycleSteeringController(Controller):
+class BicycleSteeringController(BaseController):
     """Drives a base with one driven wheel and a steered one."""
 
     types = ("bicycle_steering_controller/BicycleSteeringController",)
     parameters: ClassVar[type] = BicycleParameters
     chainable = True
+    state_sample = SteeringSample
     p: SteeringParameters
 
     def configure(self) -> None:
@@ -206,39 +206,23 @@ class BicycleSteeringController(Controller):
         )
         self.references = Interfaces(("linear/velocity", "angular/velocity"))
         self._count = self._base.traction_count
-        self._odometry = BaseOdometry(
+        self.odometry = BaseOdometry(
             p.odom_frame_id,
             p.base_frame_id,
             p.pose_covariance_diagonal,
             p.twist_covariance_diagonal,
             p.velocity_rolling_window_size,
         )
-        self._input = VelocityInput(self)
-        self._input.timeout = p.reference_timeout
+        self.input.timeout = p.reference_timeout
 
     def reconfigure(self, parameters: SteeringParameters) -> None:
         """Take the timeout."""
         super().reconfigure(parameters)
-        self._input.timeout = parameters.reference_timeout
-
-    @property
-    def publications(self) -> Mapping[str, type[Sample]]:
-        """Odometry, its transform, and the wheels."""
-        topics: dict[str, type[Sample]] = {"~/odometry": OdometrySample, "~/controller_state": SteeringSample}
-        if self.p.enable_odom_tf:
-            topics["~/tf_odometry"] = TransformSample
-        return topics
-
-    @property
-    def subscriptions(self) -> Mapping[str, Subscription]:
-        """The wanted velocity."""
-        return self._input.subscription("~/reference", self.p.use_stamped_vel)
+        self.input.timeout = parameters.reference_timeout
 
     def activate(self, now_ns: int) -> None:
         """Stand, with the wheels as they are."""
-        self._input.reset()
-        self._odometry.reset()
-        self.references.values[:] = np.nan
+        super().activate(now_ns)
         self._turned: np.ndarray | None = None
         measured = self.states.read()[self._count :]
         self._angle = float(np.mean(np.nan_to_num(measured)))
@@ -252,7 +236,7 @@ class BicycleSteeringController(Controller):
 
     def take_references(self, now_ns: int, period: float) -> None:
         """Take the last velocity that is fresh."""
-        latest = self._input.latest(now_ns)
+        latest = self.input.latest(now_ns)
         if latest is not None:
             self.references.values[:] = latest[0], latest[2]
 
@@ -268,9 +252,7 @@ class BicycleSteeringController(Controller):
         self._last = (speed, speed * math.tan(self._angle) / self._base.wheelbase)
         speeds, angles = self._base.wheel_speeds(speed, self._angle), self._base.wheel_angles(self._angle)
         self.commands.write(np.concatenate((speeds, angles)))
-        yield self._odometry.sample(now_ns, "~/odometry")
-        if self.p.enable_odom_tf:
-            yield self._odometry.transform(now_ns, "~/tf_odometry")
+        yield from self.odometry_samples(now_ns)
         if self.setting.heard("~/controller_state"):
             measured, nothing = values[: self._count], np.zeros(0)
             positions, velocities = (measured, nothing) if self.p.position_feedback else (nothing, measured)
@@ -289,7 +271,7 @@ class BicycleSteeringController(Controller):
             if np.isnan(wheels).any() or np.isnan(values).any():
                 return
             speed, turn = self._base.motion(wheels, values[self._count :])
-        self._odometry.move(speed * period, turn * period, period)
+        self.odometry.move(speed * period, turn * period, period)
 
 
 class TricycleSteeringController(BicycleSteeringController):

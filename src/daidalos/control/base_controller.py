@@ -1,0 +1,59 @@
+"""What controllers of a base that take the wanted velocity as references have in common."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any, ClassVar
+
+import numpy as np
+
+from daidalos.control.base_odometry import BaseOdometry
+from daidalos.control.controllers.base import Controller, ControllerSetting, Subscription
+from daidalos.control.velocity_input import VelocityInput
+from daidalos.simulation.samples import OdometrySample, Sample, TransformSample
+
+
+class BaseController(Controller):
+    """Drives a base, and tells its odometry and its state.
+
+    Attributes
+    ----------
+    state_sample : type
+        Class attribute: what it tells on ``~/controller_state``.
+    input : VelocityInput
+        The velocities that are commanded.
+    odometry : BaseOdometry
+        Made by a subclass when it is configured.
+    """
+
+    state_sample: ClassVar[type[Sample]]
+    odometry: BaseOdometry
+
+    def __init__(self, parameters: Any, setting: ControllerSetting) -> None:
+        self.input = VelocityInput(self)
+        super().__init__(parameters, setting)
+
+    @property
+    def publications(self) -> Mapping[str, type[Sample]]:
+        """Odometry, its transform, and the wheels."""
+        topics: dict[str, type[Sample]] = {"~/odometry": OdometrySample, "~/controller_state": self.state_sample}
+        if self.p.enable_odom_tf:
+            topics["~/tf_odometry"] = TransformSample
+        return topics
+
+    @property
+    def subscriptions(self) -> Mapping[str, Subscription]:
+        """The wanted velocity."""
+        return self.input.subscription("~/reference", self.p.use_stamped_vel)
+
+    def activate(self, now_ns: int) -> None:
+        """Stand at the origin of the odometry."""
+        self.input.reset()
+        self.odometry.reset()
+        self.references.values[:] = np.nan
+
+    def odometry_samples(self, now_ns: int) -> Iterator[Sample]:
+        """Yield where the base is, and the transform where it is wanted."""
+        yield self.odometry.sample(now_ns, "~/odometry")
+        if self.p.enable_odom_tf:
+            yield self.odometry.transform(now_ns, "~/tf_odometry")
