@@ -2,15 +2,17 @@
 
 from threading import Event
 
+import numpy as np
 import pytest
 import rclpy
 from rclpy.parameter import Parameter
 from rosgraph_msgs.msg import Clock
 
+from daidalos.nodes.gazebo_ros._pacing import Beat
 from daidalos.nodes.gazebo_ros.gzserver import GzServer, Start
 from daidalos.nodes.runner import UserError
 from end_to_end.processes import ROS2, Command
-from ros.graph import graph  # noqa: F401
+from ros.graph import graph, node, spinning  # noqa: F401
 
 
 def test_it_ends_after_so_many_steps(graph):  # noqa: F811
@@ -24,17 +26,31 @@ def test_it_ends_after_so_many_steps(graph):  # noqa: F811
         server.destroy_node()
 
 
-def test_the_clock_is_told_as_often_as_wanted(graph):  # noqa: F811
-    told = []
-    server = GzServer(Start(paused=True), parameter_overrides=[Parameter("publish_rate", value=250.0)])
+@pytest.mark.parametrize(("rate", "period_ns"), [(250.0, 4_000_000), (20.0, 50_000_000)])
+def test_the_clock_is_told_as_often_as_wanted(node, rate, period_ns):  # noqa: F811
+    told, enough = [], Event()
+
+    def hear(clock):
+        told.append(clock.clock.sec * 1_000_000_000 + clock.clock.nanosec)
+        if len(told) == 5:
+            enough.set()
+
+    node.create_subscription(Clock, "/clock", hear, 10)
+    server = GzServer(Start(), parameter_overrides=[Parameter("publish_rate", value=rate)])
     try:
-        server._paced._publish = lambda now_ns, samples: told.append(now_ns)
-        server._paced.set_paused(False)
-        while len(told) < 3:
-            server._paced.call(lambda simulation: None)
-        assert told[:3] == [4_000_000, 8_000_000, 12_000_000]
+        with spinning(node):
+            assert enough.wait(10.0)
     finally:
         server.destroy_node()
+    assert np.diff(told[1:5]).tolist() == [period_ns] * 3  # the first comes at once
+
+
+def test_beats_go_on_when_time_is_set_back():
+    beat = Beat(20)
+    assert [now for now in (0, 10, 20, 35, 41, 45, 60, 5, 15, 20) if beat.is_due(now)] == [0, 20, 41, 60, 5, 20]
+
+
+def test_a_rate_that_can_not_be_is_refused(graph):  # noqa: F811
     with pytest.raises(UserError, match="publish_rate"):
         GzServer(parameter_overrides=[Parameter("publish_rate", value=0.0)])
 

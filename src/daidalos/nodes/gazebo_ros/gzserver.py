@@ -83,7 +83,7 @@ class GzServer(Node):
         super().__init__("gazebo", **kwargs)
         from daidalos.nodes.gazebo_ros._companions import Companions
         from daidalos.nodes.gazebo_ros._host import Host, read_world, wanted_speed
-        from daidalos.nodes.gazebo_ros._pacing import PacedSimulation
+        from daidalos.nodes.gazebo_ros._pacing import Beat, PacedSimulation
         from daidalos.simulation import Simulation
 
         start = start or Start()
@@ -106,8 +106,9 @@ class GzServer(Node):
             factor = start.update_rate * simulation.step_ns * 1e-9
         self._quit = quit_simulator
         self._end_ns = math.inf if start.steps is None else start.steps * simulation.step_ns
-        self._next_states_ns = 0
-        period_ns = max(simulation.step_ns, round(1e9 / clock_rate))
+        self._clock_beat, self._states_beat = Beat(round(1e9 / clock_rate)), Beat(_STATES_PERIOD_NS)
+        # Who wants the time seldom does not want commands to wait for it.
+        period_ns = max(simulation.step_ns, round(1e9 / max(clock_rate, _CLOCK_RATE)))
         self._paced = PacedSimulation(simulation, self._publish, period_ns, factor, self._on_failure)
         self._host = Host(self._paced, make, self._topics_changed)
         self._companions = Companions(self.context, self._warn)
@@ -163,7 +164,8 @@ class GzServer(Node):
     def _publish(self, now_ns: int, samples: list[Sample]) -> None:
         from rosgraph_msgs.msg import Clock
 
-        self._clock_publisher.publish(Clock(clock=time_message(now_ns)))
+        if self._clock_beat.is_due(now_ns) or self._paced.paused:
+            self._clock_publisher.publish(Clock(clock=time_message(now_ns)))
         transforms = []
         for sample in samples:
             if sample.topic == "/tf":
@@ -173,8 +175,7 @@ class GzServer(Node):
                 publisher.publish(convert(sample))
         if transforms:
             self._publish_transforms(transforms)
-        if now_ns >= self._next_states_ns or now_ns < self._next_states_ns - _STATES_PERIOD_NS:
-            self._next_states_ns = now_ns - now_ns % _STATES_PERIOD_NS + _STATES_PERIOD_NS
+        if self._states_beat.is_due(now_ns):
             self._publish_states()
         self._publish_contacts()
         self._companions.publish()
