@@ -1,5 +1,9 @@
 """Filters for streams of messages: they subscribe, remember, select, sort and bring together what belongs together."""
 
+from typing import TYPE_CHECKING
+
+from rclpy.impl.lent_names import lend
+
 from .cache import Cache as Cache
 from .chain import Chain as Chain
 from .delta_filter import ComparisonFilter as ComparisonFilter
@@ -13,3 +17,9 @@ from .subscriber import Subscriber as Subscriber
 from .synchronizers import ApproximateTimeSynchronizer as ApproximateTimeSynchronizer
 from .synchronizers import TimeSynchronizer as TimeSynchronizer
 from .time_sequencer import TimeSequencer as TimeSequencer
+
+if not TYPE_CHECKING:
+    __getattr__ = lend(
+        __name__,
+        {"rclpy.clock": ("Clock",), "rclpy.duration": ("Duration",), "rclpy.time": ("Time",)},
+    )

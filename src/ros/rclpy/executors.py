@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Any, Self
 from rclpy.context import Context
 from rclpy.exceptions import ExternalShutdownException as ExternalShutdownException
 from rclpy.impl.callback_runner import CallbackRunner
+from rclpy.impl.lent_names import lend
 from rclpy.impl.ready import ReadyHook
 from rclpy.impl.thread_pool import ThreadPool, processors
 from rclpy.task import Future, Task
@@ -375,3 +376,23 @@ class MultiThreadedExecutor(Executor):
         ended = super().shutdown(timeout_sec)
         self._executor.close()
         return ended
+
+
+if not TYPE_CHECKING:
+    __getattr__ = lend(
+        __name__,
+        {
+            "concurrent.futures": ("ThreadPoolExecutor",),
+            "rclpy.client": ("Client",),
+            "rclpy.clock": ("Clock", "ClockType"),
+            "rclpy.guard_condition": ("GuardCondition",),
+            "rclpy.handle": ("InvalidHandle",),
+            "rclpy.node": ("Node",),
+            "rclpy.service": ("Service",),
+            "rclpy.signals": ("SignalHandlerGuardCondition",),
+            "rclpy.subscription": ("Subscription",),
+            "rclpy.timer": ("Timer",),
+            "rclpy.utilities": ("timeout_sec_to_nsec",),
+            "rclpy.waitable": ("NumberOfEntities", "Waitable"),
+        },
+    )

@@ -13,6 +13,7 @@ from rclpy.context import Context
 from rclpy.exceptions import NotInitializedException
 from rclpy.impl.entities import NodeHandle
 from rclpy.impl.errors import InvalidHandle
+from rclpy.impl.lent_names import lend
 from rclpy.impl.node_entities import NodeEntities, depth_or_profile
 from rclpy.impl.node_graph import NodeGraph
 from rclpy.impl.node_members import KINDS, attach, detach
@@ -298,3 +299,46 @@ class Node(NodeEntities, NodeParameters, NodeGraph):
     ) -> None:
         if not self.handle.is_destroyed:
             self.destroy_node()
+
+
+if not TYPE_CHECKING:
+    __getattr__ = lend(
+        __name__,
+        {
+            "rcl_interfaces.msg": (
+                "FloatingPointRange",
+                "IntegerRange",
+                "ListParametersResult",
+                "ParameterDescriptor",
+                "ParameterEvent",
+                "ParameterType",
+                "ParameterValue",
+                "SetParametersResult",
+            ),
+            "rclpy.callback_groups": ("ReentrantCallbackGroup",),
+            "rclpy.client": ("Client",),
+            "rclpy.event_handler": ("PublisherEventCallbacks", "SubscriptionEventCallbacks"),
+            "rclpy.exceptions": (
+                "InvalidParameterTypeException",
+                "InvalidParameterValueException",
+                "InvalidTopicNameException",
+                "ParameterAlreadyDeclaredException",
+                "ParameterImmutableException",
+                "ParameterNotDeclaredException",
+                "ParameterUninitializedException",
+            ),
+            "rclpy.executors": ("Executor",),
+            "rclpy.expand_topic_name": ("expand_topic_name",),
+            "rclpy.guard_condition": ("GuardCondition",),
+            "rclpy.logging": ("get_logger",),
+            "rclpy.qos_overriding_options": ("QoSOverridingOptions",),
+            "rclpy.service": ("Service",),
+            "rclpy.subscription": ("MessageInfo", "Subscription"),
+            "rclpy.timer": ("Rate", "Timer"),
+            "rclpy.topic_endpoint_info": ("TopicEndpointInfo",),
+            "rclpy.validate_full_topic_name": ("validate_full_topic_name",),
+            "rclpy.validate_parameter_name": ("validate_parameter_name",),
+            "rclpy.validate_topic_name": ("validate_topic_name",),
+            "rclpy.waitable": ("Waitable",),
+        },
+    )

@@ -7,6 +7,8 @@ from collections.abc import Sequence
 from enum import IntEnum
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
+from rclpy.impl.lent_names import lend
+
 if TYPE_CHECKING:
     from rcl_interfaces.msg import Parameter as ParameterMsg
     from rcl_interfaces.msg import ParameterValue
@@ -266,3 +268,7 @@ def _is_wanted(node: str, targets: Sequence[str], use_wildcard: bool) -> bool:
     if "*" in node:
         return use_wildcard and (not targets or any(node_matches(node, target) for target in targets))
     return not targets or any(node_matches(node, target) for target in targets)
+
+
+if not TYPE_CHECKING:
+    __getattr__ = lend(__name__, {"rcl_interfaces.msg": ("ParameterValue",)})

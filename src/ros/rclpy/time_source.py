@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from rclpy.clock import ROSClock
 from rclpy.clock_type import ClockType
 from rclpy.impl.entities import SubscriptionHandle
+from rclpy.impl.lent_names import lend
 from rclpy.parameter import Parameter
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rclpy.time import Time
@@ -142,3 +143,10 @@ class TimeSource:
 
     def _get_node(self) -> Node | None:
         return self._node_weak_ref() if self._node_weak_ref is not None else None
+
+
+if not TYPE_CHECKING:
+    __getattr__ = lend(
+        __name__,
+        {"rcl_interfaces.msg": ("ParameterEvent", "SetParametersResult"), "rclpy.clock": ("Clock",)},
+    )

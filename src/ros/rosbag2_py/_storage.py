@@ -6,6 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from enum import IntEnum
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rclpy.impl.lent_names import lend
 
 from daidalos.bags.compression import Compression
 from daidalos.bags.selection import Selection
@@ -128,3 +131,18 @@ class MessageDefinition:
 def get_default_storage_id() -> str:
     """Return the storage that bags are written with where none is named."""
     return DEFAULT
+
+
+if not TYPE_CHECKING:
+    __getattr__ = lend(
+        __name__,
+        {
+            "rosbag2_py._metadata": (
+                "BagMetadata",
+                "FileInformation",
+                "MetadataIo",
+                "TopicInformation",
+                "TopicMetadata",
+            )
+        },
+    )

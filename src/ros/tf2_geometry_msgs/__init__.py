@@ -1,10 +1,13 @@
 """Transforming the messages of ``geometry_msgs``; importing it registers them with `tf2_ros`."""
 
+from typing import TYPE_CHECKING
+
 from geometry_msgs.msg import PointStamped as PointStamped
 from geometry_msgs.msg import PoseStamped as PoseStamped
 from geometry_msgs.msg import PoseWithCovarianceStamped as PoseWithCovarianceStamped
 from geometry_msgs.msg import Vector3Stamped as Vector3Stamped
 from geometry_msgs.msg import WrenchStamped as WrenchStamped
+from rclpy.impl.lent_names import lend
 
 from .tf2_geometry_msgs import do_transform_point as do_transform_point
 from .tf2_geometry_msgs import do_transform_polygon_stamped as do_transform_polygon_stamped
@@ -19,3 +22,9 @@ from .tf2_geometry_msgs import do_transform_wrench as do_transform_wrench
 from .tf2_geometry_msgs import from_msg_msg as from_msg_msg
 from .tf2_geometry_msgs import to_msg_msg as to_msg_msg
 from .tf2_geometry_msgs import transform_covariance as transform_covariance
+
+if not TYPE_CHECKING:
+    __getattr__ = lend(
+        __name__,
+        {"geometry_msgs.msg": ("TransformStamped",)},
+    )

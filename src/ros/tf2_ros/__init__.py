@@ -1,7 +1,8 @@
 """Transforms between coordinate frames over time: publish, receive, store and look them up."""
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
+from rclpy.impl.lent_names import lend
 from tf2_py import BufferCore as BufferCore
 from tf2_py import ConnectivityException as ConnectivityException
 from tf2_py import ExtrapolationException as ExtrapolationException
@@ -56,14 +57,15 @@ __all__ = [
 ]
 
 
-def __getattr__(name: str) -> Any:
-    # Few programs use these two, and actions take as long to import as everything else here.
-    if name == "BufferClient":
-        from .buffer_client import BufferClient
-
-        return BufferClient
-    if name == "BufferServer":
-        from .buffer_server import BufferServer
-
-        return BufferServer
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+if not TYPE_CHECKING:
+    __getattr__ = lend(
+        __name__,
+        {
+            "geometry_msgs.msg": ("TransformStamped",),
+            "rclpy.duration": ("Duration",),
+            "rclpy.time": ("Time",),
+            # Actions take as long to import as everything else here.
+            "tf2_ros.buffer_client": ("BufferClient",),
+            "tf2_ros.buffer_server": ("BufferServer",),
+        },
+    )

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from rclpy.clock import Clock, JumpHandle, JumpThreshold, TimeJump
 from rclpy.duration import Duration
+from rclpy.impl.lent_names import lend
 from rclpy.impl.timer import TimerHandle
 from rclpy.task import Future
 from rclpy.utilities import get_default_context
@@ -277,3 +278,15 @@ class _Deadline:
     def patience_s(self) -> float | None:
         """Return how long to wait in wall time; None for until `wake` is called."""
         return None if self._simulated else max(self._wall_end - system_time.monotonic_ns(), 0) / 1e9
+
+
+if not TYPE_CHECKING:
+    __getattr__ = lend(
+        __name__,
+        {
+            "geometry_msgs.msg": ("TransformStamped",),
+            "rclpy.node": ("Node",),
+            "rclpy.time": ("Time",),
+            "tf2_msgs.srv": ("FrameGraph",),
+        },
+    )

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from copy import deepcopy
 from typing import TYPE_CHECKING
 
+from rclpy.impl.lent_names import lend
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile
 from tf2_msgs.msg import TFMessage
 
@@ -37,3 +38,10 @@ class StaticTransformBroadcaster:
         """Publish a transform, or several, with all that were sent before: the topic keeps one message only."""
         self._sent.update((one.child_frame_id, deepcopy(one)) for one in as_list(transform))
         self.pub_tf.publish(TFMessage(transforms=list(self._sent.values())))
+
+
+if not TYPE_CHECKING:
+    __getattr__ = lend(
+        __name__,
+        {"geometry_msgs.msg": ("TransformStamped",)},
+    )

@@ -12,6 +12,7 @@ from rclpy.action._client_goal import ClientGoalHandle as ClientGoalHandle
 from rclpy.callback_groups import CallbackGroup
 from rclpy.impl.entities import ClientHandle, SubscriptionHandle
 from rclpy.impl.errors import InvalidHandle
+from rclpy.impl.lent_names import lend
 from rclpy.impl.running import wait_for
 from rclpy.qos import (
     QoSProfile,
@@ -307,3 +308,17 @@ status_sub_qos_profile
         limit = None if timeout_sec is None or timeout_sec < 0 else timeout_sec
         graph.wait_for(lambda: not context.ok() or self.server_is_ready(), limit)
         return self.server_is_ready()
+
+
+if not TYPE_CHECKING:
+    __getattr__ = lend(
+        __name__,
+        {
+            "action_msgs.msg": ("GoalStatus",),
+            "action_msgs.srv": ("CancelGoal",),
+            "rclpy.executors": ("await_or_execute",),
+            "rclpy.type_support": ("check_for_type_support",),
+            "rclpy.waitable": ("Waitable",),
+            "unique_identifier_msgs.msg": ("UUID",),
+        },
+    )

@@ -14,6 +14,7 @@ from rclpy.action._goal_state import GoalEvent, GoalState
 from rclpy.action._server_goal import ServerGoalHandle as ServerGoalHandle
 from rclpy.callback_groups import CallbackGroup
 from rclpy.impl.entities import PublisherHandle, ServiceHandle
+from rclpy.impl.lent_names import lend
 from rclpy.qos import (
     QoSProfile,
     qos_profile_action_status_default,
@@ -386,3 +387,16 @@ status_pub_qos_profile
 def _stamp(goal: ServerGoalHandle) -> tuple[int, int]:
     stamp = goal._goal_info.stamp
     return stamp.sec, stamp.nanosec
+
+
+if not TYPE_CHECKING:
+    __getattr__ = lend(
+        __name__,
+        {
+            "action_msgs.msg": ("GoalInfo", "GoalStatus"),
+            "action_msgs.srv": ("CancelGoal",),
+            "rclpy.executors": ("await_or_execute",),
+            "rclpy.type_support": ("check_for_type_support",),
+            "rclpy.waitable": ("Waitable",),
+        },
+    )
