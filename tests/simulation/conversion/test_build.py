@@ -251,3 +251,19 @@ def test_floating_joints_bind_nothing():
     assert simulation.pose("r", "b") == Pose((2, 0, 5))
     simulation.advance(SECOND // 10)
     assert simulation.physics.model.nv == 12
+
+
+@pytest.mark.parametrize(("kind", "count"), [("fixed", 1000), ("revolute", 520)])
+def test_an_arm_may_have_more_links_than_python_calls_functions_within_each_other(kind, count):
+    links = "".join(
+        f"<link name='l{i}'><inertial><mass value='0.1'/><inertia ixx='1e-3' iyy='1e-3' izz='1e-3'/></inertial></link>"
+        for i in range(count + 1)
+    )
+    joints = "".join(
+        f"<joint name='j{i}' type='{kind}'><parent link='l{i}'/><child link='l{i + 1}'/><origin xyz='0 0 0.1'/>"
+        "<limit lower='-1' upper='1' effort='1' velocity='1'/></joint>"
+        for i in range(count)
+    )
+    simulation = Simulation(world())
+    name = simulation.spawn(urdf.parse(f"<robot name='long'>{links}{joints}</robot>"))
+    assert simulation.instance(name).link(f"l{count}").pose.position[2] == pytest.approx(0.1 * count)

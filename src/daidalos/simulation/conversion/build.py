@@ -102,8 +102,7 @@ class _Builder:
         in_world = self._below.get("world", [])
         if in_world or self._held:
             base = self._base()
-            for joint in in_world:
-                self._add_branch(base, joint, moves=False)
+            self._add_branches([(base, joint, False) for joint in in_world])
             for link in self._held:
                 self._warn(f"{link.where}: link {link.name!r} stays where it is, as an infinite plane can not move")
                 self._add_link(base, link, link.pose)
@@ -133,10 +132,20 @@ class _Builder:
         self._build.free[link.name] = name
         self._add_children(link, moves=True)
 
-    def _add_branch(self, parent: Any, joint: Joint, moves: bool) -> None:
-        """Add a link and what hangs on it; `moves` tells whether its parent does."""
-        if joint.type is JointType.FLOATING:
-            return
+    def _add_branches(self, branches: list[tuple[Any, Joint, bool]]) -> None:
+        """Add the links at joints and all that hangs on them: of each joint the body above, and whether that moves.
+
+        Each link is followed by what hangs on it. Arms may have any number of links: this does not recur.
+        """
+        waiting = branches[::-1]
+        while waiting:
+            parent, joint, moves = waiting.pop()
+            if joint.type is not JointType.FLOATING:
+                body, moves = self._add_branch(parent, joint, moves)
+                waiting += [(body, below, moves) for below in reversed(self._below.get(joint.child, []))]
+
+    def _add_branch(self, parent: Any, joint: Joint, moves: bool) -> tuple[Any, bool]:
+        """Add the link at a joint; return its body, and whether it moves."""
         link = self._model.links[joint.child]
         body = self._add_link(parent, link, joint.origin @ joint.anchor.inverse)
         added = add_joints(body, joint, self._build.scoped(joint.name))
@@ -146,11 +155,11 @@ class _Builder:
                 self._build.start[name] = start_position(axis)
         if added and not moves:
             self._build.trees.append(body)
-        self._add_children(link, moves or bool(added))
+        return body, moves or bool(added)
 
     def _add_children(self, link: Link, moves: bool) -> None:
-        for joint in self._below.get(link.name, []):
-            self._add_branch(self._build.bodies[link.name], joint, moves)
+        body = self._build.bodies[link.name]
+        self._add_branches([(body, joint, moves) for joint in self._below.get(link.name, [])])
 
     def _add_link(self, parent: Any, link: Link, pose: Pose) -> Any:
         body = self._body(parent, self._build.scoped(link.name), pose)
@@ -210,10 +219,11 @@ class _Builder:
                 self._empty_without_mass.add(link.name)
 
     def _fixed_group(self, link: Link) -> list[Link]:
+        """Return a link with all that is fixed to it, directly or through others."""
         group = [link]
-        for joint in self._below.get(link.name, []):
-            if joint.type is JointType.FIXED:
-                group += self._fixed_group(self._model.links[joint.child])
+        for member in group:
+            below = self._below.get(member.name, [])
+            group += [self._model.links[joint.child] for joint in below if joint.type is JointType.FIXED]
         return group
 
     # Collisions
