@@ -26,12 +26,13 @@ def attach_stub(package: str, init_file: str) -> tuple[Callable[[str], Any], Cal
     """
     names, submodules = _read_stub(init_file + "i")
     public = sorted({*names, *submodules})
+    modules = submodules | {module.partition(".")[0] for module in names.values()}
 
     def __getattr__(name: str) -> Any:
         module = importlib.import_module(package)
         if name in names:
             value = getattr(importlib.import_module(f".{names[name]}", package), name)
-        elif name in submodules:
+        elif name in modules:
             value = importlib.import_module(f"{package}.{name}")
         else:
             raise AttributeError(f"module '{package}' has no attribute '{name}'")

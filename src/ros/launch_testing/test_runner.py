@@ -11,7 +11,7 @@ from typing import Any
 from launch import Action, LaunchDescription, LaunchDescriptionSource, LaunchService
 from launch.actions import IncludeLaunchDescription, RegisterEventHandler
 from launch.event_handlers import OnProcessExit, OnProcessIO, OnProcessStart
-from launch.events.process import ProcessStarted
+from launch.events.process import ProcessExited, ProcessStarted
 
 from .io_handler import ActiveIoHandler
 from .loader import TestRun
@@ -157,19 +157,25 @@ class _RunnerWorker:
         )
 
     def _wrap(self, description: LaunchDescription) -> LaunchDescription:
+        # What keeps the launch alive is not under test.
+        keep_alive = [KeepAliveProc()] if self._test_run.markers.get("keep_alive") else []
+
         def on_start(event: ProcessStarted, context: Any) -> None:
-            self.proc_info.append(event)
-            self.proc_output.track(event.process_name)
+            if event.action not in keep_alive:
+                self.proc_info.append(event)
+                self.proc_output.track(event.process_name)
+
+        def on_exit(event: ProcessExited, context: Any) -> None:
+            if event.action not in keep_alive:
+                self.proc_info.append(event)
 
         handlers = [
             OnProcessIO(on_stdout=self.proc_output.append, on_stderr=self.proc_output.append),
             OnProcessStart(on_start=on_start),
-            OnProcessExit(on_exit=lambda event, context: self.proc_info.append(event)),
+            OnProcessExit(on_exit=on_exit),
         ]
-        keep_alive = [KeepAliveProc()] if self._test_run.markers.get("keep_alive") else []
         return LaunchDescription(
             [
-                # What keeps the launch alive is not under test, so it comes before the handlers.
                 *keep_alive,
                 *(RegisterEventHandler(handler) for handler in handlers),
                 *self._preamble,

@@ -38,6 +38,11 @@ def test_every_module_of_actions_and_substitutions_is_listed():
             assert f"from .{file.stem} " in stub or file.stem == "log_info", file.stem
 
 
+def test_modules_are_there_without_an_import_of_their_own():
+    code = "import launch; launch.event_handlers.on_process_start.OnProcessStart; launch.actions.opaque_function"
+    subprocess.run([sys.executable, "-c", code], check=True)
+
+
 def test_unknown_names():
     with pytest.raises(AttributeError, match=r"module 'launch\.actions' has no attribute 'NoSuchAction'"):
         importlib.import_module("launch.actions").NoSuchAction  # noqa: B018

@@ -182,6 +182,12 @@ def test_keeping_alive(tmp_path):
             import threading
             proc_info.assertWaitForShutdown('python')
             threading.Event().wait({wait})
+
+    @launch_testing.post_shutdown_test()
+    class TestAfterwards(unittest.TestCase):
+        def test_only_what_is_under_test_has_ended(self, proc_info):
+            launch_testing.asserts.assertExitCodes(proc_info)
+            assert len(list(proc_info)) == 1
     """
     run(write(tmp_path / "a.test.py", body.format(marker="@launch_testing.markers.keep_alive", wait=0.3)))
     run(write(tmp_path / "b.test.py", body.format(marker="", wait=0.3)), expected=1)
