@@ -77,6 +77,8 @@ def test_of_three_machines_two_go_on_when_the_third_is_cut_off(tmp_path):
         watcher.wait_for("came talker", line, RETURN_S)
         far.wait_for("heard", heard, RETURN_S)
         near.wait_for("heard", len(near.lines))
+        numbers = [int(line.split()[1]) for line in near.lines if line.startswith("heard")]
+        assert numbers == list(range(numbers[0], numbers[0] + len(numbers))), "some were lost between the two"
 
 
 def test_a_blink_of_a_link_loses_nobody(tmp_path):

@@ -29,6 +29,7 @@ from daidalos.transport.registry import Peer, Registry
 from daidalos.transport.zenoh import keys
 from daidalos.transport.zenoh.config import ROUTER_PORT, meets_all, reason_of, session_config
 from daidalos.transport.zenoh.latched import Caches, LatchedPublisher, LatchedSubscription
+from daidalos.transport.zenoh.links import keep_from_lingering
 from daidalos.transport.zenoh.numbers import Numbers
 from daidalos.transport.zenoh.pool import Pool
 from daidalos.transport.zenoh.threads import few_threads, on_lasting_thread
@@ -65,6 +66,7 @@ class ZenohBackend(Backend):
         self._registry = Registry(self._domain)
         self._peers: set[str] = set()
         self._latched: dict[str, set[LatchedSubscription]] = {}
+        self._links: Any = None
         self._lock = threading.Lock()
 
     def start(self, graph: Graph) -> None:
@@ -82,6 +84,8 @@ class ZenohBackend(Backend):
             if meets_all(config, listen):
                 self._peers = {peer.session for peer in peers}
                 self._registry.register(Peer(self._session_id, tuple(listen)))
+        if self._environment.discovery is DiscoveryRange.SUBNET or self._environment.static_peers:
+            self._links = keep_from_lingering(self._session)
         # Who has been answered by us has been told of everything before. (Zenoh's own space for such questions would
         # keep a file open for every session that there ever was.)
         place = keys.answers(self._session_id)
@@ -121,7 +125,7 @@ class ZenohBackend(Backend):
         self._session.close()
         self._reader.join(_CLOSING_S)
         self._registry.remove_socket(self._session_id)
-        del self._session, self._tokens, self._caches  # zenoh keeps files open as long as these live
+        del self._session, self._tokens, self._links, self._caches  # zenoh keeps files open as long as these live
 
     def settle(self, timeout_s: float) -> bool:
         """Wait until the sessions that were alive at our start are connected and have told of themselves."""
