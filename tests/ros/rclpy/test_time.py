@@ -236,6 +236,19 @@ def test_a_rate_needs_nobody_who_spins(node: Node) -> None:
     assert 0.04 <= time.monotonic() - begin < LONG
 
 
+def test_an_executor_is_told_of_the_rates_of_its_nodes(node: Node) -> None:
+    executor = SingleThreadedExecutor(context=node.context)
+    executor.add_node(node)
+    rate = node.create_rate(100.0)
+    sleeper = threading.Thread(target=rate.sleep)
+    sleeper.start()
+    begin = time.monotonic()
+    executor.spin_once(timeout_sec=LONG)
+    assert time.monotonic() - begin < LONG / 2
+    sleeper.join(LONG)
+    executor.shutdown()
+
+
 def test_a_rate_lets_a_loop_of_spin_once_go_on(node: Node) -> None:
     rate, ticks, done = node.create_rate(100.0), [], threading.Event()
 

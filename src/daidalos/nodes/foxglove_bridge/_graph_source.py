@@ -218,7 +218,8 @@ class RosGraphSource:
                 client = self._client_of(node)
                 if client.services_are_ready():
                     found += await work(client, node, names)
-            answer.set_result(found)
+            if answer.set_running_or_notify_cancel():  # who asked may have left
+                answer.set_result(found)
 
         executor.create_task(gather)
         return answer
@@ -296,7 +297,8 @@ class _Caller:
                 answer = self._waiting.pop(header.request_id.sequence_number, None)
             if answer is not None:
                 self._answered(response)
-                answer.set_result(self._response.encode(response))
+                if answer.set_running_or_notify_cancel():  # who asked may have left
+                    answer.set_result(self._response.encode(response))
             taken = self._handle.take_response()
 
     def close(self) -> None:

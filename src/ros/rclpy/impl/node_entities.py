@@ -250,8 +250,7 @@ class NodeEntities(NodeMembers):
         if frequency <= 0:
             raise ValueError("frequency must be > 0")
         timer = Timer(None, None, int(S_TO_NS / frequency), clock or self._clock, context=self.context)
-        rate = Rate(timer, context=self.context)
-        self._rcl_members["rate"].append(rate)
+        rate: Rate = self._rcl_add("rate", Rate(timer, context=self.context))
         return rate
 
 
