@@ -5,11 +5,12 @@ from __future__ import annotations
 import threading
 import weakref
 from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rclpy.callback_groups import CallbackGroup
 from rclpy.context import Context
 from rclpy.impl.entities import ClientHandle
+from rclpy.impl.lent_names import lend
 from rclpy.impl.running import THREAD, wait_for
 from rclpy.impl.service_end import ServiceEnd
 from rclpy.qos import QoSProfile
@@ -166,3 +167,7 @@ class _Forget:
         if client is not None:
             with client._lock:
                 client._pending_requests.pop(self._number, None)
+
+
+if not TYPE_CHECKING:
+    __getattr__ = lend(__name__, {"rclpy.impl.type_variables": ("SrvType", "SrvTypeRequest", "SrvTypeResponse")})

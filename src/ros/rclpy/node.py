@@ -330,6 +330,7 @@ if not TYPE_CHECKING:
             "rclpy.executors": ("Executor",),
             "rclpy.expand_topic_name": ("expand_topic_name",),
             "rclpy.guard_condition": ("GuardCondition",),
+            "rclpy.impl.type_variables": ("MsgType", "SrvType", "SrvTypeRequest", "SrvTypeResponse"),
             "rclpy.logging": ("get_logger",),
             "rclpy.qos_overriding_options": ("QoSOverridingOptions",),
             "rclpy.service": ("Service",),

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from types import GenericAlias, TracebackType
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self
 
 from rclpy.callback_groups import CallbackGroup
 from rclpy.duration import Duration
 from rclpy.event_handler import EventHandler, PublisherEventCallbacks
 from rclpy.impl.entities import PublisherHandle
+from rclpy.impl.lent_names import lend
 from rclpy.qos import QoSProfile
 
 
@@ -98,3 +99,7 @@ class Publisher:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self.destroy()
+
+
+if not TYPE_CHECKING:
+    __getattr__ = lend(__name__, {"rclpy.impl.type_variables": ("MsgType",)})

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rclpy.callback_groups import CallbackGroup
 from rclpy.impl.entities import ServiceHandle
+from rclpy.impl.lent_names import lend
 from rclpy.impl.service_end import ServiceEnd
 from rclpy.qos import QoSProfile
 
@@ -60,3 +61,7 @@ class Service(ServiceEnd):
 
     async def _answer_later(self, awaitable: Any, header: Any) -> None:
         self.send_response(await awaitable, header)
+
+
+if not TYPE_CHECKING:
+    __getattr__ = lend(__name__, {"rclpy.impl.type_variables": ("SrvType", "SrvTypeRequest", "SrvTypeResponse")})

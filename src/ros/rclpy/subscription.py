@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Self, TypedDict
 from rclpy.callback_groups import CallbackGroup
 from rclpy.event_handler import EventHandler, SubscriptionEventCallbacks
 from rclpy.impl.entities import SubscriptionHandle
+from rclpy.impl.lent_names import lend
 from rclpy.impl.ready import ReadyHook
 from rclpy.qos import QoSProfile
 
@@ -204,3 +205,7 @@ def _callback_type(callback: Callable[..., Any]) -> Subscription.CallbackType:
         "Subscription.__init__(): callback should be either be callable with one argument (to get only the message) "
         "or two (to get message and message info)"
     )
+
+
+if not TYPE_CHECKING:
+    __getattr__ = lend(__name__, {"rclpy.impl.type_variables": ("MsgType",)})

@@ -7,6 +7,7 @@ from copy import deepcopy
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from rclpy.duration import Duration
+from rclpy.impl.lent_names import lend
 
 if TYPE_CHECKING:
     from geometry_msgs.msg import TransformStamped
@@ -223,3 +224,7 @@ def convert(a: Any, b_type: Any) -> Any:
         from_message = registration.get_from_msg(b_type)
         return from_message(to_message(a))
     return direct(a)
+
+
+if not TYPE_CHECKING:
+    __getattr__ = lend(__name__, {"geometry_msgs.msg": ("TransformStamped",), "rclpy.time": ("Time",)})

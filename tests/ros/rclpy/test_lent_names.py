@@ -7,6 +7,12 @@ from importlib import import_module
 import pytest
 
 LENT = [
+    ("rclpy.node", "rclpy.impl.type_variables", "MsgType"),
+    ("rclpy.publisher", "rclpy.node", "MsgType"),
+    ("rclpy.subscription", "rclpy.node", "MsgType"),
+    ("rclpy.client", "rclpy.node", "SrvTypeRequest"),
+    ("rclpy.service", "rclpy.node", "SrvTypeResponse"),
+    ("tf2_ros.buffer_interface", "geometry_msgs.msg", "TransformStamped"),
     ("rosbag2_py._storage", "rosbag2_py", "TopicMetadata"),
     ("rosbag2_py._storage", "rosbag2_py", "BagMetadata"),
     ("tf2_ros", "geometry_msgs.msg", "TransformStamped"),
