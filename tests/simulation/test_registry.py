@@ -101,6 +101,28 @@ def test_the_users_own_come_by_entry_point():
     assert not simulation.warnings
 
 
+def test_the_documented_plugins_are_there():
+    rows = [
+        line.split("|") for line in (REPOSITORY / "docs/simulation.md").read_text().splitlines() if line.count("|") == 4
+    ]
+    plugins = rows[next(i for i, row in enumerate(rows) if "gz-sim-...-system" in row[3]) + 2 :]
+    names = [
+        *(
+            name if "libgazebo" in name else f"libgazebo_ros_{name}"
+            for row in plugins
+            for name in re.findall("`(.*?)`", row[2])
+        ),
+        *(
+            name if "-system" in name else f"gz-sim-{name}-system"
+            for row in plugins
+            for name in re.findall("`(.*?)`", row[3])
+        ),
+    ]
+    assert len(names) > 40
+    for name in names:
+        assert registry.plugin_class(written("p", name)) or registry.is_built_in(written("p", name)), name
+
+
 @pytest.mark.usefixtures("entries")
 def test_the_documented_plugin_blows():
     wind = "<plugin name='w' filename='libmy_wind.so'><link_name>link</link_name><force>3 0 0</force></plugin>"
