@@ -1,0 +1,51 @@
+"""The components that lessons load into a container."""
+
+import threading
+
+import pytest
+from rcl_interfaces.msg import Log
+from rclpy.context import Context
+from rclpy.node import Node
+
+from daidalos.nodes.components import components, find_component
+from daidalos.nodes.composition._components import Client
+from ros.graph import graph, node, spinning  # noqa: F401
+
+PATIENCE_S = 20.0
+
+
+def test_they_are_found_by_their_names() -> None:
+    names = components("composition")
+    assert names == [f"composition::{name}" for name in ("Client", "Listener", "Server", "Talker")]
+    assert [find_component("composition", name).__name__ for name in names] == [
+        "Client",
+        "Listener",
+        "Server",
+        "Talker",
+    ]
+
+
+def said(watcher: Node, text: str) -> threading.Event:
+    """Tell when that is logged."""
+    event = threading.Event()
+    watcher.create_subscription(Log, "/rosout", lambda log: event.set() if text in log.msg else None, 10)
+    return event
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "text"),
+    [("Talker", "Listener", "I heard: [Hello World: 1]"), ("Client", "Server", "Got result: [5]")],
+)
+def test_two_of_them_talk_to_each_other(node: Node, first: str, second: str, text: str) -> None:  # noqa: F811
+    event = said(node, text)
+    nodes = [find_component("composition", f"composition::{name}")() for name in (second, first)]
+    with spinning(node, *nodes):
+        assert event.wait(PATIENCE_S)
+
+
+def test_a_client_waits_for_somebody_who_adds(graph: Context) -> None:  # noqa: F811
+    client = Client()
+    texts: list[str] = []
+    client.get_logger().info = texts.append  # type: ignore[assignment, method-assign]
+    client.ask()
+    assert texts == ["Service not available, waiting again..."]
