@@ -145,6 +145,23 @@ def test_the_other_tools_publish_what_rviz_publishes(page, source):
     assert (point.x, point.y) == pytest.approx((-0.5, 0.25), abs=0.02)
 
 
+def place_of(page: Chromium, selector: str) -> dict[str, float]:
+    """Return where an element is once it has been there for some frames, and the same element."""
+    return page.evaluate(f"""new Promise((resolve) => {{
+        let [last, same] = [undefined, 0];
+        const look = () => {{
+            const element = document.querySelector({selector!r});
+            const {{ x, y, width, height }} = element.getBoundingClientRect();
+            const now = [element, x, y, width, height];
+            same = last?.every((value, i) => value === now[i]) ? same + 1 : 0;
+            last = now;
+            if (same < 10) requestAnimationFrame(look);
+            else resolve({{ x, y, width, height }});
+        }};
+        look();
+    }})""")
+
+
 LEGEND = "[...document.querySelectorAll('.legend-name')].map((e) => e.textContent)"
 
 
@@ -154,10 +171,7 @@ def test_numbers_are_plotted_zoomed_and_read_under_the_mouse(page):
     page.click_on("[data-path='/odom/pose/pose/position/x']")
     page.double_click_on("[data-path='/odom/pose/pose/position/x']")
     page.wait_for(f"{LEGEND}.length === 3 && {LEGEND}[2] === '/odom/pose/pose/position/x'")
-    area = page.evaluate(
-        "(() => { const b = document.querySelector('.u-over').getBoundingClientRect();"
-        " return { x: b.x, y: b.y, width: b.width, height: b.height }; })()"
-    )
+    area = place_of(page, ".u-over")
     x, y = area["x"] + area["width"] / 2, area["y"] + area["height"] / 2
     page.hover(x, y)
     page.wait_for("/^-15[.]\\d+ s/.test(document.querySelector('[data-test=cursor]').textContent)")

@@ -39,6 +39,7 @@ function PlotPanel({ studio, visible, params, remember }: PanelProps) {
   const box = useSignal<Box | undefined>(undefined);
   const cursor = useSignal<{ x: number; y: number } | undefined>(undefined);
   const area = useRef<HTMLDivElement>(null);
+  const mouse = useRef<MouseEvent | undefined>(undefined);
   const readings = useSignal<readonly (number | undefined)[]>([]);
   const xy = isXY(curves);
   const change = (changed: readonly Curve[]) => {
@@ -66,6 +67,7 @@ function PlotPanel({ studio, visible, params, remember }: PanelProps) {
         onHover: (at) => (cursor.value = at),
       },
       xy ? "" : " s",
+      mouse.current,
     );
     const observer = new ResizeObserver(() => chart.resize());
     observer.observe(area.current as HTMLDivElement);
@@ -99,6 +101,7 @@ function PlotPanel({ studio, visible, params, remember }: PanelProps) {
     return () => {
       stopFrames();
       observer.disconnect();
+      mouse.current = chart.mouse;
       chart.dispose();
     };
   }, [signature, theme.value]);

@@ -37,6 +37,8 @@ export class Chart {
     private readonly curves: readonly Curve[],
     private readonly events: ChartEvents,
     unit: string,
+    /** What the mouse did last in the chart that this one takes the place of. */
+    public mouse: MouseEvent | undefined,
   ) {
     this.plot = new uPlot(
       this.options(unit),
@@ -46,8 +48,9 @@ export class Chart {
     const { over } = this.plot;
     over.addEventListener("wheel", (event) => this.wheel(event), { passive: false });
     over.addEventListener("pointerdown", (event) => this.pan(event), { capture: true });
+    over.addEventListener("pointerdown", () => this.endWhereReleased());
     over.addEventListener("pointermove", (event) => this.hover(event));
-    over.addEventListener("pointerleave", () => events.onHover(undefined));
+    over.addEventListener("pointerleave", () => this.hover(undefined));
     over.addEventListener("dblclick", () => events.onReset());
   }
 
@@ -61,6 +64,7 @@ export class Chart {
   }
 
   draw(lines: readonly Line[], box: Box): void {
+    const isElsewhere = String([this.box.x, this.box.y]) !== String([box.x, box.y]);
     this.box = box;
     const { plot } = this;
     plot.batch(() => {
@@ -68,6 +72,9 @@ export class Chart {
       plot.setScale("x", { min: box.x[0], max: box.x[1] });
       plot.setScale("y", { min: box.y[0], max: box.y[1] });
     });
+    if (isElsewhere && this.mouse) {
+      this.hover(this.mouse);
+    }
   }
 
   resize(): void {
@@ -184,8 +191,20 @@ export class Chart {
     over.addEventListener("pointercancel", () => listening.abort(), until);
   }
 
-  private hover(event: PointerEvent): void {
-    this.events.onHover(this.at(event));
+  /** uPlot follows the mouse once a frame: on a slow page a box would end where the mouse was a while ago. */
+  private endWhereReleased(): void {
+    const { plot } = this;
+    const end = ({ clientX, clientY }: PointerEvent) => {
+      const { left, top, width, height } = plot.over.getBoundingClientRect();
+      const within = (at: number, most: number) => Math.min(Math.max(at, 0), most);
+      plot.setCursor({ left: within(clientX - left, width), top: within(clientY - top, height) });
+    };
+    addEventListener("pointerup", end, { capture: true, once: true });
+  }
+
+  private hover(event: MouseEvent | undefined): void {
+    this.mouse = event;
+    this.events.onHover(event && this.at(event));
   }
 
   private at({ clientX, clientY }: MouseEvent): { x: number; y: number } {
