@@ -233,14 +233,10 @@ def test_ros1_swaps_the_sides_unless_told_otherwise():
     assert simulation.pose("r").yaw < -0.2
 
 
-def test_world_odometry_means_wheels_unless_truth_is_asked_for():
-    lines = []
-    source = "<odometry_source>world</odometry_source>"
-    simulation = spawned("libgazebo_ros_diff_drive.so", ROS2 + source, warn=lines.append)
-    assert "odometry comes from the wheels" in lines[0]
-    assert last(simulation.advance(SECOND), OdometrySample).position == pytest.approx([0, 0, 0], abs=1e-4)
-    truth = "<odometry_truth>true</odometry_truth><robot_base_frame>base</robot_base_frame>"
-    simulation = spawned("libgazebo_ros_diff_drive.so", ROS2 + source + truth)
+@pytest.mark.parametrize("source", ["world", "1"])
+def test_odometry_of_the_world_is_the_true_pose(source):
+    base = f"<odometry_source>{source}</odometry_source><robot_base_frame>base</robot_base_frame>"
+    simulation = spawned("libgazebo_ros_diff_drive.so", ROS2 + base)
     simulation.set_pose("r", Pose.from_xyz_rpy((3, 4, 0.1), (0, 0, 1)))
     simulation.command("/n/cmd_vel", twist(0.2))
     odometry = last(simulation.advance(SECOND), OdometrySample)

@@ -106,13 +106,7 @@ def _read_classic(parameters: Parameters, setting: Setting) -> Settings:
     if is_ros1 and element.flag_of("legacyMode", default=True):
         left, right = right, left
         setting.warn(f"{element.where}: <legacyMode> is on: left and right wheels are swapped")
-    truth = element.flag_of("odometryTruth", "odometry_truth", default=False)
     source = element.text_of("odometrySource", "odometry_source", default="encoder").lower()
-    if source in ("world", "1") and not truth:
-        setting.warn(
-            f"{element.where}: odometry comes from the wheels although <odometrySource> is {source}; "
-            "set <odometryTruth>true</odometryTruth> for the true pose"
-        )
     publishes_tf = element.flag_of("publishOdomTF", "publish_odom_tf", default=True) and element.flag_of(
         "publishTf", "publish_tf", default=True
     )
@@ -135,7 +129,7 @@ def _read_classic(parameters: Parameters, setting: Setting) -> Settings:
         base_frame=frame(element.text_of("robotBaseFrame", "robot_base_frame", default="base_footprint")),
         wheel_acceleration=acceleration if acceleration > 0 else math.inf,
         encoder=_encoder(parameters),
-        truth=truth,
+        truth=source in ("world", "1"),
         publish_wheels=element.flag_of("publishWheelTF", "publish_wheel_tf", default=False),
         covariance=(
             element.number_of("covariance_x", default=1e-5),
