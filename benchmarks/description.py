@@ -71,8 +71,10 @@ def loading_percent(files: list[Path]) -> float:
 
 
 def trouble_with(file: Path) -> str:
-    """Return why `daidalos urdf --check` refuses a file; empty when it does not."""
-    command = [sys.executable, "-m", "daidalos.cli.daidalos", "urdf", "--check", str(file)]
+    """Return why a world cannot be run, or a robot or a model not be put into one; empty when it can."""
+    is_world = b"<world" in file.read_bytes()
+    words = ["sim", "--duration", "0.02", str(file)] if is_world else ["urdf", "--check", str(file)]
+    command = [sys.executable, "-m", "daidalos.cli.daidalos", *words]
     done = subprocess.run(command, capture_output=True, text=True)
     return "" if done.returncode == 0 else (done.stderr.strip().splitlines() or [f"ended with {done.returncode}"])[-1]
 

@@ -479,16 +479,16 @@ def test_without_the_simulator_it_says_where_it_runs() -> None:
         SimulatedSystem(info)
 
 
-@pytest.mark.parametrize(
-    ("text", "message"),
-    [
-        (pendulum(options="<parameters>/nowhere/a.yaml</parameters>"), "there is no parameter file '/nowhere/a.yaml'"),
-        (f'<robot name="r"><link name="a"/>{PLUGIN.format("")}</robot>', "has no <ros2_control> element"),
-    ],
-)
-def test_wrong_descriptions_are_named(text: str, message: str) -> None:
-    with pytest.raises(DescriptionError, match=message):
-        Rig(text)
+def test_a_missing_parameter_file_is_named() -> None:
+    with pytest.raises(DescriptionError, match="there is no parameter file '/nowhere/a.yaml'"):
+        Rig(pendulum(options="<parameters>/nowhere/a.yaml</parameters>"))
+
+
+def test_a_robot_that_says_nothing_of_control_is_there_without() -> None:
+    simulation = Simulation()
+    simulation.spawn(urdf.parse(f'<robot name="r"><link name="a"/>{PLUGIN.format("")}</robot>'))
+    assert simulation.instance("r").name == "r"
+    assert any("has no <ros2_control> element" in line for line in simulation.warnings)
 
 
 def test_models_that_come_and_go_leave_controllers_alone() -> None:

@@ -57,8 +57,6 @@ class Ros2Control(Plugin):
         super().__init__(description, setting)
         element = description.element
         self.hardware = read_hardware(setting.model)
-        if not self.hardware:
-            raise element.error("the robot has no <ros2_control> element that says what to control")
         self.files = tuple(_file(child) for child in element.all("parameters"))
         self.manager_name = element.text_of(
             "controller_manager_name", "controller_manager_node_name", default="controller_manager"
@@ -74,6 +72,17 @@ class Ros2Control(Plugin):
         spinning = {joint.name for _, joint in joints if joint.name in efforts and not _takes_positions(joint)}
         self.drives = JointDrives(efforts, [joint.name for _, joint in joints], spinning)
         self._initial = {joint.name: position for _, joint in joints if not math.isnan(position := _start(joint))}
+
+    @classmethod
+    def make(cls, description: Description, setting: Setting) -> Iterable[Component]:
+        """Return it for a robot that says what to control; another one is there without."""
+        if read_hardware(setting.model):
+            return super().make(description, setting)
+        setting.warn(
+            f"{description.element.where}: the robot has no <ros2_control> element that says what to control; "
+            f"plugin {description.name!r} is left out"
+        )
+        return ()
 
     def prepare(self, build: ModelBuild) -> None:
         """Add the motors."""
