@@ -480,7 +480,7 @@ def test_without_the_simulator_it_says_where_it_runs() -> None:
 
 
 def test_a_missing_parameter_file_is_named() -> None:
-    with pytest.raises(DescriptionError, match="there is no parameter file '/nowhere/a.yaml'"):
+    with pytest.raises(DescriptionError, match=r"there is no parameter file '/nowhere/a\.yaml'"):
         Rig(pendulum(options="<parameters>/nowhere/a.yaml</parameters>"))
 
 
