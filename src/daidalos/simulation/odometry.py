@@ -75,6 +75,43 @@ def planar_covariance(x: float, y: float, yaw: float) -> Array:
     return np.diag((x, y, _UNKNOWN, _UNKNOWN, _UNKNOWN, yaw)).ravel()
 
 
+def wheel_odometry(
+    stamp_ns: int,
+    topic: str,
+    frames: tuple[str, str],
+    pose: PlanarPose,
+    velocity: tuple[float, float, float],
+    covariance: tuple[float, float, float] = (1e-5, 1e-5, 1e-3),
+) -> OdometrySample:
+    """Return what a base says of itself by its wheels.
+
+    Parameters
+    ----------
+    stamp_ns, topic : int, str
+    frames : tuple of 2 str
+        Of the odometry and of the base.
+    pose : PlanarPose
+    velocity : tuple of 3 floats
+        Ahead and to the left in the base's frame [m/s], and of turning [rad/s].
+    covariance : tuple of 3 floats
+        Variances of x, y and yaw.
+    """
+    ahead, left, turn = velocity
+    spread = planar_covariance(*covariance)
+    return OdometrySample(
+        stamp_ns=stamp_ns,
+        topic=topic,
+        frame_id=frames[0],
+        child_frame_id=frames[1],
+        position=np.array((pose.x, pose.y, 0.0)),
+        orientation=yaw_quaternion(pose.yaw),
+        linear=np.array((ahead, left, 0.0)),
+        angular=np.array((0.0, 0.0, turn)),
+        pose_covariance=spread,
+        twist_covariance=spread,
+    )
+
+
 def transform_of(odometry: OdometrySample, topic: str) -> TransformSample:
     """Return the transform that an odometry says."""
     return TransformSample(

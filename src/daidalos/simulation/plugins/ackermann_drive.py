@@ -15,7 +15,7 @@ from daidalos.description.world import Model
 from daidalos.simulation.component import Setting, Subscription
 from daidalos.simulation.conversion.model_build import ModelBuild
 from daidalos.simulation.instance import Instance
-from daidalos.simulation.odometry import PlanarPose, planar_covariance, transform_of, yaw_quaternion
+from daidalos.simulation.odometry import PlanarPose, transform_of, wheel_odometry
 from daidalos.simulation.plugins.ackermann_settings import Settings, read_settings
 from daidalos.simulation.plugins.base import Plugin
 from daidalos.simulation.plugins.truth import link_transforms, true_odometry
@@ -170,19 +170,8 @@ class AckermannDrive(Plugin):
         left, right = float(travel[:half].mean()), float(travel[half:].mean())
         forward, turn = (left + right) / 2, (right - left) / s.rear_track
         motion.pose = motion.pose.moved(forward, turn)
-        covariance = planar_covariance(1e-5, 1e-5, 1e-3)
-        return OdometrySample(
-            stamp_ns=now_ns,
-            topic=s.odometry_topic,
-            frame_id=s.odometry_frame,
-            child_frame_id=s.base_frame,
-            position=np.array((motion.pose.x, motion.pose.y, 0.0)),
-            orientation=yaw_quaternion(motion.pose.yaw),
-            linear=np.array((forward / elapsed, 0.0, 0.0)),
-            angular=np.array((0.0, 0.0, turn / elapsed)),
-            pose_covariance=covariance,
-            twist_covariance=covariance,
-        )
+        frames = s.odometry_frame, s.base_frame
+        return wheel_odometry(now_ns, s.odometry_topic, frames, motion.pose, (forward / elapsed, 0.0, turn / elapsed))
 
     def _place(self) -> Array:
         return np.array(self._base.pose.position[:2])

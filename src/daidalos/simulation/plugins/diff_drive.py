@@ -14,9 +14,8 @@ from daidalos.simulation.conversion.model_build import ModelBuild
 from daidalos.simulation.instance import Instance, JointView, LinkView
 from daidalos.simulation.odometry import (
     PlanarPose,
-    planar_covariance,
     transform_of,
-    yaw_quaternion,
+    wheel_odometry,
 )
 from daidalos.simulation.plugins.base import Plugin
 from daidalos.simulation.plugins.diff_drive_settings import read_settings
@@ -174,34 +173,12 @@ class DiffDrive(Plugin):
         left, right = travel[self._sides == 0].mean(), travel[self._sides == 1].mean()
         forward, turn = float((left + right) / 2), float((right - left) / settings.separation)
         motion.pose = motion.pose.moved(forward, turn)
-        return self._sample(
-            now_ns,
-            np.array((motion.pose.x, motion.pose.y, 0.0)),
-            yaw_quaternion(motion.pose.yaw),
-            np.array((forward / elapsed, 0.0, 0.0)),
-            np.array((0.0, 0.0, turn / elapsed)),
-        )
+        frames, velocity = (settings.odometry_frame, settings.base_frame), (forward / elapsed, 0.0, turn / elapsed)
+        return wheel_odometry(now_ns, settings.odometry_topic, frames, motion.pose, velocity, settings.covariance)
 
     def _true_odometry(self, now_ns: int) -> OdometrySample:
         s = self.settings
         return true_odometry(self._base, now_ns, s.odometry_topic, s.odometry_frame, s.base_frame, s.covariance)
-
-    def _sample(
-        self, now_ns: int, position: Array, orientation: Array, linear: Array, angular: Array
-    ) -> OdometrySample:
-        covariance = planar_covariance(*self.settings.covariance)
-        return OdometrySample(
-            stamp_ns=now_ns,
-            topic=self.settings.odometry_topic,
-            frame_id=self.settings.odometry_frame,
-            child_frame_id=self.settings.base_frame,
-            position=position,
-            orientation=orientation,
-            linear=linear,
-            angular=angular,
-            pose_covariance=covariance,
-            twist_covariance=covariance,
-        )
 
     def _joint_states(self, now_ns: int) -> JointStateSample:
         return JointStateSample(

@@ -13,7 +13,7 @@ from daidalos.description.link import Plugin as Description
 from daidalos.simulation.component import Setting, Subscription
 from daidalos.simulation.conversion.model_build import ModelBuild
 from daidalos.simulation.instance import Instance
-from daidalos.simulation.odometry import PlanarPose, planar_covariance, transform_of, yaw_quaternion
+from daidalos.simulation.odometry import PlanarPose, transform_of, wheel_odometry
 from daidalos.simulation.plugins.base import Plugin
 from daidalos.simulation.plugins.diff_drive import SERVO_TIME
 from daidalos.simulation.plugins.diff_drive_settings import Limits
@@ -56,6 +56,7 @@ class MecanumDrive(Plugin):
                 raise element.error(f"<{tag}> should be positive, got {size:g}")
         self.radius = given["wheel_radius"]
         self._mix = _MIX * (1.0, 1.0, (given["wheel_separation"] + given["wheelbase"]) / 2)
+        self._unmix = np.linalg.pinv(self._mix)
         self.limits = Limits(
             element.number_of("min_velocity", default=-math.inf),
             element.number_of("max_velocity", default=math.inf),
@@ -120,22 +121,12 @@ class MecanumDrive(Plugin):
     def _odometry(self, now_ns: int, elapsed: float) -> OdometrySample:
         motion = self.memory
         angles = self._angles()
-        ahead, left, turn = (np.linalg.pinv(self._mix) @ (angles - motion.angles) * self.radius).tolist()
+        ahead, left, turn = (self._unmix @ (angles - motion.angles) * self.radius).tolist()
         motion.angles = angles
         motion.pose = motion.pose.moved(ahead, turn, left)
-        covariance = planar_covariance(1e-5, 1e-5, 1e-3)
-        return OdometrySample(
-            stamp_ns=now_ns,
-            topic=self.odometry_topic,
-            frame_id=self.odometry_frame,
-            child_frame_id=self.base_frame,
-            position=np.array((motion.pose.x, motion.pose.y, 0.0)),
-            orientation=yaw_quaternion(motion.pose.yaw),
-            linear=np.array((ahead / elapsed, left / elapsed, 0.0)),
-            angular=np.array((0.0, 0.0, turn / elapsed)),
-            pose_covariance=covariance,
-            twist_covariance=covariance,
-        )
+        frames = self.odometry_frame, self.base_frame
+        velocity = ahead / elapsed, left / elapsed, turn / elapsed
+        return wheel_odometry(now_ns, self.odometry_topic, frames, motion.pose, velocity)
 
     def _angles(self) -> Array:
         return np.array([wheel.position for wheel in self._wheels])

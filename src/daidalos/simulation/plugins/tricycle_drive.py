@@ -13,7 +13,7 @@ from daidalos.description.link import Plugin as Description
 from daidalos.simulation.component import Setting, Subscription
 from daidalos.simulation.conversion.model_build import ModelBuild
 from daidalos.simulation.instance import Instance
-from daidalos.simulation.odometry import PlanarPose, planar_covariance, transform_of, yaw_quaternion
+from daidalos.simulation.odometry import PlanarPose, transform_of, wheel_odometry
 from daidalos.simulation.plugins.base import Plugin
 from daidalos.simulation.plugins.truth import link_transforms
 from daidalos.simulation.samples import JointStateSample, OdometrySample, Sample, TransformSample, TwistCommand
@@ -26,8 +26,6 @@ _SERVO_TIME = 0.01
 
 _STEERING_BANDWIDTH = 60.0
 """Of the steering's servo [rad/s]."""
-
-_COVARIANCE = planar_covariance(1e-5, 1e-5, 1e-3)
 
 
 @dataclass
@@ -149,18 +147,9 @@ class TricycleDrive(Plugin):
         motion.turns = turns
         forward, turn = (left + right) / 2, (right - left) / self.separation
         motion.pose = motion.pose.moved(forward, turn)
-        return OdometrySample(
-            stamp_ns=now_ns,
-            topic=self.odometry_topic,
-            frame_id=self.odometry_frame,
-            child_frame_id=self.base_frame,
-            position=np.array((motion.pose.x, motion.pose.y, 0.0)),
-            orientation=yaw_quaternion(motion.pose.yaw),
-            linear=np.array((forward / elapsed, 0.0, 0.0)),
-            angular=np.array((0.0, 0.0, turn / elapsed)),
-            pose_covariance=_COVARIANCE,
-            twist_covariance=_COVARIANCE,
-        )
+        frames = self.odometry_frame, self.base_frame
+        velocity = forward / elapsed, 0.0, turn / elapsed
+        return wheel_odometry(now_ns, self.odometry_topic, frames, motion.pose, velocity)
 
     def _joint_states(self, now_ns: int) -> JointStateSample:
         return JointStateSample(
