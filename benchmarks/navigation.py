@@ -135,7 +135,7 @@ def measure_arena(kind: str) -> dict[str, float | str]:
         f"navigation.arena_{kind}_contacts": float(sum(a.contact for a in arrivals)),
         f"navigation.arena_{kind}_mean_time_s": statistics.mean(a.time for a in arrivals),
         f"navigation.arena_{kind}_mean_speed_mps": sum(a.length for a in arrivals) / sum(a.time for a in arrivals),
-        f"navigation.arena_{kind}_least_clearance_m": min(a.least_clearance for a in arrivals),
+        f"navigation.arena_{kind}_min_clearance_m": min(a.min_clearance for a in arrivals),
         f"navigation.arena_{kind}_largest_error_m": max(a.position_error for a in arrivals),
         f"navigation.arena_{kind}_largest_error_rad": max(a.yaw_error for a in arrivals),
         f"navigation.arena_{kind}_real_time_factor": sum(a.time for a in arrivals) / wall_time,

@@ -37,7 +37,7 @@ DEPTH = 1000
 LARGE_DEPTH = 10
 TOPICS, NODES = 1000, 200
 REPEATS = 3
-PATIENCE_S = 30.0
+TIMEOUT_S = 30.0
 
 
 def run() -> dict[str, float]:
@@ -79,7 +79,7 @@ def measure_wire() -> dict[str, float]:
     with other("crowd"):
         begin = time.perf_counter()
         with session() as (ours, _):
-            ours.backend.settle(PATIENCE_S)
+            ours.backend.settle(TIMEOUT_S)
             figures["graph_of_1000_topics_s"] = time.perf_counter() - begin
             figures["graph_of_1000_topics_missing"] = TOPICS - len(ours.graph.endpoints(EndpointKind.PUBLISHER))
     return figures
@@ -117,7 +117,7 @@ def stream(size: str) -> tuple[int, int, float]:
     message, depth = _message(size)
     with other(f"count-{size}") as process, session() as (ours, node):
         publisher = ours.create_publisher(node, "/stream", type(message), Qos(depth=depth))
-        ours.graph.wait_for(lambda: publisher.is_heard, PATIENCE_S)
+        ours.graph.wait_for(lambda: publisher.is_heard, TIMEOUT_S)
         sent, end = 0, time.perf_counter() + STREAM_S
         while time.perf_counter() < end:
             publisher.publish(message)
@@ -156,7 +156,7 @@ def round_trips() -> list[float]:
         subscription = ours.create_subscription(node, "/pong", Int64, Qos(), lambda: arrived.put(None))
         publisher = ours.create_publisher(node, "/ping", Int64, Qos())
         ours.graph.wait_for(
-            lambda: publisher.is_heard and bool(ours.graph.endpoints(EndpointKind.PUBLISHER, name="/pong")), PATIENCE_S
+            lambda: publisher.is_heard and bool(ours.graph.endpoints(EndpointKind.PUBLISHER, name="/pong")), TIMEOUT_S
         )
         time.sleep(0.2)
         times = []

@@ -31,10 +31,10 @@ class Printed:
         self._reader.start()
 
     def wait(
-        self, find: Callable[[], T | None], patience_s: float, has_ended: Callable[[], bool] = lambda: False
+        self, find: Callable[[], T | None], timeout_s: float, has_ended: Callable[[], bool] = lambda: False
     ) -> T | None:
         """Return what is found in the lines; None when it is not there in time, or who prints has ended without it."""
-        deadline = time.monotonic() + patience_s
+        deadline = time.monotonic() + timeout_s
         with self._news:
             while True:
                 is_last = not self._reader.is_alive() or has_ended()

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import psutil
 
-PATIENCE_S = 100.0
+TIMEOUT_S = 100.0
 _ROWS, _COLUMNS = 60, 240
 _ESCAPES = re.compile(r"\x1b(?:\[[0-9;?]*[A-Za-z]|\][^\x07]*\x07|[=>])")
 _CTRL_C = "\x03"
@@ -74,12 +74,12 @@ class Terminal:
             "stty -echo; bind 'set enable-bracketed-paste off' 2>/dev/null; PS1= PS2= _n=-1; "
             """PROMPT_COMMAND='_status=$?; _n=$((_n + 1)); printf "\\n@@end %d %d\\n" $_n $_status'"""
         )
-        self._await_end(PATIENCE_S)
+        self._await_end(TIMEOUT_S)
 
-    def run(self, command: str, patience_s: float = PATIENCE_S) -> str:
+    def run(self, command: str, timeout_s: float = TIMEOUT_S) -> str:
         """Type a command, wait for its end, and return what it printed; `status` has its exit status."""
         self.start(command)
-        return self.finish(patience_s)
+        return self.finish(timeout_s)
 
     def start(self, command: str) -> None:
         """Type a command and do not wait for it."""
@@ -88,24 +88,24 @@ class Terminal:
         self.running = True
         self._type(command)
 
-    def finish(self, patience_s: float = PATIENCE_S) -> str:
+    def finish(self, timeout_s: float = TIMEOUT_S) -> str:
         """Wait for the end of the command that was started, and return what it printed."""
         begin = self._begin
-        match = self._await_end(patience_s)
+        match = self._await_end(timeout_s)
         self.status = int(match[1])
         self.running = False
         with self._changed:
             return self._text[begin : match.start()]
 
-    def _await_end(self, patience_s: float) -> re.Match[str]:
+    def _await_end(self, timeout_s: float) -> re.Match[str]:
         pattern = re.compile(rf"\n?@@end {self._count} (\d+)\n")
-        match = self._wait_for(pattern, patience_s, "the command's end")
+        match = self._wait_for(pattern, timeout_s, "the command's end")
         self._begin = match.end()
         return match
 
-    def wait_for(self, pattern: str, patience_s: float = PATIENCE_S) -> str:
+    def wait_for(self, pattern: str, timeout_s: float = TIMEOUT_S) -> str:
         """Wait until the running command has printed this pattern; returns what has matched."""
-        return self._wait_for(re.compile(pattern), patience_s, repr(pattern)).group()
+        return self._wait_for(re.compile(pattern), timeout_s, repr(pattern)).group()
 
     def ended(self) -> bool:
         """Tell whether the command that was started has ended."""
@@ -126,10 +126,10 @@ class Terminal:
         """Press keys while a command is running."""
         os.write(self._master, keys.encode())
 
-    def interrupt(self, patience_s: float = PATIENCE_S) -> str:
+    def interrupt(self, timeout_s: float = TIMEOUT_S) -> str:
         """Press Ctrl-C, wait for the end of the running command, and return all that it has printed."""
         self.press(_CTRL_C)
-        return self.finish(patience_s)
+        return self.finish(timeout_s)
 
     def close(self) -> None:
         """End the shell and all that it has started."""
@@ -138,7 +138,7 @@ class Terminal:
                 _end(child)
         self._process.kill()
         self._process.wait()
-        self._reader.join(PATIENCE_S)
+        self._reader.join(TIMEOUT_S)
         os.close(self._master)
 
     def _type(self, text: str) -> None:
@@ -161,8 +161,8 @@ class Terminal:
             if not new:
                 return
 
-    def _wait_for(self, pattern: re.Pattern[str], patience_s: float, what: str) -> re.Match[str]:
-        end = time.monotonic() + patience_s
+    def _wait_for(self, pattern: re.Pattern[str], timeout_s: float, what: str) -> re.Match[str]:
+        end = time.monotonic() + timeout_s
         with self._changed:
             while True:
                 match = pattern.search(self._text, self._begin)

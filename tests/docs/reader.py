@@ -4,7 +4,7 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-from terminals import PATIENCE_S, Terminal
+from terminals import TIMEOUT_S, Terminal
 
 from . import pages
 
@@ -81,7 +81,7 @@ class Reader:
             self._compare(page, command, expected.search(printed), printed)
             return
         looks = expected.match if command.text else expected.search
-        end = time.monotonic() + PATIENCE_S
+        end = time.monotonic() + TIMEOUT_S
         while not looks(_lines(terminal.output())) and not terminal.ended() and time.monotonic() < end:
             terminal.wait(_BETWEEN_LOOKS_S)
         printed = _lines(terminal.output())

@@ -17,7 +17,7 @@ from printed import Printed
 
 DAIDALOS = [sys.executable, "-m", "daidalos.cli.daidalos"]
 ROS2 = [sys.executable, "-m", "daidalos.cli.ros2"]
-PATIENCE_S = 60.0
+TIMEOUT_S = 60.0
 END_S = 5.0
 _MARK = "DAIDALOS_TEST_COMMAND"
 
@@ -65,7 +65,7 @@ class Command:
     def wait_for_line(self, pattern: str) -> str:
         """Return the first line that a pattern is found in."""
         found = self._printed.wait(
-            lambda: next((line for line in self.lines if re.search(pattern, line)), None), PATIENCE_S
+            lambda: next((line for line in self.lines if re.search(pattern, line)), None), TIMEOUT_S
         )
         assert found is not None, f"no line with {pattern!r} in:\n{self.text}"
         return found

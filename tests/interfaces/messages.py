@@ -15,7 +15,7 @@ from daidalos.interfaces.definition import INTEGER_RANGES, Action, messages_of
 from daidalos.interfaces.library import built_in
 from daidalos.interfaces.message import TYPECODES, Message
 
-MOST = 3
+MAX_ITEMS = 3
 TEXT = st.text(st.characters(exclude_characters="\0", exclude_categories=["Cs"]), max_size=8)
 WIDE_TEXT = st.text(st.characters(max_codepoint=0xFFFF, exclude_characters="\0", exclude_categories=["Cs"]), max_size=8)
 
@@ -56,7 +56,7 @@ def values(base: Any, many: str, size: int, bound: int | None) -> st.SearchStrat
         return one
     if many == "array":
         return fixed(base, st.lists(one, min_size=size, max_size=size))
-    return st.lists(one, max_size=min(size, MOST) if many == "bounded" else MOST)
+    return st.lists(one, max_size=min(size, MAX_ITEMS) if many == "bounded" else MAX_ITEMS)
 
 
 def fixed(base: Any, items: st.SearchStrategy[list[Any]]) -> st.SearchStrategy[Any]:

@@ -56,7 +56,7 @@ class Arrival:
     length: float
     position_error: float
     yaw_error: float
-    least_clearance: float
+    min_clearance: float
     error: str
     commands: np.ndarray = field(repr=False)
 
@@ -135,7 +135,7 @@ class Stack:
         blackboard.set("goal", np.asarray(goal, dtype=float))
         tree = BehaviorTree.load(DEFAULT_TREE, self, blackboard)
         robot, begun, travelled = self.robot, self.time, self.robot.travelled
-        robot.least_clearance, robot.contact = math.inf, False
+        robot.min_clearance, robot.contact = math.inf, False
         status, commands, pending = Status.RUNNING, [], np.zeros(3)
         while status == Status.RUNNING and self.time - begun < limit and not robot.contact:
             self._sense()
@@ -160,7 +160,7 @@ class Stack:
             robot.travelled - travelled,
             math.hypot(away[0], away[1]),
             abs(float(wrap(away[2]))),
-            robot.least_clearance,
+            robot.min_clearance,
             blackboard.get("follow_path_error_msg") or blackboard.get("compute_path_error_msg") or "",
             np.array(commands).reshape(-1, 3),
         )

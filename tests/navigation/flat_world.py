@@ -105,7 +105,7 @@ class FlatRobot:
     seed: int = 0
     velocity: np.ndarray = field(default_factory=lambda: np.zeros(3))
     contact: bool = False
-    least_clearance: float = math.inf
+    min_clearance: float = math.inf
     travelled: float = 0.0
 
     def __post_init__(self):
@@ -133,7 +133,7 @@ class FlatRobot:
 
     def _feel(self):
         free = self.world.clearance(self.pose) - self.radius
-        self.least_clearance = min(self.least_clearance, free)
+        self.min_clearance = min(self.min_clearance, free)
         if self.outline is None:
             self.contact |= free <= 0.0
         elif free <= 0.5:

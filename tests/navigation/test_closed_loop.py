@@ -32,7 +32,7 @@ def test_one_goal_through_a_door():
     stack = turtlebot(WORLD, [1.5, 1.5, 0.0], WALLS)
     arrival = stack.drive_to(np.array([4.5, 0.8, -1.0]))
     assert arrival.reached
-    assert arrival.least_clearance > 0.05
+    assert arrival.min_clearance > 0.05
     assert arrival.length < 5.0
     assert set(stack.started) == {"ComputePathToPose", "FollowPath"}
 

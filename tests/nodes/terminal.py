@@ -19,7 +19,7 @@ import psutil
 
 from printed import Printed
 
-PATIENCE_S = 60.0
+TIMEOUT_S = 60.0
 END_S = 10.0
 _NO_SCREEN = ("DISPLAY", "WAYLAND_DISPLAY", "BROWSER")
 
@@ -75,7 +75,7 @@ class Terminal:
             found = [line for line in self.lines[after:] if re.search(pattern, line)]
             return found[:count] if len(found) >= count else None
 
-        found = self._printed.wait(find, PATIENCE_S, has_ended=lambda: self._process.poll() is not None)
+        found = self._printed.wait(find, TIMEOUT_S, has_ended=lambda: self._process.poll() is not None)
         assert found is not None, f"no {count} lines with {pattern!r} in:\n{self.text}"
         return found
 
@@ -93,12 +93,12 @@ class Terminal:
         self._process.send_signal(signal.SIGTERM)
         return self.wait()
 
-    def wait(self, patience_s: float = END_S) -> int:
+    def wait(self, timeout_s: float = END_S) -> int:
         """Return the exit status once it has ended, having left nothing behind and shown no traceback."""
         try:
-            status = self._process.wait(patience_s)
+            status = self._process.wait(timeout_s)
         except subprocess.TimeoutExpired:
-            raise AssertionError(f"still running after {patience_s} s:\n{self.text}") from None
+            raise AssertionError(f"still running after {timeout_s} s:\n{self.text}") from None
         assert not self._members(), "processes were left behind"
         assert termios.tcgetattr(self._line) == self._before, "the terminal is not as it was"
         self._printed.wait(lambda: None, 0.1)  # the screen may be a moment behind
@@ -131,10 +131,10 @@ class Terminal:
 
 def until_shown(pattern: str, *words: str, domain: int) -> str:
     """Run a command that looks once, again and again until it shows what is to be; returns what it showed."""
-    deadline = time.monotonic() + PATIENCE_S
+    deadline = time.monotonic() + TIMEOUT_S
     while True:
         with Terminal(*words, domain=domain) as command:
-            command.wait(PATIENCE_S)
+            command.wait(TIMEOUT_S)
             if re.search(pattern, command.text, re.MULTILINE):
                 return command.text
             assert time.monotonic() < deadline, f"{' '.join(words)} never showed {pattern!r}:\n{command.text}"

@@ -9,7 +9,7 @@ from typing import Any
 import aiohttp
 
 SUBPROTOCOL = "foxglove.sdk.v1"
-PATIENCE_S = 10
+TIMEOUT_S = 10
 
 
 class FoxgloveClient:
@@ -44,7 +44,7 @@ class FoxgloveClient:
         def matches(message: dict[str, Any]) -> bool:
             return message["op"] == op and all(message.get(key) == value for key, value in fields.items())
 
-        async with asyncio.timeout(PATIENCE_S):
+        async with asyncio.timeout(TIMEOUT_S):
             while True:
                 for message in self._inbox:
                     if matches(message):
@@ -58,14 +58,14 @@ class FoxgloveClient:
 
     async def channel(self, topic: str) -> dict[str, Any]:
         """The channel of a topic, as soon as it is advertised."""
-        async with asyncio.timeout(PATIENCE_S):
+        async with asyncio.timeout(TIMEOUT_S):
             while topic not in self.channels:
                 self._arrived.clear()
                 await self._arrived.wait()
         return self.channels[topic]
 
     async def service(self, name: str) -> dict[str, Any]:
-        async with asyncio.timeout(PATIENCE_S):
+        async with asyncio.timeout(TIMEOUT_S):
             while name not in self.services:
                 self._arrived.clear()
                 await self._arrived.wait()

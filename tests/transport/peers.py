@@ -12,7 +12,7 @@ from typing import Self
 
 from printed import Printed
 
-PATIENCE_S = 30.0
+TIMEOUT_S = 30.0
 _SCRIPT = Path(__file__).with_name("peer.py")
 
 
@@ -65,7 +65,7 @@ class Peer:
         self.wait_for("ready")
         return self
 
-    def wait_for(self, text: str, after: int = 0, timeout_s: float = PATIENCE_S) -> int:
+    def wait_for(self, text: str, after: int = 0, timeout_s: float = TIMEOUT_S) -> int:
         """Wait for a line with a text; return the number of the line that follows it."""
         found = self._printed.wait(
             lambda: next((n + 1 for n, line in enumerate(self.lines[after:], after) if text in line), None), timeout_s

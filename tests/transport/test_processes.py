@@ -20,7 +20,7 @@ from daidalos.transport.zenoh.config import shared_memory_usable
 from transport.peers import Peer
 from transport.test_sessions import Inbox, node_of, subscribe
 
-PATIENCE_S = 20.0
+TIMEOUT_S = 20.0
 SHORT_LEASE = "<CycloneDDS><Domain><Discovery><LeaseDuration>1s</LeaseDuration></Discovery></Domain></CycloneDDS>"
 
 
@@ -40,14 +40,14 @@ def test_whichever_starts_first(new_session: Callable[[], Session]):
     with Peer("talk").ready() as first:
         session = new_session()
         inbox = subscribe(session, node_of(session, "me"), "/topic", Int32)
-        assert len(inbox.wait(3, PATIENCE_S)) >= 3
+        assert len(inbox.wait(3, TIMEOUT_S)) >= 3
         with Peer("listen").ready() as second:
             second.wait_for("heard")
             first.kill()
-            assert session.graph.wait_for(lambda: sorted(names(session)) == ["listener", "me"], PATIENCE_S)
+            assert session.graph.wait_for(lambda: sorted(names(session)) == ["listener", "me"], TIMEOUT_S)
             publisher = session.create_publisher(node_of(session, "talker"), "/topic", Int32, Qos())
-            assert session.graph.wait_for(lambda: publisher.is_heard, PATIENCE_S)
-            deadline = time.monotonic() + PATIENCE_S
+            assert session.graph.wait_for(lambda: publisher.is_heard, TIMEOUT_S)
+            deadline = time.monotonic() + TIMEOUT_S
             while not any("heard -5" in line for line in second.lines) and time.monotonic() < deadline:
                 publisher.publish(Int32(data=-5))
                 session.graph.wait_for(lambda: False, 0.05)
@@ -69,7 +69,7 @@ def test_a_large_graph_is_right_within_seconds(new_session: Callable[[], Session
         assert session.graph.wait_for(lambda: _size(session) == (200, 3000), left), _size(session)
         with Peer("watch").ready() as watcher:
             watcher.wait_for("came node7")
-    assert session.graph.wait_for(lambda: not session.graph.nodes() and not session.graph.endpoints(), PATIENCE_S)
+    assert session.graph.wait_for(lambda: not session.graph.nodes() and not session.graph.endpoints(), TIMEOUT_S)
 
 
 def test_the_first_of_three_dies():
@@ -86,25 +86,25 @@ def test_who_is_killed_leaves_the_graph(new_session: Callable[[], Session]):
     session = new_session()
     with Peer("watch").ready() as watcher, Peer("talk").ready() as talker:
         line = watcher.wait_for("came talker")
-        assert session.graph.wait_for(lambda: names(session) == ["talker"], PATIENCE_S)
+        assert session.graph.wait_for(lambda: names(session) == ["talker"], TIMEOUT_S)
         talker.process.send_signal(signal.SIGKILL)
         watcher.wait_for("went talker", line)
-        assert session.graph.wait_for(lambda: not names(session) and not session.graph.endpoints(), PATIENCE_S)
+        assert session.graph.wait_for(lambda: not names(session) and not session.graph.endpoints(), TIMEOUT_S)
         with Peer("talk").ready():
             watcher.wait_for("came talker", line)
-            assert session.graph.wait_for(lambda: names(session) == ["talker"], PATIENCE_S)
+            assert session.graph.wait_for(lambda: names(session) == ["talker"], TIMEOUT_S)
 
 
 def test_a_death_in_mid_message_harms_nobody(new_session: Callable[[], Session]):
     session = new_session()
     inbox = subscribe(session, node_of(session, "me"), "/topic", Image)
     with Peer("flood").ready() as flood:
-        assert len(inbox.wait(2, PATIENCE_S)) >= 2
+        assert len(inbox.wait(2, TIMEOUT_S)) >= 2
         flood.process.send_signal(signal.SIGKILL)
-        assert session.graph.wait_for(lambda: names(session) == ["me"], PATIENCE_S)
+        assert session.graph.wait_for(lambda: names(session) == ["me"], TIMEOUT_S)
     so_far = len(inbox.wait(10**6, 0.2))
     with Peer("flood").ready():
-        assert len(inbox.wait(so_far + 2, PATIENCE_S)) >= so_far + 2
+        assert len(inbox.wait(so_far + 2, TIMEOUT_S)) >= so_far + 2
     assert {len(message.data) for message, _ in inbox.taken} == {4_000_000}
 
 
@@ -116,10 +116,10 @@ def test_a_service_that_dies_is_replaced(new_session: Callable[[], Session]):
     )
     for round_number in (1, 2):
         with Peer("serve").ready():
-            assert session.graph.wait_for(lambda: session.server_is_ready(client), PATIENCE_S)
+            assert session.graph.wait_for(lambda: session.server_is_ready(client), TIMEOUT_S)
             client.send(AddTwoInts.Request(a=round_number, b=1))
-            assert answers.wait(round_number, PATIENCE_S)[-1][0].sum == round_number + 1
-        assert session.graph.wait_for(lambda: not session.server_is_ready(client), PATIENCE_S)
+            assert answers.wait(round_number, TIMEOUT_S)[-1][0].sum == round_number + 1
+        assert session.graph.wait_for(lambda: not session.server_is_ready(client), TIMEOUT_S)
 
 
 def test_a_stopped_process_does_not_stop_others(new_session: Callable[[], Session], middleware: str):
@@ -130,7 +130,7 @@ def test_a_stopped_process_does_not_stop_others(new_session: Callable[[], Sessio
     with Peer("talk").ready(), Peer("listen").ready() as listener:
         numbers = session.create_publisher(node, "/topic", Int32, Qos())
         assert session.graph.wait_for(
-            lambda: len(session.graph.endpoints(EndpointKind.SUBSCRIPTION, name="/topic")) == 1, PATIENCE_S
+            lambda: len(session.graph.endpoints(EndpointKind.SUBSCRIPTION, name="/topic")) == 1, TIMEOUT_S
         )
         listener.process.send_signal(signal.SIGSTOP)
         begin = time.monotonic()
@@ -141,7 +141,7 @@ def test_a_stopped_process_does_not_stop_others(new_session: Callable[[], Sessio
         assert number > 1000, f"{middleware}: {number} messages in 8 s"
         listener.process.send_signal(signal.SIGCONT)
         line = len(listener.lines)
-        deadline = time.monotonic() + PATIENCE_S
+        deadline = time.monotonic() + TIMEOUT_S
         while not any("heard -7" in text for text in listener.lines[line:]) and time.monotonic() < deadline:
             numbers.publish(Int32(data=-7))
             session.graph.wait_for(lambda: False, 0.05)
@@ -155,7 +155,7 @@ def test_acknowledgements_are_waited_for_where_there_are_any(new_session: Callab
     publisher = session.create_publisher(node_of(session, "me"), "/topic", Int32, Qos())
     second = 10**9
     with Peer("listen").ready() as listener:
-        assert session.graph.wait_for(lambda: publisher.is_heard, PATIENCE_S)
+        assert session.graph.wait_for(lambda: publisher.is_heard, TIMEOUT_S)
         publisher.publish(Int32(data=1))
         assert publisher.wait_for_acks(10 * second)
         listener.process.send_signal(signal.SIGSTOP)
@@ -172,7 +172,7 @@ def test_best_effort_never_waits(new_session: Callable[[], Session]):
     qos = Qos(reliability=Reliability.BEST_EFFORT, depth=5)
     publisher = session.create_publisher(node_of(session, "me"), "/topic", Image, qos)
     with Peer("look").ready() as stopped:
-        assert session.graph.wait_for(lambda: publisher.is_heard, PATIENCE_S)
+        assert session.graph.wait_for(lambda: publisher.is_heard, TIMEOUT_S)
         stopped.process.send_signal(signal.SIGSTOP)
         image = Image(data=bytes(1_000_000))
         times = []
@@ -191,6 +191,6 @@ def test_large_messages_go_through_shared_memory(new_session: Callable[[], Sessi
     session = new_session()
     inbox = subscribe(session, node_of(session, "me"), "/topic", Image)
     with Peer("flood").ready() as flood:
-        assert len(inbox.wait(2, PATIENCE_S)) >= 2
+        assert len(inbox.wait(2, TIMEOUT_S)) >= 2
         assert "/dev/shm/" in Path(f"/proc/{flood.process.pid}/maps").read_text()
     assert len(inbox.taken[0][0].data) == 4_000_000

@@ -22,7 +22,7 @@ from daidalos.transport.qos import Durability, History, Qos, Reliability
 from daidalos.transport.session import Session
 from daidalos.transport.subscription import Subscription
 
-PATIENCE_S = 10.0
+TIMEOUT_S = 10.0
 LATCHED = Qos(durability=Durability.TRANSIENT_LOCAL, depth=3)
 _KEPT: WeakKeyDictionary[Session, list[Callable[[], None]]] = WeakKeyDictionary()
 BEST_EFFORT = Qos(reliability=Reliability.BEST_EFFORT, depth=5)
@@ -45,9 +45,9 @@ class Inbox:
     def wait_untaken(self, count: int) -> bool:
         """Wait until `count` items have arrived, and take none."""
         with self._news:
-            return self._news.wait_for(lambda: self._arrived >= count, PATIENCE_S)
+            return self._news.wait_for(lambda: self._arrived >= count, TIMEOUT_S)
 
-    def wait(self, count: int, timeout_s: float = PATIENCE_S) -> list[Any]:
+    def wait(self, count: int, timeout_s: float = TIMEOUT_S) -> list[Any]:
         """Return at least `count` items, or what came until time ran out."""
         deadline = time.monotonic() + timeout_s
         while True:
@@ -74,7 +74,7 @@ def subscribe(session: Session, node: NodeInfo, topic: str, kind: Any, qos: Qos 
 
 def meet(session: Session, count: int, *kinds: EndpointKind, name: str) -> list[EndpointInfo]:
     """Wait until a session knows so many endpoints of a name."""
-    assert session.graph.wait_for(lambda: len(session.graph.endpoints(*kinds, name=name)) == count, PATIENCE_S)
+    assert session.graph.wait_for(lambda: len(session.graph.endpoints(*kinds, name=name)) == count, TIMEOUT_S)
     return session.graph.endpoints(*kinds, name=name)
 
 
@@ -111,7 +111,7 @@ def test_serialised_messages_are_sent_as_they_are(two):
     publisher.publish(data)
     assert inbox.wait(1)[0][0] == String(data="raw")
     publisher.publish(String(data="raw"))
-    deadline = time.monotonic() + PATIENCE_S
+    deadline = time.monotonic() + TIMEOUT_S
     while (taken := inbox.entity.take_raw()) is None:
         assert time.monotonic() < deadline
         threading.Event().wait(0.01)
@@ -230,7 +230,7 @@ def test_a_service_answers_each_client(two):
         session = (here, there, there)[number]
         node = node_of(session, f"client{number}")
         inbox.entity = session.create_client(node, "/add", AddTwoInts, Qos(), inbox.ready)
-        assert session.graph.wait_for(lambda s=session, i=inbox: s.server_is_ready(i.entity), PATIENCE_S)
+        assert session.graph.wait_for(lambda s=session, i=inbox: s.server_is_ready(i.entity), TIMEOUT_S)
         inboxes.append(inbox)
     meet(here, 3, EndpointKind.CLIENT, name="/add")
     sent = [inbox.entity.send(AddTwoInts.Request(a=number, b=10)) for number, inbox in enumerate(inboxes)]
@@ -251,12 +251,12 @@ def test_a_service_goes_and_comes_back(two):
     node = node_of(here, "server")
     service = here.create_service(node, "/add", AddTwoInts, Qos())
     client = there.create_client(node_of(there, "client"), "/add", AddTwoInts, Qos())
-    assert there.graph.wait_for(lambda: there.server_is_ready(client), PATIENCE_S)
+    assert there.graph.wait_for(lambda: there.server_is_ready(client), TIMEOUT_S)
     service.close()
-    assert there.graph.wait_for(lambda: not there.server_is_ready(client), PATIENCE_S)
+    assert there.graph.wait_for(lambda: not there.server_is_ready(client), TIMEOUT_S)
     requests, answers = Inbox(), Inbox()
     requests.entity = here.create_service(node, "/add", AddTwoInts, Qos(), requests.ready)
-    assert there.graph.wait_for(lambda: there.server_is_ready(client), PATIENCE_S)
+    assert there.graph.wait_for(lambda: there.server_is_ready(client), TIMEOUT_S)
     answers.entity, client.on_ready = client, answers.ready
     client.send(AddTwoInts.Request(a=1))
     _, identity, *_ = requests.wait(1)[0]
@@ -269,7 +269,7 @@ def test_a_client_that_left_is_not_waited_for(two):
     requests = Inbox()
     service = requests.entity = here.create_service(node_of(here, "server"), "/add", AddTwoInts, Qos(), requests.ready)
     client = there.create_client(node_of(there, "client"), "/add", AddTwoInts, Qos())
-    assert there.graph.wait_for(lambda: there.server_is_ready(client), PATIENCE_S)
+    assert there.graph.wait_for(lambda: there.server_is_ready(client), TIMEOUT_S)
     client.send(AddTwoInts.Request(a=1))
     _, identity, *_ = requests.wait(1)[0]
     client.close()
@@ -294,7 +294,7 @@ def test_the_graph_is_the_same_from_both_sides(two):
     assert (found.node.full_name, found.node.enclave) == ("/cell/arm", "/welding")
     meet(there, 1, EndpointKind.SERVICE, name="/cell/add")
     # A link that is new may tell of endpoints before it tells of their node.
-    assert there.graph.wait_for(lambda: [one.full_name for one in there.graph.nodes()] == ["/cell/arm"], PATIENCE_S)
+    assert there.graph.wait_for(lambda: [one.full_name for one in there.graph.nodes()] == ["/cell/arm"], TIMEOUT_S)
     of_node = there.graph.endpoints_of(there.graph.nodes()[0])
     assert names_and_types(of_node) == [
         ("/cell/add", ["example_interfaces/srv/AddTwoInts"]), ("/cell/state", ["std_msgs/msg/String"])
@@ -303,15 +303,15 @@ def test_the_graph_is_the_same_from_both_sides(two):
     service.close()
     meet(there, 0, name="/cell/state")
     remove()
-    assert there.graph.wait_for(lambda: not there.graph.nodes() and not there.graph.endpoints(), PATIENCE_S)
+    assert there.graph.wait_for(lambda: not there.graph.nodes() and not there.graph.endpoints(), TIMEOUT_S)
 
 
 def test_two_nodes_of_one_name_are_two(two):
     here, there = two
     removes = [here.create_node("twin", "/")[1], here.create_node("twin", "/")[1]]
-    assert there.graph.wait_for(lambda: len(there.graph.nodes()) == 2, PATIENCE_S)
+    assert there.graph.wait_for(lambda: len(there.graph.nodes()) == 2, TIMEOUT_S)
     removes[0]()
-    assert there.graph.wait_for(lambda: len(there.graph.nodes()) == 1, PATIENCE_S)
+    assert there.graph.wait_for(lambda: len(there.graph.nodes()) == 1, TIMEOUT_S)
 
 
 def test_a_session_that_closes_is_gone(two):
@@ -319,7 +319,7 @@ def test_a_session_that_closes_is_gone(two):
     here.create_publisher(node_of(here, "talker"), "/topic", String, Qos())
     meet(there, 1, EndpointKind.PUBLISHER, name="/topic")
     here.close()
-    assert there.graph.wait_for(lambda: not there.graph.nodes() and not there.graph.endpoints(), PATIENCE_S)
+    assert there.graph.wait_for(lambda: not there.graph.nodes() and not there.graph.endpoints(), TIMEOUT_S)
 
 
 def test_a_newcomer_knows_all_when_it_has_settled(new_session):
@@ -328,7 +328,7 @@ def test_a_newcomer_knows_all_when_it_has_settled(new_session):
     for number in range(50):
         first.create_publisher(node, f"/topic{number}", String, Qos())
     second = new_session()
-    assert second.backend.settle(PATIENCE_S)
+    assert second.backend.settle(TIMEOUT_S)
     assert len(second.graph.endpoints(EndpointKind.PUBLISHER)) == 50
     assert [one.name for one in second.graph.nodes()] == ["many"]
 
@@ -346,8 +346,8 @@ def test_entities_come_and_go_without_a_trace(two):
         ]
         for member in members:
             member.close()
-    assert there.graph.wait_for(lambda: not there.graph.endpoints(), PATIENCE_S)
-    assert here.graph.wait_for(lambda: not here.graph.endpoints(), PATIENCE_S)
+    assert there.graph.wait_for(lambda: not there.graph.endpoints(), TIMEOUT_S)
+    assert here.graph.wait_for(lambda: not here.graph.endpoints(), TIMEOUT_S)
     assert threading.active_count() <= threads
     publisher, inbox = connected(two, String)
     publisher.publish(String(data="still here"))
@@ -360,7 +360,7 @@ def test_closing_while_others_publish_harms_nobody(two):
     inbox = subscribe(there, node_of(there, "listener"), "/topic", Int32)
     for _ in range(10):
         publisher = here.create_publisher(node, "/topic", Int32, Qos())
-        assert here.graph.wait_for(lambda p=publisher: p.is_heard, PATIENCE_S)
+        assert here.graph.wait_for(lambda p=publisher: p.is_heard, TIMEOUT_S)
         stop = threading.Event()
 
         def publish(publisher: Any = publisher, stop: threading.Event = stop) -> None:
@@ -374,5 +374,5 @@ def test_closing_while_others_publish_harms_nobody(two):
         publisher.close()
         stop.set()
         for thread in threads:
-            thread.join(PATIENCE_S)
+            thread.join(TIMEOUT_S)
             assert not thread.is_alive()

@@ -23,7 +23,7 @@ WHITE: Rgba = (1.0, 1.0, 1.0, 1.0)
 _CREASE = 0.76
 """Cosine of the angle between triangles from which on an edge is seen: 40 degrees."""
 
-_MOST_CORNERS = 256
+_MAX_CORNERS = 256
 
 
 @dataclass(frozen=True, eq=False)
@@ -171,7 +171,7 @@ def _pairs(place: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int6
     order = np.argsort(place, kind="stable")
     starts = np.searchsorted(place[order], np.arange(place.max(initial=-1) + 2))
     counts = np.diff(starts)[place]
-    counts[counts > _MOST_CORNERS] = 1
+    counts[counts > _MAX_CORNERS] = 1
     first = np.repeat(np.arange(len(place)), counts)
     step = np.arange(len(first)) - np.repeat(np.cumsum(counts) - counts, counts)
     alone = counts[first] == 1

@@ -31,7 +31,7 @@ CHAIN_REACH = 10
 CHAIN_GAP = 3
 """Largest step between the indices of key scans of one chain."""
 
-PATIENCE = 3
+RETRY_INTERVAL = 3
 """Key scans to wait before a chain that was tried is tried again."""
 
 RESOLUTION = 0.1
@@ -40,13 +40,13 @@ RESOLUTION = 0.1
 LARGEST_TURN = 0.5
 """Largest half width [rad] of the search."""
 
-LEAST_LIKELIHOOD = 0.6
+MIN_LIKELIHOOD = 0.6
 """Mean likelihood of the points, from 0 to 1, that a place must reach to be looked at more closely."""
 
-LEAST_SHARE = 0.7
+MIN_INLIER_RATIO = 0.7
 """Part of the points that must lie on lines of the old scans for a closure to be believed."""
 
-MOST_RESIDUAL = 0.03
+MAX_RESIDUAL = 0.03
 """Largest rms distance [m] from those lines."""
 
 
@@ -84,7 +84,7 @@ class LoopCloser:
             return []
         drift = possible_drift(newest, poses, edges)
         near = near[drift[near] > SETTLED_DRIFT]
-        self._tried = [(scan, place) for scan, place in self._tried if newest - scan < PATIENCE]
+        self._tried = [(scan, place) for scan, place in self._tried if newest - scan < RETRY_INTERVAL]
         closures = []
         for chain in np.split(near, np.flatnonzero(np.diff(near) > CHAIN_GAP) + 1):
             if chain.shape[0] < config.loop_match_minimum_chain_size:
@@ -113,13 +113,13 @@ class LoopCloser:
             resolution=RESOLUTION,
             deviation=RESOLUTION,
             distance_penalty=0.005,
-            minimum_score=LEAST_LIKELIHOOD,
+            minimum_score=MIN_LIKELIHOOD,
         )
         match = place.correlate(points, pose2.between(poses[closest], poses[newest]), window)
         if match is None:
             return None
         fine = place.refine(points, normals, match.pose)
-        if fine.share < LEAST_SHARE or fine.residual > MOST_RESIDUAL:
+        if fine.inlier_ratio < MIN_INLIER_RATIO or fine.residual > MAX_RESIDUAL:
             return None
         information = match_information(fine.normal_matrix / QUERY_SCANS)
         return Edge(closest, newest, fine.pose, information, closure=True)

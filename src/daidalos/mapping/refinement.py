@@ -26,8 +26,8 @@ VIEW_ANGLE = 1.6
 REACH = 0.3
 """Largest distance [m] over which a point looks for its line."""
 
-LEAST_SHARE = 0.4
-MOST_RESIDUAL = 0.045
+MIN_INLIER_RATIO = 0.4
+MAX_RESIDUAL = 0.045
 """Part of a pair's points that must match, and their largest rms distance [m] from the lines."""
 
 CHAIN_WEIGHT = 0.01
@@ -56,9 +56,9 @@ def refine_poses(clouds: Sequence[Cloud], poses: Array, edges: Sequence[Edge]) -
         cloud = clouds[second]
         guess = pose2.between(poses[first], poses[second])
         fine = refine(cloud.points, cloud.normals, references[first], guess, reach=0.15, iterations=6)
-        if fine.share < LEAST_SHARE or fine.residual > MOST_RESIDUAL:
+        if fine.inlier_ratio < MIN_INLIER_RATIO or fine.residual > MAX_RESIDUAL:
             continue
-        information = match_information(fine.share * fine.normal_matrix)
+        information = match_information(fine.inlier_ratio * fine.normal_matrix)
         matched.append(Edge(first, second, fine.pose, information, closure=second > first + BACK))
     return optimize(poses, matched).poses
 

@@ -18,10 +18,10 @@ __all__ = ["ScanResult", "Slam", "SlamConfig"]
 
 Array = NDArray[np.float64]
 
-LEAST_POINTS = 10
+MIN_POINTS = 10
 """Points that a scan must have to be matched."""
 
-CERTAIN_SHARE = 0.8
+CERTAIN_INLIER_RATIO = 0.8
 """Part of the points on lines from which a match near the prediction needs no search."""
 
 TOLERATED_GAP = 0.05
@@ -170,7 +170,7 @@ class Slam:
         if early or not (is_key or self.config.match_every_scan):
             return ScanResult(predicted)
         cloud = to_cloud(scan, self.config.max_laser_range, twist)
-        if cloud.points.shape[0] < LEAST_POINTS:
+        if cloud.points.shape[0] < MIN_POINTS:
             return ScanResult(predicted)
         match = self._match(cloud, predicted, _odometry_information(step), thorough=is_key)
         self._matched_stamp_ns = stamp_ns
@@ -212,7 +212,7 @@ class Slam:
     def _begin(self, stamp_ns: int, scan: LaserScanData, odom: Array) -> ScanResult:
         cloud = to_cloud(scan, self.config.max_laser_range)
         self._last_pose, self._last_odom, self._last_stamp_ns = odom, odom, stamp_ns
-        if cloud.points.shape[0] < LEAST_POINTS:
+        if cloud.points.shape[0] < MIN_POINTS:
             return ScanResult(odom)
         self._matched_stamp_ns = stamp_ns
         self._keys.append(_KeyScan(odom, cloud))
@@ -238,7 +238,7 @@ class Slam:
         local = self._local_map()
         if not thorough:
             near = local.refine(cloud.points, cloud.normals, predicted, iterations=15)
-            if near.share > CERTAIN_SHARE:
+            if near.inlier_ratio > CERTAIN_INLIER_RATIO:
                 return _fuse(predicted, certainty, near)
         config = self.config
         window = Window(
@@ -249,7 +249,7 @@ class Slam:
         )
         found = local.correlate(cloud.points, predicted, window)
         fine = local.refine(cloud.points, cloud.normals, predicted if found is None else found.pose)
-        if fine.share < config.link_match_minimum_response_fine:
+        if fine.inlier_ratio < config.link_match_minimum_response_fine:
             return _Match(predicted, np.zeros((3, 3)), accepted=False)
         return _fuse(predicted, certainty, fine)
 

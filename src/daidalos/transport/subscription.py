@@ -14,8 +14,8 @@ from daidalos.transport.backend import SampleInfo, WireSubscription
 from daidalos.transport.graph import EndpointInfo
 
 _LOGGER = logging.getLogger(__name__)
-_PATIENCE_S = 0.25
-_SHORT_PATIENCE_S = 0.05
+_TIMEOUT_S = 0.25
+_SHORT_TIMEOUT_S = 0.05
 _SHORT_FOR_NS = 2_000_000_000
 _FAST_NS = 1_000_000
 _SLOW_NS = 10 * _FAST_NS
@@ -153,7 +153,7 @@ class Subscription:
         if len(self._queue) < self._limit:  # type: ignore[operator]
             return
         stalled = time.monotonic_ns() - Subscription._gave_up_at < _SHORT_FOR_NS
-        if not self._space.wait(_SHORT_PATIENCE_S if stalled else _PATIENCE_S):
+        if not self._space.wait(_SHORT_TIMEOUT_S if stalled else _TIMEOUT_S):
             self._take_interval = _SLOW_NS
             Subscription._gave_up_at = time.monotonic_ns()
 

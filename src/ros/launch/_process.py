@@ -26,7 +26,7 @@ _CHUNK = 1 << 16
 # A pipe holds at most 1 MiB, so this empties any.
 _CHUNKS_LEFT_AT_EXIT = 16
 _POLL_INTERVAL = 0.02
-_PATIENCE_WITH_ORPHANS = 0.5
+_ORPHANS_TIMEOUT = 0.5
 
 OnOutput = Callable[[int, bytes], None]
 
@@ -91,12 +91,12 @@ class ChildProcess(asyncio.SubprocessProtocol):
         if self.running:
             self._transport.terminate()
 
-    async def end_group(self, *, patience: tuple[float, float], interrupted: bool) -> None:
+    async def end_group(self, *, timeouts: tuple[float, float], interrupted: bool) -> None:
         """Stop what the child, which has ended itself, left running in its group.
 
         Parameters
         ----------
-        patience
+        timeouts
             Seconds to wait at most after SIGINT and after SIGTERM, before the next harder signal.
         interrupted
             Whether the group got its SIGINT already.
@@ -104,10 +104,10 @@ class ChildProcess(asyncio.SubprocessProtocol):
         if not _POSIX or not _group_exists(self.pid):
             return
         # Nobody is there any more to stop it in some order of its own.
-        first = min(patience[0], _PATIENCE_WITH_ORPHANS)
+        first = min(timeouts[0], _ORPHANS_TIMEOUT)
         for signum, seconds in (
             (signal.SIGINT, first),
-            (signal.SIGTERM, patience[1]),
+            (signal.SIGTERM, timeouts[1]),
             (signal.SIGKILL, 1.0),
         ):
             if not (signum == signal.SIGINT and interrupted):

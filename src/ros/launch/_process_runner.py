@@ -55,7 +55,7 @@ class RunOptions:
     respawn_max_retries: int
 
     @property
-    def patience(self) -> tuple[float, float]:
+    def timeouts(self) -> tuple[float, float]:
         """Seconds to wait after SIGINT and after SIGTERM."""
         return self.sigterm_timeout, self.sigkill_timeout
 
@@ -166,10 +166,10 @@ class ProcessRunner:
             command = " ".join(self._description.final_cmd)
             self._logger.error(f"process has died [pid {child.pid}, exit code {code}, cmd '{command}'].")
         if self._stopping.done():
-            await child.end_group(patience=self._options.patience, interrupted=True)
+            await child.end_group(timeouts=self._options.timeouts, interrupted=True)
         if child.left_something:
             # What the process left running is stopped with the launch.
-            self._context.register_event_handler(_LeftoverHandler(child, self._options.patience))
+            self._context.register_event_handler(_LeftoverHandler(child, self._options.timeouts))
         else:
             child.close()
         await self._context.emit_event(ProcessExited(returncode=code, **self.details))
@@ -224,7 +224,7 @@ class ProcessRunner:
         """Send harder and harder signals until the process has ended."""
         name = self._description.final_name
         sent = "SIGINT"
-        for seconds, signum in zip(self._options.patience, (signal.SIGTERM, _SIGKILL), strict=True):
+        for seconds, signum in zip(self._options.timeouts, (signal.SIGTERM, _SIGKILL), strict=True):
             await asyncio.sleep(seconds)
             if not self._child.running:
                 return
@@ -311,10 +311,10 @@ class _ProcessEventHandler(BaseEventHandler):
 class _LeftoverHandler(BaseEventHandler):
     """Stops, with the launch, what a process left running in its group."""
 
-    def __init__(self, child: ChildProcess, patience: tuple[float, float]) -> None:
+    def __init__(self, child: ChildProcess, timeouts: tuple[float, float]) -> None:
         super().__init__(matcher=lambda event: isinstance(event, Shutdown), handle_once=True)
         self.__child = child
-        self.__patience = patience
+        self.__timeouts = timeouts
 
     def handle(self, event: Event, context: LaunchContext) -> SomeEntitiesType | None:
         super().handle(event, context)
@@ -322,5 +322,5 @@ class _LeftoverHandler(BaseEventHandler):
         return None
 
     async def __end(self) -> None:
-        await self.__child.end_group(patience=self.__patience, interrupted=False)
+        await self.__child.end_group(timeouts=self.__timeouts, interrupted=False)
         self.__child.close()

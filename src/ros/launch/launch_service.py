@@ -23,7 +23,7 @@ from .launch_file_error import LaunchFileError
 from .logging import get_logger, launch_config, log_launch_config
 from .utilities import AsyncSafeSignalManager, is_a_subclass, visit_all_entities_and_collect_futures
 
-_PATIENCE_AFTER_KILL = 2.0
+_KILL_TIMEOUT = 2.0
 _main_loop: asyncio.AbstractEventLoop | None = None
 
 
@@ -127,7 +127,7 @@ class LaunchService:
                 self.__process(SignalProcess(signal_number="SIGKILL", process_matcher=lambda _: True))
                 self.__return_code = 1
                 with contextlib.suppress(TimeoutError):
-                    async with asyncio.timeout(_PATIENCE_AFTER_KILL):
+                    async with asyncio.timeout(_KILL_TIMEOUT):
                         await self.__process_until_done(shutdown_when_idle)
         return self.__return_code
 

@@ -191,7 +191,7 @@ class Buffer(BufferCore, BufferInterface):
                 if alive:
                     context.on_shutdown(changed.set)
                 while not (result := attempt())[0] and context.ok() is alive and not deadline.passed():
-                    changed.wait(deadline.patience_s())
+                    changed.wait(deadline.timeout_s())
                     changed.clear()
             return result
         finally:
@@ -275,7 +275,7 @@ class _Deadline:
             return self._clock.now_ns() < self._start or self._timer.is_timer_ready()
         return system_time.monotonic_ns() >= self._wall_end
 
-    def patience_s(self) -> float | None:
+    def timeout_s(self) -> float | None:
         """Return how long to wait in wall time; None for until `wake` is called."""
         return None if self._simulated else max(self._wall_end - system_time.monotonic_ns(), 0) / 1e9
 

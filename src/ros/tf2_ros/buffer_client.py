@@ -129,9 +129,9 @@ class BufferClient(BufferInterface):
         client = self.action_client
         if not client.server_is_ready():
             raise tf2.TimeoutException("The BufferServer is not ready.")
-        patience = Duration.from_msg(goal.timeout) + self.timeout_padding
-        end = system_time.monotonic() + patience.nanoseconds / 1e9
-        handle = client._wait(lambda: client.send_goal_async(goal), patience.nanoseconds / 1e9)
+        timeout = Duration.from_msg(goal.timeout) + self.timeout_padding
+        end = system_time.monotonic() + timeout.nanoseconds / 1e9
+        handle = client._wait(lambda: client.send_goal_async(goal), timeout.nanoseconds / 1e9)
         if handle is None:
             raise _late()
         if not handle.accepted:

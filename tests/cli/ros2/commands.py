@@ -8,7 +8,7 @@ import threading
 from dataclasses import dataclass
 from pathlib import Path
 
-PATIENCE_S = 40.0
+TIMEOUT_S = 40.0
 ROS2 = [sys.executable, "-m", "daidalos.cli.ros2"]
 
 
@@ -40,7 +40,7 @@ def ros2(
         env=env,
         cwd=cwd,
     )
-    alarm = threading.Timer(PATIENCE_S, process.kill)
+    alarm = threading.Timer(TIMEOUT_S, process.kill)
     alarm.start()
     try:
         head, interrupted = "", False

@@ -111,8 +111,8 @@ def _type(terminal: int, text: str) -> None:
     os.write(terminal, text.encode())
 
 
-def _read_until(terminal: int, end: str, patience_s: float = 30.0) -> str:
-    text, deadline = "", time.monotonic() + patience_s
+def _read_until(terminal: int, end: str, timeout_s: float = 30.0) -> str:
+    text, deadline = "", time.monotonic() + timeout_s
     while end not in text and (left := deadline - time.monotonic()) > 0:
         if select.select([terminal], [], [], left)[0]:
             text += os.read(terminal, 4096).decode(errors="replace")

@@ -78,9 +78,9 @@ def _wait_until_ours(process: subprocess.Popen[str], moment_s: float) -> None:
     time.sleep(moment_s - MOMENTS_S[0])
 
 
-def _left_of(group: int, patience_s: float = 10.0) -> list[str]:
+def _left_of(group: int, timeout_s: float = 10.0) -> list[str]:
     """Return what does not leave a process group; it is killed."""
-    deadline = time.monotonic() + patience_s
+    deadline = time.monotonic() + timeout_s
     while time.monotonic() < deadline:
         try:
             os.killpg(group, 0)

@@ -35,7 +35,7 @@ def test_a_scan_is_found_from_half_a_metre_and_half_a_radian_away(guess: tuple[f
 def test_an_empty_map_matches_nothing() -> None:
     empty = PointMap([], np.empty((0, 3)))
     assert empty.correlate(np.ones((5, 2)), np.zeros(3), Window(0.5, 0.5)) is None
-    assert empty.refine(np.ones((5, 2)), np.ones((5, 2)), np.zeros(3)).share == 0.0
+    assert empty.refine(np.ones((5, 2)), np.ones((5, 2)), np.zeros(3)).inlier_ratio == 0.0
 
 
 def test_likelihoods_are_built_once_for_each_kind_of_window() -> None:

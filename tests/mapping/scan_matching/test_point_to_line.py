@@ -20,7 +20,7 @@ def test_the_motion_between_two_scans_is_found(offset: tuple[float, float, float
     true = pose2.between(first, second)
     match = refine(cloud_at(second).points, cloud_at(second).normals, reference, true + offset, reach=0.3)
     assert match.pose == pytest.approx(true, abs=2e-3)
-    assert match.share > 0.9
+    assert match.inlier_ratio > 0.9
     assert match.residual < 5e-3
 
 
@@ -46,7 +46,7 @@ def test_a_stranger_in_the_room_does_not_matter() -> None:
     reference = build_reference(before.points, before.normals, 0.3)
     match = refine(changed.points, changed.normals, reference, np.array([0.05, -0.05, 0.03]))
     assert match.pose == pytest.approx(np.zeros(3), abs=5e-3)
-    assert match.share < 0.85
+    assert match.inlier_ratio < 0.85
 
 
 def test_the_normal_matrix_is_the_curvature_of_the_cost() -> None:
@@ -90,6 +90,6 @@ def test_nothing_in_reach_leaves_the_guess() -> None:
     far = build_reference(cloud.points + 100.0, cloud.normals, 0.3)
     match = refine(cloud.points, cloud.normals, far, np.array([0.1, 0.2, 0.3]))
     assert match.pose == pytest.approx([0.1, 0.2, 0.3])
-    assert match.share == 0.0
+    assert match.inlier_ratio == 0.0
     empty = refine(np.empty((0, 2)), np.empty((0, 2)), far, np.zeros(3))
-    assert empty.share == 0.0
+    assert empty.inlier_ratio == 0.0

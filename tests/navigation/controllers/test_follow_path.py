@@ -1,4 +1,4 @@
-"""Following a path: goals, progress, patience."""
+"""Following a path: goals, progress, failure tolerance."""
 
 import numpy as np
 import pytest
@@ -98,7 +98,7 @@ def test_without_tolerance_the_first_failure_counts():
         task.step(at(0.5), REST, GROUND, 0.0)
 
 
-def test_with_endless_patience_failures_never_count():
+def test_with_unlimited_failure_tolerance_failures_never_count():
     task = FollowPath(Scripted(), SimpleGoalChecker(), SimpleProgressChecker(), failure_tolerance=-1.0)
     task.start(line((3.0, 0.0)))
     task.controller.failing = True

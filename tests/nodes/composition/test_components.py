@@ -11,7 +11,7 @@ from daidalos.nodes.components import components, find_component
 from daidalos.nodes.composition._components import Client
 from ros.graph import graph, node, spinning  # noqa: F401
 
-PATIENCE_S = 20.0
+TIMEOUT_S = 20.0
 
 
 def test_they_are_found_by_their_names() -> None:
@@ -40,7 +40,7 @@ def test_two_of_them_talk_to_each_other(node: Node, first: str, second: str, tex
     event = said(node, text)
     nodes = [find_component("composition", f"composition::{name}")() for name in (second, first)]
     with spinning(node, *nodes):
-        assert event.wait(PATIENCE_S)
+        assert event.wait(TIMEOUT_S)
 
 
 def test_a_client_waits_for_somebody_who_adds(graph: Context) -> None:  # noqa: F811

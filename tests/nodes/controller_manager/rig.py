@@ -18,7 +18,7 @@ from daidalos.description.ros2_control import read_hardware
 from daidalos.nodes.controller_manager._manager_node import ControllerManagerNode
 
 PERIOD_NS = 10_000_000
-PATIENCE_S = 20.0
+TIMEOUT_S = 20.0
 FORWARD = "forward_command_controller/ForwardCommandController"
 
 
@@ -74,8 +74,8 @@ class Rig:
 
     def ask(self, kind: Any, service: str, /, **request: Any) -> Any:
         client = self.user.create_client(kind, f"/controller_manager/{service}")
-        assert client.wait_for_service(PATIENCE_S)
-        return client.call(kind.Request(**request), PATIENCE_S)
+        assert client.wait_for_service(TIMEOUT_S)
+        return client.call(kind.Request(**request), TIMEOUT_S)
 
     def start(self, name: str) -> None:
         assert self.ask(srv.LoadController, "load_controller", name=name).ok
@@ -100,7 +100,7 @@ class Rig:
     def cycle_until(self, done: Callable[[], bool]) -> None:
         """Run cycles, each of which lets other threads run, until something has happened."""
         pause = threading.Event()
-        for _ in range(int(PATIENCE_S * 1000)):
+        for _ in range(int(TIMEOUT_S * 1000)):
             if done():
                 return
             self.cycle()

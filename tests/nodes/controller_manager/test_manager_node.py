@@ -20,7 +20,7 @@ from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 from daidalos.control.plugins import controllers
 from daidalos.nodes.controller_manager._manager_node import ControllerManagerNode
-from nodes.controller_manager.rig import FORWARD, PATIENCE_S, WHEELS, Rig, parameter_file, rig
+from nodes.controller_manager.rig import FORWARD, TIMEOUT_S, WHEELS, Rig, parameter_file, rig
 from ros.graph import graph  # noqa: F401
 
 
@@ -332,7 +332,7 @@ def arm(graph: Context, tmp_path: Path) -> Iterator[Rig]:  # noqa: F811
 def test_a_trajectory_by_action(arm: Rig) -> None:
     feedback: list[Any] = []
     client = ActionClient(arm.user, FollowJointTrajectory, "/arm/follow_joint_trajectory")
-    assert client.wait_for_server(PATIENCE_S)
+    assert client.wait_for_server(TIMEOUT_S)
     goal = FollowJointTrajectory.Goal(trajectory=trajectory((0.5, [1.0, 0.5])))
     sent = client.send_goal_async(goal, feedback_callback=feedback.append)
     arm.cycle_until(sent.done)
@@ -349,7 +349,7 @@ def test_a_trajectory_by_action(arm: Rig) -> None:
 
 def test_a_goal_is_cancelled_or_refused(arm: Rig) -> None:
     client = ActionClient(arm.user, FollowJointTrajectory, "/arm/follow_joint_trajectory")
-    assert client.wait_for_server(PATIENCE_S)
+    assert client.wait_for_server(TIMEOUT_S)
     sent = client.send_goal_async(FollowJointTrajectory.Goal(trajectory=trajectory((1000.0, [1.0, 0.5]))))
     arm.cycle_until(sent.done)
     handle = sent.result()
@@ -392,7 +392,7 @@ def test_a_gripper_by_action(graph: Context, tmp_path: Path) -> None:  # noqa: F
     with rig(**parameters) as one:
         one.start("grip")
         client = ActionClient(one.user, GripperCommand, "/grip/gripper_cmd")
-        assert client.wait_for_server(PATIENCE_S)
+        assert client.wait_for_server(TIMEOUT_S)
         goal = GripperCommand.Goal()
         goal.command.position = 0.4
         sent = client.send_goal_async(goal)

@@ -27,7 +27,7 @@ URDF = """<robot name="r"><link name="a"/><link name="b"/>
   <joint name="j"><command_interface name="position"/><state_interface name="position"/></joint>
   </ros2_control></robot>"""
 MOCK = URDF.format("mock_components/GenericSystem")
-PATIENCE_S = 20.0
+TIMEOUT_S = 20.0
 
 
 class Counting(Ros2ControlNode):
@@ -61,7 +61,7 @@ def spun(*nodes: rclpy.node.Node) -> Iterator[None]:
 def wait_for(done: object) -> None:
     """Wait until something is so; fail when that takes too long."""
     assert callable(done)
-    pause, end = threading.Event(), time.monotonic() + PATIENCE_S
+    pause, end = threading.Event(), time.monotonic() + TIMEOUT_S
     while not done():
         assert time.monotonic() < end, "it did not happen"
         pause.wait(0.005)

@@ -29,7 +29,7 @@ PARAMETERS = """/**:
     update_rate: 50
     states.type: joint_state_broadcaster/JointStateBroadcaster
 """
-PATIENCE_S = 20.0
+TIMEOUT_S = 20.0
 
 
 class Rig:
@@ -58,8 +58,8 @@ def rig(graph: Context) -> Iterator[Rig]:  # noqa: F811
 
 def ask(node: Any, manager: str, kind: Any, service: str, **request: Any) -> Any:
     client = node.create_client(kind, f"{manager}/{service}")
-    assert client.wait_for_service(PATIENCE_S)
-    return client.call(kind.Request(**request), PATIENCE_S)
+    assert client.wait_for_service(TIMEOUT_S)
+    return client.call(kind.Request(**request), TIMEOUT_S)
 
 
 def test_names_rates_and_topics_are_as_the_plugin_says(rig: Rig, tmp_path: Path) -> None:
@@ -82,7 +82,7 @@ def test_names_rates_and_topics_are_as_the_plugin_says(rig: Rig, tmp_path: Path)
         publishers = user.get_publishers_info_by_topic("/robot1/states_of_joints")
         assert [one.node_name for one in publishers] == ["states"]
         rig.advance(1.0)
-        deadline = user.get_clock().now().nanoseconds + int(PATIENCE_S * 1e9)
+        deadline = user.get_clock().now().nanoseconds + int(TIMEOUT_S * 1e9)
         while len(heard) < 50 and user.get_clock().now().nanoseconds < deadline:
             pass
     stamps = [message.header.stamp.sec * 10**9 + message.header.stamp.nanosec for message in heard]

@@ -19,7 +19,7 @@ from tf2_ros import StaticTransformBroadcaster
 
 from daidalos.nodes.nav2_behaviors.behavior_server import BehaviorServer
 
-PATIENCE_S = 20.0
+TIMEOUT_S = 20.0
 
 
 @pytest.fixture
@@ -57,24 +57,24 @@ def be_somewhere(robot: Node) -> None:
 def test_a_goal_waits_for_the_first_costmap(executor: SingleThreadedExecutor) -> None:
     robot = executor.get_nodes()[1]
     client = ActionClient(robot, Wait, "wait")
-    assert client.wait_for_server(PATIENCE_S)
+    assert client.wait_for_server(TIMEOUT_S)
     sent = client.send_goal_async(Wait.Goal(time=Duration(nanosec=1)))
-    executor.spin_until_future_complete(sent, PATIENCE_S)
+    executor.spin_until_future_complete(sent, TIMEOUT_S)
     ended = sent.result().get_result_async()
     executor.spin_until_future_complete(ended, 0.3)
     assert not ended.done()
     be_somewhere(robot)
-    executor.spin_until_future_complete(ended, PATIENCE_S)
+    executor.spin_until_future_complete(ended, TIMEOUT_S)
     assert ended.result().status == GoalStatus.STATUS_SUCCEEDED
 
 
 def test_a_goal_that_waits_can_be_cancelled(executor: SingleThreadedExecutor) -> None:
     robot = executor.get_nodes()[1]
     client = ActionClient(robot, DriveOnHeading, "drive_on_heading")
-    assert client.wait_for_server(PATIENCE_S)
+    assert client.wait_for_server(TIMEOUT_S)
     sent = client.send_goal_async(DriveOnHeading.Goal())
-    executor.spin_until_future_complete(sent, PATIENCE_S)
-    executor.spin_until_future_complete(sent.result().cancel_goal_async(), PATIENCE_S)
+    executor.spin_until_future_complete(sent, TIMEOUT_S)
+    executor.spin_until_future_complete(sent.result().cancel_goal_async(), TIMEOUT_S)
     ended = sent.result().get_result_async()
     executor.spin_until_future_complete(ended, 5.0)
     assert ended.done()

@@ -20,7 +20,7 @@ from daidalos.nodes.nav2_map_server.map_server import MapServer
 from nodes.terminal import Terminal
 from ros.graph import graph, node, spinning  # noqa: F401
 
-PATIENCE_S = 20.0
+TIMEOUT_S = 20.0
 CELLS = np.array([[0, 100, -1], [0, 0, 100]], np.int8)
 
 
@@ -46,13 +46,13 @@ def heard(node, topic="map"):  # noqa: F811
 def result_of(future):
     done = threading.Event()
     future.add_done_callback(lambda _: done.set())
-    assert done.wait(PATIENCE_S)
+    assert done.wait(TIMEOUT_S)
     return future.result()
 
 
 def call(node, kind, name, **fields):  # noqa: F811
     client = node.create_client(kind, name)
-    assert client.wait_for_service(PATIENCE_S)
+    assert client.wait_for_service(TIMEOUT_S)
     return result_of(client.call_async(kind.Request(**fields)))
 
 
@@ -119,10 +119,10 @@ def test_on_the_command_line(arena, tmp_path, domain):
         server.wait_for("Read map")
         words = ("-f", "copy", "--occ", "0.7", "--free", "0.3", "--fmt", "bmp")
         with Terminal("run", "nav2_map_server", "map_saver_cli", *words, domain=domain, folder=tmp_path) as saver:
-            assert saver.wait(PATIENCE_S) == 0
+            assert saver.wait(TIMEOUT_S) == 0
         words = ("-t", "/nothing", "-f", "none", "--ros-args", "-p", "save_map_timeout:=0.1")
         with Terminal("run", "nav2_map_server", "map_saver_cli", *words, domain=domain, folder=tmp_path) as saver:
-            assert saver.wait(PATIENCE_S) == 1
+            assert saver.wait(TIMEOUT_S) == 1
             assert "nothing came on the topic '/nothing' within 0.1 s" in saver.text
         assert server.interrupt() == 0
     assert np.array_equal(load_map(tmp_path / "copy.yaml").data, CELLS)

@@ -18,7 +18,7 @@ from daidalos.nodes.ros2_controllers_test_nodes.publisher_joint_trajectory_contr
 from daidalos.nodes.runner import UserError
 from ros.graph import graph, node, spinning  # noqa: F401
 
-PATIENCE_S = 20.0
+TIMEOUT_S = 20.0
 JOINTS = ["shoulder", "elbow"]
 
 
@@ -40,7 +40,7 @@ class Watch:
 
     def wait_for(self, condition: Callable[[list[Any]], bool]) -> None:
         with self._changed:
-            assert self._changed.wait_for(lambda: condition(self.messages), PATIENCE_S)
+            assert self._changed.wait_for(lambda: condition(self.messages), TIMEOUT_S)
 
     def _keep(self, message: Any) -> None:
         with self._changed:

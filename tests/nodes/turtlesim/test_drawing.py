@@ -80,7 +80,7 @@ def test_news_are_told_once() -> None:
 
 
 def test_old_lines_become_a_picture(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(_drawing, "_MOST_LINES", 10)
+    monkeypatch.setattr(_drawing, "_MAX_LINES", 10)
     drawing = Drawing()
     for step in range(25):
         assert drawing.picture() == b"" or step > 20

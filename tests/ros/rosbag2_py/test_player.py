@@ -18,7 +18,7 @@ from ros.graph import spinning
 
 from .conftest import SECOND, write_chatter
 
-PATIENCE_S = 20
+TIMEOUT_S = 20
 QUIET = {"disable_keyboard_controls": True, "progress_bar_update_rate": 0}
 
 
@@ -40,7 +40,7 @@ class Heard:
 
     def wait_for(self, count):
         with self._changed:
-            assert self._changed.wait_for(lambda: len(self.values) >= count, PATIENCE_S), self.values
+            assert self._changed.wait_for(lambda: len(self.values) >= count, TIMEOUT_S), self.values
         return self.values
 
 
@@ -154,8 +154,8 @@ def paused(node, tmp_path):
 
     def call(kind, name, **fields):
         client = node.create_client(kind, f"/rosbag2_player/{name}")
-        assert client.wait_for_service(PATIENCE_S)
-        return client.call(kind.Request(**fields), timeout_sec=PATIENCE_S)
+        assert client.wait_for_service(TIMEOUT_S)
+        return client.call(kind.Request(**fields), timeout_sec=TIMEOUT_S)
 
     with spinning(node):
         player.start_spin()
@@ -182,7 +182,7 @@ def test_step_by_step(paused):
     player.resume()
     assert not player.play_next()
     assert player.burst(1) == 0
-    assert player.wait_for_playback_to_finish(PATIENCE_S)
+    assert player.wait_for_playback_to_finish(TIMEOUT_S)
     assert heard.wait_for(10)[6:] == [16, 17, 18, 19]
     assert player.error is None
 
@@ -198,7 +198,7 @@ def test_control_by_services(paused):
     assert call(srv.Seek, "seek", time=request.time).success
     assert call(srv.Burst, "burst", num_messages=0).actually_burst == 10
     assert heard.wait_for(15)[5:] == list(range(10, 20))
-    assert player.wait_for_playback_to_finish(PATIENCE_S)
+    assert player.wait_for_playback_to_finish(TIMEOUT_S)
     assert not call(srv.PlayNext, "play_next").success
     assert not call(srv.Seek, "seek", time=request.time).success
 
@@ -213,7 +213,7 @@ def test_speed_and_pausing_by_services(paused):
     call(srv.Pause, "pause")
     assert player.is_paused()
     call(srv.Resume, "resume")
-    assert player.wait_for_playback_to_finish(PATIENCE_S)
+    assert player.wait_for_playback_to_finish(TIMEOUT_S)
 
 
 def test_a_part_by_service(paused):
@@ -232,7 +232,7 @@ def test_a_part_by_service(paused):
         playback_duration=request.playback_duration,
         playback_until_timestamp=request.playback_until_timestamp,
     ).success
-    assert player.wait_for_playback_to_finish(PATIENCE_S)
+    assert player.wait_for_playback_to_finish(TIMEOUT_S)
     assert heard.wait_for(3) == [10, 11, 12]
 
 
@@ -244,7 +244,7 @@ def test_again_and_again_until_it_is_cancelled(node, tmp_path):
         thread.start()
         assert heard.wait_for(9)[:9] == [0, 1, 2] * 3
         Player.cancel()
-        thread.join(PATIENCE_S)
+        thread.join(TIMEOUT_S)
         assert not thread.is_alive()
 
 
@@ -350,7 +350,7 @@ def test_requests_are_sent_again(node, tmp_path, source, sums):
     node.create_service(AddTwoInts, "/add", serve)
     with spinning(node):
         play(uri, publish_service_requests=True, service_requests_source=source)
-        assert done.wait(PATIENCE_S)
+        assert done.wait(TIMEOUT_S)
     assert served == sums
 
 

@@ -14,7 +14,7 @@ from std_msgs.msg import Int32, String
 
 from ros.graph import spinning
 
-PATIENCE_S = 20
+TIMEOUT_S = 20
 
 
 class Recording:
@@ -43,7 +43,7 @@ class Recording:
                     one.node.name == "rosbag2_recorder" and one.kind.value == "subscription"
                     for one in graph.endpoints(name=topic)
                 ),
-                PATIENCE_S,
+                TIMEOUT_S,
             ), topic
 
 
@@ -120,8 +120,8 @@ def test_pausing_splitting_and_events(node, tmp_path):
 
         def call(kind, name, **fields):
             client = node.create_client(kind, f"/rosbag2_recorder/{name}")
-            assert client.wait_for_service(PATIENCE_S)
-            return client.call(kind.Request(**fields), timeout_sec=PATIENCE_S)
+            assert client.wait_for_service(TIMEOUT_S)
+            return client.call(kind.Request(**fields), timeout_sec=TIMEOUT_S)
 
         publisher.publish(String())
         assert wait_for_count(recording, 1)
@@ -132,7 +132,7 @@ def test_pausing_splitting_and_events(node, tmp_path):
         call(srv.Resume, "resume")
         call(srv.SplitBagfile, "split_bagfile")
         publisher.publish(String())
-        assert told.wait(PATIENCE_S)
+        assert told.wait(TIMEOUT_S)
         response = call(srv.Record, "record")
         assert (response.return_code, response.error_string) == (1, "Recording is already in progress.")
         call(srv.Stop, "stop")
@@ -151,7 +151,7 @@ def test_pausing_splitting_and_events(node, tmp_path):
 def wait_for_count(recording, count):
     """Wait until the bag has so many messages."""
     ended = threading.Event()
-    for _ in range(PATIENCE_S * 100):
+    for _ in range(TIMEOUT_S * 100):
         if recording.recorder.node.bag.message_count >= count:
             return True
         ended.wait(0.01)
@@ -164,12 +164,12 @@ def test_snapshot_mode(node, tmp_path):
     with Recording(tmp_path / "bag", storage, topics=["/chatter"]) as recording, spinning(node):
         recording.wait_for(node, "/chatter")
         client = node.create_client(srv.Snapshot, "/rosbag2_recorder/snapshot")
-        assert client.wait_for_service(PATIENCE_S)
-        assert client.call(srv.Snapshot.Request(), timeout_sec=PATIENCE_S).success is False
+        assert client.wait_for_service(TIMEOUT_S)
+        assert client.call(srv.Snapshot.Request(), timeout_sec=TIMEOUT_S).success is False
         for _ in range(5):
             publisher.publish(String())
         # The recorder's callbacks run in order: the request is served after the messages came.
-        assert client.call(srv.Snapshot.Request(), timeout_sec=PATIENCE_S).success
+        assert client.call(srv.Snapshot.Request(), timeout_sec=TIMEOUT_S).success
         publisher.publish(String())
     assert content(tmp_path / "bag") == {"/chatter": 5}
 
@@ -182,10 +182,10 @@ def test_recording_until_it_is_cancelled(node, tmp_path):
     thread = threading.Thread(target=recorder.record, args=arguments, daemon=True)
     thread.start()
     graph = node.handle.graph
-    assert graph.wait_for(lambda: publisher.get_subscription_count() > 0, PATIENCE_S)
+    assert graph.wait_for(lambda: publisher.get_subscription_count() > 0, TIMEOUT_S)
     publisher.publish(String())
     Recorder.cancel()
-    thread.join(PATIENCE_S)
+    thread.join(TIMEOUT_S)
     assert not thread.is_alive()
     assert content(tmp_path / "bag")["/chatter"] == 1
 
@@ -221,7 +221,7 @@ def test_simulated_time(node, tmp_path):
             threading.Event().wait(0.01)
         message = Clock()
         message.clock.sec = 42
-        for _ in range(PATIENCE_S * 100):
+        for _ in range(TIMEOUT_S * 100):
             clock.publish(message)
             if recorder.get_clock().now().nanoseconds:
                 break

@@ -22,7 +22,7 @@ from transport.test_sessions import Inbox, node_of, subscribe
 pytest.importorskip("cyclonedds")
 
 PARTNER = Path(__file__).with_name("partner.py")
-PATIENCE_S = 20.0
+TIMEOUT_S = 20.0
 LOCAL = (
     "<CycloneDDS><Domain><General><AllowMulticast>false</AllowMulticast></General><Discovery>"
     '<ParticipantIndex>auto</ParticipantIndex><Peers><Peer address="127.0.0.1"/></Peers>'
@@ -47,17 +47,17 @@ def test_topics_cross(session, domain):
     publisher = session.create_publisher(node, "/ping", String, Qos())
     inbox = subscribe(session, node, "/pong", String)
     with partner("echo", domain).ready():
-        assert session.graph.wait_for(lambda: publisher.is_heard, PATIENCE_S)
+        assert session.graph.wait_for(lambda: publisher.is_heard, TIMEOUT_S)
         stranger = session.graph.endpoints(EndpointKind.SUBSCRIPTION, name="/ping")[0]
         assert stranger.node.name == "_NODE_NAME_UNKNOWN_"
         assert session.graph.wait_for(
-            lambda: bool(session.graph.endpoints(EndpointKind.PUBLISHER, name="/pong")), PATIENCE_S
+            lambda: bool(session.graph.endpoints(EndpointKind.PUBLISHER, name="/pong")), TIMEOUT_S
         )
         for text in ("one", "two", "drei", ""):
             publisher.publish(String(data=text))
-        answers = [message.data for message, _ in inbox.wait(4, PATIENCE_S)]
+        answers = [message.data for message, _ in inbox.wait(4, TIMEOUT_S)]
         assert answers == ["one back", "two back", "drei back", " back"]
-    assert session.graph.wait_for(lambda: not publisher.is_heard, PATIENCE_S)
+    assert session.graph.wait_for(lambda: not publisher.is_heard, TIMEOUT_S)
 
 
 def test_a_request_and_its_reply_are_those_of_rmw_cyclonedds(session, domain):
@@ -74,11 +74,11 @@ def test_a_request_and_its_reply_are_those_of_rmw_cyclonedds(session, domain):
             try:
                 assert process.stdout.readline() == "ready\n"
                 assert session.graph.wait_for(
-                    lambda: bool(session.graph.endpoints(EndpointKind.CLIENT, name="/add")), PATIENCE_S
+                    lambda: bool(session.graph.endpoints(EndpointKind.CLIENT, name="/add")), TIMEOUT_S
                 )
                 process.stdin.write("\n")
                 process.stdin.flush()
-                request, identity, *_ = requests.wait(1, PATIENCE_S)[0]
+                request, identity, *_ = requests.wait(1, TIMEOUT_S)[0]
                 assert (request.a, request.b, identity.sequence) == (3, 4, 7)
                 service.reply(identity, AddTwoInts.Response(sum=7))
                 assert process.stdout.readline() == "123456789abcdef 7 7\n"

@@ -31,7 +31,7 @@ from daidalos.transport.zenoh.router import Router
 from transport.peers import Peer
 from transport.test_sessions import Inbox, node_of, subscribe
 
-PATIENCE_S = 20.0
+TIMEOUT_S = 20.0
 TEXT = "std_msgs::msg::dds_::String_/RIHS01_df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18"
 ADD = (
     "example_interfaces::srv::dds_::AddTwoInts_/RIHS01_e118de6bf5eeb66a2491b5bda11202e7b68f198d6f67922cf30364858239c81a"
@@ -55,17 +55,17 @@ def test_a_publisher_that_writes_by_hand(session, stranger, domain):
     ]
     publisher = stranger.declare_publisher(f"{domain}/chatter/{TEXT}")
     assert session.graph.wait_for(
-        lambda: bool(session.graph.endpoints(EndpointKind.PUBLISHER, name="/chatter")), PATIENCE_S
+        lambda: bool(session.graph.endpoints(EndpointKind.PUBLISHER, name="/chatter")), TIMEOUT_S
     )
     assert publisher.matching_status.matching
     publisher.put(b"\0\1\0\0\6\0\0\0hello\0", attachment=attachment(1, gid_of(mine)))
-    message, item = inbox.wait(1, PATIENCE_S)[0]
+    message, item = inbox.wait(1, TIMEOUT_S)[0]
     assert message.data == "hello"
     info = inbox.entity.info(item)
     assert (info.gid, info.sequence) == (gid_of(mine), 1)
     assert session.graph.find_gid(info.gid).node.name == "robot"
     publisher.put(b"\0\1\0\0\6\0\0\0again\0")  # not even an attachment
-    assert inbox.wait(2, PATIENCE_S)[1][0].data == "again"
+    assert inbox.wait(2, TIMEOUT_S)[1][0].data == "again"
     assert held
 
 
@@ -77,9 +77,9 @@ def test_a_subscriber_that_reads_by_hand(session, stranger, domain):
     )
     held = stranger.liveliness().declare_token(token(stranger, domain, "MS", "/chatter", TEXT))
     publisher = session.create_publisher(node_of(session, "me"), "/chatter", String, Qos())
-    assert session.graph.wait_for(lambda: publisher.is_heard, PATIENCE_S)
+    assert session.graph.wait_for(lambda: publisher.is_heard, TIMEOUT_S)
     publisher.publish(String(data="hello"))
-    assert news.wait(PATIENCE_S)
+    assert news.wait(TIMEOUT_S)
     assert arrived[0].payload.to_bytes() == b"\0\1\0\0\6\0\0\0hello\0"
     sequence, stamp, length, gid = struct.unpack("<qqB16s", arrived[0].attachment.to_bytes())
     assert (sequence, length, gid) == (1, 16, publisher.endpoint.gid)
@@ -99,7 +99,7 @@ def test_a_client_that_asks_by_hand(session, stranger, domain):
     answers: list[Any] = []
     done = threading.Event()
     key = f"{domain}/add/{ADD}"
-    deadline = time.monotonic() + PATIENCE_S
+    deadline = time.monotonic() + TIMEOUT_S
     querier = stranger.declare_querier(key, target=zenoh.QueryTarget.ALL_COMPLETE)
     while not querier.matching_status.matching and time.monotonic() < deadline:
         session.graph.wait_for(lambda: False, 0.01)
@@ -108,10 +108,10 @@ def test_a_client_that_asks_by_hand(session, stranger, domain):
         payload=b"\0\1\0\0" + struct.pack("<qq", 3, 4),
         attachment=attachment(5, gid),
     )
-    request, identity, *_ = requests.wait(1, PATIENCE_S)[0]
+    request, identity, *_ = requests.wait(1, TIMEOUT_S)[0]
     assert (request.a, request.b, identity.client, identity.sequence) == (3, 4, gid, 5)
     service.reply(identity, AddTwoInts.Response(sum=7))
-    assert done.wait(PATIENCE_S)
+    assert done.wait(TIMEOUT_S)
     assert answers[0].ok.payload.to_bytes() == b"\0\1\0\0" + struct.pack("<q", 7)
     sequence, _, _, client = struct.unpack("<qqB16s", answers[0].ok.attachment.to_bytes())
     assert (sequence, client) == (5, gid)
@@ -123,9 +123,9 @@ def test_tokens_that_are_none_of_ros_harm_nobody(session, stranger, domain):
         for rest in ("", "/x", "/a/b/c/NN/%/%/x", "/a/x/y/MP/%/%/x/%t/q/w/e", "/a/1/2/MP/%/%/x")
     ]
     held.append(stranger.liveliness().declare_token(f"@ros2_lv/{domain}/{stranger.zid()}/0/0/NN/%/%/robot"))
-    assert session.graph.wait_for(lambda: [one.name for one in session.graph.nodes()] == ["robot"], PATIENCE_S)
+    assert session.graph.wait_for(lambda: [one.name for one in session.graph.nodes()] == ["robot"], TIMEOUT_S)
     held.pop().undeclare()
-    assert session.graph.wait_for(lambda: not session.graph.nodes(), PATIENCE_S)
+    assert session.graph.wait_for(lambda: not session.graph.nodes(), TIMEOUT_S)
 
 
 def test_a_path_that_is_too_long_for_a_socket_is_no_obstacle(domain, tmp_path, monkeypatch):
@@ -135,7 +135,7 @@ def test_a_path_that_is_too_long_for_a_socket_is_no_obstacle(domain, tmp_path, m
     one, other = (Session(make_backend(Environment(domain))) for _ in range(2))
     try:
         node_of(one, "here")
-        assert other.graph.wait_for(lambda: bool(other.graph.nodes()), PATIENCE_S)
+        assert other.graph.wait_for(lambda: bool(other.graph.nodes()), TIMEOUT_S)
     finally:
         one.close()
         other.close()
@@ -255,9 +255,9 @@ def test_a_router_joins_who_would_not_meet_and_may_come_late(domain, tmp_path, m
         inbox = subscribe(one, node_of(one, "listener"), "/chatter", String)
         publisher = two.create_publisher(node_of(two, "talker"), "/chatter", String, Qos())
         router = router_at(port, monkeypatch)
-        assert two.graph.wait_for(lambda: publisher.is_heard, PATIENCE_S)
+        assert two.graph.wait_for(lambda: publisher.is_heard, TIMEOUT_S)
         publisher.publish(String(data="hello"))
-        assert inbox.wait(1, PATIENCE_S)[0][0].data == "hello"
+        assert inbox.wait(1, TIMEOUT_S)[0][0].data == "hello"
         router.close()
     finally:
         one.close()

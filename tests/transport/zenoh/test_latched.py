@@ -20,7 +20,7 @@ from daidalos.transport.zenoh import attachment
 from daidalos.transport.zenoh.keys import gid_of
 from daidalos.transport.zenoh.latched import History
 from transport.test_sessions import node_of, subscribe
-from transport.zenoh.test_backend import PATIENCE_S, TEXT, token
+from transport.zenoh.test_backend import TEXT, TIMEOUT_S, token
 
 LATCHED = Qos(durability=Durability.TRANSIENT_LOCAL, depth=2)
 TOPIC = "/kept"
@@ -41,7 +41,7 @@ class Reader:
         )
 
     def read(self, count: int) -> list[str]:
-        return [self._heard.get(timeout=PATIENCE_S) for _ in range(count)]
+        return [self._heard.get(timeout=TIMEOUT_S) for _ in range(count)]
 
 
 class Writer:
@@ -77,7 +77,7 @@ def _text(data: bytes) -> str:
 
 def until(condition: Callable[[], Any]) -> None:
     """Look again and again: nothing tells of what happens within zenoh."""
-    deadline = time.monotonic() + PATIENCE_S
+    deadline = time.monotonic() + TIMEOUT_S
     while not condition() and time.monotonic() < deadline:
         time.sleep(0.005)
     assert condition()
@@ -108,22 +108,22 @@ def test_we_have_the_history_of_zenohs_publisher_whichever_comes_first(session: 
     early = subscribe(session, node, TOPIC, String, LATCHED)
     writer = Writer(stranger, domain)
     writer.write("a", "b")
-    assert [message.data for message, _ in early.wait(2, PATIENCE_S)] == ["a", "b"]
+    assert [message.data for message, _ in early.wait(2, TIMEOUT_S)] == ["a", "b"]
     writer.write("c")
-    assert [message.data for message, _ in early.wait(3, PATIENCE_S)] == ["a", "b", "c"]
+    assert [message.data for message, _ in early.wait(3, TIMEOUT_S)] == ["a", "b", "c"]
     late = subscribe(session, node, TOPIC, String, LATCHED)
-    assert [message.data for message, _ in late.wait(2, PATIENCE_S)] == ["b", "c"]
+    assert [message.data for message, _ in late.wait(2, TIMEOUT_S)] == ["b", "c"]
     writer.write("d")
-    assert [message.data for message, _ in late.wait(3, PATIENCE_S)] == ["b", "c", "d"]
+    assert [message.data for message, _ in late.wait(3, TIMEOUT_S)] == ["b", "c", "d"]
 
 
 def test_samples_without_attachments_are_told_apart(session: Session, stranger, domain):
     writer = Writer(stranger, domain)
     writer.write("a", "b", attaching=False)
     inbox = subscribe(session, node_of(session, "me"), TOPIC, String, LATCHED)
-    assert [message.data for message, _ in inbox.wait(2, PATIENCE_S)] == ["a", "b"]
+    assert [message.data for message, _ in inbox.wait(2, TIMEOUT_S)] == ["a", "b"]
     writer.write("c", attaching=False)
-    assert [message.data for message, _ in inbox.wait(3, PATIENCE_S)] == ["a", "b", "c"]
+    assert [message.data for message, _ in inbox.wait(3, TIMEOUT_S)] == ["a", "b", "c"]
 
 
 def test_publishers_that_come_and_go_leave_no_keys(session: Session, stranger, domain):

@@ -32,7 +32,7 @@ def test_a_number_rests_before_it_is_given_again_to_the_like(clock):
 
 
 def test_what_is_remembered_is_limited(clock, monkeypatch):
-    monkeypatch.setattr(numbers, "_MOST", 3)
+    monkeypatch.setattr(numbers, "_MAX_ENTITIES", 3)
     given = Numbers()
     for name in "abcd":
         given.give_back(name, given.take(name))

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from daidalos.transport.graph import Graph
 
 NODE_NAME_PREFIX = "_ros2cli"
-_PATIENCE_S = 2.0
+_TIMEOUT_S = 2.0
 """How long processes of this machine that are there may take to tell of themselves."""
 
 
@@ -76,7 +76,7 @@ def direct_node(args: argparse.Namespace, name: str | None = None, **options: An
 def wait_for_discovery(node: Node, spin_time: float | None) -> None:
     """Wait until who is on this machine has told of itself, and `spin_time` seconds for who is elsewhere."""
     session = node.handle.session
-    session.backend.settle(_PATIENCE_S)
+    session.backend.settle(_TIMEOUT_S)
     if spin_time:
         session.graph.wait_for(lambda: False, spin_time)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from difflib import SequenceMatcher
 
-_LEAST = 0.7
+_MIN_LIKENESS = 0.7
 _LEAF = 0.7
 """Weight of the last part of a name; what stands before it is often shared by names that mean different things."""
 
@@ -13,7 +13,7 @@ _LEAF = 0.7
 def near(name: str, known: Iterable[str]) -> list[str]:
     """Return at most three of the known names that are like a name, the nearest first."""
     likeness = {other: _likeness(name, other) for other in known if other != name}
-    found = [other for other in likeness if likeness[other] >= _LEAST]
+    found = [other for other in likeness if likeness[other] >= _MIN_LIKENESS]
     return sorted(found, key=lambda other: (-likeness[other], other))[:3]
 
 

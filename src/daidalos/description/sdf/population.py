@@ -11,7 +11,7 @@ import numpy as np
 from daidalos.description.markup import Element
 from daidalos.description.pose import Pose, Vector
 
-MOST = 10_000
+MAX_MODELS = 10_000
 
 Places = Callable[[int, Vector, np.random.Generator], Iterator[Vector]]
 
@@ -27,8 +27,8 @@ def population_poses(element: Element, pose: Pose) -> list[Pose]:
         Of the region's centre.
     """
     count = element.integer_of("model_count", default=1)
-    if count > MOST:
-        raise element.error(f"expected at most {MOST} models, got {count}")
+    if count > MAX_MODELS:
+        raise element.error(f"expected at most {MAX_MODELS} models, got {count}")
     distribution = element.first("distribution") or Element("distribution")
     kind = distribution.text_of("type", default="random")
     if kind == "grid":
@@ -64,8 +64,8 @@ def _region(element: Element, count: int, kind: str, random: np.random.Generator
 def _grid(distribution: Element) -> list[Vector]:
     rows = distribution.integer_of("rows", default=1)
     columns = distribution.integer_of("cols", default=1)
-    if rows * columns > MOST:
-        raise distribution.error(f"expected at most {MOST} models, got {rows * columns}")
+    if rows * columns > MAX_MODELS:
+        raise distribution.error(f"expected at most {MAX_MODELS} models, got {rows * columns}")
     dx, dy, _ = distribution.vector_of("step", size=3, default=(0.5, 0.5, 0.0))
     return [
         (dx * (column - (columns - 1) / 2), dy * (row - (rows - 1) / 2), 0.0)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-_LEAST_POSES = 3
+_MIN_POSES = 3
 _WORST_CONDITION = 1e6
 
 
@@ -60,8 +60,8 @@ def calibrate_tool(positions: ArrayLike, rotations: ArrayLike) -> ToolCalibratio
     r = np.asarray(rotations, float)
     if p.ndim != 2 or p.shape[1:] != (3,) or r.shape != (len(p), 3, 3):
         raise CalibrationError(f"expected n positions and n 3x3 rotations, got shapes {p.shape} and {r.shape}")
-    if len(p) < _LEAST_POSES:
-        raise CalibrationError(f"{len(p)} poses are too few: touch the point from at least {_LEAST_POSES} directions")
+    if len(p) < _MIN_POSES:
+        raise CalibrationError(f"{len(p)} poses are too few: touch the point from at least {_MIN_POSES} directions")
     equations = np.concatenate([r, np.tile(-np.eye(3), (len(p), 1, 1))], axis=2).reshape(-1, 6)
     condition = float(np.linalg.cond(equations))
     if condition > _WORST_CONDITION:

@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from daidalos.industry.calibration.tool import CalibrationError
 
-_LEAST_SINE = 1e-3
+_MIN_SINE = 1e-3
 
 
 def work_object_frame(x1: ArrayLike, x2: ArrayLike, y1: ArrayLike) -> NDArray[np.float64]:
@@ -34,7 +34,7 @@ def work_object_frame(x1: ArrayLike, x2: ArrayLike, y1: ArrayLike) -> NDArray[np
     along, towards = second - first, third - first
     lengths = np.linalg.norm(along) * np.linalg.norm(towards)
     normal = np.cross(along, towards)
-    if np.linalg.norm(normal) <= _LEAST_SINE * lengths:
+    if np.linalg.norm(normal) <= _MIN_SINE * lengths:
         raise CalibrationError("the three points coincide or lie on one line: touch y1 farther from the x axis")
     x = along / np.linalg.norm(along)
     z = normal / np.linalg.norm(normal)

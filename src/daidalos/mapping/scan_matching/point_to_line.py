@@ -19,7 +19,7 @@ POINT_DEVIATION = 0.1
 NOISE = 0.03
 """Distance [m] from its line beyond which a point counts less and less."""
 
-LEAST_MATCHES = 6
+MIN_MATCHES = 6
 """Points that must have found a line for a step to be taken."""
 
 SAME_FACE = 0.7
@@ -49,14 +49,14 @@ class Refinement:
         standard deviation of a point 1 m.
     residual : float
         Root of the weighted mean squared distance [m] of the matched points from their lines.
-    share : float
+    inlier_ratio : float
         Part of the points that have normals that found a line.
     """
 
     pose: Array
     normal_matrix: Array
     residual: float
-    share: float
+    inlier_ratio: float
 
 
 def refine(
@@ -83,7 +83,7 @@ def refine(
     iterations : int
         Most steps taken.
     """
-    pose, normal_matrix, residual, share = _refine(
+    pose, normal_matrix, residual, inlier_ratio = _refine(
         points,
         normals,
         reference.points,
@@ -96,7 +96,7 @@ def refine(
         float(reach),
         int(iterations),
     )
-    return Refinement(pose, normal_matrix, residual, share)
+    return Refinement(pose, normal_matrix, residual, inlier_ratio)
 
 
 def match_information(normal_matrix: Array) -> Array:
@@ -133,7 +133,7 @@ def _refine(
     matrix = np.zeros((3, 3))
     vector = np.zeros(3)
     residual = 0.0
-    share = 0.0
+    inlier_ratio = 0.0
     for _ in range(iterations):
         cosine, sine = np.cos(yaw), np.sin(yaw)
         scale = max(NOISE, 0.5 * limit)
@@ -166,8 +166,8 @@ def _refine(
             ay = cosine * ny - sine * nx
             at = px * ay - py * ax
             _add_row(matrix, vector, ax, ay, at, weight, error)
-        share = matched / usable if usable > 0 else 0.0
-        if matched < LEAST_MATCHES:
+        inlier_ratio = matched / usable if usable > 0 else 0.0
+        if matched < MIN_MATCHES:
             break
         residual = np.sqrt(squares / weights)
         dx, dy, turn = _solve(matrix, vector, DAMPING * weights)
@@ -178,7 +178,7 @@ def _refine(
             break
         limit = max(min(4.0 * NOISE, reach), 0.7 * limit)
     pose = np.array([x, y, (yaw + np.pi) % (2.0 * np.pi) - np.pi])
-    return pose, matrix, residual, share
+    return pose, matrix, residual, inlier_ratio
 
 
 @compiled

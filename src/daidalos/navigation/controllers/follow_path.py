@@ -157,12 +157,12 @@ class FollowPath:
         try:
             command = self.controller.compute_velocity_commands(control)
         except NoValidControl as error:
-            self._lose_patience(error, now)
+            self._check_failure_tolerance(error, now)
             return FollowPathStep(np.zeros(3), False, distance, path, str(error))
         self._last_success = now
         return FollowPathStep(command, False, distance, path)
 
-    def _lose_patience(self, error: ControllerError, now: float) -> None:
+    def _check_failure_tolerance(self, error: ControllerError, now: float) -> None:
         """Fail when the controller has failed for too long."""
         if self.failure_tolerance == 0.0:
             raise error

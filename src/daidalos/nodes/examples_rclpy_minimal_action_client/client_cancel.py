@@ -9,7 +9,7 @@ from daidalos.nodes.examples_rclpy_minimal_action_client.client import ORDER, Mi
 from daidalos.nodes.fibonacci import run_client
 from daidalos.nodes.runner import run_program
 
-_PATIENCE_S = 2.0
+_CANCEL_AFTER_S = 2.0
 
 
 class CancellingActionClient(MinimalActionClient):
@@ -23,7 +23,7 @@ class CancellingActionClient(MinimalActionClient):
             self.get_logger().info("Canceling goal")
             goal_handle.cancel_goal_async().add_done_callback(lambda answer: self._on_cancelled(answer.result()))
 
-        timer = self.create_timer(_PATIENCE_S, cancel)
+        timer = self.create_timer(_CANCEL_AFTER_S, cancel)
 
     def _on_cancelled(self, answer: Any) -> None:
         cancelled = bool(answer.goals_canceling)
@@ -32,7 +32,7 @@ class CancellingActionClient(MinimalActionClient):
 
 
 def main() -> int:
-    """Ask for ten, and lose patience."""
+    """Ask for ten numbers and cancel after the timeout."""
     return run_program(lambda: run_client(CancellingActionClient, ORDER, talkative=True))
 
 

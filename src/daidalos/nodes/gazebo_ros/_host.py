@@ -26,7 +26,7 @@ EMPTY_WORLD = """<sdf version="1.6"><world name="default">
 </world></sdf>"""
 
 
-_MOST_DELETED = 100
+_MAX_DELETED = 100
 _ONE_NUMBER = (JointType.REVOLUTE, JointType.CONTINUOUS, JointType.PRISMATIC)
 
 
@@ -136,7 +136,7 @@ class Host:
             simulation.delete(name)
             self._deleted.pop(name, None)
             self._deleted[name] = deleted
-            if len(self._deleted) > _MOST_DELETED:
+            if len(self._deleted) > _MAX_DELETED:
                 del self._deleted[next(iter(self._deleted))]
             self.spawned.discard(name)
             self._changed(simulation)

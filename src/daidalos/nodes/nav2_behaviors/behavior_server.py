@@ -32,7 +32,7 @@ from daidalos.nodes.parameters import declare_plugin
 from daidalos.nodes.runner import run
 
 _LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-_PATIENCE_S = 10.0
+_TIMEOUT_S = 10.0
 """How long a goal waits for the robot's place and the costmap, which come soon after the start if all is well."""
 
 
@@ -160,7 +160,7 @@ class BehaviorServer(LifecycleNode):
         """Wait for the robot's place and for what is around it: the first goal may come before they do."""
         begun = time.monotonic()
         with Cycle(self, self._frequency) as cycle:
-            while not goal_handle.is_cancel_requested and time.monotonic() - begun < _PATIENCE_S:
+            while not goal_handle.is_cancel_requested and time.monotonic() - begun < _TIMEOUT_S:
                 known = self._buffer.can_transform(self._frame, self._base_frame, Time())
                 if self._costmap is not None and known:
                     return

@@ -14,7 +14,7 @@ from rclpy.utilities import remove_ros_args
 
 from daidalos.nodes.runner import UserError, run_program
 
-_PATIENCE_S = 2.0
+_TIMEOUT_S = 2.0
 
 
 def parser(program: str, description: str) -> argparse.ArgumentParser:
@@ -97,7 +97,7 @@ def _wait_for_input(node: Node, executor: Executor, arguments: argparse.Namespac
     stop = node.handle.graph.listen(lambda added, what: guard.trigger())
     guard.trigger()
     try:
-        executor.spin_until_future_complete(found, None if arguments.wait_for_start else _PATIENCE_S)
+        executor.spin_until_future_complete(found, None if arguments.wait_for_start else _TIMEOUT_S)
     finally:
         stop()
     infos = node.get_publishers_info_by_topic(source)

@@ -24,7 +24,7 @@ class ThrottleNode(Tool):
         super().__init__("throttle", **kwargs)
         kind = str(self.declare_parameter("throttle_type", "messages").value)
         self._rate = float(self.declare_parameter("msgs_per_sec", 1.0).value or 0.0)
-        self._most_bytes = int(self.declare_parameter("bytes_per_sec", 0).value or 0)
+        self._max_bytes_per_s = int(self.declare_parameter("bytes_per_sec", 0).value or 0)
         self._window_s = float(self.declare_parameter("window", 1.0).value or 0.0)
         wall = bool(self.declare_parameter("use_wall_clock", False).value)
         self._time = Clock(clock_type=ClockType.STEADY_TIME) if wall else self.get_clock()
@@ -34,7 +34,7 @@ class ThrottleNode(Tool):
             raise RuntimeError(f"throttle_type must be 'messages' or 'bytes', not '{kind}'")
         if kind == "messages" and self._rate <= 0.0:
             raise RuntimeError("msgs_per_sec must be above zero")
-        if kind == "bytes" and (self._most_bytes <= 0 or self._window_s <= 0.0):
+        if kind == "bytes" and (self._max_bytes_per_s <= 0 or self._window_s <= 0.0):
             raise RuntimeError("bytes_per_sec and window must be above zero")
         self._lets_through = self._is_due if kind == "messages" else self._is_within
 
@@ -57,7 +57,7 @@ class ThrottleNode(Tool):
     def _is_within(self, now_ns: int, size: int) -> bool:
         while self._sent and self._sent[0][0] < now_ns - self._window_s * 1e9:
             self._sent.popleft()
-        if (sum(sent for _, sent in self._sent) + size) / self._window_s > self._most_bytes:
+        if (sum(sent for _, sent in self._sent) + size) / self._window_s > self._max_bytes_per_s:
             return False
         self._sent.append((now_ns, size))
         return True

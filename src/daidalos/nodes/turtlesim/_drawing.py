@@ -12,8 +12,8 @@ from daidalos.nodes.turtlesim._turtle import SIZE, Pen
 
 PIXELS = 500
 _SCALE = (PIXELS - 1) / SIZE
-_MOST_NEWS = 1000
-_MOST_LINES = 40_000  # ten minutes of driving; older lines are shown as a picture
+_MAX_NEWS = 1000
+_MAX_LINES = 40_000  # ten minutes of driving; older lines are shown as a picture
 
 
 class Drawing:
@@ -48,8 +48,8 @@ class Drawing:
         self.drawn += 1
         self._lines.append((*start, *end))
         self._pens.append((pen.r, pen.g, pen.b, max(pen.width, 1)))
-        if len(self._lines) > 2 * _MOST_LINES:
-            del self._lines[:_MOST_LINES], self._pens[:_MOST_LINES]
+        if len(self._lines) > 2 * _MAX_LINES:
+            del self._lines[:_MAX_LINES], self._pens[:_MAX_LINES]
         self._spread_ink(_pixel(start), _pixel(end), pen)
 
     def colour_at(self, x: float, y: float) -> tuple[int, int, int] | None:
@@ -64,7 +64,7 @@ class Drawing:
         None where they are too many: who was not listening for that long asks for all of them.
         """
         count, self._told = self.drawn - self._told, self.drawn
-        return self._newest(count if count <= _MOST_NEWS else 0)
+        return self._newest(count if count <= _MAX_NEWS else 0)
 
     def all_lines(self) -> tuple[NDArray[np.float32], NDArray[np.uint8]]:
         """Return the newest lines, as `news` does; `picture` shows the others."""

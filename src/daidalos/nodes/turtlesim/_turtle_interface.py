@@ -14,7 +14,7 @@ from daidalos.nodes.turtlesim._turtle import Pen, Turtle
 if TYPE_CHECKING:
     from rclpy.node import Node
 
-_MOST = 1e30  # of units; what is more, or no number, is a mistake
+_MAX_MAGNITUDE = 1e30  # of units; what is more, or no number, is a mistake
 
 
 @dataclass(frozen=True)
@@ -129,7 +129,7 @@ class TurtleInterface:
 
     def _can_be(self, *numbers: float) -> bool:
         """Tell whether numbers can be places and speeds; complain where they can not."""
-        if all(abs(number) < _MOST for number in numbers):
+        if all(abs(number) < _MAX_MAGNITUDE for number in numbers):
             return True
         self._node.get_logger().error(f"Turtle [{self.turtle.name}] can not obey {numbers}")
         return False

@@ -19,7 +19,7 @@ from daidalos.description.meshes import TriangleMesh
 CONVEX_ENOUGH = 0.95
 """A mesh that fills this share of its convex hull is taken as convex."""
 
-MOST_HULLS = 24
+MAX_HULLS = 24
 """A mesh in more pieces than this gets one hull around all of them, unless it is to be decomposed."""
 
 _log = logging.getLogger(__name__)
@@ -44,7 +44,7 @@ def convex_parts(mesh: TriangleMesh, key: str, decompose: bool) -> tuple[list[Tr
         Whether they differ from the mesh.
     """
     pieces = connected_pieces(mesh)
-    if not decompose and len(pieces) > MOST_HULLS:
+    if not decompose and len(pieces) > MAX_HULLS:
         return [_hull(mesh.vertices)], True
     hulls = [_hull(piece.vertices) for piece in pieces]
     convex = [_is_convex(piece, hull) for piece, hull in zip(pieces, hulls, strict=True)]

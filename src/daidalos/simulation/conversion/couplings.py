@@ -12,7 +12,7 @@ from daidalos.simulation.conversion.joints import add_joints
 
 SOLREF = (0.004, 1.0)
 _GHOST_SHARE = 0.01
-_LEAST_MASS = 1e-4
+_MIN_MASS = 1e-4
 
 
 def couple(spec: Any, follower: str, leader: str, offset: float, multiplier: float) -> None:
@@ -58,7 +58,7 @@ def close_loop(spec: Any, parent: Any, child: Any, joint: Joint, name: str) -> l
         Names of MuJoCo's joints.
     """
     ghost = _add_body(parent, f"{name}::ghost", joint.origin @ joint.anchor.inverse)
-    mass = max(_GHOST_SHARE * float(child.mass), _LEAST_MASS)
+    mass = max(_GHOST_SHARE * float(child.mass), _MIN_MASS)
     ghost.explicitinertial = True
     ghost.mass = mass
     ghost.ipos = child.ipos

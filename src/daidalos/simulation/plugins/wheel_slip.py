@@ -91,7 +91,7 @@ class WheelSlip(Plugin):
         self._axes = np.array(axes).reshape(-1, 3)
         self._radii = np.array([wheel.radius for wheel in wheels])
         self._compliances = np.array([(w.lateral / w.normal_force, w.longitudinal / w.normal_force) for w in wheels])
-        self._most = np.array([wheel.friction * wheel.normal_force for wheel in wheels])
+        self._max_force = np.array([wheel.friction * wheel.normal_force for wheel in wheels])
         moments = model.dof_armature[self._dofs] + model.body_inertia[self._bodies].max(axis=1)
         masses = model.body_subtreemass[model.body_rootid[self._bodies]]
         self._limits = 0.5 / (len(wheels) / masses + self._radii**2 / moments) / model.opt.timestep
@@ -143,7 +143,7 @@ class WheelSlip(Plugin):
         """Return the forces (n, 2) to the left and ahead that hold the contacts."""
         compliances = self._compliances * np.maximum(np.abs(rims), 1e-3)[:, None]
         grips = -slips * np.minimum(1 / np.maximum(compliances, 1e-9), self._limits[:, None])
-        scale = np.minimum(1.0, self._most / np.maximum(np.linalg.norm(grips, axis=1), 1e-9))
+        scale = np.minimum(1.0, self._max_force / np.maximum(np.linalg.norm(grips, axis=1), 1e-9))
         held: Array = grips * scale[:, None]
         return held
 

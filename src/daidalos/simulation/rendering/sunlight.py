@@ -12,7 +12,7 @@ import numpy as np
 from daidalos.simulation.rendering.compilation import compiled, compiled_in_place, compiled_loosely
 
 BLOCK_BITS = 4
-_MOST_BLOCKS = 16
+_MAX_BLOCKS = 16
 """A run of pixels that lies in more blocks than this is asked pixel by pixel."""
 
 
@@ -55,7 +55,7 @@ def clear(shadow: Any, coarse: Any, aim: Any, first: Any, inverse_first: Any, la
     deepest = max(d0, d1)
     left, right = int(min(x0, x1)) >> BLOCK_BITS, int(max(x0, x1)) >> BLOCK_BITS
     top, bottom = int(min(y0, y1)) >> BLOCK_BITS, int(max(y0, y1)) >> BLOCK_BITS
-    if (right - left + 1) * (bottom - top + 1) > _MOST_BLOCKS:
+    if (right - left + 1) * (bottom - top + 1) > _MAX_BLOCKS:
         return False
     for block_row in range(top, bottom + 1):
         for block in range(left, right + 1):

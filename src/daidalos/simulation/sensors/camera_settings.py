@@ -31,7 +31,7 @@ ENCODINGS = {
     "R_FLOAT16": "rgb8",
     "R_FLOAT32": "rgb8",
 }
-_MOST_PIXELS = 1 << 26
+_MAX_PIXELS = 1 << 26
 
 
 @dataclass(frozen=True)
@@ -94,7 +94,7 @@ def read_camera(element: Element) -> CameraSettings:
     """
     image = element.first("image") or _empty("image", element)
     width, height = image.integer_of("width", default=320), image.integer_of("height", default=240)
-    if not (width > 0 and height > 0 and width * height <= _MOST_PIXELS):
+    if not (width > 0 and height > 0 and width * height <= _MAX_PIXELS):
         raise image.error(f"expected a width and a height of at least 1 pixel, got {width} x {height}")
     near, far = _clip(element.first("clip"), 0.1, 100.0)
     depth = element.first("depth_camera") or _empty("depth_camera", element)

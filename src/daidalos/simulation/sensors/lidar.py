@@ -22,7 +22,7 @@ from daidalos.simulation.sensors.base import Sensor
 
 Array = NDArray[np.float64]
 
-MOST_RAYS = 1_000_000
+MAX_RAYS = 1_000_000
 _TURN = 4 * math.pi
 
 
@@ -219,8 +219,8 @@ def _fan(element: Element | None, samples: int, scan: Element) -> Fan:
     asked = element.integer_of("samples", default=samples)
     wanted = asked * element.number_of("resolution", default=1.0)
     count = 1 if 0 < wanted < 1 else round(wanted)
-    if not 1 <= count <= MOST_RAYS:
-        raise element.error(f"expected 1 to {MOST_RAYS} rays, got {count}")
+    if not 1 <= count <= MAX_RAYS:
+        raise element.error(f"expected 1 to {MAX_RAYS} rays, got {count}")
     first = element.number_of("min_angle", default=0.0)
     last = element.number_of("max_angle", default=0.0)
     if not -_TURN <= first <= _TURN or not -_TURN <= last <= _TURN:

@@ -8,7 +8,7 @@ from xml.sax.saxutils import quoteattr
 from daidalos.transport.environment import DiscoveryRange, Environment
 
 _LOCALHOST = "127.0.0.1"
-_MOST_PARTICIPANTS = 99
+_MAX_PARTICIPANTS = 99
 """Highest index of a participant: how many processes of one machine find each other without multicast."""
 _FIRST_PORT, _PORTS_PER_DOMAIN, _LAST_PORT = 7400, 250, 65535
 _DATA_PORT_OFFSET = 11
@@ -50,6 +50,6 @@ def _peers(environment: Environment) -> str:
     listed = "".join(f"<Peer address={quoteattr(peer)}/>" for peer in (_LOCALHOST, *environment.static_peers))
     return (
         "<Discovery><ParticipantIndex>auto</ParticipantIndex>"
-        f"<MaxAutoParticipantIndex>{min(_MOST_PARTICIPANTS, highest)}</MaxAutoParticipantIndex>"
+        f"<MaxAutoParticipantIndex>{min(_MAX_PARTICIPANTS, highest)}</MaxAutoParticipantIndex>"
         f"<Peers>{listed}</Peers></Discovery>"
     )

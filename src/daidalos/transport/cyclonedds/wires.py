@@ -37,8 +37,8 @@ _REQUEST_ID = struct.Struct("<QQ")
 _PADDING = (b"", b"\0\0\0", b"\0\0", b"\0")
 _JOINED = 4096
 """Up to so many items buffers are joined; larger ones are handed over where they are."""
-_CLIENT_PATIENCE_NS = 100_000_000
-_MOST_REACHABLE = 1000
+_CLIENT_TIMEOUT_NS = 100_000_000
+_MAX_REACHABLE = 1000
 """So many clients are remembered, whether they still live or not."""
 
 
@@ -205,7 +205,7 @@ class DdsService(WireService):
         client, writer = _REQUEST_ID.unpack(request.client)
         with self._lock:
             if writer not in self._reachable and self._wait_for_reader(writer):
-                if len(self._reachable) > _MOST_REACHABLE:
+                if len(self._reachable) > _MAX_REACHABLE:
                     self._reachable.clear()
                 self._reachable.add(writer)
         self._writer.write(_joined(client, request.sequence, data))
@@ -221,7 +221,7 @@ class DdsService(WireService):
         waitset = library.dds_create_waitset(library.dds_get_participant(self._writer.entity))
         library.dds_set_status_mask(self._writer.entity, PUBLICATION_MATCHED_STATUS)
         library.dds_waitset_attach(waitset, self._writer.entity, 0)
-        deadline = time.monotonic_ns() + _CLIENT_PATIENCE_NS
+        deadline = time.monotonic_ns() + _CLIENT_TIMEOUT_NS
         found = False
         while not (found := self._matches(client)) and (left := deadline - time.monotonic_ns()) > 0:
             library.dds_waitset_wait(waitset, None, 0, left)

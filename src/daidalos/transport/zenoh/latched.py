@@ -25,9 +25,9 @@ from daidalos.transport.zenoh.pool import Pool
 from daidalos.transport.zenoh.threads import on_lasting_thread
 from daidalos.transport.zenoh.wires import ZenohPublisher, ZenohSubscription
 
-_PATIENCE_S = 5.0
+_TIMEOUT_S = 5.0
 """How long a session may take to answer; then it is asked again, for as long as it can be reached."""
-_MOST_PUBLISHERS = 10_000
+_MAX_PUBLISHERS = 10_000
 """Of so many publishers it is remembered what they last sent."""
 
 Kept = deque[tuple[bytes, bytes, zenoh.Timestamp]]
@@ -249,7 +249,7 @@ class History:
                 target=zenoh.QueryTarget.ALL,
                 consolidation=zenoh.ConsolidationMode.NONE,
                 accept_replies=zenoh.ReplyKeyExpr.ANY,
-                timeout=_PATIENCE_S,
+                timeout=_TIMEOUT_S,
                 allowed_destination=zenoh.Locality.REMOTE,
             )
 
@@ -288,7 +288,7 @@ class History:
 
     def _note(self, identity: Identity) -> None:
         number, stamp, gid = identity
-        if len(self._last) >= _MOST_PUBLISHERS and gid not in self._last:
+        if len(self._last) >= _MAX_PUBLISHERS and gid not in self._last:
             del self._last[next(iter(self._last))]
         self._last[gid] = (number, stamp)
 

@@ -14,7 +14,7 @@ from collections.abc import Hashable
 
 _REST_S = 2.0
 """How long a number is not given again: what was sent under it, and the news of its end, are on their way."""
-_MOST = 10_000
+_MAX_ENTITIES = 10_000
 """So many kinds of entities are remembered."""
 
 
@@ -37,6 +37,6 @@ class Numbers:
     def give_back(self, what: Hashable, number: int) -> None:
         """Let an entity's number go."""
         with self._lock:
-            if len(self._free) >= _MOST and what not in self._free:
+            if len(self._free) >= _MAX_ENTITIES and what not in self._free:
                 self._free.clear()
             self._free.setdefault(what, deque()).append((time.monotonic(), number))

@@ -14,7 +14,7 @@ from daidalos.transport.zenoh.config import shared_memory_usable
 LARGE = 65536
 """Messages below so many bytes are quicker left to zenoh."""
 _SIZE = 16 * 2**20
-_PATIENCE_S = 1.0
+_TIMEOUT_S = 1.0
 
 
 class Pool:
@@ -34,7 +34,7 @@ class Pool:
         self._lock = threading.Lock()
         self._provider: Any = None
         self._full_since: float | None = None
-        self._patience = _PATIENCE_S
+        self._timeout = _TIMEOUT_S
 
     def place(self, data: bytes) -> Any:
         """Return a large message in shared memory; any other, or one for which there is no room, as it is."""
@@ -77,6 +77,6 @@ class Pool:
         now = time.monotonic()
         if self._full_since is None:
             self._full_since = now
-        elif now - self._full_since > self._patience:
+        elif now - self._full_since > self._timeout:
             self._provider = self._full_since = None
-            self._patience *= 2
+            self._timeout *= 2

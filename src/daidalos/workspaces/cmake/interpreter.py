@@ -13,7 +13,7 @@ from daidalos.workspaces.cmake.syntax import Block, Command, Node, parse
 from daidalos.workspaces.cmake.values import expand, split
 from daidalos.workspaces.errors import WorkspaceError
 
-_MOST_ROUNDS = 10_000
+_MAX_ROUNDS = 10_000
 
 
 @dataclass(frozen=True)
@@ -172,7 +172,7 @@ class Interpreter:
                 raise self._fault(head, "foreach(RANGE) needs whole numbers") from None
             start, stop = (0, numbers[0]) if len(numbers) == 1 else (numbers[0], numbers[1])
             step = numbers[2] if len(numbers) == 3 else 1
-            return [str(number) for number in range(start, stop + 1, step)][:_MOST_ROUNDS]
+            return [str(number) for number in range(start, stop + 1, step)][:_MAX_ROUNDS]
         if values[:1] != ["IN"]:
             return values
         items: list[str] = []
@@ -185,10 +185,10 @@ class Interpreter:
         return items
 
     def _run_while(self, head: Command, body: Sequence[Node]) -> None:
-        for _ in range(_MOST_ROUNDS):
+        for _ in range(_MAX_ROUNDS):
             if not self._is_true(head) or self._leaves_loop(body):
                 return
-        raise self._fault(head, f"while() did not end after {_MOST_ROUNDS} rounds")
+        raise self._fault(head, f"while() did not end after {_MAX_ROUNDS} rounds")
 
     def _leaves_loop(self, body: Sequence[Node]) -> bool:
         try:

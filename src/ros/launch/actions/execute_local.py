@@ -43,7 +43,7 @@ class ExecuteLocal(Action):
     shell
         Whether a shell runs it.
     sigterm_timeout, sigkill_timeout
-        Seconds of patience; the launch configurations of the same names if not said, 5 where these are not
+        Timeouts [s]; the launch configurations of the same names if not said, 5 where these are not
         set.
     emulate_tty
         Whether the process writes to a pseudo terminal, which makes it print lines at once and in colour.

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
     from .composable_node_container import ComposableNodeContainer
 
-_PATIENCE = 1.0
+_TIMEOUT = 1.0
 
 
 @expose_action("load_composable_node")
@@ -119,7 +119,7 @@ class LoadComposableNodes(Action):
 
     def __load(self, context: LaunchContext, requests: list[Any]) -> None:
         """Load one node after another; runs in a thread of its own."""
-        while not self.__client.wait_for_service(timeout_sec=_PATIENCE):
+        while not self.__client.wait_for_service(timeout_sec=_TIMEOUT):
             if context.is_shutdown:
                 self.__logger.warning(f"Abandoning wait for the container '{self.__container_name}', due to shutdown.")
                 return
@@ -139,7 +139,7 @@ class LoadComposableNodes(Action):
         done = threading.Event()
         future = self.__client.call_async(request)
         future.add_done_callback(lambda _: done.set())
-        while not done.wait(_PATIENCE):
+        while not done.wait(_TIMEOUT):
             if context.is_shutdown:
                 self.__logger.warning(f"Abandoning wait for the container '{self.__container_name}', due to shutdown.")
                 future.cancel()

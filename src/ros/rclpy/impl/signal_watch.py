@@ -17,7 +17,7 @@ from contextlib import contextmanager
 from types import FrameType
 from typing import Any
 
-_PATIENCE_S = 0.1
+_TIMEOUT_S = 0.1
 _runs = 0
 _writer: int | None = None
 _watched: weakref.WeakSet[Any] = weakref.WeakSet()
@@ -88,7 +88,7 @@ def _watch(reader: int) -> None:
     while numbers := os.read(reader, 64):
         fresh, resent = numbers[resent:], max(resent - len(numbers), 0)
         if fresh:
-            time.sleep(_PATIENCE_S)
+            time.sleep(_TIMEOUT_S)
             if main.ident is not None and _runs == seen and signal.getsignal(fresh[-1]) in _watched:
                 resent += 1
                 signal.pthread_kill(main.ident, fresh[-1])

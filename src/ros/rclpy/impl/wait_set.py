@@ -98,13 +98,13 @@ class WaitSet:
                 now = time.monotonic_ns()
                 if deadline is not None and now >= deadline:
                     return
-                changed.wait(self._patience(deadline, now))
+                changed.wait(self._timeout(deadline, now))
                 changed.clear()
         finally:
             for stop in stops:
                 stop()
 
-    def _patience(self, deadline: int | None, now: int) -> float | None:
+    def _timeout(self, deadline: int | None, now: int) -> float | None:
         """Return for how many seconds nothing but a signal of an entity can end the wait."""
         spans = [] if deadline is None else [deadline - now]
         for timer in self._entities["timer"]:

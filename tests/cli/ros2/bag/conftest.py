@@ -23,7 +23,7 @@ from daidalos.bags.writer import BagWriter, WriterOptions
 
 from ..commands import ROS2
 
-PATIENCE_S = 40.0
+TIMEOUT_S = 40.0
 SECOND = 1_000_000_000
 
 
@@ -74,7 +74,7 @@ class Program:
     def wait_for(self, text: str) -> None:
         """Wait until it has printed a text."""
         with self._news:
-            assert self._news.wait_for(lambda: text in self.text, PATIENCE_S), f"no {text!r} in:\n{self.text}"
+            assert self._news.wait_for(lambda: text in self.text, TIMEOUT_S), f"no {text!r} in:\n{self.text}"
 
     def press(self, keys: str) -> None:
         """Press keys."""
@@ -87,15 +87,15 @@ class Program:
 
     def finish(self) -> int:
         """Wait for its end and return the exit status."""
-        status = self._process.wait(PATIENCE_S)
-        self._reader.join(PATIENCE_S)
+        status = self._process.wait(TIMEOUT_S)
+        self._reader.join(TIMEOUT_S)
         return status
 
     def close(self) -> None:
         """Kill it."""
         self._process.kill()
         self._process.wait()
-        self._reader.join(PATIENCE_S)
+        self._reader.join(TIMEOUT_S)
         os.close(self._ours)
 
 
@@ -136,13 +136,13 @@ class Partner:
     def wait_for(self, count: int) -> list[int]:
         """Wait until so many numbers were heard, and return them."""
         with self._news:
-            assert self._news.wait_for(lambda: len(self.numbers) >= count, PATIENCE_S), self.numbers
+            assert self._news.wait_for(lambda: len(self.numbers) >= count, TIMEOUT_S), self.numbers
         return self.numbers
 
     def talk(self, numbers: range) -> None:
         """Say numbers as soon as somebody listens."""
         publisher = self.node.create_publisher(String, "/chatter", QoSProfile(depth=1000))
-        assert self.node.handle.graph.wait_for(lambda: publisher.get_subscription_count() > 0, PATIENCE_S)
+        assert self.node.handle.graph.wait_for(lambda: publisher.get_subscription_count() > 0, TIMEOUT_S)
         for number in numbers:
             publisher.publish(String(data=str(number)))
 

@@ -7,12 +7,12 @@ import WebSocket from "ws";
 
 const { FoxgloveClient } = protocol;
 const { MessageReader, MessageWriter } = serialization;
-const PATIENCE_MS = 15_000;
+const TIMEOUT_MS = 15_000;
 
 setTimeout(() => {
   console.error("took too long");
   process.exit(1);
-}, PATIENCE_MS).unref();
+}, TIMEOUT_MS).unref();
 
 const client = new FoxgloveClient({
   ws: new WebSocket(process.argv[2], [FoxgloveClient.SUPPORTED_SUBPROTOCOL]),

@@ -69,7 +69,7 @@ export class Session {
     const subscriber: Subscriber = { keep, received: received as Listener<never> };
     const others = this.subscribers.get(topic) ?? new Set();
     this.subscribers.set(topic, others.add(subscriber));
-    this.send({ kind: "subscribe", topic, keep: mostOf(others) });
+    this.send({ kind: "subscribe", topic, keep: maxKept(others) });
     const latest = this.latest.get(topic);
     if (latest && keep > 0) {
       queueMicrotask(() => {
@@ -83,7 +83,7 @@ export class Session {
         return;
       }
       if (others.size > 0) {
-        this.send({ kind: "subscribe", topic, keep: mostOf(others) });
+        this.send({ kind: "subscribe", topic, keep: maxKept(others) });
       } else if (this.subscribers.get(topic) === others) {
         this.subscribers.delete(topic);
         this.latest.delete(topic);
@@ -250,10 +250,10 @@ export class Session {
   }
 }
 
-function mostOf(subscribers: Iterable<Subscriber>): number {
-  let most = 0;
+function maxKept(subscribers: Iterable<Subscriber>): number {
+  let kept = 0;
   for (const { keep } of subscribers) {
-    most = Math.max(most, keep);
+    kept = Math.max(kept, keep);
   }
-  return most;
+  return kept;
 }

@@ -10,7 +10,7 @@ const KEY = "displays";
 
 /** What appears by itself when its topic exists and nothing shows it yet. */
 const DISCOVERED = new Set(["LaserScan", "Map", "Path", "PointCloud2", "Marker", "MarkerArray", "PoseArray"]);
-const DISCOVERED_MOST = 24;
+const MAX_DISCOVERED = 24;
 /** What navigation publishes of its inner life repeats the plan: listed, but switched off. */
 const INNER_LIFE = /(received|transformed)_global_plan|(un)?smoothed/;
 
@@ -75,7 +75,7 @@ export class DisplayList {
       const isNew = display && DISCOVERED.has(display.type) && !shown.has(name) && !seen.includes(name);
       return isNew ? [{ display, name }] : [];
     });
-    if (found.length && configs.length < DISCOVERED_MOST) {
+    if (found.length && configs.length < MAX_DISCOVERED) {
       const made = found.map(({ display, name }) =>
         makeConfig(display, { topic: name, ...looksOf(name) }, shortName(name), !INNER_LIFE.test(name)),
       );

@@ -10,7 +10,7 @@ import { TopicDisplay } from "./topic_display";
 
 const Action = { ADD: 0, DELETE: 2, DELETE_ALL: 3 } as const;
 const KEEP = 256;
-const PATIENCE_S = 2;
+const TIMEOUT_S = 2;
 
 interface Shown {
   marker: Marker;
@@ -87,7 +87,7 @@ class MarkerDisplay extends TopicDisplay<Marker | MarkerArray> {
       return true;
     }
     const when = marker.frame_locked ? frame.time : stampOf(marker);
-    const late = frame.page - shown.since > PATIENCE_S;
+    const late = frame.page - shown.since > TIMEOUT_S;
     const clamp = marker.frame_locked || shown.placedIn !== "" || late;
     const found = place(this.context, holder, frame.fixed, frameOf(marker), when, clamp);
     if (found && !holder.visible) {

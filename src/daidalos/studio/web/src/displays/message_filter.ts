@@ -5,7 +5,7 @@ import { Transform, type TransformBuffer, type When } from "../tf/buffer";
 
 const QUEUE = 10;
 /** Page seconds after which a message is given up. */
-const PATIENCE_S = 2;
+const TIMEOUT_S = 2;
 
 interface Held<M> {
   message: M;
@@ -36,7 +36,7 @@ export class MessageFilter<M extends Stamped> {
         ready.push(message);
         return false;
       }
-      if (page - since > PATIENCE_S) {
+      if (page - since > TIMEOUT_S) {
         this.complaint = tf.explain(fixed, frame, when);
         return false;
       }

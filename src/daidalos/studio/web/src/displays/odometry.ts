@@ -6,7 +6,7 @@ import { Arrows, ARROW_PROPERTIES } from "./poses";
 import { number, text, type Settings } from "./settings";
 import { StampedDisplay } from "./topic_display";
 
-const MOST = 2000;
+const MAX_ARROWS = 2000;
 
 class OdometryDisplay extends StampedDisplay<Odometry> {
   private arrows: Arrows;
@@ -16,7 +16,7 @@ class OdometryDisplay extends StampedDisplay<Odometry> {
   constructor(context: DisplayContext, settings: Settings) {
     super(context, settings, "latest");
     this.length = number(settings, "length");
-    this.arrows = new Arrows(MOST, this.length);
+    this.arrows = new Arrows(MAX_ARROWS, this.length);
     this.object.add(this.arrows);
   }
 
@@ -25,12 +25,12 @@ class OdometryDisplay extends StampedDisplay<Odometry> {
     if (!last || isFar(last, pose, number(this.settings, "distance"), number(this.settings, "angle"))) {
       this.trail.push(pose);
     }
-    this.trail = this.trail.slice(-Math.min(MOST, number(this.settings, "keep")));
+    this.trail = this.trail.slice(-Math.min(MAX_ARROWS, number(this.settings, "keep")));
     if (this.length !== number(this.settings, "length")) {
       this.length = number(this.settings, "length");
       this.arrows.geometry.dispose();
       this.arrows.removeFromParent();
-      this.arrows = new Arrows(MOST, this.length);
+      this.arrows = new Arrows(MAX_ARROWS, this.length);
       this.object.add(this.arrows);
     }
     this.arrows.paint(text(this.settings, "color"), number(this.settings, "alpha"));
@@ -51,7 +51,7 @@ export const ODOMETRY: DisplayType = {
   properties: [
     { key: "topic", label: "Topic", kind: "topic" },
     ...ARROW_PROPERTIES,
-    { key: "keep", label: "Keep", kind: "number", min: 1, max: MOST, step: 10 },
+    { key: "keep", label: "Keep", kind: "number", min: 1, max: MAX_ARROWS, step: 10 },
     { key: "distance", label: "Every", kind: "number", min: 0, max: 10, step: 0.05, unit: "m" },
     { key: "angle", label: "or every", kind: "number", min: 0, max: 3.2, step: 0.05, unit: "rad" },
   ],

@@ -22,7 +22,7 @@ const KEPT_S = 600;
 /** What everyone's robot has: a plot that moves is a better first sight than an empty one. */
 const FIRST_PATHS = ["/odom/twist/twist/linear/x", "/odom/twist/twist/angular/z"];
 const DRAW_EVERY_S = beginsFine ? 1 / 30 : 1 / 10;
-const MOST_POINTS = 4000;
+const MAX_POINTS = 4000;
 
 type Histories = ReadonlyMap<string, History>;
 
@@ -309,7 +309,7 @@ function draw(
     const history = histories.get(path);
     const across = histories.get(over);
     if (xy) {
-      return history && across ? history.over(across, to - span, to + 1e-6, MOST_POINTS) : { xs: [], ys: [] };
+      return history && across ? history.over(across, to - span, to + 1e-6, MAX_POINTS) : { xs: [], ys: [] };
     }
     const { times, values } = history?.decimate(to + seen[0], to + seen[1], buckets) ?? { times: [], values: [] };
     return { xs: times.map((time) => time - to), ys: values };

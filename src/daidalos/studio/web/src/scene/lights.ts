@@ -7,7 +7,7 @@ const SHADOW_RADIUS_M = 2.5;
 /** Who looks from afar sees it farther, in steps, so that its edges do not creep. */
 const SHADOW_STEP = 1.25;
 const SHADOW_PER_DISTANCE = 0.75;
-const MOST_STEPS = 8;
+const MAX_STEPS = 8;
 const SUN_OFFSET = [1.6, -2.2, 4.2] as const;
 
 export class Lights {
@@ -48,7 +48,7 @@ export class Lights {
   /** Keep the shadow under what is looked at, and as wide as may be seen from a distance in metres. */
   follow(center: Pick<Vector3, "x" | "y">, distance = 0): void {
     const wanted = Math.log((distance * SHADOW_PER_DISTANCE) / SHADOW_RADIUS_M) / Math.log(SHADOW_STEP);
-    const steps = Math.min(MOST_STEPS, Math.max(0, Math.round(wanted)));
+    const steps = Math.min(MAX_STEPS, Math.max(0, Math.round(wanted)));
     if (steps !== this.steps) {
       this.steps = steps;
       this.widen();

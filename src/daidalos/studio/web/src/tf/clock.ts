@@ -9,8 +9,8 @@ const STILL_S = 0.35;
 /** Without news for this long, and seen so this many times, it is paused: what waits behind a busy page is news. */
 const PAUSED_S = 1;
 const STILL_TICKS = 4;
-const DELAY_LEAST_S = 0.01;
-const DELAY_MOST_S = 0.3;
+const MIN_DELAY_S = 0.01;
+const MAX_DELAY_S = 0.3;
 
 interface Mark {
   page: number;
@@ -69,7 +69,7 @@ export class RobotClock {
 
   /** Hear how old the newest transform had become just before the next one came. */
   hearAge(age: number): void {
-    const wanted = Math.min(DELAY_MOST_S, Math.max(DELAY_LEAST_S, age));
+    const wanted = Math.min(MAX_DELAY_S, Math.max(MIN_DELAY_S, age));
     // Up at once, so that nothing stutters; down slowly.
     this.delay += (wanted > this.delay ? 0.3 : 0.01) * (wanted - this.delay);
   }

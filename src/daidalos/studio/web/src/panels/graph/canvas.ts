@@ -1,8 +1,8 @@
 // A drawing that is moved with the mouse and zoomed with the wheel or two fingers.
-const LEAST = 0.15;
-const MOST = 3;
+const MIN_SCALE = 0.15;
+const MAX_SCALE = 3;
 /** A drawing that fits is not blown up beyond this. */
-const MOST_FITTED = 1.25;
+const MAX_FITTED_SCALE = 1.25;
 const CLICK_PX = 4;
 
 export class Canvas {
@@ -35,7 +35,7 @@ export class Canvas {
 
   fit(width: number, height: number): void {
     const { clientWidth, clientHeight } = this.frame;
-    this.scale = Math.min(MOST_FITTED, clientWidth / width, clientHeight / height) || 1;
+    this.scale = Math.min(MAX_FITTED_SCALE, clientWidth / width, clientHeight / height) || 1;
     this.x = (clientWidth - this.scale * width) / 2;
     this.y = (clientHeight - this.scale * height) / 2;
     this.isMoved = false;
@@ -52,7 +52,7 @@ export class Canvas {
   }
 
   private zoomAt(x: number, y: number, factor: number): void {
-    const scale = Math.min(MOST, Math.max(LEAST, this.scale * factor));
+    const scale = Math.min(MAX_SCALE, Math.max(MIN_SCALE, this.scale * factor));
     this.x = x - ((x - this.x) * scale) / this.scale;
     this.y = y - ((y - this.y) * scale) / this.scale;
     this.scale = scale;

@@ -14,7 +14,7 @@ export type Shape = "box" | "sphere" | "cylinder";
 const CLICK_PX = 4;
 const TURN_PER_PX = 0.012;
 const GROW_PER_PX = 0.007;
-const LEAST_FACTOR = 0.02;
+const MIN_FACTOR = 0.02;
 /** How large what stands for a model is that has not been put yet. */
 const UNKNOWN_SIZE_M = 0.4;
 /** Colours of what is inserted, one after the other. */
@@ -254,7 +254,7 @@ export class Editor {
   /** Factors that a model can take: what is round stays round, what has several parts keeps its proportions. */
   private allowed(name: string, { x, y, z }: Vector3): Vector3 {
     const { types, links } = this.stage.anatomy(name);
-    const positive = (factor: number) => Math.max(LEAST_FACTOR, factor);
+    const positive = (factor: number) => Math.max(MIN_FACTOR, factor);
     if (links === 1 && types.every((type) => type === MarkerType.CUBE)) {
       return new Vector3(positive(x), positive(y), positive(z));
     }
@@ -471,7 +471,7 @@ function round(value: number, step: number | false): number {
 
 /** The factor that is farthest from leaving things as they are. */
 function farthest(...factors: number[]): number {
-  const change = (factor: number) => Math.abs(Math.log(Math.max(LEAST_FACTOR, factor)));
+  const change = (factor: number) => Math.abs(Math.log(Math.max(MIN_FACTOR, factor)));
   return factors.reduce((most, factor) => (change(factor) > change(most) ? factor : most));
 }
 

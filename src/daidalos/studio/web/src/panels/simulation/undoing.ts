@@ -1,7 +1,7 @@
 // What can be taken back, newest last.
 import { computed, signal } from "@preact/signals";
 
-const MOST = 100;
+const MAX_STEPS = 100;
 
 interface Deed {
   /** Of the model. */
@@ -19,7 +19,7 @@ export class Undoing {
   });
 
   note(name: string, what: string, undo: () => Promise<unknown>): void {
-    this.deeds.value = [...this.deeds.value.slice(1 - MOST), { name, what, undo }];
+    this.deeds.value = [...this.deeds.value.slice(1 - MAX_STEPS), { name, what, undo }];
   }
 
   take(): Deed | undefined {
