@@ -7,7 +7,8 @@ from collections.abc import Callable
 from typing import Any
 
 from daidalos.cli.ros2.errors import CliError
-from daidalos.cli.ros2.suggestions import did_you_mean, near
+from daidalos.cli.ros2.suggestions import did_you_mean
+from daidalos.common.suggestions import near
 
 
 def message_class(name: str, fault: str = "The passed message type is invalid") -> Any:

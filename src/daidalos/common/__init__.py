@@ -1,0 +1,1 @@
+"""What all layers share: the extension registry, errors with file and line, suggestions for names."""

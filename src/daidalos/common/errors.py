@@ -1,0 +1,32 @@
+"""Where something wrong was written."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Location:
+    """Place in a file that an error message names.
+
+    Attributes
+    ----------
+    file : str or None
+        Path of the file; None where the value came from no file.
+    line : int or None
+        Line in the file, from 1; None where it is not known.
+    name : str
+        Parameter, element or argument at that place, such as ``FollowPath.plugin``; empty where there is none.
+    """
+
+    file: str | None = None
+    line: int | None = None
+    name: str = ""
+
+    def __str__(self) -> str:
+        """Return ``file:line``, the file alone, or nothing, as far as they are known."""
+        return ":".join(str(part) for part in (self.file, self.line if self.file else None) if part is not None)
+
+    def prefix(self) -> str:
+        """Return what to write in front of a message: ``file:line: 'name': ``, as far as they are known."""
+        return "".join(f"{part}: " for part in (str(self), f"'{self.name}'" if self.name else "") if part)

@@ -1,0 +1,39 @@
+"""Known names near an unknown one."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from difflib import SequenceMatcher
+
+MIN_LIKENESS = 0.7
+LEAF_WEIGHT = 0.7
+"""Weight of the last part of a name; what stands before it is often shared by names that mean different things."""
+
+MAX_LISTED = 12
+"""Number of known names up to which all are listed where none is near."""
+
+
+def near(name: str, known: Iterable[str]) -> list[str]:
+    """Return at most three of the known names that are like a name, the nearest first."""
+    likeness = {other: _likeness(name, other) for other in known if other != name}
+    found = [other for other in likeness if likeness[other] >= MIN_LIKENESS]
+    return sorted(found, key=lambda other: (-likeness[other], other))[:3]
+
+
+def hint(name: str, known: Iterable[str]) -> str:
+    """Return the end of a message about an unknown name: the nearest known names, or all where they are few."""
+    names = sorted(set(known))
+    found = near(name, names)
+    if found:
+        return f"; did you mean {' or '.join(repr(one) for one in found)}?"
+    return f"; there are: {', '.join(names) or 'none'}" if len(names) <= MAX_LISTED else ""
+
+
+def _likeness(one: str, other: str) -> float:
+    leaf = SequenceMatcher(None, _leaf(one), _leaf(other)).ratio()
+    return LEAF_WEIGHT * leaf + (1.0 - LEAF_WEIGHT) * SequenceMatcher(None, one, other).ratio()
+
+
+def _leaf(name: str) -> str:
+    return re.split(r"/|::", name)[-1].lower()
