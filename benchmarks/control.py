@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from daidalos.control.controllers.base import ControllerSetting
+from daidalos.control.controllers.base import ControllerContext
 from daidalos.control.hardware.base import Hardware
 from daidalos.control.hardware.generic import GenericSystem
 from daidalos.control.hardware.simulated import SimulatedSystem
@@ -79,7 +79,7 @@ def arm(plugin: str, options: str = "") -> str:
 
 def add(manager: ControllerManager, name: str, type_name: str, robot: Any, **values: Any) -> Any:
     """Start a controller and return it."""
-    manager.load(name, type_name, lambda kind: parameters_from(kind, values), ControllerSetting(name, robot=robot))
+    manager.load(name, type_name, lambda kind: parameters_from(kind, values), ControllerContext(name, robot=robot))
     manager.configure(name)
     manager.switch([name])
     return manager.controllers[name].controller
@@ -139,7 +139,7 @@ def loop_in_simulation(rate: int, seconds: int = 10) -> dict[str, float]:
         file.write_text(f"controller_manager:\n  ros__parameters:\n    update_rate: {rate}\n", encoding="utf-8")
         rig = Rig(arm("gz_ros2_control/GazeboSimSystem", f"<parameters>{file}</parameters>"))
     for type_name in (STATES, TRAJECTORY):
-        add_arm_controller(rig.manager, type_name, rig.plugin.setting.model)
+        add_arm_controller(rig.manager, type_name, rig.plugin.context.model)
     start = time.perf_counter()
     rig.simulation.advance(seconds * SECOND)
     elapsed = time.perf_counter() - start
@@ -182,7 +182,7 @@ def rover() -> Rig:
         rig.manager,
         "drive",
         DRIVE,
-        rig.plugin.setting.model,
+        rig.plugin.context.model,
         left_wheel_names=["left"],
         right_wheel_names=["right"],
         wheel_separation=0.288,

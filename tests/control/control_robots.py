@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from typing import Any
 
-from daidalos.control.controllers.base import Controller, ControllerSetting
+from daidalos.control.controllers.base import Controller, ControllerContext
 from daidalos.control.interfaces import Interfaces, Loan
 from daidalos.control.manager import ControllerManager
 from daidalos.control.parameters import parameters_from
@@ -43,11 +43,11 @@ def from_values(**values: Any) -> Callable[[type], Any]:
 
 
 def alone(
-    type_name: str, robot: Robot | None = None, setting: dict[str, Any] | None = None, **values: Any
+    type_name: str, robot: Robot | None = None, context: dict[str, Any] | None = None, **values: Any
 ) -> tuple[Controller, Interfaces, Interfaces]:
     """Return an active controller with interfaces of its own, commands and states, at zero."""
     cls = controller_class(type_name)
-    controller = cls(parameters_from(cls.parameters, values), ControllerSetting("it", 100.0, robot, **(setting or {})))
+    controller = cls(parameters_from(cls.parameters, values), ControllerContext("it", 100.0, robot, **(context or {})))
     commands, states = Interfaces(controller.command_names), Interfaces(controller.state_names)
     states.values[:] = 0.0
     controller.assign(Loan(commands.names, [commands]), Loan(states.names, [states]))

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from control_robots import arm, from_values, manager
 
-from daidalos.control.controllers.base import Controller, ControllerSetting
+from daidalos.control.controllers.base import Controller, ControllerContext
 from daidalos.control.errors import HardwareError, ParameterError, StateError, SwitchError, UnknownError
 from daidalos.control.hardware.base import Hardware
 from daidalos.control.interfaces import Interfaces
@@ -84,7 +84,7 @@ def fragile() -> Iterable[None]:
 def loaded(
     one: ControllerManager, name: str, type_name: str = f"{PLACE}.Watch", rate: float = 0.0, **values: Any
 ) -> Any:
-    one.load(name, type_name, from_values(**values), ControllerSetting(name, update_rate=rate))
+    one.load(name, type_name, from_values(**values), ControllerContext(name, update_rate=rate))
     one.configure(name)
     return one.controllers[name].controller
 

@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from daidalos.control.base_odometry import BaseOdometry
-from daidalos.control.controllers.base import Controller, ControllerSetting, Subscription
+from daidalos.control.controllers.base import Controller, ControllerContext, Subscription
 from daidalos.control.velocity_input import VelocityInput
 from daidalos.simulation.samples import OdometrySample, Sample, TransformSample
 
@@ -29,9 +29,9 @@ class BaseController(Controller):
     state_sample: ClassVar[type[Sample]]
     odometry: BaseOdometry
 
-    def __init__(self, parameters: Any, setting: ControllerSetting) -> None:
+    def __init__(self, parameters: Any, context: ControllerContext) -> None:
         self.input = VelocityInput(self)
-        super().__init__(parameters, setting)
+        super().__init__(parameters, context)
 
     @property
     def publications(self) -> Mapping[str, type[Sample]]:

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from daidalos.control.component import UNCONFIGURED
-from daidalos.control.controllers.base import Controller, ControllerSetting
+from daidalos.control.controllers.base import Controller, ControllerContext
 from daidalos.control.errors import StateError
 from daidalos.control.interfaces import Interfaces
 from daidalos.control.pulse import Pulse
@@ -27,7 +27,7 @@ class LoadedController:
         The controller's class.
     read_parameters : callable
         Makes an instance of its parameter class, whenever it is configured.
-    setting : ControllerSetting
+    context : ControllerContext
     fallbacks : tuple of str
         Controllers to start when this one fails.
     state : str
@@ -39,7 +39,7 @@ class LoadedController:
     type_name: str
     kind: type[Controller]
     read_parameters: Reader
-    setting: ControllerSetting
+    context: ControllerContext
     fallbacks: tuple[str, ...] = ()
     state: str = UNCONFIGURED
     controller: Controller | None = None

@@ -9,7 +9,7 @@ from dataclasses import replace
 from typing import TypeVar
 
 from daidalos.control.component import ACTIVE, FINALIZED, INACTIVE, UNCONFIGURED, Component
-from daidalos.control.controllers.base import ControllerSetting
+from daidalos.control.controllers.base import ControllerContext
 from daidalos.control.errors import ControlError, HardwareError, StateError, SwitchError, UnknownError
 from daidalos.control.hardware.base import Hardware
 from daidalos.control.interfaces import Interfaces
@@ -109,7 +109,7 @@ class ControllerManager:
         name: str,
         type_name: str,
         read_parameters: Reader,
-        setting: ControllerSetting | None = None,
+        context: ControllerContext | None = None,
         fallbacks: Sequence[str] = (),
     ) -> LoadedController:
         """Add a controller.
@@ -121,7 +121,7 @@ class ControllerManager:
             Such as ``joint_state_broadcaster/JointStateBroadcaster``.
         read_parameters : callable
             See `LoadedController`.
-        setting : ControllerSetting or None
+        context : ControllerContext or None
             Its rate is brought down to the manager's; 0 is the manager's.
         fallbacks : sequence of str
 
@@ -134,8 +134,8 @@ class ControllerManager:
         """
         if name in self.controllers:
             raise StateError(f"a controller '{name}' is loaded already")
-        setting = setting or ControllerSetting(name)
-        loaded = LoadedController(name, type_name, controller_class(type_name), read_parameters, setting)
+        context = context or ControllerContext(name)
+        loaded = LoadedController(name, type_name, controller_class(type_name), read_parameters, context)
         loaded.fallbacks = tuple(fallbacks)
         self.controllers[name] = loaded
         return loaded
@@ -153,12 +153,12 @@ class ControllerManager:
         if loaded.state not in (UNCONFIGURED, INACTIVE):
             raise StateError(f"controller '{name}' is {loaded.state} and can not be configured")
         self._forget(loaded)
-        rate = loaded.setting.update_rate
+        rate = loaded.context.update_rate
         if rate > self.update_rate:
             self._log(f"controller '{name}' wants {rate:g} Hz and gets the manager's {self.update_rate:g} Hz")
         rate = rate if 0 < rate < self.update_rate else self.update_rate
-        setting = replace(loaded.setting, update_rate=rate, state_names=self.state_names)
-        controller = loaded.kind(loaded.read_parameters(loaded.kind.parameters), setting)
+        context = replace(loaded.context, update_rate=rate, state_names=self.state_names)
+        controller = loaded.kind(loaded.read_parameters(loaded.kind.parameters), context)
         loaded.references = prefixed(name, controller.references)
         loaded.exported = prefixed(name, controller.exported)
         loaded.pulse = Pulse(rate) if rate < self.update_rate else None
@@ -267,7 +267,7 @@ class ControllerManager:
     def _update_one(self, loaded: LoadedController, now_ns: int, nominal: float) -> list[tuple[str, Sample]]:
         controller = loaded.running
         since = loaded.updated_ns
-        rate = controller.setting.update_rate if loaded.pulse is not None else 1.0 / nominal
+        rate = controller.context.update_rate if loaded.pulse is not None else 1.0 / nominal
         period = (now_ns - since) * 1e-9 if 0 <= since < now_ns else 1.0 / rate
         loaded.updated_ns = controller.now_ns = now_ns
         try:

@@ -46,12 +46,12 @@ class VelocityInput:
         """Take a velocity that counts from its stamp, or from now where it has none."""
         now_ns = self._controller.now_ns
         if not (np.all(np.isfinite(command.linear)) and np.all(np.isfinite(command.angular))):
-            self._controller.setting.warn("a velocity that is no number was ignored")
+            self._controller.context.warn("a velocity that is no number was ignored")
             return
         stamp_ns = command.stamp_ns or now_ns
         if self._is_old(stamp_ns, now_ns):
             late = (now_ns - stamp_ns) * 1e-9
-            self._controller.setting.warn(f"a velocity whose stamp is {late:.3f} s old was ignored")
+            self._controller.context.warn(f"a velocity whose stamp is {late:.3f} s old was ignored")
             return
         self._command = VelocityCommand(command.linear, command.angular, stamp_ns)
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 from daidalos.description.actors import actor_pose
 from daidalos.description.world import Actor
-from daidalos.simulation.component import Component, Setting
+from daidalos.simulation.component import Component, ComponentContext
 from daidalos.simulation.instance import Instance
 from daidalos.simulation.samples import Sample
 
@@ -17,13 +17,13 @@ class ActorMotion(Component):
     Parameters
     ----------
     actor : Actor
-    setting : Setting
+    context : ComponentContext
     """
 
     period = 0.02
 
-    def __init__(self, actor: Actor, setting: Setting) -> None:
-        super().__init__(setting)
+    def __init__(self, actor: Actor, context: ComponentContext) -> None:
+        super().__init__(context)
         self._actor = actor
 
     def bind(self, instance: Instance) -> None:

@@ -9,7 +9,7 @@ from functools import partial
 from daidalos.description.link import Plugin as PluginDescription
 from daidalos.description.link import Sensor as SensorDescription
 from daidalos.description.world import Model, World
-from daidalos.simulation.component import Component, Setting
+from daidalos.simulation.component import Component, ComponentContext
 from daidalos.simulation.directional_friction import DirectionalFriction, directed_surfaces
 from daidalos.simulation.plugins.base import (
     COMMON_PARAMETERS,
@@ -26,14 +26,14 @@ from daidalos.simulation.wind import LIBRARIES as WIND_LIBRARIES
 from daidalos.simulation.wind import Wind, windy_links
 
 
-def make_components(model: Model, setting: Callable[[str], Setting]) -> list[Component]:
+def make_components(model: Model, context: Callable[[str], ComponentContext]) -> list[Component]:
     """Make a model's components: plugins first, so that sensors see what they did.
 
     Parameters
     ----------
     model : Model
-    setting : callable
-        Takes a component's name in the model, returns its setting.
+    context : callable
+        Takes a component's name in the model, returns its context.
 
     Returns
     -------
@@ -47,19 +47,19 @@ def make_components(model: Model, setting: Callable[[str], Setting]) -> list[Com
     """
     components: list[Component] = []
     if directed_surfaces(model):
-        components.append(DirectionalFriction(setting("friction")))
-    first = setting("pushes")
+        components.append(DirectionalFriction(context("friction")))
+    first = context("pushes")
     if standing_pushes(model, first.world):
         components.append(StandingPushes(first))
     if windy_links(model, first.world):
-        components.append(Wind(setting("wind")))
+        components.append(Wind(context("wind")))
     for plugin in model.plugins:
         if model.links:
-            components += _plugin(plugin, setting(plugin.name))
+            components += _plugin(plugin, context(plugin.name))
         elif not is_built_in(plugin):
-            setting(plugin.name).warn(f"{plugin.element.where}: plugin {plugin.name!r} has no links, left out")
+            context(plugin.name).warn(f"{plugin.element.where}: plugin {plugin.name!r} has no links, left out")
     for link, joint, sensor in _sensors(model):
-        components += _sensor(sensor, link, joint, setting(f"{joint or link}::{sensor.name}"))
+        components += _sensor(sensor, link, joint, context(f"{joint or link}::{sensor.name}"))
     return components
 
 
@@ -77,18 +77,18 @@ def check_world_plugins(world: World, warn: Callable[[str], None]) -> None:
             warn(f"{plugin.element.where}: plugin {plugin.name!r} belongs inside a <{home}>, left out")
 
 
-def _plugin(plugin: PluginDescription, setting: Setting) -> Iterator[Component]:
+def _plugin(plugin: PluginDescription, context: ComponentContext) -> Iterator[Component]:
     if is_built_in(plugin):
         return
     cls = plugin_class(plugin)
     if cls is None:
-        setting.warn(_unknown(plugin))
+        context.warn(_unknown(plugin))
     elif issubclass(cls, SensorPlugin):
-        setting.warn(f"{plugin.element.where}: plugin {plugin.name!r} belongs inside a <sensor>, left out")
+        context.warn(f"{plugin.element.where}: plugin {plugin.name!r} belongs inside a <sensor>, left out")
     else:
         element = ReadElement(plugin.element)
-        yield from cls.make(replace(plugin, element=element), setting)
-        _warn_of_unread(plugin, element, cls, setting)
+        yield from cls.make(replace(plugin, element=element), context)
+        _warn_of_unread(plugin, element, cls, context)
 
 
 def _sensors(model: Model) -> Iterator[tuple[str, str, SensorDescription]]:
@@ -101,44 +101,44 @@ def _sensors(model: Model) -> Iterator[tuple[str, str, SensorDescription]]:
             yield joint.child, joint.name, sensor
 
 
-def _sensor(description: SensorDescription, link: str, joint: str, setting: Setting) -> Iterator[Component]:
+def _sensor(description: SensorDescription, link: str, joint: str, context: ComponentContext) -> Iterator[Component]:
     cls = sensor_class(description.type)
     if cls is None:
-        setting.warn(
+        context.warn(
             f"{description.element.where}: sensor {description.name!r} is of unknown type "
             f"{description.type!r}, left out"
         )
         return
-    make = partial(cls, description, link, setting, joint)
-    spoken_for = [sensor for plugin in description.plugins for sensor in _spoken_for(make, plugin, setting)]
+    make = partial(cls, description, link, context, joint)
+    spoken_for = [sensor for plugin in description.plugins for sensor in _spoken_for(make, plugin, context)]
     yield from spoken_for or (make(),)
 
 
-def _spoken_for(make: Callable[[], Sensor], plugin: PluginDescription, setting: Setting) -> Iterator[Sensor]:
+def _spoken_for(make: Callable[[], Sensor], plugin: PluginDescription, context: ComponentContext) -> Iterator[Sensor]:
     """Make a sensor that speaks as a plugin says: each of a sensor's plugins tells of the same measurement."""
     if is_built_in(plugin):
         return
     cls = plugin_class(plugin)
     if cls is None:
-        setting.warn(_unknown(plugin))
+        context.warn(_unknown(plugin))
     elif issubclass(cls, SensorPlugin):
         element = ReadElement(plugin.element)
         sensor = make()
-        cls().configure(sensor, Parameters(replace(plugin, element=element), setting))
-        _warn_of_unread(plugin, element, cls, setting)
+        cls().configure(sensor, Parameters(replace(plugin, element=element), context))
+        _warn_of_unread(plugin, element, cls, context)
         yield sensor
     else:
-        setting.warn(f"{plugin.element.where}: plugin {plugin.name!r} does not belong inside a <sensor>")
+        context.warn(f"{plugin.element.where}: plugin {plugin.name!r} does not belong inside a <sensor>")
 
 
 def _warn_of_unread(
-    plugin: PluginDescription, element: ReadElement, cls: type[Plugin] | type[SensorPlugin], setting: Setting
+    plugin: PluginDescription, element: ReadElement, cls: type[Plugin] | type[SensorPlugin], context: ComponentContext
 ) -> None:
     """Name the parameters that nobody read; a plugin of the user's may read its own whenever it likes."""
     unread = element.unread((*COMMON_PARAMETERS, *cls.unused)) if cls.names else ()
     if unread:
         where = f"{plugin.element.where}: plugin {plugin.name!r} ({plugin.filename})"
-        setting.warn(f"{where} does not use {', '.join(unread)}")
+        context.warn(f"{where} does not use {', '.join(unread)}")
 
 
 def _unknown(plugin: PluginDescription) -> str:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Setting:
+class ComponentContext:
     """Where a component finds itself when it is made.
 
     Parameters
@@ -107,9 +107,9 @@ class Component(Endpoint):
     period: float = 0.0
     memory: Any = None
 
-    def __init__(self, setting: Setting) -> None:
-        self.setting = setting
-        self.random = setting.stream()
+    def __init__(self, context: ComponentContext) -> None:
+        self.context = context
+        self.random = context.stream()
 
     def start(self) -> Any:
         """Return the memory that it starts with; called once it is bound, and on reset."""

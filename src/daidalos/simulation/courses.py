@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from daidalos.simulation.component import Component, Setting
+from daidalos.simulation.component import Component, ComponentContext
 from daidalos.simulation.instance import Instance
 from daidalos.simulation.samples import Sample, TrajectoryCommand
 
@@ -25,13 +25,13 @@ class CourseFollower(Component):
 
     Parameters
     ----------
-    setting : Setting
+    context : ComponentContext
     """
 
     memory: Course | None
 
-    def __init__(self, setting: Setting) -> None:
-        super().__init__(setting)
+    def __init__(self, context: ComponentContext) -> None:
+        super().__init__(context)
         self.period = 0.0
 
     def bind(self, instance: Instance) -> None:

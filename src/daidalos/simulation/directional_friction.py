@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from daidalos.description.link import Surface
 from daidalos.description.world import Model
-from daidalos.simulation.component import Component, Setting
+from daidalos.simulation.component import Component, ComponentContext
 from daidalos.simulation.conversion.contact import MAX_FRICTION, friction_of, set_friction
 from daidalos.simulation.conversion.model_build import ModelBuild
 from daidalos.simulation.instance import Instance
@@ -30,13 +30,13 @@ class DirectionalFriction(Component):
 
     Parameters
     ----------
-    setting : Setting
+    context : ComponentContext
         Its model has the surfaces.
     """
 
-    def __init__(self, setting: Setting) -> None:
-        super().__init__(setting)
-        self._surfaces = directed_surfaces(setting.model)
+    def __init__(self, context: ComponentContext) -> None:
+        super().__init__(context)
+        self._surfaces = directed_surfaces(context.model)
 
     def prepare(self, build: ModelBuild) -> None:
         """Leave the smaller friction to the contacts."""

@@ -17,7 +17,7 @@ from daidalos.description.world import Actor, Model, World
 from daidalos.simulation.actors import ActorMotion
 from daidalos.simulation.assembly import check_world_plugins, make_components
 from daidalos.simulation.compilation import Compilation
-from daidalos.simulation.component import Component, Setting, Switch, random_stream
+from daidalos.simulation.component import Component, ComponentContext, Switch, random_stream
 from daidalos.simulation.contacts import Contact, ContactMonitor, read_contacts
 from daidalos.simulation.conversion.options import physics_step
 from daidalos.simulation.errors import NameTakenError, SimulationError, UnknownNameError
@@ -238,7 +238,7 @@ class Engine:
         for instance in self._compilation.instances.values():
             instance.place_joints()
             for component in instance.components:
-                component.random = component.setting.stream()
+                component.random = component.context.stream()
                 component.memory = component.start()
 
     # Inside
@@ -262,10 +262,10 @@ class Engine:
             raise NameTakenError(model.name)
         for line in model.warnings:
             self._warn(line)
-        setting = partial(self._setting, model, namespace)
-        components = make_components(model, setting)
+        context = partial(self._setting, model, namespace)
+        components = make_components(model, context)
         if actor is not None:
-            components.append(ActorMotion(actor, setting("script")))
+            components.append(ActorMotion(actor, context("script")))
         return self._compilation.add(model, pose, namespace, components)
 
     def _recompile(self) -> None:
@@ -327,9 +327,9 @@ class Engine:
     def _is_heard(self, topic: str) -> bool:
         return self.heard is None or self.heard(topic)
 
-    def _setting(self, model: Model, namespace: str, name: str) -> Setting:
+    def _setting(self, model: Model, namespace: str, name: str) -> ComponentContext:
         stream = partial(random_stream, self.seed, f"{model.name}::{name}")
-        return Setting(model, model.name, namespace, self.world, stream, self._warn)
+        return ComponentContext(model, model.name, namespace, self.world, stream, self._warn)
 
     def _warn(self, line: str) -> None:
         self.warnings.append(line)

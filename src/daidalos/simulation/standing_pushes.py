@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Iterator
 from daidalos.description.markup import Element
 from daidalos.description.pose import Vector
 from daidalos.description.world import Model, World
-from daidalos.simulation.component import Component, Setting
+from daidalos.simulation.component import Component, ComponentContext
 from daidalos.simulation.forces import Push
 from daidalos.simulation.instance import Instance
 from daidalos.simulation.plugins.base import library_of
@@ -22,14 +22,14 @@ class StandingPushes(Component):
 
     Parameters
     ----------
-    setting : Setting
+    context : ComponentContext
     """
 
     period = _NEVER
 
-    def __init__(self, setting: Setting) -> None:
-        super().__init__(setting)
-        self._pushes = standing_pushes(setting.model, setting.world)
+    def __init__(self, context: ComponentContext) -> None:
+        super().__init__(context)
+        self._pushes = standing_pushes(context.model, context.world)
 
     def bind(self, instance: Instance) -> None:
         """Find where pushes are kept."""

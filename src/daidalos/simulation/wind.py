@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from daidalos.description.markup import Element
 from daidalos.description.world import Model, World
-from daidalos.simulation.component import Component, Setting
+from daidalos.simulation.component import Component, ComponentContext
 from daidalos.simulation.conversion.model_build import ModelBuild
 from daidalos.simulation.instance import Instance
 from daidalos.simulation.last_step import velocities
@@ -58,18 +58,18 @@ class Wind(Component):
 
     Parameters
     ----------
-    setting : Setting
+    context : ComponentContext
         Its world has a plugin for wind, and its model links that are open to it.
     """
 
-    def __init__(self, setting: Setting) -> None:
-        super().__init__(setting)
-        element = _plugin(setting.world) or Element("plugin")
+    def __init__(self, context: ComponentContext) -> None:
+        super().__init__(context)
+        element = _plugin(context.world) or Element("plugin")
         level, upright = element.first("horizontal") or Element("horizontal"), element.first("vertical")
         self.factor = element.number_of("force_approximation_scaling_factor", default=1.0)
         self.speed, self.direction = _gust(level, "magnitude"), _gust(level, "direction")
         self.climb = Gust() if upright is None else _gust(upright)
-        self._links = windy_links(setting.model, setting.world)
+        self._links = windy_links(context.model, context.world)
 
     def prepare(self, build: ModelBuild) -> None:
         """Let nothing rest that the wind may move."""
@@ -84,7 +84,7 @@ class Wind(Component):
 
     def blowing(self, time: float) -> Array:
         """Return the wind's velocity (3,) [m/s] at a simulated time [s]."""
-        x, y, z = self.setting.world.wind
+        x, y, z = self.context.world.wind
         speed = self.speed.at(math.hypot(x, y), time, self.random)
         angle = self.direction.at(math.atan2(y, x), time, self.random)
         return np.array((speed * math.cos(angle), speed * math.sin(angle), self.climb.at(z, time, self.random)))

@@ -62,8 +62,8 @@ def test_topics_can_be_its_own_and_dynamic_states_left_out() -> None:
 
 
 def test_nobody_listens_nothing_is_said() -> None:
-    setting = {"state_names": STATES, "heard": lambda topic: False}
-    controller, _, _ = alone("joint_state_broadcaster/JointStateBroadcaster", arm(), setting)
+    context = {"state_names": STATES, "heard": lambda topic: False}
+    controller, _, _ = alone("joint_state_broadcaster/JointStateBroadcaster", arm(), context)
     assert cycle(controller, 5) == []
 
 

@@ -21,13 +21,13 @@ WHEELS = {"left_wheel_names": ["left"], "right_wheel_names": ["right"], "wheel_s
 class Rig:
     """A controller on ideal wheels, which turn as they are told."""
 
-    def __init__(self, setting: dict[str, Any] | None = None, **values: Any) -> None:
+    def __init__(self, context: dict[str, Any] | None = None, **values: Any) -> None:
         self.warnings: list[str] = []
-        setting = {"warn": self.warnings.append} | (setting or {})
+        context = {"warn": self.warnings.append} | (context or {})
         self.controller: Controller
         self.commands: Interfaces
         self.states: Interfaces
-        self.controller, self.commands, self.states = alone(TYPE, None, setting, **(WHEELS | values))
+        self.controller, self.commands, self.states = alone(TYPE, None, context, **(WHEELS | values))
         self.now = 0
         self.said: list[Any] = []
 

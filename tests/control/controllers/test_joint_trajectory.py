@@ -36,8 +36,8 @@ class Rig:
             "state_interfaces": ["position", "velocity"],
         }
         self.warnings: list[str] = []
-        setting = {"warn": self.warnings.append}
-        controller, self.commands, self.states = alone(TYPE, arm(), setting, **(given | values))
+        context = {"warn": self.warnings.append}
+        controller, self.commands, self.states = alone(TYPE, arm(), context, **(given | values))
         assert isinstance(controller, JointTrajectoryController)
         self.controller = controller
         self.now = 0

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from control_robots import from_values
 
-from daidalos.control.controllers.base import ControllerSetting
+from daidalos.control.controllers.base import ControllerContext
 from daidalos.control.errors import HardwareError, SwitchError
-from daidalos.control.hardware.base import HardwareSetting
+from daidalos.control.hardware.base import HardwareContext
 from daidalos.control.hardware.simulated import SimulatedSystem
 from daidalos.control.manager import ControllerManager
 from daidalos.control.samples import TrajectoryCommand, TrajectoryPoint, ValuesCommand
@@ -72,7 +72,7 @@ class Rig:
 
     def add(self, name: str, type_name: str, start: bool = True, **values: Any) -> Any:
         self.manager.load(
-            name, type_name, from_values(**values), ControllerSetting(name, robot=self.plugin.setting.model)
+            name, type_name, from_values(**values), ControllerContext(name, robot=self.plugin.context.model)
         )
         self.manager.configure(name)
         if start:
@@ -221,7 +221,7 @@ def test_old_names_of_interfaces_move_joints_and_strange_ones_are_said() -> None
     said: list[str] = []
     text = pendulum(joints=f'<joint name="slide">{commands.format("gap")}</joint>')
     rig = Rig(text)
-    SimulatedSystem(rig.plugin.hardware[0], HardwareSetting(warn=said.append), rig.plugin)
+    SimulatedSystem(rig.plugin.hardware[0], HardwareContext(warn=said.append), rig.plugin)
     assert "command interface 'slide/gap' moves nothing" in said[0]
 
 

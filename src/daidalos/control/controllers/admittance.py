@@ -129,9 +129,9 @@ class AdmittanceController(Controller):
     def configure(self) -> None:
         """Name interfaces and find the chain."""
         p = self.p
-        if self.setting.robot is None:
+        if self.context.robot is None:
             raise ControlError("the robot's description is needed for its kinematics, and is not there")
-        self._chain = Chain(self.setting.robot, p.kinematics.base, p.kinematics.tip, p.joints)
+        self._chain = Chain(self.context.robot, p.kinematics.base, p.kinematics.tip, p.joints)
         for frame in (p.ft_sensor.frame, p.control.frame, p.gravity_compensation.frame):
             if not frame.external:
                 self._chain.row(frame.id)
@@ -174,10 +174,10 @@ class AdmittanceController(Controller):
         for name in ("positions", "velocities"):
             values = getattr(point, name)
             if values is not None and len(values) != self._count:
-                self.setting.warn(f"reference has {len(values)} {name} for {self._count} joints; it is ignored")
+                self.context.warn(f"reference has {len(values)} {name} for {self._count} joints; it is ignored")
                 return
         if point.positions is None:
-            self.setting.warn("reference has no positions; it is ignored")
+            self.context.warn("reference has no positions; it is ignored")
             return
         self._received = point
 
@@ -225,7 +225,7 @@ class AdmittanceController(Controller):
             "velocity": self._reference_rate + self._state.joint_velocities,
         }
         self.commands.write(np.concatenate([wanted[kind] for kind in self.p.command_interfaces]))
-        if self.setting.heard("~/status"):
+        if self.context.heard("~/status"):
             yield self._sample(now_ns, rotation, wrench)
 
     def _read_references(self) -> None:

@@ -24,7 +24,7 @@ def _ignore(line: str) -> None:
 
 
 @dataclass(frozen=True)
-class ControllerSetting:
+class ControllerContext:
     """Where a controller finds itself when it is configured.
 
     Parameters
@@ -122,7 +122,7 @@ class Controller(Endpoint):
     ----------
     parameters : object
         Of the class `parameters`.
-    setting : ControllerSetting
+    context : ControllerContext
 
     Attributes
     ----------
@@ -153,9 +153,9 @@ class Controller(Endpoint):
     parameters: ClassVar[type]
     chainable: ClassVar[bool] = False
 
-    def __init__(self, parameters: Any, setting: ControllerSetting) -> None:
+    def __init__(self, parameters: Any, context: ControllerContext) -> None:
         self.p = parameters
-        self.setting = setting
+        self.context = context
         self.command_names: tuple[str, ...] = ()
         self.state_names: tuple[str, ...] = ()
         self.references = Interfaces()

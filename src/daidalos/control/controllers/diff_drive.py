@@ -112,14 +112,14 @@ class DiffDriveController(Controller):
 
     def configure(self) -> None:
         """Name the wheels' interfaces."""
-        p, setting = self.p, self.setting
+        p, context = self.p, self.context
         wheels = (*p.left_wheel_names, *p.right_wheel_names)
         feedback = "position" if p.position_feedback else "velocity"
         self.command_names = tuple(f"{wheel}/velocity" for wheel in wheels)
         self.state_names = () if p.open_loop else tuple(f"{wheel}/{feedback}" for wheel in wheels)
         self.references = Interfaces(_REFERENCES)
         self._count = len(p.left_wheel_names)
-        prefix = (setting.namespace, p.tf_frame_prefix, p.tf_frame_prefix_enable)
+        prefix = (context.namespace, p.tf_frame_prefix, p.tf_frame_prefix_enable)
         self._odometry = BaseOdometry(
             prefixed_frame(p.odom_frame_id, *prefix),
             prefixed_frame(p.base_frame_id, *prefix),

@@ -60,7 +60,7 @@ class ForwardController(Controller):
     def _take(self, command: ValuesCommand) -> None:
         count = len(self.command_names)
         if len(command.values) != count:
-            self.setting.warn(f"command has {len(command.values)} values instead of {count}; it is not executed")
+            self.context.warn(f"command has {len(command.values)} values instead of {count}; it is not executed")
             return
         self._received = np.asarray(command.values, dtype=np.float64)
 

@@ -69,7 +69,7 @@ class JointStateBroadcaster(Controller):
         if p.joints and p.interfaces:
             self.state_names = tuple(f"{joint}/{interface}" for joint in p.joints for interface in p.interfaces)
         else:
-            self.state_names = self.setting.state_names
+            self.state_names = self.context.state_names
         prefix = "~/" if p.use_local_topics else ""
         self._topic, self._dynamic_topic = f"{prefix}joint_states", f"{prefix}dynamic_joint_states"
         chosen = p.map_interface_to_joint_state
@@ -90,7 +90,7 @@ class JointStateBroadcaster(Controller):
 
     def _is_joint(self, name: str) -> bool:
         """Tell whether a name belongs into joint states."""
-        robot = self.setting.robot
+        robot = self.context.robot
         if robot is None or self.p.joints or not self.p.use_urdf_to_filter:
             return True
         return name in robot.joints and robot.joints[name].type is not JointType.FIXED
@@ -106,9 +106,9 @@ class JointStateBroadcaster(Controller):
     def update(self, now_ns: int, period: float) -> Iterable[Sample]:
         """Read all and say it."""
         values = self.states.read()
-        if self.setting.heard(self._topic):
+        if self.context.heard(self._topic):
             yield self._joint_states(now_ns, values)
-        if self.p.publish_dynamic_joint_states and self.setting.heard(self._dynamic_topic):
+        if self.p.publish_dynamic_joint_states and self.context.heard(self._dynamic_topic):
             yield DynamicJointSample(
                 stamp_ns=now_ns,
                 topic=self._dynamic_topic,

@@ -62,7 +62,7 @@ class JointTrajectoryController(Controller):
         self.command_names += (scaling.command_interface,) if scaling.command_interface else ()
         self.state_names += (scaling.state_interface,) if scaling.state_interface else ()
         self._speed = scaling.initial_scaling_factor
-        robot = self.setting.robot
+        robot = self.context.robot
         self._endless = np.array(
             [
                 robot is not None and name in robot.joints and robot.joints[name].type is JointType.CONTINUOUS
@@ -119,13 +119,13 @@ class JointTrajectoryController(Controller):
     def _take(self, command: TrajectoryCommand) -> None:
         problem = problem_with(command, self.p, self.now_ns)
         if problem:
-            self.setting.warn(f"trajectory not accepted: {problem}")
+            self.context.warn(f"trajectory not accepted: {problem}")
             return
         self._replace(command, None)
 
     def _take_speed(self, command: SpeedCommand) -> None:
         if not (math.isfinite(command.factor) and command.factor >= 0.0):
-            self.setting.warn(f"speed scaling of {command.factor:g} not accepted: expected a number from 0 on")
+            self.context.warn(f"speed scaling of {command.factor:g} not accepted: expected a number from 0 on")
             return
         self._speed = command.factor
 
@@ -196,7 +196,7 @@ class JointTrajectoryController(Controller):
             error = self._errors(desired, actual)
         output = self._command(desired, error, period)
         self._write(output)
-        if self.setting.heard("~/controller_state"):
+        if self.context.heard("~/controller_state"):
             yield self._sample(now_ns, desired, actual, error, output)
 
     # Trajectories
@@ -292,7 +292,7 @@ class JointTrajectoryController(Controller):
         return False
 
     def _give_up(self, actual: Motion, code: int, problem: str) -> bool:
-        self.setting.warn(f"trajectory aborted: {problem}")
+        self.context.warn(f"trajectory aborted: {problem}")
         self._end_goal("aborted", TrajectoryResult(code, f"Aborted: {problem}"))
         self._hold(actual[0])
         return True

@@ -85,7 +85,7 @@ class MecanumDriveController(BaseController):
         self.command_names = tuple(f"{name}/velocity" for name in commands)
         self.state_names = tuple(f"{name}/velocity" for name in states)
         self.references = Interfaces(("linear/x/velocity", "linear/y/velocity", "angular/z/velocity"))
-        prefix = (self.setting.namespace, p.tf_frame_prefix, p.tf_frame_prefix_enable)
+        prefix = (self.context.namespace, p.tf_frame_prefix, p.tf_frame_prefix_enable)
         self.odometry = BaseOdometry(
             prefixed_frame(p.odom_frame_id, *prefix),
             prefixed_frame(p.base_frame_id, *prefix),
@@ -128,5 +128,5 @@ class MecanumDriveController(BaseController):
         wanted = np.nan_to_num(self.references.values)
         self.commands.write(self._to_wheels @ self._to_centre @ wanted)
         yield from self.odometry_samples(now_ns)
-        if self.setting.heard("~/controller_state"):
+        if self.context.heard("~/controller_state"):
             yield MecanumSample(now_ns, "~/controller_state", self.odometry.base_frame, wheels, wanted)

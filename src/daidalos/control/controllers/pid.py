@@ -149,7 +149,7 @@ class PidController(Controller):
         strange = next((name for name in names if name not in self._dofs), "")
         if strange or len(command.values) != len(names):
             problem = f"'{strange}' is not one of {', '.join(self._dofs)}" if strange else "values and names differ"
-            self.setting.warn(f"command not accepted: {problem}")
+            self.context.warn(f"command not accepted: {problem}")
             return
         for place, name in enumerate(names):
             row = self._dofs.index(name)
@@ -186,7 +186,7 @@ class PidController(Controller):
         if self._feedforward:
             output = output + self._forward * np.nan_to_num(wanted[-1])
         self.commands.write(np.where(known, output, self.commands.read()))
-        if self.setting.heard("~/controller_state"):
+        if self.context.heard("~/controller_state"):
             yield self._sample(now_ns, wanted, measured, error, rate, period, output)
 
     def _sample(

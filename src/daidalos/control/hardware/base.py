@@ -17,7 +17,7 @@ def _ignore(line: str) -> None:
 
 
 @dataclass(frozen=True)
-class HardwareSetting:
+class HardwareContext:
     """Where hardware finds itself.
 
     Parameters
@@ -43,7 +43,7 @@ class Hardware:
     ----------
     info : HardwareInfo
         What the robot's ``<ros2_control>`` element says.
-    setting : HardwareSetting
+    context : HardwareContext
 
     Attributes
     ----------
@@ -55,9 +55,9 @@ class Hardware:
 
     names: ClassVar[tuple[str, ...]] = ()
 
-    def __init__(self, info: HardwareInfo, setting: HardwareSetting | None = None) -> None:
+    def __init__(self, info: HardwareInfo, context: HardwareContext | None = None) -> None:
         self.info = info
-        self.setting = setting or HardwareSetting()
+        self.context = context or HardwareContext()
         self.commands = Interfaces(info.command_names)
         self.states = Interfaces(info.state_names)
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daidalos.control.errors import HardwareError
-from daidalos.control.hardware.base import Hardware, HardwareSetting
+from daidalos.control.hardware.base import Hardware, HardwareContext
 from daidalos.description.ros2_control import ComponentInfo, HardwareInfo
 
 Array = NDArray[np.float64]
@@ -31,8 +31,8 @@ class GenericSystem(Hardware):
 
     names = ("mock_components/GenericSystem", "fake_components/GenericSystem")
 
-    def __init__(self, info: HardwareInfo, setting: HardwareSetting | None = None) -> None:
-        super().__init__(_with_mock_commands(info), setting)
+    def __init__(self, info: HardwareInfo, context: HardwareContext | None = None) -> None:
+        super().__init__(_with_mock_commands(info), context)
         self._ignores = _flag(info, "disable_commands")
         self._dynamics = _flag(info, "calculate_dynamics")
         self._offset = _number(info, "position_state_following_offset", "state_following_offset")

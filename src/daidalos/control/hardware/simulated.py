@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from daidalos.control.errors import HardwareError
-from daidalos.control.hardware.base import Hardware, HardwareSetting
+from daidalos.control.hardware.base import Hardware, HardwareContext
 from daidalos.description.ros2_control import HardwareInfo
 from daidalos.simulation.joint_drives import Mode
 
@@ -31,7 +31,7 @@ class SimulatedSystem(Hardware):
 
     Parameters
     ----------
-    info, setting
+    info, context
         See `Hardware`.
     plugin : Ros2Control or None
         The simulation's side; without it there is no simulation to control.
@@ -44,9 +44,9 @@ class SimulatedSystem(Hardware):
     )
 
     def __init__(
-        self, info: HardwareInfo, setting: HardwareSetting | None = None, plugin: Ros2Control | None = None
+        self, info: HardwareInfo, context: HardwareContext | None = None, plugin: Ros2Control | None = None
     ) -> None:
-        super().__init__(info, setting)
+        super().__init__(info, context)
         if plugin is None:
             raise HardwareError(
                 f"{info.where}: '{info.plugin}' is the simulator's; it runs where the robot's <gazebo> element "
@@ -74,7 +74,7 @@ class SimulatedSystem(Hardware):
             for command in joint.commands:
                 if command.name not in _MODES:
                     known = ", ".join(_MODES)
-                    self.setting.warn(
+                    self.context.warn(
                         f"{self.info.where}: command interface '{joint.name}/{command.name}' moves nothing; "
                         f"the simulation has {known}"
                     )
@@ -83,7 +83,7 @@ class SimulatedSystem(Hardware):
         """Take the state that the joints are in; sensors measure between steps, in the first cycle."""
         for sensor in self.info.sensors:
             if not self._plugin.has_sensor(sensor.name):
-                self.setting.warn(f"hardware '{self.info.name}': the robot has no sensor '{sensor.name}'")
+                self.context.warn(f"hardware '{self.info.name}': the robot has no sensor '{sensor.name}'")
         self._read_joints()
 
     def prepare_switch(self, start: Sequence[str], stop: Sequence[str]) -> None:

@@ -15,7 +15,7 @@ from rclpy.parameter import Parameter
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
 from daidalos.control.component import INACTIVE, UNCONFIGURED
-from daidalos.control.controllers.base import ControllerSetting
+from daidalos.control.controllers.base import ControllerContext
 from daidalos.control.errors import ControlError
 from daidalos.control.hardware.base import Hardware
 from daidalos.control.manager import ControllerManager
@@ -234,7 +234,7 @@ class ControllerManagerNode(Node):
                     f"the type of controller '{name}' is not known: "
                     f"the parameter '{name}.type' of '{self.get_name()}' is not set"
                 )
-            setting = ControllerSetting(
+            context = ControllerContext(
                 name,
                 update_rate=self._rate_of(node, name),
                 robot=self._robot,
@@ -243,7 +243,7 @@ class ControllerManagerNode(Node):
                 warn=node.warn,
             )
             fallbacks = self._parameter(f"{name}.fallback_controllers", [])
-            self._running.load(name, type_name, node.read_parameters, setting, fallbacks)
+            self._running.load(name, type_name, node.read_parameters, context, fallbacks)
         except ControlError:
             node.destroy_node()
             raise

@@ -18,7 +18,7 @@ def controller_message(manager: ControllerManager, name: str) -> Any:
     if controller is None:
         return message
     commands, states = list(controller.command_names), list(controller.state_names)
-    message.update_rate = round(controller.setting.update_rate)
+    message.update_rate = round(controller.context.update_rate)
     message.claimed_interfaces = commands if loaded.state == ACTIVE else []
     message.required_command_interfaces, message.required_state_interfaces = commands, states
     message.is_chained = controller.chained

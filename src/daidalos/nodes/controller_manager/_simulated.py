@@ -5,7 +5,7 @@ from __future__ import annotations
 from rclpy.context import Context
 from rclpy.parameter import Parameter
 
-from daidalos.control.hardware.base import Hardware, HardwareSetting
+from daidalos.control.hardware.base import Hardware, HardwareContext
 from daidalos.control.hardware.simulated import SimulatedSystem
 from daidalos.control.plugins import hardware_class
 from daidalos.description.ros2_control import HardwareInfo
@@ -47,18 +47,18 @@ class SimulatedManager:
         self._said: list[tuple[str, Sample]] = []
         try:
             self._node.update_rate = plugin.rate
-            setting = HardwareSetting(plugin.rate, self._node.warn)
-            model = plugin.setting.model
-            self._node.start(model, [self._hardware(info, setting) for info in plugin.hardware])
+            context = HardwareContext(plugin.rate, self._node.warn)
+            model = plugin.context.model
+            self._node.start(model, [self._hardware(info, context) for info in plugin.hardware])
         except Exception:
             self._node.destroy_node()
             raise
         self._thread = NodeThread(self._node)
         plugin.cycle = self._cycle
 
-    def _hardware(self, info: HardwareInfo, setting: HardwareSetting) -> Hardware:
+    def _hardware(self, info: HardwareInfo, context: HardwareContext) -> Hardware:
         cls = hardware_class(info.plugin)
-        return cls(info, setting, self._plugin) if issubclass(cls, SimulatedSystem) else cls(info, setting)
+        return cls(info, context, self._plugin) if issubclass(cls, SimulatedSystem) else cls(info, context)
 
     def _cycle(self, now_ns: int) -> None:
         self._said += self._node.cycle(now_ns)

@@ -10,7 +10,7 @@ from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.qos import DurabilityPolicy, QoSProfile
 
 from daidalos.control.errors import ControlError
-from daidalos.control.hardware.base import Hardware, HardwareSetting
+from daidalos.control.hardware.base import Hardware, HardwareContext
 from daidalos.control.plugins import hardware_class
 from daidalos.description import urdf
 from daidalos.description.errors import DescriptionError
@@ -50,8 +50,8 @@ class Ros2ControlNode(ControllerManagerNode):
     def _begin(self, text: str) -> None:
         try:
             robot = urdf.parse(text, "robot_description", package_share)
-            setting = HardwareSetting(self.update_rate, self.warn)
-            hardware: list[Hardware] = [hardware_class(info.plugin)(info, setting) for info in read_hardware(robot)]
+            context = HardwareContext(self.update_rate, self.warn)
+            hardware: list[Hardware] = [hardware_class(info.plugin)(info, context) for info in read_hardware(robot)]
             if not hardware:
                 raise ControlError("the robot description has no <ros2_control> element")
             self.start(robot, hardware)

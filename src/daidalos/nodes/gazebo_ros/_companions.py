@@ -71,7 +71,7 @@ class Companions:
         try:
             return _MAKERS[type(component)](component, self._context)
         except (ControlError, ValueError, RuntimeError) as error:  # a parameter file that is not valid
-            self._warn(f"the controllers of '{component.setting.model_name}' can not be started: {error}")
+            self._warn(f"the controllers of '{component.context.model_name}' can not be started: {error}")
             return None
 
     def _end(self, key: int) -> None:

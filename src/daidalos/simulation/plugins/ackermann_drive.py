@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from daidalos.description.geometry import Cylinder, Sphere
 from daidalos.description.link import Plugin as Description
 from daidalos.description.world import Model
-from daidalos.simulation.component import Setting, Subscription
+from daidalos.simulation.component import ComponentContext, Subscription
 from daidalos.simulation.conversion.model_build import ModelBuild
 from daidalos.simulation.instance import Instance
 from daidalos.simulation.odometry import PlanarPose, transform_of, wheel_odometry
@@ -55,9 +55,9 @@ class AckermannDrive(Plugin):
     )
     memory: Motion
 
-    def __init__(self, description: Description, setting: Setting) -> None:
-        super().__init__(description, setting)
-        self.settings = _measured(read_settings(self.parameters, setting), setting.model)
+    def __init__(self, description: Description, context: ComponentContext) -> None:
+        super().__init__(description, context)
+        self.settings = _measured(read_settings(self.parameters, context), context.model)
         self.period = self.settings.period
 
     def prepare(self, build: ModelBuild) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 
-from daidalos.simulation.component import Setting
+from daidalos.simulation.component import ComponentContext
 from daidalos.simulation.plugins.base import Parameters
 from daidalos.simulation.plugins.diff_drive_settings import Limits
 from daidalos.simulation.topics import absolute_topic, frame
@@ -64,7 +64,7 @@ class Settings:
     distance_topic: str = ""
 
 
-def read_settings(parameters: Parameters, setting: Setting) -> Settings:
+def read_settings(parameters: Parameters, context: ComponentContext) -> Settings:
     """Read an Ackermann drive's parameters.
 
     Raises
@@ -73,16 +73,16 @@ def read_settings(parameters: Parameters, setting: Setting) -> Settings:
         When a joint is missing.
     """
     read = _read_gz if parameters.library.startswith("gz-sim-") else _read_classic
-    settings = read(parameters, setting)
+    settings = read(parameters, context)
     joints = (*settings.left, *settings.right, settings.left_steering, settings.right_steering)
     for joint in (*joints, *filter(None, (settings.steering_wheel,))):
-        if joint not in setting.model.joints:
-            known = ", ".join(setting.model.joints) or "none"
+        if joint not in context.model.joints:
+            known = ", ".join(context.model.joints) or "none"
             raise parameters.element.error(f"there is no joint {joint!r}; known are {known}")
     return settings
 
 
-def _read_classic(parameters: Parameters, setting: Setting) -> Settings:
+def _read_classic(parameters: Parameters, context: ComponentContext) -> Settings:
     element = parameters.element
 
     def joint(tag: str) -> str:
@@ -117,8 +117,8 @@ def _read_classic(parameters: Parameters, setting: Setting) -> Settings:
     )
 
 
-def _read_gz(parameters: Parameters, setting: Setting) -> Settings:
-    element, name = parameters.element, setting.model_name
+def _read_gz(parameters: Parameters, context: ComponentContext) -> Settings:
+    element, name = parameters.element, context.model_name
 
     def joints(tag: str) -> tuple[str, ...]:
         return tuple(parameters.scoped(e.text.strip()) for e in element.all(tag))
@@ -126,10 +126,10 @@ def _read_gz(parameters: Parameters, setting: Setting) -> Settings:
     if not joints("left_joint") or not joints("right_joint"):
         raise element.error("<left_joint> and <right_joint> are needed")
     rate = element.number_of("odom_publish_frequency", default=50.0)
-    base = next(iter(setting.model.links), "base_link")
+    base = next(iter(context.model.links), "base_link")
     default = {"topic": "cmd_vel", "odom_topic": "odometry", "tf_topic": "tf"}
     topics = {
-        tag: absolute_topic(element.text_of(tag, default=f"/model/{name}/{word}"), setting.namespace)
+        tag: absolute_topic(element.text_of(tag, default=f"/model/{name}/{word}"), context.namespace)
         for tag, word in default.items()
     }
     track = element.number_of("kingpin_width", default=0.8)

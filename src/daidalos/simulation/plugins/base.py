@@ -10,7 +10,7 @@ from typing import ClassVar
 
 from daidalos.description.link import Plugin as Description
 from daidalos.description.markup import Element
-from daidalos.simulation.component import Component, Setting
+from daidalos.simulation.component import Component, ComponentContext
 from daidalos.simulation.sensors.base import Sensor
 from daidalos.simulation.topics import absolute_topic, join_namespaces
 
@@ -81,7 +81,7 @@ class Plugin(Component):
     Parameters
     ----------
     description : daidalos.description.link.Plugin
-    setting : Setting
+    context : ComponentContext
 
     Attributes
     ----------
@@ -92,15 +92,15 @@ class Plugin(Component):
     names: ClassVar[tuple[str, ...]] = ()
     unused: ClassVar[tuple[str, ...]] = ()
 
-    def __init__(self, description: Description, setting: Setting) -> None:
-        super().__init__(setting)
+    def __init__(self, description: Description, context: ComponentContext) -> None:
+        super().__init__(context)
         self.description = description
-        self.parameters = Parameters(description, setting)
+        self.parameters = Parameters(description, context)
 
     @classmethod
-    def make(cls, description: Description, setting: Setting) -> Iterable[Component]:
+    def make(cls, description: Description, context: ComponentContext) -> Iterable[Component]:
         """Return what runs in the simulation for this plugin: itself, unless a subclass knows better."""
-        return (cls(description, setting),)
+        return (cls(description, context),)
 
 
 class SensorPlugin(ABC):
@@ -120,16 +120,16 @@ class Parameters:
     Parameters
     ----------
     description : daidalos.description.link.Plugin
-    setting : Setting
+    context : ComponentContext
     """
 
-    def __init__(self, description: Description, setting: Setting) -> None:
+    def __init__(self, description: Description, context: ComponentContext) -> None:
         self.element: Element = description.element
         self.library = library_of(description)
         self.scope = description.scope
         ros = self.element.first("ros") or Element("ros")
         inner = ros.text_of("namespace", default=self.element.text_of("robotNamespace", "robot_namespace"))
-        self.namespace = join_namespaces(setting.namespace, inner)
+        self.namespace = join_namespaces(context.namespace, inner)
         self._remappings: dict[str, str] = {}
         for remapping in ros.all("remapping", "argument"):
             name, separator, target = remapping.text.strip().rpartition(" ")[2].partition(":=")

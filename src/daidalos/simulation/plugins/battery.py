@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from functools import partial
 
 from daidalos.description.link import Plugin as Description
-from daidalos.simulation.component import Setting, Subscription, Switch
+from daidalos.simulation.component import ComponentContext, Subscription, Switch
 from daidalos.simulation.plugins.base import Plugin
 from daidalos.simulation.samples import BatterySample, Sample, SignalCommand
 from daidalos.simulation.topics import absolute_topic
@@ -36,8 +36,8 @@ class LinearBattery(Plugin):
     memory: Charge
     period = _PERIOD
 
-    def __init__(self, description: Description, setting: Setting) -> None:
-        super().__init__(description, setting)
+    def __init__(self, description: Description, context: ComponentContext) -> None:
+        super().__init__(description, context)
         element = description.element
         name = element.text_of("battery_name")
         if not name:
@@ -56,13 +56,13 @@ class LinearBattery(Plugin):
         self.starts = element.flag_of("start_draining", default=True)
         self.charging_hours = element.number_of("charging_time", default=0.0)
         self.recharges = element.flag_of("enable_recharge", default=False) and self.charging_hours > 0
-        base = f"/model/{setting.model_name}/battery/{name}"
-        self.topic = absolute_topic(f"{base}/state", setting.namespace)
+        base = f"/model/{context.model_name}/battery/{name}"
+        self.topic = absolute_topic(f"{base}/state", context.namespace)
         self._services = tuple(
-            absolute_topic(f"{base}/recharge/{word}", setting.namespace) for word in ("start", "stop")
+            absolute_topic(f"{base}/recharge/{word}", context.namespace) for word in ("start", "stop")
         )
         self._starters, self._stoppers = (
-            tuple(absolute_topic(child.text.strip(), setting.namespace) for child in element.all(tag))
+            tuple(absolute_topic(child.text.strip(), context.namespace) for child in element.all(tag))
             for tag in ("power_draining_topic", "stop_power_draining_topic")
         )
         if self._starters and element.first("start_draining") is None:

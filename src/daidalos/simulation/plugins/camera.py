@@ -30,7 +30,7 @@ class CameraOfSensor(SensorPlugin):
         """Take topics, frame, distortion, baseline and limits of depths."""
         element = parameters.element
         if not isinstance(sensor, Camera):
-            sensor.setting.warn(f"{element.where}: plugin {parameters.library} needs a camera, left out")
+            sensor.context.warn(f"{element.where}: plugin {parameters.library} needs a camera, left out")
             return
         rate = element.number_of("updateRate", "update_rate", default=0.0)
         if rate > 0:

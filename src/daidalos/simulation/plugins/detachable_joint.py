@@ -9,7 +9,7 @@ import mujoco
 
 from daidalos.description.link import Plugin as Description
 from daidalos.description.pose import Pose
-from daidalos.simulation.component import Setting, Subscription
+from daidalos.simulation.component import ComponentContext, Subscription
 from daidalos.simulation.instance import Instance, LinkView
 from daidalos.simulation.plugins.base import Plugin
 from daidalos.simulation.plugins.holding import let_go, pull
@@ -33,25 +33,25 @@ class DetachableJoint(Plugin):
     unused = ("suppress_child_warning",)
     memory: Attachment
 
-    def __init__(self, description: Description, setting: Setting) -> None:
-        super().__init__(description, setting)
-        element, links = description.element, setting.model.links
+    def __init__(self, description: Description, context: ComponentContext) -> None:
+        super().__init__(description, context)
+        element, links = description.element, context.model.links
         self.parent = self.parameters.scoped(element.text_of("parent_link"))
         if self.parent not in links:
             raise element.error(f"<parent_link> is {self.parent!r}, expected one of the links {', '.join(links)}")
         self.child = element.text_of("child_model"), element.text_of("child_link")
         if not all(self.child):
             raise element.error("<child_model> and <child_link> are needed")
-        base = f"/model/{setting.model_name}/detachable_joint"
+        base = f"/model/{context.model_name}/detachable_joint"
         self.attach, self.detach, self.output = (
-            absolute_topic(element.text_of(*tags, default=f"{base}/{word}"), setting.namespace)
+            absolute_topic(element.text_of(*tags, default=f"{base}/{word}"), context.namespace)
             for tags, word in (
                 (("attach_topic",), "attach"),
                 (("detach_topic", "topic"), "detach"),
                 (("output_topic",), "state"),
             )
         )
-        self._key = f"{setting.model_name}::{description.name}"
+        self._key = f"{context.model_name}::{description.name}"
 
     @property
     def publications(self) -> Mapping[str, type[Sample]]:
@@ -97,6 +97,6 @@ class DetachableJoint(Plugin):
     def _target(self) -> LinkView | None:
         """Return the other link; None while it is not there."""
         model, link = self.child
-        name = f"{self.setting.model_name if self._same else model}::{link}"
+        name = f"{self.context.model_name if self._same else model}::{link}"
         body = mujoco.mj_name2id(self._physics.model, mujoco.mjtObj.mjOBJ_BODY, name)
         return LinkView(self._physics, body) if body >= 0 else None

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daidalos.description.link import Plugin as Description
-from daidalos.simulation.component import Setting, Subscription
+from daidalos.simulation.component import ComponentContext, Subscription
 from daidalos.simulation.conversion.model_build import ModelBuild
 from daidalos.simulation.instance import Instance, JointView, LinkView
 from daidalos.simulation.odometry import (
@@ -69,12 +69,12 @@ class DiffDrive(Plugin):
     unused = ("num_wheel_pairs",)
     memory: Motion
 
-    def __init__(self, description: Description, setting: Setting) -> None:
-        super().__init__(description, setting)
-        self.settings = read_settings(self.parameters, setting)
+    def __init__(self, description: Description, context: ComponentContext) -> None:
+        super().__init__(description, context)
+        self.settings = read_settings(self.parameters, context)
         for joint in (*self.settings.left, *self.settings.right):
-            if joint not in setting.model.joints:
-                known = ", ".join(setting.model.joints) or "none"
+            if joint not in context.model.joints:
+                known = ", ".join(context.model.joints) or "none"
                 raise description.element.error(f"there is no joint {joint!r}; known are {known}")
         self.period = self.settings.period
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 
-from daidalos.simulation.component import Setting
+from daidalos.simulation.component import ComponentContext
 from daidalos.simulation.odometry import EncoderError
 from daidalos.simulation.plugins.base import Parameters
 from daidalos.simulation.topics import absolute_topic, frame
@@ -79,7 +79,7 @@ class Settings:
     covariance: tuple[float, float, float] = (1e-5, 1e-5, 1e-3)
 
 
-def read_settings(parameters: Parameters, setting: Setting) -> Settings:
+def read_settings(parameters: Parameters, context: ComponentContext) -> Settings:
     """Read a differential drive's parameters.
 
     Raises
@@ -88,13 +88,13 @@ def read_settings(parameters: Parameters, setting: Setting) -> Settings:
         When one is missing or makes no sense.
     """
     if parameters.library.startswith("gz-sim-"):
-        return _read_gz(parameters, setting)
+        return _read_gz(parameters, context)
     if parameters.library == "gazebo_ros_skid_steer_drive":
         return _read_skid_steer(parameters)
-    return _read_classic(parameters, setting)
+    return _read_classic(parameters, context)
 
 
-def _read_classic(parameters: Parameters, setting: Setting) -> Settings:
+def _read_classic(parameters: Parameters, context: ComponentContext) -> Settings:
     """Read the parameters of Gazebo classic's plugin, in ROS 1's or ROS 2's names."""
     element = parameters.element
     left = [e.text.strip() for e in element.all("leftJoint", "left_joint")]
@@ -105,7 +105,7 @@ def _read_classic(parameters: Parameters, setting: Setting) -> Settings:
     is_ros1 = element.first("leftJoint") is not None
     if is_ros1 and element.flag_of("legacyMode", default=True):
         left, right = right, left
-        setting.warn(f"{element.where}: <legacyMode> is on: left and right wheels are swapped")
+        context.warn(f"{element.where}: <legacyMode> is on: left and right wheels are swapped")
     source = element.text_of("odometrySource", "odometry_source", default="encoder").lower()
     publishes_tf = element.flag_of("publishOdomTF", "publish_odom_tf", default=True) and element.flag_of(
         "publishTf", "publish_tf", default=True
@@ -173,18 +173,18 @@ def _read_skid_steer(parameters: Parameters) -> Settings:
     )
 
 
-def _read_gz(parameters: Parameters, setting: Setting) -> Settings:
+def _read_gz(parameters: Parameters, context: ComponentContext) -> Settings:
     """Read the parameters of gz's system."""
-    element, name = parameters.element, setting.model_name
+    element, name = parameters.element, context.model_name
     left = [parameters.scoped(e.text.strip()) for e in element.all("left_joint")]
     right = [parameters.scoped(e.text.strip()) for e in element.all("right_joint")]
     if not left or not right:
         raise element.error("<left_joint> and <right_joint> are needed")
     rate = element.number_of("odom_publish_frequency", default=50.0)
-    base = next(iter(setting.model.links), "base_link")
+    base = next(iter(context.model.links), "base_link")
     default = {"topic": "cmd_vel", "odom_topic": "odometry", "tf_topic": "tf"}
     topics = {
-        tag: absolute_topic(element.text_of(tag, default=f"/model/{name}/{word}"), setting.namespace)
+        tag: absolute_topic(element.text_of(tag, default=f"/model/{name}/{word}"), context.namespace)
         for tag, word in default.items()
     }
     return Settings(

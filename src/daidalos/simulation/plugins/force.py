@@ -8,7 +8,7 @@ import numpy as np
 
 from daidalos.description.link import Plugin as Description
 from daidalos.description.pose import rotation_matrix
-from daidalos.simulation.component import Setting, Subscription
+from daidalos.simulation.component import ComponentContext, Subscription
 from daidalos.simulation.instance import Instance
 from daidalos.simulation.plugins.base import Plugin
 from daidalos.simulation.samples import Sample, WrenchCommand
@@ -20,15 +20,15 @@ class Force(Plugin):
     names = ("gazebo_ros_force",)
     memory: WrenchCommand
 
-    def __init__(self, description: Description, setting: Setting) -> None:
-        super().__init__(description, setting)
-        element, links = description.element, setting.model.links
+    def __init__(self, description: Description, context: ComponentContext) -> None:
+        super().__init__(description, context)
+        element, links = description.element, context.model.links
         self.link = self.parameters.scoped(element.text_of("bodyName", "body_name", "link_name"))
         if self.link not in links:
             raise element.error(f"<link_name> is {self.link!r}, expected one of the links {', '.join(links)}")
         self.topic = self.parameters.topic(element.text_of("topicName", "topic_name", default="gazebo_ros_force"))
         self.follows = element.text_of("force_frame", default="world") in ("link", "body")
-        self._key = f"{setting.model_name}::{description.name}"
+        self._key = f"{context.model_name}::{description.name}"
 
     @property
     def subscriptions(self) -> Mapping[str, Subscription]:

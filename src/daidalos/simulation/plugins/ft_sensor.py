@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from daidalos.description.link import Plugin as PluginDescription
 from daidalos.description.link import Sensor as SensorDescription
 from daidalos.description.markup import Element
-from daidalos.simulation.component import Component, Setting
+from daidalos.simulation.component import Component, ComponentContext
 from daidalos.simulation.noise import Noise
 from daidalos.simulation.plugins.base import Parameters, Plugin
 from daidalos.simulation.sensors.force_torque import ForceTorque
@@ -20,16 +20,16 @@ class ForceTorqueOfJoint(Plugin):
     names = ("gazebo_ros_ft_sensor",)
 
     @classmethod
-    def make(cls, description: PluginDescription, setting: Setting) -> Iterable[Component]:
+    def make(cls, description: PluginDescription, context: ComponentContext) -> Iterable[Component]:
         """Make the sensor itself."""
-        parameters = Parameters(description, setting)
+        parameters = Parameters(description, context)
         element = description.element
-        joint = _joint(parameters, setting)
-        child = setting.model.joints[joint].child
+        joint = _joint(parameters, context)
+        child = context.model.joints[joint].child
         rate = element.number_of("updateRate", "update_rate", default=0.0)
         source = Element("sensor", {"name": description.name}, source=element.source, line=element.line)
         sensor = ForceTorque(
-            SensorDescription(description.name, "force_torque", source, update_rate=rate), child, setting, joint
+            SensorDescription(description.name, "force_torque", source, update_rate=rate), child, context, joint
         )
         sensor.topic = parameters.topic(element.text_of("topicName", "topic_name", default="wrench"))
         sensor.frame_id = frame(element.text_of("frameName", "frame_name", default=sensor.frame_id))
@@ -40,9 +40,9 @@ class ForceTorqueOfJoint(Plugin):
         return (sensor,)
 
 
-def _joint(parameters: Parameters, setting: Setting) -> str:
+def _joint(parameters: Parameters, context: ComponentContext) -> str:
     """Return the joint that is named, or the one that holds the link that is."""
-    element, joints = parameters.element, setting.model.joints
+    element, joints = parameters.element, context.model.joints
     named = parameters.scoped(element.text_of("jointName", "joint_name"))
     body = parameters.scoped(element.text_of("bodyName", "body_name"))
     if named in joints:

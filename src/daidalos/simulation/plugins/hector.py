@@ -9,7 +9,7 @@ from daidalos.description.link import Sensor as SensorDescription
 from daidalos.description.markup import Element
 from daidalos.description.pose import Pose
 from daidalos.description.world import SphericalCoordinates
-from daidalos.simulation.component import Component, Setting
+from daidalos.simulation.component import Component, ComponentContext
 from daidalos.simulation.noise import Noise
 from daidalos.simulation.plugins.base import Parameters, Plugin
 from daidalos.simulation.sensors.base import Sensor
@@ -29,11 +29,11 @@ class GpsOfModel(Plugin):
     unused = ("serviceName", "status", "service")
 
     @classmethod
-    def make(cls, description: PluginDescription, setting: Setting) -> Iterable[Component]:
+    def make(cls, description: PluginDescription, context: ComponentContext) -> Iterable[Component]:
         """Make the sensor itself."""
         element = description.element
-        sensor = NavSat(*_carrier(description, setting, "navsat", rate=4.0))
-        _name(sensor, Parameters(description, setting), "fix", "world")
+        sensor = NavSat(*_carrier(description, context, "navsat", rate=4.0))
+        _name(sensor, Parameters(description, context), "fix", "world")
         sensor.origin = SphericalCoordinates(
             latitude=element.number_of("referenceLatitude", default=49.9),
             longitude=element.number_of("referenceLongitude", default=8.9),
@@ -52,13 +52,13 @@ class HectorImu(Plugin):
     unused = ("serviceName", "biasTopic", "headingOffset", "headingDrift", "headingGaussianNoise")
 
     @classmethod
-    def make(cls, description: PluginDescription, setting: Setting) -> Iterable[Component]:
+    def make(cls, description: PluginDescription, context: ComponentContext) -> Iterable[Component]:
         """Make the sensor itself."""
         element = description.element
         xyz = element.vector_of("xyzOffset", size=3, default=(0.0, 0.0, 0.0))
         rpy = element.vector_of("rpyOffset", size=3, default=(0.0, 0.0, 0.0))
-        sensor = Imu(*_carrier(description, setting, "imu", pose=Pose.from_xyz_rpy(xyz, rpy)))
-        _name(sensor, Parameters(description, setting), "imu")
+        sensor = Imu(*_carrier(description, context, "imu", pose=Pose.from_xyz_rpy(xyz, rpy)))
+        _name(sensor, Parameters(description, context), "imu")
         sensor.rate_noise = axis_noises(element, "rate")
         sensor.acceleration_noise = axis_noises(element, "accel")
         return (sensor,)
@@ -70,10 +70,10 @@ class HectorMagnetometer(Plugin):
     names = ("hector_gazebo_ros_magnetic",)
 
     @classmethod
-    def make(cls, description: PluginDescription, setting: Setting) -> Iterable[Component]:
+    def make(cls, description: PluginDescription, context: ComponentContext) -> Iterable[Component]:
         """Make the sensor itself."""
-        sensor = Magnetometer(*_carrier(description, setting, "magnetometer"))
-        _name(sensor, Parameters(description, setting), "magnetic")
+        sensor = Magnetometer(*_carrier(description, context, "magnetometer"))
+        _name(sensor, Parameters(description, context), "magnetic")
         sensor.field_noise = axis_noises(description.element)
         return (sensor,)
 
@@ -103,17 +103,17 @@ def axis_noises(element: Element, of: str = "") -> tuple[Noise, Noise, Noise]:
 
 
 def _carrier(
-    description: PluginDescription, setting: Setting, kind: str, rate: float = 0.0, pose: Pose | None = None
-) -> tuple[SensorDescription, str, Setting]:
+    description: PluginDescription, context: ComponentContext, kind: str, rate: float = 0.0, pose: Pose | None = None
+) -> tuple[SensorDescription, str, ComponentContext]:
     """Return what a sensor is made of: the link that ``bodyName`` means, the first where it says nothing."""
-    element, links = description.element, setting.model.links
-    scoped = Parameters(description, setting).scoped
+    element, links = description.element, context.model.links
+    scoped = Parameters(description, context).scoped
     link = scoped(element.text_of("bodyName", "body_name", default=next(iter(links), "")))
     if link not in links:
         raise element.error(f"<bodyName> is {link!r}, expected one of the links {', '.join(links)}")
     rate = element.number_of("updateRate", "update_rate", default=rate)
     sensor = SensorDescription(description.name, kind, element, pose=pose or Pose(), update_rate=rate)
-    return sensor, link, setting
+    return sensor, link, context
 
 
 def _name(sensor: Sensor, parameters: Parameters, topic: str, frame_id: str = "") -> None:

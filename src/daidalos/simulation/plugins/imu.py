@@ -9,7 +9,7 @@ from daidalos.description.link import Plugin as PluginDescription
 from daidalos.description.link import Sensor as SensorDescription
 from daidalos.description.markup import Element
 from daidalos.description.pose import Pose
-from daidalos.simulation.component import Component, Setting
+from daidalos.simulation.component import Component, ComponentContext
 from daidalos.simulation.noise import Noise
 from daidalos.simulation.plugins.base import Parameters, Plugin, SensorPlugin
 from daidalos.simulation.sensors.base import Sensor
@@ -24,13 +24,13 @@ class ImuOfModel(Plugin):
     unused = ("serviceName",)
 
     @classmethod
-    def make(cls, description: PluginDescription, setting: Setting) -> Iterable[Component]:
+    def make(cls, description: PluginDescription, context: ComponentContext) -> Iterable[Component]:
         """Make the sensor itself."""
-        parameters = Parameters(description, setting)
+        parameters = Parameters(description, context)
         element = description.element
         link = parameters.scoped(element.text_of("bodyName", "body_name", "link_name"))
-        if link not in setting.model.links:
-            known = ", ".join(setting.model.links)
+        if link not in context.model.links:
+            known = ", ".join(context.model.links)
             raise element.error(f"<bodyName> is {link!r}, expected one of the links {known}")
         sensor = Imu(
             SensorDescription(
@@ -41,7 +41,7 @@ class ImuOfModel(Plugin):
                 update_rate=element.number_of("updateRate", "update_rate", default=0.0),
             ),
             link,
-            setting,
+            context,
         )
         sensor.topic = parameters.topic(element.text_of("topicName", "topic_name", default="imu"))
         sensor.frame_id = frame(element.text_of("frameName", "frame_name", default=sensor.frame_id))

@@ -10,7 +10,7 @@ import numpy as np
 from daidalos.description.joint import JointType
 from daidalos.description.link import Plugin as Description
 from daidalos.description.markup import Element
-from daidalos.simulation.component import Setting, Subscription
+from daidalos.simulation.component import ComponentContext, Subscription
 from daidalos.simulation.conversion.model_build import ModelBuild
 from daidalos.simulation.courses import Course, place_joints
 from daidalos.simulation.instance import Instance
@@ -35,15 +35,15 @@ class JointPoseTrajectory(Plugin):
     )
     memory: Course | None
 
-    def __init__(self, description: Description, setting: Setting) -> None:
-        super().__init__(description, setting)
+    def __init__(self, description: Description, context: ComponentContext) -> None:
+        super().__init__(description, context)
         element = description.element
         self._holds = self.parameters.library.startswith("gz-")
         self._initial: Course | None = None
         if self._holds:
             self._initial = self._initial_course(element)
-            topic = element.text_of("topic", default=f"/model/{setting.model_name}/joint_trajectory")
-            self.topic = absolute_topic(topic, setting.namespace)
+            topic = element.text_of("topic", default=f"/model/{context.model_name}/joint_trajectory")
+            self.topic = absolute_topic(topic, context.namespace)
         else:
             name = element.text_of("topicName", "topic_name", default="set_joint_trajectory")
             self.topic = self.parameters.topic(name)
@@ -79,14 +79,14 @@ class JointPoseTrajectory(Plugin):
         unknown = [name for name in command.joints if self.parameters.scoped(name) not in self._joints]
         if unknown or not len(command.times):
             words = f"there is no movable joint {unknown[0]!r}" if unknown else "it has no points"
-            self.setting.warn(f"{self.topic}: the trajectory is ignored, {words}")
+            self.context.warn(f"{self.topic}: the trajectory is ignored, {words}")
             return
         self.memory = Course(command, self._now_ns)
 
     def _initial_course(self, element: Element) -> Course | None:
         """Return a course that stands still at the initial positions, which are in the order of the joints."""
         scope = f"{self.parameters.scope}::" if self.parameters.scope else ""
-        joints = self.setting.model.joints.values()
+        joints = self.context.model.joints.values()
         turning = [joint.name for joint in joints if joint.type is not JointType.FIXED]
         movable = [name.removeprefix(scope) for name in turning if name.startswith(scope)]
         names = [child.text.strip() for child in element.all("joint_name")] or movable
@@ -122,21 +122,21 @@ class JointController(Plugin):
     memory: Hold
     period = 0.01
 
-    def __init__(self, description: Description, setting: Setting) -> None:
-        super().__init__(description, setting)
-        element, joints = description.element, setting.model.joints
+    def __init__(self, description: Description, context: ComponentContext) -> None:
+        super().__init__(description, context)
+        element, joints = description.element, context.model.joints
         self.joints = [self.parameters.scoped(child.text.strip()) for child in element.all("joint_name")]
         for joint in self.joints or [""]:
             if joint not in joints:
                 known = ", ".join(joints) or "none"
                 raise element.error(f"<joint_name> is {joint!r}, expected one of the joints {known}")
         self.holds_position = "position" in self.parameters.library
-        model = f"/model/{setting.model_name}"
+        model = f"/model/{context.model_name}"
         axis = element.integer_of("joint_index", default=0)
         words = f"{axis}/cmd_pos" if self.holds_position else "cmd_vel"
         below = element.text_of("sub_topic")
         default = f"{model}/{below}" if below else f"{model}/joint/{self.joints[0]}/{words}"
-        self.topic = absolute_topic(element.text_of("topic", default=default), setting.namespace)
+        self.topic = absolute_topic(element.text_of("topic", default=default), context.namespace)
         self.gain = element.number_of("p_gain", default=1.0)
         self.damping = element.number_of("d_gain", default=0.1)
         self.integral_gain = element.number_of("i_gain", default=0.1) if self.holds_position else 0.0

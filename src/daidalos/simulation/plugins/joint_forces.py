@@ -8,7 +8,7 @@ import numpy as np
 
 from daidalos.description.link import Plugin as Description
 from daidalos.description.pose import rotate
-from daidalos.simulation.component import Setting, Subscription
+from daidalos.simulation.component import ComponentContext, Subscription
 from daidalos.simulation.conversion.model_build import ModelBuild
 from daidalos.simulation.instance import Instance
 from daidalos.simulation.plugins.base import Plugin
@@ -22,11 +22,11 @@ class ApplyJointForce(Plugin):
     names = ("gz-sim-apply-joint-force-system",)
     memory: float
 
-    def __init__(self, description: Description, setting: Setting) -> None:
-        super().__init__(description, setting)
+    def __init__(self, description: Description, context: ComponentContext) -> None:
+        super().__init__(description, context)
         self.joint = joint_of(self, "joint_name")
-        default = f"/model/{setting.model_name}/joint/{self.joint}/cmd_force"
-        self.topic = absolute_topic(description.element.text_of("topic", default=default), setting.namespace)
+        default = f"/model/{context.model_name}/joint/{self.joint}/cmd_force"
+        self.topic = absolute_topic(description.element.text_of("topic", default=default), context.namespace)
 
     @property
     def subscriptions(self) -> Mapping[str, Subscription]:
@@ -66,8 +66,8 @@ class Thruster(Plugin):
     unused = ("velocity_control", "p_gain", "i_gain", "d_gain", "wake_fraction", "alpha_1", "alpha_2")
     memory: float
 
-    def __init__(self, description: Description, setting: Setting) -> None:
-        super().__init__(description, setting)
+    def __init__(self, description: Description, context: ComponentContext) -> None:
+        super().__init__(description, context)
         element = description.element
         self.joint = joint_of(self, "joint_name")
         diameter = element.number_of("propeller_diameter", default=0.02)
@@ -81,11 +81,11 @@ class Thruster(Plugin):
             raise element.error("<min_thrust_cmd> is above <max_thrust_cmd>")
         self.takes_speeds = element.flag_of("use_angvel_cmd", default=False)
         word = "cmd_vel" if self.takes_speeds else "cmd_thrust"
-        namespace = element.text_of("namespace", default=setting.model_name)
+        namespace = element.text_of("namespace", default=context.model_name)
         own = element.text_of("topic")
         name = f"/model/{namespace}/{own}" if own else f"/model/{namespace}/joint/{self.joint}/{word}"
-        self.topic = absolute_topic(name, setting.namespace)
-        self._key = f"{setting.model_name}::{description.name}"
+        self.topic = absolute_topic(name, context.namespace)
+        self._key = f"{context.model_name}::{description.name}"
 
     @property
     def subscriptions(self) -> Mapping[str, Subscription]:
@@ -116,7 +116,7 @@ class Thruster(Plugin):
 
 def joint_of(plugin: Plugin, tag: str) -> str:
     """Return the joint that a parameter names, an error where the model has none."""
-    element, joints = plugin.description.element, plugin.setting.model.joints
+    element, joints = plugin.description.element, plugin.context.model.joints
     name = plugin.parameters.scoped(element.text_of(tag))
     if name not in joints:
         raise element.error(f"<{tag}> is {name!r}, expected one of the joints {', '.join(joints) or 'none'}")

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping
 import numpy as np
 
 from daidalos.description.link import Plugin as Description
-from daidalos.simulation.component import Setting
+from daidalos.simulation.component import ComponentContext
 from daidalos.simulation.instance import Instance
 from daidalos.simulation.plugins.base import Plugin
 from daidalos.simulation.samples import JointStateSample, Sample
@@ -20,18 +20,18 @@ class JointStatePublisher(Plugin):
 
     names = ("gazebo_ros_joint_state_publisher", "gz-sim-joint-state-publisher-system")
 
-    def __init__(self, description: Description, setting: Setting) -> None:
-        super().__init__(description, setting)
+    def __init__(self, description: Description, context: ComponentContext) -> None:
+        super().__init__(description, context)
         element, parameters = description.element, self.parameters
         words = " ".join(child.text for child in element.all("jointName", "joint_name"))
         self.joints = tuple(parameters.scoped(name) for name in re.split(r"[\s,]+", words) if name)
         for joint in self.joints:
-            if joint not in setting.model.joints:
-                known = ", ".join(setting.model.joints) or "none"
+            if joint not in context.model.joints:
+                known = ", ".join(context.model.joints) or "none"
                 raise element.error(f"there is no joint {joint!r}; known are {known}")
         if parameters.library.startswith("gz-sim-"):
-            topic = f"/world/{setting.world.name}/model/{setting.model_name}/joint_state"
-            self.topic = absolute_topic(element.text_of("topic", default=topic), setting.namespace)
+            topic = f"/world/{context.world.name}/model/{context.model_name}/joint_state"
+            self.topic = absolute_topic(element.text_of("topic", default=topic), context.namespace)
             rate = element.number_of("update_rate", default=0.0)
         else:
             self.topic = parameters.topic(element.text_of("topicName", "topic_name", default="joint_states"))

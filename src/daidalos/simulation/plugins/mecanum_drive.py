@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daidalos.description.link import Plugin as Description
-from daidalos.simulation.component import Setting, Subscription
+from daidalos.simulation.component import ComponentContext, Subscription
 from daidalos.simulation.conversion.model_build import ModelBuild
 from daidalos.simulation.instance import Instance
 from daidalos.simulation.odometry import PlanarPose, transform_of, wheel_odometry
@@ -45,9 +45,9 @@ class MecanumDrive(Plugin):
     names = ("gz-sim-mecanum-drive-system",)
     memory: Motion
 
-    def __init__(self, description: Description, setting: Setting) -> None:
-        super().__init__(description, setting)
-        element, name = description.element, setting.model_name
+    def __init__(self, description: Description, context: ComponentContext) -> None:
+        super().__init__(description, context)
+        element, name = description.element, context.model_name
         self.joints = tuple(joint_of(self, tag) for tag in _WHEELS)
         sizes = {"wheel_separation": 1.0, "wheelbase": 1.0, "wheel_radius": 0.2}
         given = {tag: element.number_of(tag, default=size) for tag, size in sizes.items()}
@@ -66,10 +66,10 @@ class MecanumDrive(Plugin):
         rate = element.number_of("odom_publish_frequency", default=50.0)
         self.period = 1.0 / rate if rate > 0 else 0.0
         self.command_topic, self.odometry_topic, self.tf_topic = (
-            absolute_topic(element.text_of(tag, default=f"/model/{name}/{word}"), setting.namespace)
+            absolute_topic(element.text_of(tag, default=f"/model/{name}/{word}"), context.namespace)
             for tag, word in (("topic", "cmd_vel"), ("odom_topic", "odometry"), ("tf_topic", "tf"))
         )
-        base = next(iter(setting.model.links), "base_link")
+        base = next(iter(context.model.links), "base_link")
         self.odometry_frame = frame(element.text_of("frame_id", default=f"{name}/odom"))
         self.base_frame = frame(element.text_of("child_frame_id", default=f"{name}/{base}"))
 

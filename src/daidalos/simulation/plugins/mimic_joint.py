@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from daidalos.description.link import Plugin as Description
-from daidalos.simulation.component import Setting
+from daidalos.simulation.component import ComponentContext
 from daidalos.simulation.conversion.couplings import couple
 from daidalos.simulation.conversion.model_build import ModelBuild
 from daidalos.simulation.plugins.base import Plugin
@@ -22,8 +22,8 @@ class MimicJoint(Plugin):
     )
     unused = ("hasPID", "maxEffort", "sensitiveness", "namespace", "robotNamespace")
 
-    def __init__(self, description: Description, setting: Setting) -> None:
-        super().__init__(description, setting)
+    def __init__(self, description: Description, context: ComponentContext) -> None:
+        super().__init__(description, context)
         self.leader, self.follower = joint_of(self, "joint"), joint_of(self, "mimicJoint")
         self.multiplier = description.element.number_of("multiplier", default=1.0)
         self.offset = description.element.number_of("offset", default=0.0)
@@ -31,7 +31,7 @@ class MimicJoint(Plugin):
     def prepare(self, build: ModelBuild) -> None:
         """Tie the joints to each other."""
         follower, leader = build.joints.get(self.follower), build.joints.get(self.leader)
-        if follower and leader and self.setting.model.joints[self.follower].mimic is None:
+        if follower and leader and self.context.model.joints[self.follower].mimic is None:
             couple(build.spec, follower[0], leader[0], self.offset, self.multiplier)
 
     def update(self, now_ns: int) -> Iterable[Sample]:

@@ -10,7 +10,7 @@ import numpy as np
 from daidalos.description.link import Plugin as Description
 from daidalos.description.markup import Element
 from daidalos.description.pose import Pose
-from daidalos.simulation.component import Setting
+from daidalos.simulation.component import ComponentContext
 from daidalos.simulation.instance import Instance
 from daidalos.simulation.odometry import transform_of
 from daidalos.simulation.plugins.base import Plugin
@@ -24,10 +24,10 @@ class P3d(Plugin):
 
     names = ("gazebo_ros_p3d",)
 
-    def __init__(self, description: Description, setting: Setting) -> None:
-        super().__init__(description, setting)
+    def __init__(self, description: Description, context: ComponentContext) -> None:
+        super().__init__(description, context)
         element, parameters = description.element, self.parameters
-        links = setting.model.links
+        links = context.model.links
         self.link = parameters.scoped(element.text_of("bodyName", "body_name", default=next(iter(links), "")))
         if self.link not in links:
             raise element.error(f"<body_name> is {self.link!r}, expected one of the links {', '.join(links)}")
@@ -70,18 +70,18 @@ class OdometryPublisher(Plugin):
     names = ("gz-sim-odometry-publisher-system",)
     unused = ("dimensions", "odom_covariance_topic")
 
-    def __init__(self, description: Description, setting: Setting) -> None:
-        super().__init__(description, setting)
-        element, name = description.element, setting.model_name
-        base = next(iter(setting.model.links), "base_footprint")
+    def __init__(self, description: Description, context: ComponentContext) -> None:
+        super().__init__(description, context)
+        element, name = description.element, context.model_name
+        base = next(iter(context.model.links), "base_footprint")
         self.odometry_frame = frame(element.text_of("odom_frame", default=f"{name}/odom"))
         self.base_frame = frame(element.text_of("robot_base_frame", default=f"{name}/base_footprint"))
         self.link = base
         self.noise = element.number_of("gaussian_noise", default=0.0)
         self.offset = _read_offset(element)
         topic = element.text_of("odom_topic", default=f"/model/{name}/odometry")
-        self.topic = absolute_topic(topic, setting.namespace)
-        self.tf_topic = absolute_topic(element.text_of("tf_topic", default=f"/model/{name}/pose"), setting.namespace)
+        self.topic = absolute_topic(topic, context.namespace)
+        self.tf_topic = absolute_topic(element.text_of("tf_topic", default=f"/model/{name}/pose"), context.namespace)
         rate = element.number_of("odom_publish_frequency", default=50.0)
         self.period = 1.0 / rate if rate > 0 else 0.0
 

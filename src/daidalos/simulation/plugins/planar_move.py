@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from daidalos.description.link import Plugin as Description
 from daidalos.description.pose import Pose, rotation_matrix
-from daidalos.simulation.component import Setting, Subscription
+from daidalos.simulation.component import ComponentContext, Subscription
 from daidalos.simulation.instance import Instance
 from daidalos.simulation.odometry import transform_of
 from daidalos.simulation.plugins.base import Plugin
@@ -38,8 +38,8 @@ class PlanarMove(Plugin):
     unused = ("update_rate",)
     memory: Motion
 
-    def __init__(self, description: Description, setting: Setting) -> None:
-        super().__init__(description, setting)
+    def __init__(self, description: Description, context: ComponentContext) -> None:
+        super().__init__(description, context)
         element, parameters = description.element, self.parameters
         self.command_topic = parameters.topic(element.text_of("commandTopic", "command_topic", default="cmd_vel"))
         self.odometry_topic = parameters.topic(element.text_of("odometryTopic", "odometry_topic", default="odom"))
@@ -110,11 +110,11 @@ class VelocityControl(Plugin):
     names = ("gz-sim-velocity-control-system",)
     memory: Motion
 
-    def __init__(self, description: Description, setting: Setting) -> None:
-        super().__init__(description, setting)
+    def __init__(self, description: Description, context: ComponentContext) -> None:
+        super().__init__(description, context)
         element = description.element
-        topic = element.text_of("topic", default=f"/model/{setting.model_name}/cmd_vel")
-        self.topic = absolute_topic(topic, setting.namespace)
+        topic = element.text_of("topic", default=f"/model/{context.model_name}/cmd_vel")
+        self.topic = absolute_topic(topic, context.namespace)
         self._linear = element.vector_of("initial_linear", size=3, default=(0.0, 0.0, 0.0))
         self._angular = element.vector_of("initial_angular", size=3, default=(0.0, 0.0, 0.0))
 

@@ -9,7 +9,7 @@ import numpy as np
 from daidalos.description.joint import JointType
 from daidalos.description.link import Plugin as Description
 from daidalos.description.pose import Pose
-from daidalos.simulation.component import Setting
+from daidalos.simulation.component import ComponentContext
 from daidalos.simulation.instance import Instance
 from daidalos.simulation.plugins.base import Plugin
 from daidalos.simulation.samples import Sample, TransformSample
@@ -25,10 +25,10 @@ class PosePublisher(Plugin):
     names = ("gz-sim-pose-publisher-system",)
     unused = ("publish_sensor_pose", "publish_collision_pose", "publish_visual_pose", "use_pose_vector_msg")
 
-    def __init__(self, description: Description, setting: Setting) -> None:
-        super().__init__(description, setting)
-        element, name = description.element, setting.model_name
-        self.topic = absolute_topic(f"/model/{name}/pose", setting.namespace)
+    def __init__(self, description: Description, context: ComponentContext) -> None:
+        super().__init__(description, context)
+        element, name = description.element, context.model_name
+        self.topic = absolute_topic(f"/model/{name}/pose", context.namespace)
         self.links = element.flag_of("publish_link_pose", default=True)
         self.model = element.flag_of("publish_model_pose", default=False) or element.flag_of(
             "publish_nested_model_pose", default=False
@@ -66,7 +66,7 @@ class PosePublisher(Plugin):
             return
         pose = instance.pose
         if self.model and self.topic in due:
-            yield self._transform(now_ns, self.topic, self.setting.world.name, instance.name, pose)
+            yield self._transform(now_ns, self.topic, self.context.world.name, instance.name, pose)
         if self.links:
             back = pose.inverse
             for link, topic in self._topics.items():

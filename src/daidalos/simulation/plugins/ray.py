@@ -64,7 +64,7 @@ class RaySensor(SensorPlugin):
             sensor.as_range = kind.endswith("Range")
             sensor.ultrasound = element.text_of("radiation_type") == "ultrasound"
             if kind.endswith("PointCloud"):
-                sensor.setting.warn(f"{element.where}: <output_type> is {kind}; it is published as PointCloud2")
+                sensor.context.warn(f"{element.where}: <output_type> is {kind}; it is published as PointCloud2")
 
 
 class RangeSensor(SensorPlugin):

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from daidalos.description.link import Plugin as Description
 from daidalos.description.markup import Element
 from daidalos.description.ros2_control import ComponentInfo, read_hardware
-from daidalos.simulation.component import Component, Setting
+from daidalos.simulation.component import Component, ComponentContext
 from daidalos.simulation.conversion.model_build import ModelBuild
 from daidalos.simulation.instance import Instance
 from daidalos.simulation.joint_drives import DriveState, JointDrives
@@ -53,10 +53,10 @@ class Ros2Control(Plugin):
     )
     memory: DriveState
 
-    def __init__(self, description: Description, setting: Setting) -> None:
-        super().__init__(description, setting)
+    def __init__(self, description: Description, context: ComponentContext) -> None:
+        super().__init__(description, context)
         element = description.element
-        self.hardware = read_hardware(setting.model)
+        self.hardware = read_hardware(context.model)
         self.files = tuple(_file(child) for child in element.all("parameters"))
         self.manager_name = element.text_of(
             "controller_manager_name", "controller_manager_node_name", default="controller_manager"
@@ -74,11 +74,11 @@ class Ros2Control(Plugin):
         self._initial = {joint.name: position for _, joint in joints if not math.isnan(position := _start(joint))}
 
     @classmethod
-    def make(cls, description: Description, setting: Setting) -> Iterable[Component]:
+    def make(cls, description: Description, context: ComponentContext) -> Iterable[Component]:
         """Return it for a robot that says what to control; another one is there without."""
-        if read_hardware(setting.model):
-            return super().make(description, setting)
-        setting.warn(
+        if read_hardware(context.model):
+            return super().make(description, context)
+        context.warn(
             f"{description.element.where}: the robot has no <ros2_control> element that says what to control; "
             f"plugin {description.name!r} is left out"
         )

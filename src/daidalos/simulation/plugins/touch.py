@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from daidalos.description.link import Plugin as Description
-from daidalos.simulation.component import Setting, Switch
+from daidalos.simulation.component import ComponentContext, Switch
 from daidalos.simulation.instance import Instance
 from daidalos.simulation.plugins.base import Plugin
 from daidalos.simulation.samples import FlagSample, Sample
@@ -32,17 +32,17 @@ class Touch(Plugin):
     names = ("gz-sim-touchplugin-system", "gz-sim-touch-plugin-system")
     memory: Watch
 
-    def __init__(self, description: Description, setting: Setting) -> None:
-        super().__init__(description, setting)
+    def __init__(self, description: Description, context: ComponentContext) -> None:
+        super().__init__(description, context)
         element = description.element
         self.target = element.text_of("target")
         if not self.target:
             raise element.error("<target> is needed: a part of the name of what is to be touched")
-        namespace = element.text_of("namespace", default=setting.model_name)
+        namespace = element.text_of("namespace", default=context.model_name)
         self.time_ns = round(element.number_of("time", default=0.0) * 1e9)
         self.on = element.flag_of("enabled", default=False)
-        self.topic = absolute_topic(f"{namespace}/touched", setting.namespace)
-        self.service = absolute_topic(f"{namespace}/enable", setting.namespace)
+        self.topic = absolute_topic(f"{namespace}/touched", context.namespace)
+        self.service = absolute_topic(f"{namespace}/enable", context.namespace)
 
     @property
     def publications(self) -> Mapping[str, type[Sample]]:

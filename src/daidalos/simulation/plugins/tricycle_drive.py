@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daidalos.description.link import Plugin as Description
-from daidalos.simulation.component import Setting, Subscription
+from daidalos.simulation.component import ComponentContext, Subscription
 from daidalos.simulation.conversion.model_build import ModelBuild
 from daidalos.simulation.instance import Instance
 from daidalos.simulation.odometry import PlanarPose, transform_of, wheel_odometry
@@ -47,8 +47,8 @@ class TricycleDrive(Plugin):
     unused = ("wheel_speed_tolerance", "steering_angle_tolerance", "odometry_source")
     memory: Motion
 
-    def __init__(self, description: Description, setting: Setting) -> None:
-        super().__init__(description, setting)
+    def __init__(self, description: Description, context: ComponentContext) -> None:
+        super().__init__(description, context)
         element, p = description.element, self.parameters
         self.steering, self.driven = self._joint("steering_joint"), self._joint("actuated_wheel_joint")
         self.encoders = self._joint("encoder_wheel_left_joint"), self._joint("encoder_wheel_right_joint")
@@ -166,7 +166,7 @@ class TricycleDrive(Plugin):
         return np.array([joint.position for joint in self._moved[2:]])
 
     def _joint(self, tag: str) -> str:
-        joints = self.setting.model.joints
+        joints = self.context.model.joints
         name = self.parameters.scoped(self.parameters.element.text_of(tag))
         if name not in joints:
             raise self.parameters.element.error(f"<{tag}> is {name!r}, expected one of the joints {', '.join(joints)}")

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from daidalos.description.link import Plugin as Description
 from daidalos.description.pose import Pose
-from daidalos.simulation.component import Setting, Switch
+from daidalos.simulation.component import ComponentContext, Switch
 from daidalos.simulation.instance import Instance, LinkView
 from daidalos.simulation.plugins.base import Plugin
 from daidalos.simulation.plugins.holding import let_go, pull
@@ -40,9 +40,9 @@ class VacuumGripper(Plugin):
     names = ("gazebo_ros_vacuum_gripper",)
     memory: Hold
 
-    def __init__(self, description: Description, setting: Setting) -> None:
-        super().__init__(description, setting)
-        element, parameters, links = description.element, self.parameters, setting.model.links
+    def __init__(self, description: Description, context: ComponentContext) -> None:
+        super().__init__(description, context)
+        element, parameters, links = description.element, self.parameters, context.model.links
         self.link = parameters.scoped(element.text_of("bodyName", "link_name", "body_name"))
         if self.link not in links:
             raise element.error(f"<link_name> is {self.link!r}, expected one of the links {', '.join(links)}")
@@ -53,7 +53,7 @@ class VacuumGripper(Plugin):
         self.topic = parameters.topic(f"{topic}/grasping" if self.is_ros1 else topic)
         names = (f"{topic}/on", f"{topic}/off") if self.is_ros1 else ("switch",)
         self._services = tuple(parameters.topic(name) for name in names)
-        self._key = f"{setting.model_name}::{description.name}"
+        self._key = f"{context.model_name}::{description.name}"
 
     @property
     def publications(self) -> Mapping[str, type[Sample]]:

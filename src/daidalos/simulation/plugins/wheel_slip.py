@@ -13,7 +13,7 @@ from daidalos.description.link import Link, Surface
 from daidalos.description.link import Plugin as Description
 from daidalos.description.markup import Element
 from daidalos.description.pose import rotate
-from daidalos.simulation.component import Setting
+from daidalos.simulation.component import ComponentContext
 from daidalos.simulation.conversion.contact import DEFAULT_FRICTION, set_friction
 from daidalos.simulation.conversion.model_build import ModelBuild
 from daidalos.simulation.instance import Instance
@@ -62,11 +62,11 @@ class WheelSlip(Plugin):
 
     names = ("WheelSlipPlugin", "gazebo_ros_wheel_slip", "gz-sim-wheel-slip-system")
 
-    def __init__(self, description: Description, setting: Setting) -> None:
-        super().__init__(description, setting)
+    def __init__(self, description: Description, context: ComponentContext) -> None:
+        super().__init__(description, context)
         self.wheels = [self._wheel(child) for child in description.element.all("wheel")]
         self.topic = self.parameters.topic(description.element.text_of("topic", default="wheel_slip"))
-        self._key = f"{setting.model_name}::{description.name}"
+        self._key = f"{context.model_name}::{description.name}"
 
     @property
     def publications(self) -> Mapping[str, type[Sample]]:
@@ -148,7 +148,7 @@ class WheelSlip(Plugin):
         return held
 
     def _wheel(self, element: Element) -> Wheel:
-        model = self.setting.model
+        model = self.context.model
         link = self.parameters.scoped(element.attribute("link_name"))
         joint = next((joint for joint in model.joints.values() if joint.child == link), None)
         if joint is None:

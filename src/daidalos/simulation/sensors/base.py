@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, ClassVar
 from daidalos.description.link import Sensor as Description
 from daidalos.description.markup import Element
 from daidalos.description.pose import Pose
-from daidalos.simulation.component import Component, Setting
+from daidalos.simulation.component import Component, ComponentContext
 from daidalos.simulation.samples import Sample
 from daidalos.simulation.topics import absolute_topic
 
@@ -28,7 +28,7 @@ class Sensor(Component):
     description : daidalos.description.link.Sensor
     link : str
         The link that carries it.
-    setting : Setting
+    context : ComponentContext
     joint : str
         The joint that it sits in; empty for a sensor on a link.
 
@@ -45,8 +45,8 @@ class Sensor(Component):
     types: ClassVar[tuple[str, ...]] = ()
     default_topic: ClassVar[str] = "data"
 
-    def __init__(self, description: Description, link: str, setting: Setting, joint: str = "") -> None:
-        super().__init__(setting)
+    def __init__(self, description: Description, link: str, context: ComponentContext, joint: str = "") -> None:
+        super().__init__(context)
         self.name = description.name
         self.link_name = link
         self.joint_name = joint
@@ -55,9 +55,9 @@ class Sensor(Component):
         self.frame_id = description.element.text_of(
             "gz_frame_id", "ignition_frame_id", default=link.rpartition("::")[2]
         )
-        scope = f"{setting.model_name}/{link.replace('::', '/')}/{description.name}"
+        scope = f"{context.model_name}/{link.replace('::', '/')}/{description.name}"
         topic = description.topic or f"{scope}/{self.default_topic}"
-        self.topic = absolute_topic(topic, setting.namespace)
+        self.topic = absolute_topic(topic, context.namespace)
         self.read(description.element)
 
     def read(self, element: Element) -> None:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from daidalos.description.link import Sensor as Description
 from daidalos.description.markup import Element
-from daidalos.simulation.component import Setting, Subscription
+from daidalos.simulation.component import ComponentContext, Subscription
 from daidalos.simulation.rendering.pool import Pool
 from daidalos.simulation.samples import (
     CameraInfoSample,
@@ -96,11 +96,11 @@ class Camera(Sensor):
     )
     default_topic = "image"
 
-    def __init__(self, description: Description, link: str, setting: Setting, joint: str = "") -> None:
+    def __init__(self, description: Description, link: str, context: ComponentContext, joint: str = "") -> None:
         self.kind = description.type.removesuffix("_camera")
-        super().__init__(description, link, setting, joint)
+        super().__init__(description, link, context, joint)
         if self.kind == "wideanglecamera":
-            setting.warn(f"{description.element.where}: sensor {self.name!r}: its lens is drawn as a pinhole")
+            context.warn(f"{description.element.where}: sensor {self.name!r}: its lens is drawn as a pinhole")
         elements = description.element.all("camera") or [Element("camera")]
         self.lenses = [self._lens(element, several=len(elements) > 1) for element in elements]
         for lens in self.lenses[1:]:
@@ -108,7 +108,7 @@ class Camera(Sensor):
             lens.baseline = -(self.lenses[0].settings.pose.inverse @ lens.settings.pose).position[1]
         self._eyes: list[Eye] = []
         first = self.lenses[0].settings
-        trigger = absolute_topic(first.trigger_topic or f"{self.topic}/trigger", setting.namespace)
+        trigger = absolute_topic(first.trigger_topic or f"{self.topic}/trigger", context.namespace)
         self.trigger: tuple[str, type] | None = (trigger, FlagCommand) if first.triggered else None
 
     @property
@@ -147,7 +147,7 @@ class Camera(Sensor):
         settings = read_camera(element)
         lens = Lens(settings, settings.optical_frame or self.frame_id, self.frame_id, points_ahead_x=True)
         description_topic = settings.topic or self.topic
-        base = absolute_topic(description_topic, self.setting.namespace)
+        base = absolute_topic(description_topic, self.context.namespace)
         stem = base.removesuffix("/image") if base == self.topic else base
         if several:
             stem = f"{stem}/{settings.name}"
@@ -165,7 +165,7 @@ class Camera(Sensor):
             info = settings.info_topic or f"{stem}/camera_info"
         else:
             lens.image = base
-        lens.infos = (absolute_topic(info, self.setting.namespace),)
+        lens.infos = (absolute_topic(info, self.context.namespace),)
         return lens
 
     def _look(self, number: int, lens: Lens, wanted: set[str], now_ns: int) -> Iterable[Sample]:
@@ -262,7 +262,7 @@ class Camera(Sensor):
             for lens in self.lenses:
                 s = lens.settings
                 eye = EyeSettings(s.pinhole, s.near, s.far, s.mask, s.noise)
-                self._eyes.append(Eye(eye, self.setting.stream()))
+                self._eyes.append(Eye(eye, self.context.stream()))
         return self._eyes[number]
 
 

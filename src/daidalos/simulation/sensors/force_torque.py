@@ -60,7 +60,7 @@ class ForceTorque(NoisySensor):
     def bind(self, instance: Instance) -> None:
         """Find the joint, or the one that holds the link."""
         super().bind(instance)
-        joints = self.setting.model.joints
+        joints = self.context.model.joints
         above = (joint for joint in joints.values() if joint.child == self.link_name)
         self._joint = joints.get(self.joint_name) or next(above, None)
         parent = None if self._joint is None else self._joint.parent

@@ -79,7 +79,7 @@ class Barometer(NoisySensor):
 
     def measure(self, now_ns: int) -> Iterable[Sample]:
         """Work out the pressure [Pa]."""
-        air = self.setting.world.atmosphere
+        air = self.context.world.atmosphere
         height = self._altitude + (self.link.pose @ self.pose).position[2]
         exponent = _GRAVITY * _MOLAR_MASS / (_GAS_CONSTANT * -air.temperature_gradient)
         share = max(1 + air.temperature_gradient * height / air.temperature, 0.0)

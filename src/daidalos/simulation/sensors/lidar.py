@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from daidalos.description.link import Sensor as Description
 from daidalos.description.markup import Element
 from daidalos.description.pose import rotation_matrix
-from daidalos.simulation.component import Setting
+from daidalos.simulation.component import ComponentContext
 from daidalos.simulation.conversion.geometry import RAY_GROUPS
 from daidalos.simulation.instance import Instance
 from daidalos.simulation.noise import read_noise
@@ -66,8 +66,8 @@ class Lidar(Sensor):
     types = ("ray", "lidar", "gpu_ray", "gpu_lidar")
     default_topic = "scan"
 
-    def __init__(self, description: Description, link: str, setting: Setting, joint: str = "") -> None:
-        super().__init__(description, link, setting, joint)
+    def __init__(self, description: Description, link: str, context: ComponentContext, joint: str = "") -> None:
+        super().__init__(description, link, context, joint)
         self.as_both = description.type in ("lidar", "gpu_lidar")
 
     def read(self, element: Element) -> None:

@@ -42,7 +42,7 @@ class Magnetometer(NoisySensor):
     def measure(self, now_ns: int) -> Iterable[Sample]:
         """Turn the field into the sensor's axes."""
         mount = self.link.pose @ self.pose
-        field = np.array(rotate(mount.inverse.orientation, self.setting.world.magnetic_field))
+        field = np.array(rotate(mount.inverse.orientation, self.context.world.magnetic_field))
         measured = self.disturb(field, now_ns)
         covariance = np.diag(self.variance).ravel()
         yield MagneticFieldSample(now_ns, self.topic, self.frame_id, measured, covariance)

@@ -36,7 +36,7 @@ class NavSat(NoisySensor):
             tuple(noise_below(settings, kind, axis) for axis in ("horizontal", "horizontal", "vertical"))
             for kind in ("position_sensing", "velocity_sensing")
         )
-        self.origin = self.setting.world.spherical_coordinates or SphericalCoordinates()
+        self.origin = self.context.world.spherical_coordinates or SphericalCoordinates()
 
     @property
     def noises(self) -> tuple[Noise, ...]:
