@@ -117,7 +117,7 @@ def workshop() -> Simulation:
 def rgbd_frame() -> Callable[[], object]:
     """Return what takes one RGB-D frame, with its depth image, as images alone."""
     simulation = workshop()
-    simulation.heard = lambda topic: topic.endswith(("image", "depth_image"))
+    simulation.has_subscribers = lambda topic: topic.endswith(("image", "depth_image"))
     camera = next(c for c in simulation.instance("eye").components if type(c).__name__ == "Camera")
     simulation.advance(SECOND // 10)
     return lambda: list(camera.update(simulation.time_ns))

@@ -71,8 +71,8 @@ def _round(executor: Any, number: int) -> int:
     server, client = (rclpy.create_node(f"soak_{name}") for name in ("server", "client"))
     executor.add_node(server)
     executor.add_node(client)
-    heard: list[str] = []
-    client.create_subscription(String, "soak", lambda message: heard.append(message.data), 100)
+    received: list[str] = []
+    client.create_subscription(String, "soak", lambda message: received.append(message.data), 100)
     publisher = server.create_publisher(String, "soak", 100)
     server.create_timer(0.001, lambda: publisher.publish(String(data="x" * 1000)))
 
@@ -97,9 +97,9 @@ def _round(executor: Any, number: int) -> int:
     result = goal.result().get_result_async() if goal.done() else goal
     executor.spin_until_future_complete(result, 10)
     deadline = time.monotonic() + 10
-    while not heard and time.monotonic() < deadline:
+    while not received and time.monotonic() < deadline:
         executor.spin_once(timeout_sec=0.1)
-    faults = (not call.done() or call.result().sum != number + 1) + (not result.done()) + (not heard)
+    faults = (not call.done() or call.result().sum != number + 1) + (not result.done()) + (not received)
     for node in (server, client):
         node.destroy_node()
     return faults

@@ -117,7 +117,7 @@ def stream(size: str) -> tuple[int, int, float]:
     message, depth = _message(size)
     with other(f"count-{size}") as process, session() as (ours, node):
         publisher = ours.create_publisher(node, "/stream", type(message), Qos(depth=depth))
-        ours.graph.wait_for(lambda: publisher.is_heard, TIMEOUT_S)
+        ours.graph.wait_for(lambda: publisher.has_subscribers, TIMEOUT_S)
         sent, end = 0, time.perf_counter() + STREAM_S
         while time.perf_counter() < end:
             publisher.publish(message)
@@ -156,7 +156,8 @@ def round_trips() -> list[float]:
         subscription = ours.create_subscription(node, "/pong", Int64, Qos(), lambda: arrived.put(None))
         publisher = ours.create_publisher(node, "/ping", Int64, Qos())
         ours.graph.wait_for(
-            lambda: publisher.is_heard and bool(ours.graph.endpoints(EndpointKind.PUBLISHER, name="/pong")), TIMEOUT_S
+            lambda: publisher.has_subscribers and bool(ours.graph.endpoints(EndpointKind.PUBLISHER, name="/pong")),
+            TIMEOUT_S,
         )
         time.sleep(0.2)
         times = []

@@ -12,7 +12,7 @@ pytestmark = pytest.mark.slow
 
 
 @pytest.mark.parametrize(
-    ("talker", "said", "listener", "heard"),
+    ("talker", "said", "listener", "received"),
     [
         (
             ("demo_nodes_py", "talker"),
@@ -59,11 +59,11 @@ pytestmark = pytest.mark.slow
     ],
 )
 def test_talker_and_listener(
-    talker: tuple[str, ...], said: str, listener: tuple[str, ...], heard: str, domain: int
+    talker: tuple[str, ...], said: str, listener: tuple[str, ...], received: str, domain: int
 ) -> None:
     with Terminal("run", *talker, domain=domain) as one, Terminal("run", *listener, domain=domain) as other:
         one.wait_for(said)
-        other.wait_for(heard)
+        other.wait_for(received)
         assert other.interrupt() == 0
         assert one.interrupt() == 0
 

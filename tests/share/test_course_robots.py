@@ -46,7 +46,7 @@ def load(path, **mappings):
 @pytest.mark.parametrize("path", ROBOTS)
 def test_it_loads_into_the_simulator_without_a_word(path):
     said = []
-    simulation = Simulation(world(), heard=lambda topic: False, warn=said.append)
+    simulation = Simulation(world(), has_subscribers=lambda topic: False, warn=said.append)
     name = simulation.spawn(load(path), pose=Pose((0.0, 0.0, 2.0)))
     simulation.advance(SECOND // 10)
     assert np.isfinite(simulation.pose(name).position).all()
@@ -132,7 +132,7 @@ def test_the_trucks_rear_axle_drives_the_arc_of_its_command():
     after = rest.partition("</ros2_control>")[2]
     head, _, tail = after.partition("<plugin")
     text = before + head + plugin + tail.partition("</plugin>")[2]
-    simulation = Simulation(world(), heard=lambda topic: topic == "/odom")
+    simulation = Simulation(world(), has_subscribers=lambda topic: topic == "/odom")
     simulation.spawn(urdf.parse(text, resolve=share_of), pose=Pose((0.0, 0.0, 0.43)))
     simulation.advance(SECOND)
     simulation.command("/cmd_vel", TwistCommand(np.array((1.0, 0, 0)), np.array((0, 0, 0.5))))

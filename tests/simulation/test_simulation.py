@@ -238,7 +238,7 @@ def test_a_namespace_keeps_robots_apart():
 
 
 def test_sensors_nobody_hears_do_not_measure():
-    simulation = Simulation(arena(), heard=lambda topic: topic != "/scan")
+    simulation = Simulation(arena(), has_subscribers=lambda topic: topic != "/scan")
     simulation.spawn(turtlebot(), "robot")
     samples = simulation.advance(SECOND)
     assert not any(isinstance(s, LaserScanSample) for s in samples)

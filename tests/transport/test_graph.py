@@ -46,8 +46,8 @@ def test_endpoints_are_found_by_kind_name_node_and_gid():
 
 
 def test_listeners_hear_of_every_change_once():
-    graph, heard = Graph(), []
-    stop = graph.listen(lambda added, what: heard.append((added, what)))
+    graph, received = Graph(), []
+    stop = graph.listen(lambda added, what: received.append((added, what)))
     one = endpoint(1)
     for _ in range(2):
         graph.add_node(NODE)
@@ -55,10 +55,10 @@ def test_listeners_hear_of_every_change_once():
     for _ in range(2):
         graph.remove_endpoint("a")
         graph.remove_node("n1")
-    assert heard == [(True, NODE), (True, one), (False, one), (False, NODE)]
+    assert received == [(True, NODE), (True, one), (False, one), (False, NODE)]
     stop()
     graph.add_node(NODE)
-    assert len(heard) == 4
+    assert len(received) == 4
 
 
 def test_who_waits_is_woken_by_a_change():

@@ -52,10 +52,10 @@ def test_two_machines_find_lose_and_find_each_other(tmp_path):
         listener.wait_for("heard")
         network.cut(1)
         line = watcher.wait_for("went talker", timeout_s=LOSS_S)
-        heard = len(listener.lines)
+        received = len(listener.lines)
         network.mend(1)
         watcher.wait_for("came talker", line, RETURN_S)
-        listener.wait_for("heard", heard, RETURN_S)
+        listener.wait_for("heard", received, RETURN_S)
 
 
 def test_of_three_machines_two_go_on_when_the_third_is_cut_off(tmp_path):
@@ -72,10 +72,10 @@ def test_of_three_machines_two_go_on_when_the_third_is_cut_off(tmp_path):
         network.cut(2)
         line = watcher.wait_for("went talker", timeout_s=LOSS_S)
         near.wait_for("heard", len(near.lines))
-        heard = len(far.lines)
+        received = len(far.lines)
         network.mend(2)
         watcher.wait_for("came talker", line, RETURN_S)
-        far.wait_for("heard", heard, RETURN_S)
+        far.wait_for("heard", received, RETURN_S)
         near.wait_for("heard", len(near.lines))
         numbers = [int(line.split()[1]) for line in near.lines if line.startswith("heard")]
         assert numbers == list(range(numbers[0], numbers[0] + len(numbers))), "some were lost between the two"

@@ -46,7 +46,7 @@ def test_whichever_starts_first(new_session: Callable[[], Session]):
             first.kill()
             assert session.graph.wait_for(lambda: sorted(names(session)) == ["listener", "me"], TIMEOUT_S)
             publisher = session.create_publisher(node_of(session, "talker"), "/topic", Int32, Qos())
-            assert session.graph.wait_for(lambda: publisher.is_heard, TIMEOUT_S)
+            assert session.graph.wait_for(lambda: publisher.has_subscribers, TIMEOUT_S)
             deadline = time.monotonic() + TIMEOUT_S
             while not any("heard -5" in line for line in second.lines) and time.monotonic() < deadline:
                 publisher.publish(Int32(data=-5))
@@ -155,7 +155,7 @@ def test_acknowledgements_are_waited_for_where_there_are_any(new_session: Callab
     publisher = session.create_publisher(node_of(session, "me"), "/topic", Int32, Qos())
     second = 10**9
     with Peer("listen").ready() as listener:
-        assert session.graph.wait_for(lambda: publisher.is_heard, TIMEOUT_S)
+        assert session.graph.wait_for(lambda: publisher.has_subscribers, TIMEOUT_S)
         publisher.publish(Int32(data=1))
         assert publisher.wait_for_acks(10 * second)
         listener.process.send_signal(signal.SIGSTOP)
@@ -172,7 +172,7 @@ def test_best_effort_never_waits(new_session: Callable[[], Session]):
     qos = Qos(reliability=Reliability.BEST_EFFORT, depth=5)
     publisher = session.create_publisher(node_of(session, "me"), "/topic", Image, qos)
     with Peer("look").ready() as stopped:
-        assert session.graph.wait_for(lambda: publisher.is_heard, TIMEOUT_S)
+        assert session.graph.wait_for(lambda: publisher.has_subscribers, TIMEOUT_S)
         stopped.process.send_signal(signal.SIGSTOP)
         image = Image(data=bytes(1_000_000))
         times = []

@@ -64,13 +64,13 @@ class HelloListener(Node):
         super().__init__(name, **kwargs)
         from std_msgs.msg import String
 
-        self.heard = 0
+        self.received_count = 0
         self._wording = wording
         self.create_subscription(String, topic, self.hear, qos, raw=raw)
 
     def hear(self, message: Any) -> None:
         """Log a message."""
-        self.heard += 1
+        self.received_count += 1
         text = message if isinstance(message, bytes) else message.data
         self.get_logger().info(self._wording.format(text))
 

@@ -34,7 +34,7 @@ class Compilation:
         Its physics count here; its models are added one by one.
     timestep : float
         Of MuJoCo [s].
-    heard : callable
+    has_subscribers : callable
         Tells whether anyone listens to a topic.
     warn : callable
         Takes a line for each thing that is left out or changed.
@@ -54,7 +54,7 @@ class Compilation:
     """
 
     def __init__(
-        self, world: World, timestep: float, heard: Callable[[str], bool], warn: Callable[[str], None]
+        self, world: World, timestep: float, has_subscribers: Callable[[str], bool], warn: Callable[[str], None]
     ) -> None:
         self.spec: Any = mujoco.MjSpec()
         self.instances: dict[str, Instance] = {}
@@ -63,7 +63,7 @@ class Compilation:
         self.number = 0
         self._layout = b""
         self._assets = Assets(self.spec)
-        self._heard = heard
+        self._has_subscribers = has_subscribers
         self._warn = warn
         self._physics: Physics | None = None
         set_options(self.spec, world, timestep)
@@ -151,7 +151,7 @@ class Compilation:
             for instance in self.instances.values()
             for geom, info in instance.build.geoms.items()
         }
-        self._physics = Physics(model, data, geoms, self._heard, self.stage, self.forces)
+        self._physics = Physics(model, data, geoms, self._has_subscribers, self.stage, self.forces)
         self.forces.bind(self.instances)
         for instance in self.instances.values():
             instance.bind(self._physics)

@@ -43,20 +43,20 @@ class Engine:
         self,
         world: World | None = None,
         seed: int = 0,
-        heard: Callable[[str], bool] | None = None,
+        has_subscribers: Callable[[str], bool] | None = None,
         warn: Callable[[str], None] | None = None,
     ) -> None:
         self.world = World() if world is None else world
         self.seed = seed
         self.time_ns = 0
         self.warnings: list[str] = []
-        self.heard = heard
+        self.has_subscribers = has_subscribers
         self._warn_user = _log.warning if warn is None else warn
         self._schedule = Schedule()
         self._monitors: list[ContactMonitor] = []
         self._goal_ns = 0
         self.step_ns, self._substeps = physics_step(self.world.physics)
-        self._compilation = Compilation(self.world, self._timestep, self._is_heard, self._warn)
+        self._compilation = Compilation(self.world, self._timestep, self._has_subscribers, self._warn)
         for line in self.world.warnings:
             self._warn(line)
         check_world_plugins(self.world, self._warn)
@@ -324,8 +324,8 @@ class Engine:
         self._goal_ns = max(goal_ns, self._goal_ns)
         return samples
 
-    def _is_heard(self, topic: str) -> bool:
-        return self.heard is None or self.heard(topic)
+    def _has_subscribers(self, topic: str) -> bool:
+        return self.has_subscribers is None or self.has_subscribers(topic)
 
     def _setting(self, model: Model, namespace: str, name: str) -> ComponentContext:
         stream = partial(random_stream, self.seed, f"{model.name}::{name}")

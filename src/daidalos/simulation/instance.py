@@ -133,9 +133,9 @@ class Instance:
         for component in self.components:
             component.bind(self)
 
-    def heard(self, topic: str) -> bool:
+    def has_subscribers(self, topic: str) -> bool:
         """Tell whether anyone listens to a topic."""
-        return self.physics.heard(topic)
+        return self.physics.has_subscribers(topic)
 
     def link(self, name: str) -> LinkView:
         """Return a link by its name in the description.

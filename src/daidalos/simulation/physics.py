@@ -39,7 +39,7 @@ class Physics:
     model, data : MjModel, MjData
     geoms : mapping
         Place of each geom to the name of its model and what it stands for.
-    heard : callable
+    has_subscribers : callable
         Tells whether anyone listens to a topic.
     stage : Stage
         What cameras see.
@@ -52,14 +52,14 @@ class Physics:
         model: Any,
         data: Any,
         geoms: Mapping[int, tuple[str, GeomInfo]],
-        heard: Callable[[str], bool],
+        has_subscribers: Callable[[str], bool],
         stage: Stage,
         forces: Forces,
     ) -> None:
         self.model = model
         self.data = data
         self.geoms = geoms
-        self.heard = heard
+        self.has_subscribers = has_subscribers
         self.stage = stage
         self.forces = forces
         self.changed()

@@ -37,7 +37,7 @@ class Simulation(Engine):
         None is an empty world.
     seed : int
         All random numbers derive from it, each component's from its own name.
-    heard : callable or None
+    has_subscribers : callable or None
         Tells whether anyone listens to a topic; sensors to which nobody listens do not measure.
     warn : callable or None
         Takes a line for each thing that was left out or changed; None logs them. All lines are kept in

@@ -33,7 +33,7 @@ class Publisher:
         self._next_sequence = itertools.count(1).__next__
         self._targets: tuple[Subscription, ...] = ()
         self._wire: WirePublisher | None = None
-        self._heard = False
+        self._has_remote_subscribers = False
         qos = endpoint.qos
         self._latched = qos.transient_local
         self._history: deque[tuple[Any, ...]] = deque(maxlen=qos.limit if self._latched else 0)
@@ -57,14 +57,14 @@ class Publisher:
             return
         if self._observers:
             self.note()
-        heard = self._heard
-        if self._targets or heard or self._latched:
+        remote = self._has_remote_subscribers
+        if self._targets or remote or self._latched:
             sequence, stamp = self._next_sequence(), time.time_ns()
             if self._latched:
                 self._history.append((self._codec.snapshot(message), stamp, sequence, self._gid))
             for subscription in self._targets:
                 subscription.accept_local((self._codec.snapshot(message), stamp, sequence, self._gid))
-            if heard and self._wire is not None:
+            if remote and self._wire is not None:
                 self._wire.put(self._codec.parts(message), sequence, stamp)
 
     def _publish_bytes(self, data: bytes) -> None:
@@ -74,7 +74,7 @@ class Publisher:
             self._history.append((self._codec.decode(data), stamp, sequence, self._gid))
         for subscription in self._targets:
             subscription.accept_local((self._codec.decode(data), stamp, sequence, self._gid))
-        if self._heard and self._wire is not None:
+        if self._has_remote_subscribers and self._wire is not None:
             self._wire.put([data], sequence, stamp)
 
     def observe(self, observer: Callable[[], None]) -> None:
@@ -98,9 +98,9 @@ class Publisher:
         return wire is None or wire.wait_for_acks(timeout_ns)
 
     @property
-    def is_heard(self) -> bool:
+    def has_subscribers(self) -> bool:
         """Whether a message would reach, or be kept for, anybody."""
-        return bool(self._targets) or self._heard or self._latched
+        return bool(self._targets) or self._has_remote_subscribers or self._latched
 
     def replay(self, subscription: Subscription) -> None:
         """Give a subscription of this process the samples that were kept for late comers."""
@@ -119,11 +119,11 @@ class Publisher:
         """Connect to the middleware; `undo` ends that."""
         self._wire, self._undo = wire, undo
         if self._latched:
-            self._heard = True  # the middleware keeps the samples for who comes later
+            self._has_remote_subscribers = True  # the middleware keeps the samples for who comes later
 
-    def set_heard(self, heard: bool) -> None:
-        """Note whether anyone listens in another process."""
-        self._heard = heard or self._latched
+    def set_remote_subscribers(self, present: bool) -> None:
+        """Note whether other processes have matching subscriptions."""
+        self._has_remote_subscribers = present or self._latched
 
     def set_targets(self, targets: tuple[Subscription, ...]) -> None:
         """Note the subscriptions of this process that get every sample."""
@@ -131,6 +131,6 @@ class Publisher:
 
     def detach(self) -> None:
         """Forget the middleware and all listeners."""
-        wire, self._wire, self._heard, self._targets = self._wire, None, False, ()
+        wire, self._wire, self._has_remote_subscribers, self._targets = self._wire, None, False, ()
         if wire:
             wire.close()

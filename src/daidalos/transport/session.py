@@ -270,7 +270,9 @@ class Session:
         """Tell a publisher whether anyone listens in another process; who listens may be laxer about QoS than we."""
         mine = publisher.endpoint
         subscriptions = self.graph.endpoints(EndpointKind.SUBSCRIPTION, name=mine.name)
-        publisher.set_heard(any(other.gid not in self._own and _same_type(mine, other) for other in subscriptions))
+        publisher.set_remote_subscribers(
+            any(other.gid not in self._own and _same_type(mine, other) for other in subscriptions)
+        )
 
     def _refuse_incompatible(self, subscription: Subscription) -> None:
         """Keep out what publishers of other processes send against our QoS; the wire may not check it."""

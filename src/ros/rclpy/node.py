@@ -160,7 +160,7 @@ class Node(NodeEntities, NodeParameters, NodeGraph):
         self, new: list[Parameter[Any]], changed: list[Parameter[Any]], deleted: list[Parameter[Any]]
     ) -> None:
         publisher = self._parameter_event_publisher
-        if publisher is None or not (new or changed or deleted) or not publisher.handle.impl.is_heard:
+        if publisher is None or not (new or changed or deleted) or not publisher.handle.impl.has_subscribers:
             return
         from rcl_interfaces.msg import ParameterEvent
 

@@ -113,8 +113,8 @@ def test_who_has_no_key_does_not_hear(keystore, env, tmp_path):
         running.append(subprocess.Popen([sys.executable, "-u", "-c", router], env=router_env, stdout=subprocess.PIPE))
         assert b"Zenoh router" in running[0].stdout.readline()
         running.append(subprocess.Popen([sys.executable, "-c", TALK], env=inside[0]))
-        heard = ros2("topic", "echo", "--once", "/secret", "std_msgs/msg/String", env=inside[1])
-        assert heard.out == "data: psst\n---\n"
+        received = ros2("topic", "echo", "--once", "/secret", "std_msgs/msg/String", env=inside[1])
+        assert received.out == "data: psst\n---\n"
         deaf = ros2("topic", "echo", "--once", "--timeout", "2", "/secret", "std_msgs/msg/String", env=env)
         assert "psst" not in deaf.out
     finally:

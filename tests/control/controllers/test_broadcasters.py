@@ -62,7 +62,7 @@ def test_topics_can_be_its_own_and_dynamic_states_left_out() -> None:
 
 
 def test_nobody_listens_nothing_is_said() -> None:
-    context = {"state_names": STATES, "heard": lambda topic: False}
+    context = {"state_names": STATES, "has_subscribers": lambda topic: False}
     controller, _, _ = alone("joint_state_broadcaster/JointStateBroadcaster", arm(), context)
     assert cycle(controller, 5) == []
 

@@ -270,17 +270,17 @@ def test_controllers_speak_as_upstream(graph: Context, tmp_path: Path, name: str
     type_name, values, topics = CASES[name]
     file = parameter_file(tmp_path, name, **values)
     with rig(**{f"{name}.type": type_name, f"{name}.params_file": file}) as one:
-        heard: dict[str, Any] = {}
+        received: dict[str, Any] = {}
         for topic, message in (entry.split() for entry in topics):
-            take = lambda message, topic=topic: heard.update({topic: message})  # noqa: E731
+            take = lambda message, topic=topic: received.update({topic: message})  # noqa: E731
             one.user.create_subscription(get_message(message), topic, take, 10)
         one.start(name)
-        one.cycle_until(lambda: len(heard) == len(topics))
+        one.cycle_until(lambda: len(received) == len(topics))
         known = dict(one.user.get_topic_names_and_types())
         for topic, message in (entry.split() for entry in topics):
             assert known[topic] == [message]
         if name == "force":
-            assert heard["/force/wrench"].wrench.torque.z == 1.0
+            assert received["/force/wrench"].wrench.torque.z == 1.0
 
 
 def test_every_type_is_tried_here_or_is_one_of_a_kind() -> None:
@@ -421,11 +421,11 @@ def test_initial_states_and_limits_are_parameters(graph: Context) -> None:  # no
 
 
 def test_numbers_survive_the_way_through_messages(arm: Rig) -> None:
-    heard: list[Any] = []
+    received: list[Any] = []
     message = get_message("control_msgs/msg/JointTrajectoryControllerState")
-    arm.user.create_subscription(message, "/arm/controller_state", heard.append, 10)
+    arm.user.create_subscription(message, "/arm/controller_state", received.append, 10)
     publisher = arm.user.create_publisher(JointTrajectory, "/arm/joint_trajectory", 10)
     publisher.publish(trajectory((0.2, [0.25, -0.25])))
-    arm.cycle_until(lambda: bool(heard) and np.allclose(heard[-1].feedback.positions, [0.25, -0.25]))
-    assert list(heard[-1].joint_names) == JOINTS
-    assert list(heard[-1].output.positions) == pytest.approx([0.25, -0.25])
+    arm.cycle_until(lambda: bool(received) and np.allclose(received[-1].feedback.positions, [0.25, -0.25]))
+    assert list(received[-1].joint_names) == JOINTS
+    assert list(received[-1].output.positions) == pytest.approx([0.25, -0.25])

@@ -70,8 +70,8 @@ def test_names_rates_and_topics_are_as_the_plugin_says(rig: Rig, tmp_path: Path)
         "<ros><namespace>/robot1</namespace><remapping>joint_states:=states_of_joints</remapping></ros>"
     )
     assert rig.warnings == []
-    user, heard = rclpy.create_node("user"), []
-    user.create_subscription(JointState, "/robot1/states_of_joints", heard.append, 100)
+    user, received = rclpy.create_node("user"), []
+    user.create_subscription(JointState, "/robot1/states_of_joints", received.append, 100)
     with spinning(user):
         manager = "/robot1/manager"
         assert ask(user, manager, srv.LoadController, "load_controller", name="states").ok
@@ -83,9 +83,9 @@ def test_names_rates_and_topics_are_as_the_plugin_says(rig: Rig, tmp_path: Path)
         assert [one.node_name for one in publishers] == ["states"]
         rig.advance(1.0)
         deadline = user.get_clock().now().nanoseconds + int(TIMEOUT_S * 1e9)
-        while len(heard) < 50 and user.get_clock().now().nanoseconds < deadline:
+        while len(received) < 50 and user.get_clock().now().nanoseconds < deadline:
             pass
-    stamps = [message.header.stamp.sec * 10**9 + message.header.stamp.nanosec for message in heard]
+    stamps = [message.header.stamp.sec * 10**9 + message.header.stamp.nanosec for message in received]
     assert stamps == [20_000_000 * k for k in range(1, 51)]
     user.destroy_node()
 

@@ -50,8 +50,8 @@ def test_what_counts() -> None:
 
 @pytest.mark.parametrize(("kind", "metres"), [(np.uint16, 0.001), (np.float32, 1.0)])
 def test_the_node(node: Node, kind: type[Any], metres: float) -> None:
-    heard: list[LaserScan] = []
-    node.create_subscription(LaserScan, "scan", heard.append, qos_profile_sensor_data)
+    received: list[LaserScan] = []
+    node.create_subscription(LaserScan, "scan", received.append, qos_profile_sensor_data)
     cameras = node.create_publisher(CameraInfo, "depth_camera_info", qos_profile_sensor_data)
     images = node.create_publisher(Image, "depth", qos_profile_sensor_data)
     tested = DepthImageToLaserScan(parameter_overrides=[Parameter("output_frame", value="camera_link")])
@@ -62,9 +62,9 @@ def test_the_node(node: Node, kind: type[Any], metres: float) -> None:
     for _ in range(2):
         rclpy.spin_once(tested, timeout_sec=5.0)
     rclpy.spin_once(node, timeout_sec=5.0)
-    assert heard[0].header.frame_id == "camera_link"
-    assert heard[0].ranges[WIDTH // 2] == pytest.approx(2.0, abs=0.02)
-    assert (heard[0].range_min, heard[0].range_max) == pytest.approx((0.45, 10.0))
+    assert received[0].header.frame_id == "camera_link"
+    assert received[0].ranges[WIDTH // 2] == pytest.approx(2.0, abs=0.02)
+    assert (received[0].range_min, received[0].range_max) == pytest.approx((0.45, 10.0))
 
 
 @pytest.mark.usefixtures("graph")

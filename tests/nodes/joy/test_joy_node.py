@@ -28,15 +28,15 @@ class Listener:
 
     def __init__(self, node: Node) -> None:
         self._node = node
-        self.heard: list[Joy] = []
-        node.create_subscription(Joy, "joy", self.heard.append, 10)
+        self.received: list[Joy] = []
+        node.create_subscription(Joy, "joy", self.received.append, 10)
 
     def wait_for(self, condition: Callable[[Joy], bool]) -> Joy:
         for _ in range(100):
-            if self.heard and condition(self.heard[-1]):
-                return self.heard[-1]
+            if self.received and condition(self.received[-1]):
+                return self.received[-1]
             rclpy.spin_once(self._node, timeout_sec=0.1)
-        pytest.fail(f"it was not heard, but {self.heard[-1:]}")
+        pytest.fail(f"received {self.received[-1:]}")
 
 
 @pytest.fixture
@@ -84,12 +84,12 @@ def test_what_does_not_change_is_said_again(listener: Listener, pad: Pad, tmp_pa
     joy = started(JoyNode, tmp_path, autorepeat_rate=100.0)
     pad.play(Event(True, 0, 1))
     for _ in range(100):
-        if len(listener.heard) > 3:
+        if len(listener.received) > 3:
             break
         rclpy.spin_once(joy, timeout_sec=0.1)
         rclpy.spin_once(listener._node, timeout_sec=0.0)
-    assert {tuple(message.buttons) for message in listener.heard} == {(1,)}
-    assert len(listener.heard) > 3
+    assert {tuple(message.buttons) for message in listener.received} == {(1,)}
+    assert len(listener.received) > 3
     joy.destroy_node()
 
 

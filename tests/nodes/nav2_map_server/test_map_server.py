@@ -35,7 +35,7 @@ def served(file, **parameters):
     return MapServer(parameter_overrides=[Parameter(name, value=value) for name, value in values.items()])
 
 
-def heard(node, topic="map"):  # noqa: F811
+def received(node, topic="map"):  # noqa: F811
     """Return a future of the next map."""
     came = Future()
     latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
@@ -61,7 +61,7 @@ def test_a_map_is_published_and_changed(node, arena, tmp_path):  # noqa: F811
     (tmp_path / "broken.yaml").write_text(arena.read_text().replace("arena.pgm", "gone.pgm"))
     (tmp_path / "no.yaml").write_text("image: 1")
     server = served(arena, autostart_node=True, frame_id="world", topic_name="floor")
-    first = heard(node, "floor")
+    first = received(node, "floor")
     with spinning(server, node):
         message = result_of(first)
         assert message.header.frame_id == "world"

@@ -43,15 +43,15 @@ def test_each_ray_has_the_nearest_point_of_its_sector(points: list[tuple[float, 
 
 def result_of(node: Node, make: Callable[..., Node], source: str, message: Any, topic: str, kind: type[Any]) -> Any:
     """Return what a node makes of a message."""
-    heard: list[Any] = []
+    received: list[Any] = []
     publisher = node.create_publisher(type(message), source, qos_profile_sensor_data)
-    node.create_subscription(kind, topic, heard.append, qos_profile_sensor_data)
+    node.create_subscription(kind, topic, received.append, qos_profile_sensor_data)
     tested = make()
     publisher.publish(message)
     rclpy.spin_once(tested, timeout_sec=5.0)
     rclpy.spin_once(node, timeout_sec=5.0)
     tested.destroy_node()
-    return heard[0]
+    return received[0]
 
 
 def cloud(*points: tuple[float, float, float], frame: str = "lidar") -> PointCloud2:

@@ -69,16 +69,16 @@ def chain_in_sdf(joints):
 @pytest.mark.parametrize("written", [chain, chain_in_sdf])
 def test_joint_states_become_transforms(node, written):  # noqa: F811
     state_publisher = publisher(written(2), frame_prefix="bot/")
-    heard = []
+    received = []
     done = threading.Event()
-    node.create_subscription(TFMessage, "/tf", lambda message: (heard.append(message), done.set()), 10)
+    node.create_subscription(TFMessage, "/tf", lambda message: (received.append(message), done.set()), 10)
     told = node.create_publisher(JointState, "/joint_states", 10)
     with spinning(node, state_publisher):
         message = JointState(name=["nobody", "j1", "j0"], position=[9.0, np.pi / 2, 0.0])
         message.header.stamp.sec = 3
         told.publish(message)
         assert done.wait(5.0)
-    first, second = heard[0].transforms
+    first, second = received[0].transforms
     assert (first.header.frame_id, first.child_frame_id) == ("bot/l0", "bot/l1")
     assert first.transform.rotation.w == 1.0
     assert first.transform.translation.z == pytest.approx(0.1)
@@ -100,9 +100,9 @@ def sent(graph, monkeypatch):  # noqa: F811
 
     def make(text, **parameters):
         nodes.append(publisher(text, **parameters))
-        heard = []
-        monkeypatch.setattr(nodes[-1]._tf_publisher, "publish", lambda data: heard.append(data))
-        return nodes[-1], heard
+        received = []
+        monkeypatch.setattr(nodes[-1]._tf_publisher, "publish", lambda data: received.append(data))
+        return nodes[-1], received
 
     yield make
     for each in nodes:
@@ -114,11 +114,11 @@ def children(data):
 
 
 def test_only_what_is_told_of_has_a_transform(sent):
-    state_publisher, heard = sent(chain(3).replace("</robot>", MIMIC))
+    state_publisher, received = sent(chain(3).replace("</robot>", MIMIC))
     state_publisher._on_joint_states(states(1.0, j2=0.2, j0=0.1))
     state_publisher._on_joint_states(states(1.0, j1=0.3))
     state_publisher._on_joint_states(states(1.0, nobody=0.3))
-    assert [children(data) for data in heard] == [["l1", "m", "l3"], ["l2"]]
+    assert [children(data) for data in received] == [["l1", "m", "l3"], ["l2"]]
     assert state_publisher._positions.tolist() == [0.1, 0.3, 0.2]
 
 
@@ -130,34 +130,34 @@ def test_states_come_as_often_as_wanted_though_not_on_time(sent):
     random = np.random.default_rng(1)
     late = random.uniform(0, 0.008, 1000)
     for rate, expected in ((100.0, 1000), (20.0, 200)):
-        state_publisher, heard = sent(chain(1), publish_frequency=rate)
+        state_publisher, received = sent(chain(1), publish_frequency=rate)
         for i in range(1000):
             state_publisher._on_joint_states(states(5 + 0.01 * i + late[i], j0=0.0))
-        assert len(heard) == pytest.approx(expected, abs=3)
+        assert len(received) == pytest.approx(expected, abs=3)
 
 
 def test_two_who_tell_of_different_joints_are_both_heard(sent):
-    state_publisher, heard = sent(chain(2), publish_frequency=10.0)
+    state_publisher, received = sent(chain(2), publish_frequency=10.0)
     for i in range(100):
         state_publisher._on_joint_states(states(5 + 0.1 * i, j0=0.0))
         state_publisher._on_joint_states(states(5 + 0.1 * i + 0.001, j1=0.0))
-    assert len(heard) == 200
+    assert len(received) == 200
 
 
 def test_a_clock_may_be_set_back(sent):
-    state_publisher, heard = sent(chain(1))
+    state_publisher, received = sent(chain(1))
     for seconds in (50.0, 1.0, 1.01, 1.06):
         state_publisher._on_joint_states(states(seconds, j0=0.0))
-    assert len(heard) == 3
+    assert len(received) == 3
 
 
 def test_transforms_of_a_joint_never_go_back_a_little(sent):
     """Two may tell of the same joint, each with its own view of the time."""
-    state_publisher, heard = sent(chain(1), publish_frequency=30.0)
+    state_publisher, received = sent(chain(1), publish_frequency=30.0)
     for i in range(100):
         state_publisher._on_joint_states(states(5 + 0.01 * i, j0=0.0))
         state_publisher._on_joint_states(states(5 + 0.01 * i - 0.02, j0=0.0))
-    stamps = [deserialize_message(data, TFMessage).transforms[0].header.stamp for data in heard]
+    stamps = [deserialize_message(data, TFMessage).transforms[0].header.stamp for data in received]
     times = [stamp.sec + 1e-9 * stamp.nanosec for stamp in stamps]
     assert len(times) == pytest.approx(30, abs=3)
     assert times == sorted(times)
@@ -165,20 +165,20 @@ def test_transforms_of_a_joint_never_go_back_a_little(sent):
 
 def test_states_without_a_time_count_only_when_times_are_ignored(sent):
     for ignored in (False, True):
-        state_publisher, heard = sent(chain(1), ignore_timestamp=ignored)
+        state_publisher, received = sent(chain(1), ignore_timestamp=ignored)
         state_publisher._on_joint_states(states(0.0, j0=0.0))
-        assert len(heard) == ignored
+        assert len(received) == ignored
 
 
 @pytest.mark.parametrize(("type_", "expected"), [("floating", []), ("planar", ["l1"]), ("fixed", ["l1"])])
 def test_what_floats_is_left_to_others(sent, node, type_, expected):  # noqa: F811
-    heard, done = [], threading.Event()
+    received, done = [], threading.Event()
     latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-    node.create_subscription(TFMessage, "/tf_static", lambda message: (heard.append(message), done.set()), latched)
+    node.create_subscription(TFMessage, "/tf_static", lambda message: (received.append(message), done.set()), latched)
     state_publisher, _ = sent(chain(1).replace("continuous", type_))
     with spinning(node, state_publisher):
         assert done.wait(5.0)
-    assert [each.child_frame_id for each in heard[0].transforms] == expected
+    assert [each.child_frame_id for each in received[0].transforms] == expected
 
 
 def test_a_missing_description_is_named(graph):  # noqa: F811

@@ -48,7 +48,7 @@ class Watch:
             self._changed.notify()
 
 
-def heard(watcher: Node, publisher: Node, kind: type, topic: str, count: int) -> Sequence[Any]:
+def received(watcher: Node, publisher: Node, kind: type, topic: str, count: int) -> Sequence[Any]:
     """Return the first messages of a topic."""
     watch = Watch(watcher, kind, topic)
     with spinning(watcher, publisher):
@@ -58,7 +58,7 @@ def heard(watcher: Node, publisher: Node, kind: type, topic: str, count: int) ->
 
 def test_positions_are_sent_in_turn(node: Node) -> None:  # noqa: F811
     parameters = given(publish_topic="/arm/commands", goal_names=["up", "down"], up=[1.0, 2.0], down=[0, -1])
-    messages = heard(
+    messages = received(
         node, ForwardPositionPublisher(parameter_overrides=parameters), Float64MultiArray, "/arm/commands", 3
     )
     assert [list(message.data) for message in messages] == [[1.0, 2.0], [0.0, -1.0], [1.0, 2.0]]
@@ -81,7 +81,7 @@ def test_trajectories_hold_what_fits_the_joints(node: Node) -> None:  # noqa: F8
         fast__velocities=[0.1, 0.2],
     )
     publisher = JointTrajectoryPublisher(parameter_overrides=parameters)
-    messages = heard(node, publisher, JointTrajectory, "/arm/joint_trajectory", 2)
+    messages = received(node, publisher, JointTrajectory, "/arm/joint_trajectory", 2)
     assert [message.joint_names for message in messages] == [JOINTS, JOINTS]
     points = [message.points[0] for message in messages]
     assert [(list(each.positions), list(each.velocities), list(each.effort)) for each in points] == [

@@ -35,18 +35,18 @@ class Drive:
         self.teleop = TeleopTwistJoy(parameter_overrides=overrides)
         self._node = node
         self._joy = node.create_publisher(Joy, "joy", 10)
-        self.heard: list[Any] = []
-        node.create_subscription(kind, "cmd_vel", self.heard.append, 10)
+        self.received: list[Any] = []
+        node.create_subscription(kind, "cmd_vel", self.received.append, 10)
 
     def press(self, *buttons: int, axes: list[float] | None = None) -> Any:
         """Play, and return the velocity that follows, None where none does."""
-        del self.heard[:]
+        del self.received[:]
         self._joy.publish(
             Joy(axes=AXES if axes is None else axes, buttons=[int(place in buttons) for place in range(3)])
         )
         rclpy.spin_once(self.teleop, timeout_sec=5.0)
         rclpy.spin_once(self._node, timeout_sec=0.05)
-        return self.heard[-1] if self.heard else None
+        return self.received[-1] if self.received else None
 
 
 def numbers(twist: Twist) -> tuple[float, ...]:

@@ -43,17 +43,17 @@ class Bench:
         self.mux = TwistMux(parameter_overrides=overrides)
         self.mux._now = lambda: self.now  # type: ignore[method-assign]
         self._node, self._kind = node, kind
-        self.heard: list[Any] = []
-        node.create_subscription(kind, "cmd_vel_out", self.heard.append, 10)
+        self.received: list[Any] = []
+        node.create_subscription(kind, "cmd_vel_out", self.received.append, 10)
 
     def say(self, topic: str, message: Any) -> bool:
         """Publish, and tell whether it was passed on."""
         publisher = self._node.create_publisher(type(message), topic, 10)
-        del self.heard[:]
+        del self.received[:]
         publisher.publish(message)
         rclpy.spin_once(self.mux, timeout_sec=5.0)
         rclpy.spin_once(self._node, timeout_sec=0.05)
-        return self.heard == [message]
+        return self.received == [message]
 
     def drive(self, topic: str) -> bool:
         message = self._kind()
@@ -143,22 +143,24 @@ locks = st.lists(st.tuples(st.integers(0, 4), st.sampled_from([0.0, 1.0, 5.0]), 
 def test_the_choice_is_that_of_going_through_all_priorities(given_sources: Any, given_locks: Any) -> None:
     now = 50.0
 
-    def heard(age: float | None) -> float | None:
+    def received(age: float | None) -> float | None:
         return None if age is None else now - age
 
     made = [
-        Source(str(place), "", timeout, priority, heard(age))
+        Source(str(place), "", timeout, priority, received(age))
         for place, (priority, timeout, age) in enumerate(given_sources)
     ]
-    closed = [Lock("", "", timeout, priority, heard(age), shut) for priority, timeout, age, shut in given_locks]
+    closed = [Lock("", "", timeout, priority, received(age), shut) for priority, timeout, age, shut in given_locks]
     chosen = None
     for priority in range(5):
         for source in reversed(made):
-            fresh = source.heard_at is not None and (source.timeout == 0 or now - source.heard_at <= source.timeout)
+            fresh = source.received_at is not None and (
+                source.timeout == 0 or now - source.received_at <= source.timeout
+            )
             if source.priority == priority and fresh:
                 chosen = source
         for lock in closed:
-            quiet = lock.timeout > 0 and (lock.heard_at is None or now - lock.heard_at > lock.timeout)
+            quiet = lock.timeout > 0 and (lock.received_at is None or now - lock.received_at > lock.timeout)
             if lock.priority == priority and (quiet or lock.is_closed):
                 chosen = None
     if chosen is not None and chosen.priority == 0:

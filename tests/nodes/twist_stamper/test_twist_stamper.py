@@ -16,13 +16,13 @@ from daidalos.nodes.twist_stamper.twist_unstamper import TwistUnstamper
 
 def passed(node: Node, through: Node, message: Any, kind: type[Any]) -> Any:
     """Return what a node makes of a message."""
-    heard: list[Any] = []
+    received: list[Any] = []
     publisher = node.create_publisher(type(message), "cmd_vel_in", 10)
-    node.create_subscription(kind, "cmd_vel_out", heard.append, 10)
+    node.create_subscription(kind, "cmd_vel_out", received.append, 10)
     publisher.publish(message)
     rclpy.spin_once(through, timeout_sec=5.0)
     rclpy.spin_once(node, timeout_sec=5.0)
-    return heard[0]
+    return received[0]
 
 
 def test_a_velocity_gets_a_stamp(node: Node) -> None:

@@ -48,8 +48,8 @@ class Listener:
         """Everything since the last time."""
         for _ in range(20):
             self.executor.spin_once(timeout_sec=0.0)
-        heard, self.arrays[:] = list(self.arrays), []
-        return heard
+        received, self.arrays[:] = list(self.arrays), []
+        return received
 
     def statuses(self) -> list[tuple[str, bytes, str]]:
         """The same in short."""

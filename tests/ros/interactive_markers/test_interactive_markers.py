@@ -176,23 +176,25 @@ def test_two_people_do_not_pull_at_one_marker(server, node, monkeypatch):
     now = [0]
     clock = SimpleNamespace(now=lambda: Time(nanoseconds=now[0]))
     monkeypatch.setattr(node, "get_clock", lambda: clock)
-    heard = []
-    server.insert(marker("box"), feedback_callback=lambda feedback: heard.append((now[0] // 10**8, feedback.client_id)))
+    received = []
+    server.insert(
+        marker("box"), feedback_callback=lambda feedback: received.append((now[0] // 10**8, feedback.client_id))
+    )
     server.applyChanges()
     for tenths, client_id in ((0, "a"), (5, "b"), (8, "a"), (17, "b"), (19, "b"), (20, "a")):
         now[0] = tenths * 10**8
         server.processFeedback(FEEDBACK(marker_name="box", client_id=client_id))
-    assert heard == [(0, "a"), (8, "a"), (19, "b")]
+    assert received == [(0, "a"), (8, "a"), (19, "b")]
 
 
 def test_a_marker_that_is_replaced_keeps_its_callbacks(server):
-    heard = []
-    server.insert(marker("box"), feedback_callback=heard.append)
+    received = []
+    server.insert(marker("box"), feedback_callback=received.append)
     server.applyChanges()
     server.insert(marker("box", 1.0))
     server.applyChanges()
     server.processFeedback(FEEDBACK(marker_name="box"))
-    assert len(heard) == 1
+    assert len(received) == 1
 
 
 def test_a_server_takes_its_markers_along(server, client, node):

@@ -72,11 +72,11 @@ def test_a_goal_leads_to_feedback_and_a_result(node: Node) -> None:
 def test_feedback_comes_before_the_answer_that_it_preceded(node: Node) -> None:
     pair = Pair(node)
     request = Fibonacci.Impl.SendGoalService.Request()
-    heard: list[Any] = []
-    node.create_subscription(Fibonacci.Impl.FeedbackMessage, "fibonacci/_action/feedback", heard.append, 10)
+    received: list[Any] = []
+    node.create_subscription(Fibonacci.Impl.FeedbackMessage, "fibonacci/_action/feedback", received.append, 10)
     client = node.create_client(Fibonacci.Impl.SendGoalService, "fibonacci/_action/send_goal")
     assert pair.wait(client.call_async(request)).accepted
-    assert len(heard) == 1
+    assert len(received) == 1
 
 
 @pytest.mark.parametrize("answer", [GoalResponse.REJECT, "no answer", ZeroDivisionError()])

@@ -38,15 +38,15 @@ async def idle(message: Any) -> None:
 @pytest.mark.parametrize("early", [True, False], ids=["made before", "made within"])
 def test_messages_arrive_in_functions_and_coroutines(graph: Context, early: bool) -> None:
     async def program() -> None:
-        heard: list[tuple[str, bool]] = []
+        received: list[tuple[str, bool]] = []
         both = asyncio.Event()
 
         def note(message: String) -> None:
-            heard.append((message.data, False))
+            received.append((message.data, False))
 
         async def note_later(message: String, info: dict[str, Any]) -> None:
             await asyncio.sleep(0)
-            heard.append((message.data, info["source_timestamp"] > 0))
+            received.append((message.data, info["source_timestamp"] > 0))
             both.set()
 
         node = AsyncNode("listener")
@@ -61,7 +61,7 @@ def test_messages_arrive_in_functions_and_coroutines(graph: Context, early: bool
             publisher = publisher or furnish()
             publisher.publish(String(data="hello"))
             await both.wait()
-        assert sorted(heard) == [("hello", False), ("hello", True)]
+        assert sorted(received) == [("hello", False), ("hello", True)]
 
     run(program)
 

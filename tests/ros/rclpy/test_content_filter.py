@@ -86,23 +86,23 @@ def test_any_text_is_a_condition_or_a_fault(text: str) -> None:
 
 
 def test_a_subscription_receives_what_it_wants(node: Node) -> None:
-    heard: list[int] = []
+    received: list[int] = []
     executor = executor_of(node)
     subscription = node.create_subscription(
         Int32,
         "numbers",
-        lambda message: heard.append(message.data),
+        lambda message: received.append(message.data),
         10,
         content_filter_options=ContentFilterOptions("data > %0", ["15"]),
     )
     publisher = node.create_publisher(Int32, "numbers", 10)
 
     def publish() -> list[int]:
-        heard.clear()
+        received.clear()
         for number in (10, 20, 30):
             publisher.publish(Int32(data=number))
         run_ready(executor)
-        return heard
+        return received
 
     assert subscription.is_cft_enabled
     assert publish() == [20, 30]
@@ -116,14 +116,14 @@ def test_a_subscription_receives_what_it_wants(node: Node) -> None:
 
 
 def test_serialised_messages_are_filtered_too(node: Node) -> None:
-    heard: list[bytes] = []
-    subscription = node.create_subscription(Int32, "numbers", heard.append, 10, raw=True)
+    received: list[bytes] = []
+    subscription = node.create_subscription(Int32, "numbers", received.append, 10, raw=True)
     subscription.set_content_filter("data = 2")
     publisher = node.create_publisher(Int32, "numbers", 10)
     for number in (1, 2, 3):
         publisher.publish(Int32(data=number))
     run_ready(executor_of(node))
-    assert [deserialize_message(data, Int32).data for data in heard] == [2]
+    assert [deserialize_message(data, Int32).data for data in received] == [2]
 
 
 @pytest.mark.parametrize("expression", ["no_field = 3", "data LIKE", "data < 'text'"])

@@ -74,14 +74,14 @@ def test_without_a_wait_only_what_is_ready_runs(executor: Executor, node: Node) 
 def test_one_call_runs_one_callback(node: Node) -> None:
     executor = SingleThreadedExecutor()
     executor.add_node(node)
-    heard: list[int] = []
-    node.create_subscription(Int32, "numbers", lambda message: heard.append(message.data), 10)
+    received: list[int] = []
+    node.create_subscription(Int32, "numbers", lambda message: received.append(message.data), 10)
     publisher = node.create_publisher(Int32, "numbers", 10)
     for number in range(3):
         publisher.publish(Int32(data=number))
     for count in range(1, 4):
         executor.spin_once(timeout_sec=1)
-        assert heard == list(range(count))
+        assert received == list(range(count))
 
 
 def test_what_is_removed_runs_no_more(node: Node) -> None:

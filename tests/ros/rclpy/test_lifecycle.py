@@ -81,8 +81,8 @@ def test_a_transition_may_go_wrong(graph: Context, answers: dict[str, Any], outc
 
 def test_publishers_work_while_the_node_is_active(graph: Context) -> None:
     node = LifecycleNode("managed")
-    heard: list[str] = []
-    node.create_subscription(String, "topic", lambda message: heard.append(message.data), 10)
+    received: list[str] = []
+    node.create_subscription(String, "topic", lambda message: received.append(message.data), 10)
     publisher = node.create_lifecycle_publisher(String, "topic", 10)
 
     def publish(text: str) -> None:
@@ -97,7 +97,7 @@ def test_publishers_work_while_the_node_is_active(graph: Context) -> None:
     publish("meanwhile")
     node.trigger_deactivate()
     publish("after")
-    assert heard == ["meanwhile"]
+    assert received == ["meanwhile"]
     assert node.destroy_lifecycle_publisher(publisher)
     with pytest.raises(TypeError):
         node.create_lifecycle_publisher(String, "topic", 10, publisher_class=object)

@@ -88,14 +88,14 @@ def test_rosout_gets_messages_where_both_want_it(
     context.init(["program", "--ros-args", f"--{'enable' if by_arguments else 'disable'}-rosout-logs"])
     with context:
         node = Node("tested", namespace="ns", context=context, enable_rosout=by_node)
-        heard: list[Log] = []
-        node.create_subscription(Log, "/rosout", heard.append, 10)
+        received: list[Log] = []
+        node.create_subscription(Log, "/rosout", received.append, 10)
         node.get_logger().get_child("part").error("it hurts")
         run_ready(executor_of(node))
         if not (by_arguments and by_node):
-            assert heard == []
+            assert received == []
             return
-        (message,) = heard
+        (message,) = received
         assert (message.name, message.msg, message.level) == ("ns.tested.part", "it hurts", 40)
         assert message.file == __file__
         assert message.function == "test_rosout_gets_messages_where_both_want_it"

@@ -62,15 +62,15 @@ def test_only_some_nodes_may_be_of_interest(graph: Context) -> None:
     for robot in robots:
         robot.declare_parameter("speed", 1)
     handler, executor = ParameterEventHandler(watcher), executor_of(watcher)
-    heard: list[str] = []
-    handler.add_parameter_event_callback(lambda event: heard.append(event.node))
+    received: list[str] = []
+    handler.add_parameter_event_callback(lambda event: received.append(event.node))
 
     def change() -> list[str]:
-        heard.clear()
+        received.clear()
         for robot in robots:
             robot.set_parameters([Parameter("speed", value=2)])
         run_ready(executor)
-        return heard
+        return received
 
     assert handler.configure_nodes_filter(["one", "/two"])
     assert change() == ["/one", "/two"]

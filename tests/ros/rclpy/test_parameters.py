@@ -309,8 +309,8 @@ def test_callbacks_may_change_refuse_and_follow(node: Node) -> None:
 
 
 def test_changes_are_told_to_everybody(node: Node) -> None:
-    heard: list[ParameterEvent] = []
-    node.create_subscription(ParameterEvent, "/parameter_events", heard.append, 10)
+    received: list[ParameterEvent] = []
+    node.create_subscription(ParameterEvent, "/parameter_events", received.append, 10)
     executor = executor_of(node)
     node.declare_parameter("a", 1, ParameterDescriptor(dynamic_typing=True))
     node.set_parameters([Parameter("a", value=2)])
@@ -321,7 +321,7 @@ def test_changes_are_told_to_everybody(node: Node) -> None:
             [one.name for one in group]
             for group in (event.new_parameters, event.changed_parameters, event.deleted_parameters)
         ]
-        for event in heard
+        for event in received
     ]
     assert kinds == [[["a"], [], []], [[], ["a"], []], [[], [], ["a"]]]
 

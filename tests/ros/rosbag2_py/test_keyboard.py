@@ -19,11 +19,11 @@ def test_keys_are_heard_and_the_terminal_is_as_before(monkeypatch):
     import termios
 
     ours, theirs = pty.openpty()
-    heard, told = [], threading.Event()
+    received, told = [], threading.Event()
 
     def on_key(key):
-        heard.append(key)
-        if len(heard) == 3:
+        received.append(key)
+        if len(received) == 3:
             told.set()
 
     before = termios.tcgetattr(theirs)
@@ -39,7 +39,7 @@ def test_keys_are_heard_and_the_terminal_is_as_before(monkeypatch):
         keyboard.stop()
         assert termios.tcgetattr(theirs) == before
     os.close(ours)
-    assert heard == [SPACE, RIGHT, SPACE]
+    assert received == [SPACE, RIGHT, SPACE]
 
 
 def test_keys_that_ctrl_c_discards_are_not_waited_for(monkeypatch):

@@ -22,7 +22,7 @@ TIMEOUT_S = 20
 QUIET = {"disable_keyboard_controls": True, "progress_bar_update_rate": 0}
 
 
-class Heard:
+class Received:
     """What a node hears on a topic."""
 
     def __init__(self, node, topic="/chatter", kind=String, field=lambda message: int(message.data)):
@@ -54,33 +54,33 @@ def play(uri, **options):
 
 def test_everything_comes_in_order_and_in_time(node, tmp_path):
     uri = write_chatter(tmp_path / "bag", 40)
-    heard = Heard(node)
+    received = Received(node)
     with spinning(node):
         play(uri)
-        assert heard.wait_for(40) == list(range(40))
-    assert 0.35 < heard.times[-1] - heard.times[0] < 1.5
+        assert received.wait_for(40) == list(range(40))
+    assert 0.35 < received.times[-1] - received.times[0] < 1.5
 
 
 def test_faster(node, tmp_path):
     uri = write_chatter(tmp_path / "bag", 100, period_ns=100_000_000)
-    heard = Heard(node)
+    received = Received(node)
     with spinning(node):
         play(uri, rate=100.0)
-        assert heard.wait_for(100) == list(range(100))
-    assert heard.times[-1] - heard.times[0] < 5.0
+        assert received.wait_for(100) == list(range(100))
+    assert received.times[-1] - received.times[0] < 5.0
 
 
 def test_a_part(node, tmp_path):
     uri = write_chatter(tmp_path / "bag", 100)
-    heard = Heard(node)
+    received = Received(node)
     with spinning(node):
         play(uri, start_offset=0.5, playback_duration=0.1, rate=10.0)
-        assert heard.wait_for(11) == list(range(50, 61))
+        assert received.wait_for(11) == list(range(50, 61))
         play(uri, playback_until_timestamp=SECOND + 30_000_000)
-        assert heard.wait_for(15)[11:] == [0, 1, 2, 3]
+        assert received.wait_for(15)[11:] == [0, 1, 2, 3]
         play(uri, playback_until_timestamp=5)
         play(uri, start_offset=1000.0)
-        assert len(heard.values) == 15
+        assert len(received.values) == 15
 
 
 def test_other_names_and_only_some_topics(node, tmp_path):
@@ -90,29 +90,29 @@ def test_other_names_and_only_some_topics(node, tmp_path):
         for topic in topics:
             bag.add_topic(topic)
             bag.write(BagMessage(topic.name, data, 1, 1))
-    heard = {name: Heard(node, name) for name in ("/a", "/b", "/c", "/d")}
+    received = {name: Received(node, name) for name in ("/a", "/b", "/c", "/d")}
     with spinning(node):
         options = {"topic_remapping_options": ["--ros-args", "--remap", "/a:=/d"]}
         play(str(tmp_path / "bag"), exclude_topics_to_filter=["/c"], **options)
-        heard["/b"].wait_for(1)
-        heard["/d"].wait_for(1)
+        received["/b"].wait_for(1)
+        received["/d"].wait_for(1)
         play(str(tmp_path / "bag"), topics_to_filter=["c"])
-        heard["/c"].wait_for(1)
+        received["/c"].wait_for(1)
         play(str(tmp_path / "bag"), regex_to_filter="[ab]", exclude_regex_to_filter="b")
-        heard["/a"].wait_for(1)
-    assert {name: len(one.values) for name, one in heard.items()} == {"/a": 1, "/b": 1, "/c": 1, "/d": 1}
+        received["/a"].wait_for(1)
+    assert {name: len(one.values) for name, one in received.items()} == {"/a": 1, "/b": 1, "/c": 1, "/d": 1}
 
 
 def test_the_clock(node, tmp_path):
     uri = write_chatter(tmp_path / "bag", 50)
 
     def clock():
-        return Heard(node, "/clock", Clock, lambda message: message.clock.sec * SECOND + message.clock.nanosec)
+        return Received(node, "/clock", Clock, lambda message: message.clock.sec * SECOND + message.clock.nanosec)
 
-    heard = clock()
+    received = clock()
     with spinning(node):
         play(uri, clock_publish_frequency=100.0)
-        regular = list(heard.wait_for(20))
+        regular = list(received.wait_for(20))
         with_messages = clock()  # which hears nothing of what is still on its way to the other
         play(uri, clock_topics=["chatter"], rate=10.0)
         assert with_messages.wait_for(50) == [SECOND + k * 10_000_000 for k in range(50)]
@@ -125,19 +125,19 @@ def test_the_clock(node, tmp_path):
 def test_several_bags_in_one_order(node, tmp_path):
     first = write_chatter(tmp_path / "first", 20)
     other = write_chatter(tmp_path / "other", 5, "sqlite3", period_ns=45_000_000)
-    heard = Heard(node)
+    received = Received(node)
     player = Player([StorageOptions(first), StorageOptions(other)], PlayOptions(**QUIET, rate=10.0), "warn")
     with spinning(node):
         player.play_sync()
-        heard.wait_for(25)
+        received.wait_for(25)
         player.stop_spin()
     times = sorted([(k * 10, 0, k) for k in range(20)] + [(k * 45, 1, k) for k in range(5)])
-    assert heard.values == [number for _, _, number in times]
+    assert received.values == [number for _, _, number in times]
 
 
 def test_files_that_change_are_told(node, tmp_path):
     uri = write_chatter(tmp_path / "bag", 50, max_bagfile_duration=0.2)
-    events = Heard(node, "/events/read_split", ReadSplitEvent, lambda one: (one.closed_file, one.opened_file))
+    events = Received(node, "/events/read_split", ReadSplitEvent, lambda one: (one.closed_file, one.opened_file))
     with spinning(node):
         play(uri, rate=10.0)
         closed, opened = events.wait_for(1)[0]
@@ -149,7 +149,7 @@ def test_files_that_change_are_told(node, tmp_path):
 def paused(node, tmp_path):
     """A player that stands still at the beginning of 20 messages, what is heard, and how to call it."""
     uri = write_chatter(tmp_path / "bag", 20)
-    heard = Heard(node)
+    received = Received(node)
     player = Player(StorageOptions(uri), PlayOptions(start_paused=True, **QUIET), "warn")
 
     def call(kind, name, **fields):
@@ -162,42 +162,42 @@ def paused(node, tmp_path):
         player.start_spin()
         player.play()
         try:
-            yield player, heard, call
+            yield player, received, call
         finally:
             player.stop()
             player.stop_spin()
 
 
 def test_step_by_step(paused):
-    player, heard, _ = paused
+    player, received, _ = paused
     assert player.is_paused()
     assert player.play_next()
     assert player.play_next()
-    assert heard.wait_for(2) == [0, 1]
+    assert received.wait_for(2) == [0, 1]
     assert player.burst(3) == 3
-    assert heard.wait_for(5) == [0, 1, 2, 3, 4]
+    assert received.wait_for(5) == [0, 1, 2, 3, 4]
     player.seek(SECOND + 150_000_000)
     assert player.play_next()
-    assert heard.wait_for(6)[-1] == 15
+    assert received.wait_for(6)[-1] == 15
     player.resume()
     assert not player.play_next()
     assert player.burst(1) == 0
     assert player.wait_for_playback_to_finish(TIMEOUT_S)
-    assert heard.wait_for(10)[6:] == [16, 17, 18, 19]
+    assert received.wait_for(10)[6:] == [16, 17, 18, 19]
     assert player.error is None
 
 
 def test_control_by_services(paused):
-    player, heard, call = paused
+    player, received, call = paused
     assert call(srv.IsPaused, "is_paused").paused
     assert call(srv.PlayNext, "play_next").success
     assert call(srv.Burst, "burst", num_messages=4).actually_burst == 4
-    assert heard.wait_for(5) == [0, 1, 2, 3, 4]
+    assert received.wait_for(5) == [0, 1, 2, 3, 4]
     request = srv.Seek.Request()
     request.time.sec, request.time.nanosec = 1, 100_000_000
     assert call(srv.Seek, "seek", time=request.time).success
     assert call(srv.Burst, "burst", num_messages=0).actually_burst == 10
-    assert heard.wait_for(15)[5:] == list(range(10, 20))
+    assert received.wait_for(15)[5:] == list(range(10, 20))
     assert player.wait_for_playback_to_finish(TIMEOUT_S)
     assert not call(srv.PlayNext, "play_next").success
     assert not call(srv.Seek, "seek", time=request.time).success
@@ -217,7 +217,7 @@ def test_speed_and_pausing_by_services(paused):
 
 
 def test_a_part_by_service(paused):
-    player, heard, call = paused
+    player, received, call = paused
     assert not call(srv.Play, "play").success
     call(srv.Stop, "stop")
     player.resume()
@@ -233,16 +233,16 @@ def test_a_part_by_service(paused):
         playback_until_timestamp=request.playback_until_timestamp,
     ).success
     assert player.wait_for_playback_to_finish(TIMEOUT_S)
-    assert heard.wait_for(3) == [10, 11, 12]
+    assert received.wait_for(3) == [10, 11, 12]
 
 
 def test_again_and_again_until_it_is_cancelled(node, tmp_path):
     uri = write_chatter(tmp_path / "bag", 3)
-    heard = Heard(node)
+    received = Received(node)
     with spinning(node):
         thread = threading.Thread(target=play, args=(uri,), kwargs={"loop": True}, daemon=True)
         thread.start()
-        assert heard.wait_for(9)[:9] == [0, 1, 2] * 3
+        assert received.wait_for(9)[:9] == [0, 1, 2] * 3
         Player.cancel()
         thread.join(TIMEOUT_S)
         assert not thread.is_alive()
@@ -258,11 +258,11 @@ def test_a_bag_that_is_damaged_plays_up_to_there(node, tmp_path):
     data = bytearray(file.read_bytes())
     data[data.index(b"\0\1\0\0\3\0\0\0") + 8] ^= 255
     file.write_bytes(data)
-    heard = Heard(node)
+    received = Received(node)
     with spinning(node):
         with pytest.raises(RuntimeError, match=r"bag_1\.mcap: the chunk at byte \d+ is damaged"):
             play(uri)
-        assert heard.wait_for(11) == list(range(11))
+        assert received.wait_for(11) == list(range(11))
 
 
 def test_types_that_are_not_known(node, tmp_path, capfd):
@@ -356,7 +356,7 @@ def test_requests_are_sent_again(node, tmp_path, source, sums):
 
 def test_events_of_services_are_published_as_they_were(node, tmp_path):
     uri = call_events(tmp_path / "bag")
-    kinds = Heard(node, "/add/_service_event", AddTwoInts.Event, lambda event: event.info.event_type)
+    kinds = Received(node, "/add/_service_event", AddTwoInts.Event, lambda event: event.info.event_type)
     with spinning(node):
         play(uri)
         assert kinds.wait_for(8) == [0, 1, 2, 3] * 2

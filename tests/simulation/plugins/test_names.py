@@ -390,7 +390,7 @@ def topics_of(simulation):
 )
 def test_plugins_of_models(file, parameters, topics):
     cart = four_wheels(plugin(file, parameters), steered=True)
-    simulation = Simulation(world(cart), heard=lambda topic: True)
+    simulation = Simulation(world(cart), has_subscribers=lambda topic: True)
     simulation.step(20)
     assert topics <= topics_of(simulation)
     assert not simulation.warnings
@@ -399,7 +399,7 @@ def test_plugins_of_models(file, parameters, topics):
 @pytest.mark.parametrize(("kind", "inside", "file", "parameters", "topics"), IN_SENSORS, ids=lambda value: "")
 def test_plugins_of_sensors(kind, inside, file, parameters, topics):
     sensor = f"<sensor name='s' type='{kind}'>{inside}{plugin(file, parameters)}</sensor>"
-    simulation = Simulation(world(box("b", extra=sensor)), heard=lambda topic: True)
+    simulation = Simulation(world(box("b", extra=sensor)), has_subscribers=lambda topic: True)
     simulation.step(2)
     assert topics <= topics_of(simulation)
     assert not simulation.warnings

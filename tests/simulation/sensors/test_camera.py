@@ -124,7 +124,7 @@ def test_topics_and_frames_are_gzs():
 
 
 def test_nobody_listens_nobody_draws():
-    simulation = Simulation(world(camera()), heard=lambda topic: topic.endswith("camera_info"))
+    simulation = Simulation(world(camera()), has_subscribers=lambda topic: topic.endswith("camera_info"))
     assert [type(s) for s in simulation.advance(FRAME)] == [CameraInfoSample]
 
 

@@ -47,7 +47,7 @@ def test_topics_cross(session, domain):
     publisher = session.create_publisher(node, "/ping", String, Qos())
     inbox = subscribe(session, node, "/pong", String)
     with partner("echo", domain).ready():
-        assert session.graph.wait_for(lambda: publisher.is_heard, TIMEOUT_S)
+        assert session.graph.wait_for(lambda: publisher.has_subscribers, TIMEOUT_S)
         stranger = session.graph.endpoints(EndpointKind.SUBSCRIPTION, name="/ping")[0]
         assert stranger.node.name == "_NODE_NAME_UNKNOWN_"
         assert session.graph.wait_for(
@@ -57,7 +57,7 @@ def test_topics_cross(session, domain):
             publisher.publish(String(data=text))
         answers = [message.data for message, _ in inbox.wait(4, TIMEOUT_S)]
         assert answers == ["one back", "two back", "drei back", " back"]
-    assert session.graph.wait_for(lambda: not publisher.is_heard, TIMEOUT_S)
+    assert session.graph.wait_for(lambda: not publisher.has_subscribers, TIMEOUT_S)
 
 
 def test_a_request_and_its_reply_are_those_of_rmw_cyclonedds(session, domain):

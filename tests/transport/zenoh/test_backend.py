@@ -77,7 +77,7 @@ def test_a_subscriber_that_reads_by_hand(session, stranger, domain):
     )
     held = stranger.liveliness().declare_token(token(stranger, domain, "MS", "/chatter", TEXT))
     publisher = session.create_publisher(node_of(session, "me"), "/chatter", String, Qos())
-    assert session.graph.wait_for(lambda: publisher.is_heard, TIMEOUT_S)
+    assert session.graph.wait_for(lambda: publisher.has_subscribers, TIMEOUT_S)
     publisher.publish(String(data="hello"))
     assert news.wait(TIMEOUT_S)
     assert arrived[0].payload.to_bytes() == b"\0\1\0\0\6\0\0\0hello\0"
@@ -255,7 +255,7 @@ def test_a_router_joins_who_would_not_meet_and_may_come_late(domain, tmp_path, m
         inbox = subscribe(one, node_of(one, "listener"), "/chatter", String)
         publisher = two.create_publisher(node_of(two, "talker"), "/chatter", String, Qos())
         router = router_at(port, monkeypatch)
-        assert two.graph.wait_for(lambda: publisher.is_heard, TIMEOUT_S)
+        assert two.graph.wait_for(lambda: publisher.has_subscribers, TIMEOUT_S)
         publisher.publish(String(data="hello"))
         assert inbox.wait(1, TIMEOUT_S)[0][0].data == "hello"
         router.close()

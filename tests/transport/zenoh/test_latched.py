@@ -30,18 +30,18 @@ class Reader:
     """Zenoh's own advanced subscriber, as rmw_zenoh has it."""
 
     def __init__(self, session: zenoh.Session, domain: int) -> None:
-        self._heard: queue.SimpleQueue[str] = queue.SimpleQueue()
+        self._received: queue.SimpleQueue[str] = queue.SimpleQueue()
         self._subscriber = ext.declare_advanced_subscriber(
             session,
             f"{domain}{TOPIC}/{TEXT}",
-            Callback(lambda sample: self._heard.put(_text(sample.payload.to_bytes())), indirect=False),
+            Callback(lambda sample: self._received.put(_text(sample.payload.to_bytes())), indirect=False),
             history=ext.HistoryConfig(detect_late_publishers=True, max_samples=2),
             recovery=ext.RecoveryConfig(periodic_queries=None, heartbeat=True),
             subscriber_detection=True,
         )
 
     def read(self, count: int) -> list[str]:
-        return [self._heard.get(timeout=TIMEOUT_S) for _ in range(count)]
+        return [self._received.get(timeout=TIMEOUT_S) for _ in range(count)]
 
 
 class Writer:
@@ -181,30 +181,30 @@ def oracle() -> Oracle:
 
 
 @pytest.fixture
-def heard() -> list[int]:
+def received() -> list[int]:
     return []
 
 
 @pytest.fixture
-def history(oracle: Oracle, heard: list[int]) -> History:
-    return History(oracle, "0/kept/x", 3, lambda one: heard.append(one.number))
+def history(oracle: Oracle, received: list[int]) -> History:
+    return History(oracle, "0/kept/x", 3, lambda one: received.append(one.number))
 
 
-def test_what_was_kept_comes_before_what_is_sent(history, oracle, heard):
+def test_what_was_kept_comes_before_what_is_sent(history, oracle, received):
     history.ask("ab")
     assert oracle.asked[0][0] == "0/kept/x/@adv/pub/ab/**?_max=3"
     history.accept(sample(3))
     history.accept(sample(4))
-    assert heard == []
+    assert received == []
     oracle.answer(sample(2), sample(3), sample(1))
-    assert heard == [1, 2, 3, 4]
+    assert received == [1, 2, 3, 4]
     history.accept(sample(3))  # it was on its way when it was answered
     history.accept(sample(5))
-    assert heard == [1, 2, 3, 4, 5]
+    assert received == [1, 2, 3, 4, 5]
     assert oracle.asked == []
 
 
-def test_no_more_are_delivered_than_are_kept(history, oracle, heard):
+def test_no_more_are_delivered_than_are_kept(history, oracle, received):
     other = b"o" * 16
     history.ask("ab")
     for number in range(1, 6):
@@ -212,67 +212,67 @@ def test_no_more_are_delivered_than_are_kept(history, oracle, heard):
     history.accept(sample(6))
     history.accept(sample(8, gid=other))
     oracle.answer(sample(3, stamp=3), sample(4, stamp=4), sample(5, stamp=5))
-    assert heard == [4, 5, 6, 8]
+    assert received == [4, 5, 6, 8]
 
 
-def test_a_session_that_is_heard_before_it_is_known_is_asked(history, oracle, heard):
+def test_a_session_that_is_heard_before_it_is_known_is_asked(history, oracle, received):
     history.accept(sample(2))
     history.accept(sample(9, session="cd"))
     assert [selector for selector, _ in oracle.asked] == [
         "0/kept/x/@adv/pub/ab/**?_max=3", "0/kept/x/@adv/pub/cd/**?_max=3",
     ]  # fmt: skip
     oracle.answer(sample(1))
-    assert heard == [1, 2]
+    assert received == [1, 2]
     oracle.answer()
-    assert heard == [1, 2, 9]
+    assert received == [1, 2, 9]
 
 
-def test_a_session_is_asked_again_for_a_further_publisher(history, oracle, heard):
+def test_a_session_is_asked_again_for_a_further_publisher(history, oracle, received):
     other = b"o" * 16
     history.ask("ab")
     history.ask("ab")
     oracle.answer(sample(1))
     oracle.answer(sample(1), sample(7, gid=other))
-    assert heard == [1, 7]
+    assert received == [1, 7]
     history.ask("ab")  # as when a link was lost and came back
     oracle.answer(sample(1), sample(2), sample(7, gid=other))
-    assert heard == [1, 7, 2]
+    assert received == [1, 7, 2]
 
 
-def test_a_session_that_does_not_answer_in_time_is_heard_and_asked_again(history, oracle, heard):
+def test_a_session_that_does_not_answer_in_time_is_heard_and_asked_again(history, oracle, received):
     history.ask("ab")
     history.accept(sample(2))
     oracle.answer(in_time=False)
-    assert heard == [2]
+    assert received == [2]
     history.accept(sample(3))
     oracle.answer(sample(1), sample(2))
-    assert heard == [2, 3]  # what is older than what was heard is history
+    assert received == [2, 3]  # what is older than what was heard is history
     assert oracle.asked == []
 
 
-def test_a_publisher_that_is_made_again_counts_anew(history, oracle, heard):
+def test_a_publisher_that_is_made_again_counts_anew(history, oracle, received):
     history.accept(sample(5, stamp=50))
     oracle.answer()
     history.ask("ab")
     oracle.answer(sample(1, stamp=60))
-    assert heard == [5, 1]
+    assert received == [5, 1]
 
 
 def test_two_threads_deliver_in_order_and_who_is_closed_hears_nothing(oracle):
-    heard: list[int] = []
+    received: list[int] = []
 
     def deliver(one: Any) -> None:
-        heard.append(one.number)
+        received.append(one.number)
         if one.number == 1:
             history.accept(sample(2))  # as if it came while the first is being delivered
-            heard.append(-1)
+            received.append(-1)
 
     history = History(oracle, "0/kept/x", None, deliver)
     history.ask("ab")
     assert oracle.asked[0][0] == "0/kept/x/@adv/pub/ab/**"
     oracle.answer(sample(1))
-    assert heard == [1, -1, 2]
+    assert received == [1, -1, 2]
     history.close()
     history.accept(sample(3))
     history.ask("cd")
-    assert (heard, oracle.asked) == ([1, -1, 2], [])
+    assert (received, oracle.asked) == ([1, -1, 2], [])

@@ -68,7 +68,7 @@ def _run_offline(path: Path | None, args: argparse.Namespace) -> int:
     from daidalos.nodes.gazebo_ros._host import read_world
     from daidalos.simulation import Simulation
 
-    simulation = Simulation(read_world(path), args.seed, heard=lambda topic: False, warn=_warn)
+    simulation = Simulation(read_world(path), args.seed, has_subscribers=lambda topic: False, warn=_warn)
     for file in args.model:
         simulation.spawn(_read_model(Path(file)))
     begun = time.perf_counter()

@@ -97,7 +97,7 @@ def _simulated(description: "Robot | Model | World") -> list[str]:
     from daidalos.simulation import Simulation
 
     world = description if isinstance(description, World) else None
-    simulation = Simulation(world, heard=lambda topic: False, warn=lambda line: None)
+    simulation = Simulation(world, has_subscribers=lambda topic: False, warn=lambda line: None)
     if not isinstance(description, World):
         simulation.spawn(description, pose=Pose((0.0, 0.0, 10.0)))
     simulation.step(10)

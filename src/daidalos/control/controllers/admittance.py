@@ -225,7 +225,7 @@ class AdmittanceController(Controller):
             "velocity": self._reference_rate + self._state.joint_velocities,
         }
         self.commands.write(np.concatenate([wanted[kind] for kind in self.p.command_interfaces]))
-        if self.context.heard("~/status"):
+        if self.context.has_subscribers("~/status"):
             yield self._sample(now_ns, rotation, wrench)
 
     def _read_references(self) -> None:

@@ -38,7 +38,7 @@ class ControllerContext:
         Of the controller, such as ``/robot1``.
     state_names : tuple of str
         All state interfaces that the hardware has.
-    heard : callable
+    has_subscribers : callable
         Tells whether anyone listens to one of its topics.
     warn : callable
         Takes a line for the user.
@@ -49,7 +49,7 @@ class ControllerContext:
     robot: Robot | Model | None = None
     namespace: str = "/"
     state_names: tuple[str, ...] = ()
-    heard: Callable[[str], bool] = _always
+    has_subscribers: Callable[[str], bool] = _always
     warn: Callable[[str], None] = _ignore
 
 

@@ -106,9 +106,9 @@ class JointStateBroadcaster(Controller):
     def update(self, now_ns: int, period: float) -> Iterable[Sample]:
         """Read all and say it."""
         values = self.states.read()
-        if self.context.heard(self._topic):
+        if self.context.has_subscribers(self._topic):
             yield self._joint_states(now_ns, values)
-        if self.p.publish_dynamic_joint_states and self.context.heard(self._dynamic_topic):
+        if self.p.publish_dynamic_joint_states and self.context.has_subscribers(self._dynamic_topic):
             yield DynamicJointSample(
                 stamp_ns=now_ns,
                 topic=self._dynamic_topic,

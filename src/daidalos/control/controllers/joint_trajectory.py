@@ -196,7 +196,7 @@ class JointTrajectoryController(Controller):
             error = self._errors(desired, actual)
         output = self._command(desired, error, period)
         self._write(output)
-        if self.context.heard("~/controller_state"):
+        if self.context.has_subscribers("~/controller_state"):
             yield self._sample(now_ns, desired, actual, error, output)
 
     # Trajectories

@@ -128,5 +128,5 @@ class MecanumDriveController(BaseController):
         wanted = np.nan_to_num(self.references.values)
         self.commands.write(self._to_wheels @ self._to_centre @ wanted)
         yield from self.odometry_samples(now_ns)
-        if self.context.heard("~/controller_state"):
+        if self.context.has_subscribers("~/controller_state"):
             yield MecanumSample(now_ns, "~/controller_state", self.odometry.base_frame, wheels, wanted)

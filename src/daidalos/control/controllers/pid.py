@@ -186,7 +186,7 @@ class PidController(Controller):
         if self._feedforward:
             output = output + self._forward * np.nan_to_num(wanted[-1])
         self.commands.write(np.where(known, output, self.commands.read()))
-        if self.context.heard("~/controller_state"):
+        if self.context.has_subscribers("~/controller_state"):
             yield self._sample(now_ns, wanted, measured, error, rate, period, output)
 
     def _sample(

@@ -253,7 +253,7 @@ class BicycleSteeringController(BaseController):
         speeds, angles = self._base.wheel_speeds(speed, self._angle), self._base.wheel_angles(self._angle)
         self.commands.write(np.concatenate((speeds, angles)))
         yield from self.odometry_samples(now_ns)
-        if self.context.heard("~/controller_state"):
+        if self.context.has_subscribers("~/controller_state"):
             measured, nothing = values[: self._count], np.zeros(0)
             positions, velocities = (measured, nothing) if self.p.position_feedback else (nothing, measured)
             yield SteeringSample(

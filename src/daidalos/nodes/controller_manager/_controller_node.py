@@ -127,10 +127,10 @@ class ControllerNode(Node):
 
     # Topics
 
-    def is_heard(self, topic: str) -> bool:
+    def has_subscribers(self, topic: str) -> bool:
         """Tell whether anyone listens to one of the controller's topics."""
         entry = self._outgoing.get(topic)
-        return entry is not None and entry[0].handle.impl.is_heard
+        return entry is not None and entry[0].handle.impl.has_subscribers
 
     def publish(self, sample: Sample) -> None:
         """Publish what the controller says."""

@@ -239,7 +239,7 @@ class ControllerManagerNode(Node):
                 update_rate=self._rate_of(node, name),
                 robot=self._robot,
                 namespace=self.get_namespace(),
-                heard=node.is_heard,
+                has_subscribers=node.has_subscribers,
                 warn=node.warn,
             )
             fallbacks = self._parameter(f"{name}.fallback_controllers", [])

@@ -28,7 +28,7 @@ def main() -> int:
         rclpy.init()
         node = ListenerQos(arguments.reliable)
         try:
-            while node.heard < arguments.number_of_cycles:
+            while node.received_count < arguments.number_of_cycles:
                 rclpy.spin_once(node)
         finally:
             node.destroy_node()

@@ -99,7 +99,7 @@ class GzServer(Node):
         self._warned: set[str] = set()
 
         def make(description: World) -> Simulation:
-            return Simulation(description, seed=seed, heard=self._is_heard, warn=self._warn)
+            return Simulation(description, seed=seed, has_subscribers=self._has_subscribers, warn=self._warn)
 
         simulation = make(described)
         if start.update_rate is not None:
@@ -157,9 +157,9 @@ class GzServer(Node):
 
     # The simulation's side: called on its thread.
 
-    def _is_heard(self, topic: str) -> bool:
+    def _has_subscribers(self, topic: str) -> bool:
         entry = self._outgoing.get(topic)
-        return entry is not None and entry[0].handle.impl.is_heard
+        return entry is not None and entry[0].handle.impl.has_subscribers
 
     def _publish(self, now_ns: int, samples: list[Sample]) -> None:
         from rosgraph_msgs.msg import Clock
@@ -198,7 +198,7 @@ class GzServer(Node):
         simulation = self._paced.simulation
         models: list[tuple[str, str | None]] = [(name, None) for name in simulation.models]
         _publish_motions(simulation, self._states, ModelStates, models)
-        if any(_is_heard(publisher) for publisher in self._link_states):
+        if any(_has_subscribers(publisher) for publisher in self._link_states):
             links: list[tuple[str, str | None]] = [
                 (name, link) for name in simulation.models for link in simulation.instance(name).model.links
             ]
@@ -328,8 +328,8 @@ def _warm_up_cameras(progress: Callable[[float, str], None]) -> None:
     warm_up(progress)
 
 
-def _is_heard(publisher: Any) -> bool:
-    return bool(publisher.handle.impl.is_heard)
+def _has_subscribers(publisher: Any) -> bool:
+    return bool(publisher.handle.impl.has_subscribers)
 
 
 def _publish_motions(
@@ -337,7 +337,7 @@ def _publish_motions(
 ) -> None:
     from daidalos.nodes.gazebo_ros._states import pose_message, twist_message
 
-    listening = [publisher for publisher in publishers if _is_heard(publisher)]
+    listening = [publisher for publisher in publishers if _has_subscribers(publisher)]
     if not listening:
         return
     message = kind(

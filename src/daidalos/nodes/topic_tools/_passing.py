@@ -79,7 +79,7 @@ class Passage:
             self._know(infos)
         if self._type:
             self._advertise()
-        wanted = bool(infos) and (not self._lazy or self._is_heard())
+        wanted = bool(infos) and (not self._lazy or self._has_subscribers())
         if wanted and self._subscription is None:
             kind = _message_class(self._node, self._type)
             if kind is not None:
@@ -108,7 +108,7 @@ class Passage:
                 if kind is not None:
                     self._publishers[name] = self._node.create_publisher(kind, name, self._qos)
 
-    def _is_heard(self) -> bool:
+    def _has_subscribers(self) -> bool:
         return any(publisher.get_subscription_count() for publisher in self._publishers.values())
 
     def _unsubscribe(self) -> None:

@@ -18,7 +18,7 @@ class Source:
         For how long a message counts [s]; 0 for ever.
     priority : int
         The higher, the sooner it counts; at least 0.
-    heard_at : float or None
+    received_at : float or None
         When the last message came [s].
     """
 
@@ -26,11 +26,11 @@ class Source:
     topic: str
     timeout: float
     priority: int
-    heard_at: float | None = None
+    received_at: float | None = None
 
     def is_silent(self, now: float) -> bool:
         """Tell whether the last message counts no more, or none came."""
-        return self.heard_at is None or 0 < self.timeout < now - self.heard_at
+        return self.received_at is None or 0 < self.timeout < now - self.received_at
 
 
 @dataclass

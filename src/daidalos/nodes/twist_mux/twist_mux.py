@@ -71,12 +71,12 @@ class TwistMux(Node):
         return self.get_clock().now().nanoseconds * 1e-9
 
     def _pass_on(self, source: Source, message: Any) -> None:
-        source.heard_at = self._now()
-        if active(self._sources, self._locks, source.heard_at) is source:
+        source.received_at = self._now()
+        if active(self._sources, self._locks, source.received_at) is source:
             self._commands.publish(message)
 
     def _set_lock(self, lock: Lock, message: Bool) -> None:
-        lock.heard_at, lock.is_closed = self._now(), message.data
+        lock.received_at, lock.is_closed = self._now(), message.data
 
     def _tell(self, status: DiagnosticStatusWrapper) -> DiagnosticStatusWrapper:
         now = self._now()

@@ -54,7 +54,7 @@ class JointStatePublisher(Plugin):
 
     def update(self, now_ns: int) -> Iterable[Sample]:
         """Read the joints."""
-        if not self._instance.heard(self.topic):
+        if not self._instance.has_subscribers(self.topic):
             return
         data = self._instance.physics.data
         yield JointStateSample(

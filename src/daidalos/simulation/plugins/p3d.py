@@ -52,7 +52,7 @@ class P3d(Plugin):
 
     def update(self, now_ns: int) -> Iterable[Sample]:
         """Say where the link is."""
-        if not self._instance.heard(self.topic):
+        if not self._instance.has_subscribers(self.topic):
             return
         origin = Pose() if self._from is None else self._from.pose
         odometry = true_odometry(

@@ -57,7 +57,7 @@ class PosePublisher(Plugin):
     def update(self, now_ns: int) -> Iterable[Sample]:
         """Say where everything is."""
         instance = self._instance
-        due = {topic for topic in (self.topic, self.static_topic) if topic and instance.heard(topic)}
+        due = {topic for topic in (self.topic, self.static_topic) if topic and instance.has_subscribers(topic)}
         if 0 <= now_ns - self._static_ns < self._static_period_ns:
             due.discard(self.static_topic)
         if self.static_topic in due:

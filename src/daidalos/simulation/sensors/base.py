@@ -70,7 +70,7 @@ class Sensor(Component):
 
     def update(self, now_ns: int) -> Iterable[Sample]:
         """Measure, unless nobody listens."""
-        return self.measure(now_ns) if self.instance.heard(self.topic) else ()
+        return self.measure(now_ns) if self.instance.has_subscribers(self.topic) else ()
 
     def measure(self, now_ns: int) -> Iterable[Sample]:
         """Return what the sensor sees now."""

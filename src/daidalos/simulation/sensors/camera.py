@@ -136,9 +136,9 @@ class Camera(Sensor):
         if self.trigger and not self.memory.due:
             return
         self.memory.due = False
-        heard = self.instance.heard
+        has_subscribers = self.instance.has_subscribers
         for number, lens in enumerate(self.lenses):
-            wanted = {topic for topic in lens.topics() if heard(topic)}
+            wanted = {topic for topic in lens.topics() if has_subscribers(topic)}
             if wanted:
                 yield from self._look(number, lens, wanted, now_ns)
 

@@ -108,7 +108,7 @@ class Lidar(Sensor):
 
     def update(self, now_ns: int) -> Iterable[Sample]:
         """Measure, unless nobody listens."""
-        return self.measure(now_ns) if any(map(self.instance.heard, self.publications)) else ()
+        return self.measure(now_ns) if any(map(self.instance.has_subscribers, self.publications)) else ()
 
     def measure(self, now_ns: int) -> Iterable[Sample]:
         """Cast all rays."""
@@ -123,10 +123,10 @@ class Lidar(Sensor):
         if self.as_range:
             yield self._nearest(now_ns, ranges)
         elif self.as_both:
-            if self.instance.heard(self.topic):
+            if self.instance.has_subscribers(self.topic):
                 middle = slice(self.vertical.count // 2 * self.horizontal.count, None)
                 yield self._scan(now_ns, ranges[middle], intensities[middle])
-            if self.instance.heard(self._points_topic):
+            if self.instance.has_subscribers(self._points_topic):
                 yield self._points(now_ns, ranges, intensities, self._points_topic)
         elif self.as_points:
             yield self._points(now_ns, ranges, intensities, self.topic)

@@ -34,7 +34,7 @@ class Introspection:
         from service_msgs.msg import ServiceEventInfo
 
         publisher = self._publisher.impl
-        if not publisher.is_heard:
+        if not publisher.has_subscribers:
             return
         info = ServiceEventInfo(
             event_type=getattr(ServiceEventInfo, kind),

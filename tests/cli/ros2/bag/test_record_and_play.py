@@ -176,16 +176,16 @@ def test_a_full_disk_ends_the_recording_with_a_word(ros2_bag, partner, tmp_path)
 def test_a_bag_that_others_wrote_is_played(ros2_bag, partner, shared_data):
     from sensor_msgs.msg import LaserScan
 
-    heard = []
-    partner.node.create_subscription(LaserScan, "/scan", heard.append, 1000)
+    received = []
+    partner.node.create_subscription(LaserScan, "/scan", received.append, 1000)
     clocks = []
     from rosgraph_msgs.msg import Clock
 
     partner.node.create_subscription(Clock, "/clock", clocks.append, 1000)
     play = ros2_bag("play", shared_data / "slam" / "intel", "--rate", "1000", "--clock", "100", "--topics", "/scan")
     assert play.finish() == 0
-    assert _polled(lambda: len(heard) == 910)
-    assert len(heard[-1].ranges) == 180
+    assert _polled(lambda: len(received) == 910)
+    assert len(received[-1].ranges) == 180
     assert len(clocks) > 50
     assert clocks[-1].clock.sec - clocks[0].clock.sec > 2000
 
@@ -235,11 +235,11 @@ def test_types_that_are_not_installed_are_passed_on(ros2_bag, partner, env, tmp_
     publisher.publish(b"\0\1\0\0hello")
     record.wait_for("Recorded 1 messages")
     assert record.end() == 0
-    heard = []
-    partner.node.create_subscription(kind, "/again", heard.append, 10, raw=True)
+    received = []
+    partner.node.create_subscription(kind, "/again", received.append, 10, raw=True)
     play = ros2_bag("play", "bag", "-m", "/thing:=/again")
     assert play.finish() == 0
     assert "its type 'no_such_msgs/msg/Thing' is not installed" in play.text
-    assert _polled(lambda: heard == [b"\0\1\0\0hello"])
+    assert _polled(lambda: received == [b"\0\1\0\0hello"])
     shown = ros2("bag", "info", "bag", env=env, cwd=tmp_path)
     assert "Topic: /thing | Type: no_such_msgs/msg/Thing | Count: 1" in shown.out

@@ -60,7 +60,7 @@ class HelloVerb(Verb):
             publisher = node.create_publisher(String, args.topic, 10)
 
             def on_message(message: Any) -> None:
-                summary.heard[_sender(message.data)] += 1
+                summary.subscribed[_sender(message.data)] += 1
 
             node.create_subscription(String, args.topic, on_message, 10)
 
@@ -82,13 +82,13 @@ class Summary:
     topic: str
     published: int = 0
     sent: int = 0
-    heard: Counter[str] = field(default_factory=Counter)
+    subscribed: Counter[str] = field(default_factory=Counter)
     received: Counter[str] = field(default_factory=Counter)
 
     def text(self) -> str:
         """Return the summary in words."""
         lines = ["MULTIMACHINE COMMUNICATION SUMMARY", f"Topic: {self.topic}, Published Msg Count: {self.published}"]
-        lines += ["Subscribed from:", *_rows(self.heard)]
+        lines += ["Subscribed from:", *_rows(self.subscribed)]
         lines += [f"Multicast Group/Port: {datagrams.GROUP}/{datagrams.PORT}, Sent Msg Count: {self.sent}"]
         lines += ["Received from:", *_rows(self.received)]
         return "\n".join(["", *lines, "-" * 60])
@@ -96,7 +96,7 @@ class Summary:
     def reset(self) -> None:
         """Begin to count anew."""
         self.published = self.sent = 0
-        self.heard.clear()
+        self.subscribed.clear()
         self.received.clear()
 
 

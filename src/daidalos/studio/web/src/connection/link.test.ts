@@ -30,7 +30,7 @@ function said(op: string): Record<string, unknown>[] {
     .filter((message) => message.op === op);
 }
 
-function heard<K extends FromWorker["kind"]>(kind: K): Extract<FromWorker, { kind: K }>[] {
+function received<K extends FromWorker["kind"]>(kind: K): Extract<FromWorker, { kind: K }>[] {
   return toPage.filter((message): message is Extract<FromWorker, { kind: K }> => message.kind === kind);
 }
 
@@ -65,7 +65,7 @@ describe("subscriptions", () => {
     }
     expect(link.hasNews).toBe(true);
     link.flush();
-    expect(heard("batch")[0]?.messages).toEqual([
+    expect(received("batch")[0]?.messages).toEqual([
       { topic: "/a", time: 3, message: { data: "two" } },
       { topic: "/a", time: 3, message: { data: "three" } },
     ]);
@@ -77,9 +77,9 @@ describe("subscriptions", () => {
     link.receivePage({ kind: "subscribe", topic: "/a", keep: 0 });
     link.receiveBinary(message(subscription(), "x"));
     link.flush();
-    expect(heard("batch")[0]?.messages).toEqual([]);
+    expect(received("batch")[0]?.messages).toEqual([]);
     link.measure(performance.now() / 1000 + 1);
-    expect(heard("traffic").at(-1)?.traffic["/a"]?.total).toBe(1);
+    expect(received("traffic").at(-1)?.traffic["/a"]?.total).toBe(1);
   });
 
   it("of one more listener change nothing at the server", () => {
@@ -106,12 +106,12 @@ describe("subscriptions", () => {
     advertise(5, "/a", "int32 data", "std_msgs/msg/Int32");
     expect(said("subscribe")).toHaveLength(2);
     link.reset();
-    expect(heard("topics").at(-1)?.topics).toEqual([]);
+    expect(received("topics").at(-1)?.topics).toEqual([]);
     advertise(1, "/a");
     expect(said("subscribe")).toHaveLength(3);
     link.receiveBinary(message(subscription(2), "again"));
     link.flush();
-    expect(heard("batch").at(-1)?.messages[0]?.message).toEqual({ data: "again" });
+    expect(received("batch").at(-1)?.messages[0]?.message).toEqual({ data: "again" });
   });
 
   it("of messages that can not be read complain and go on", () => {
@@ -120,8 +120,8 @@ describe("subscriptions", () => {
     link.receiveBinary(message(subscription(), "good").slice(0, 19));
     link.receiveBinary(message(subscription(), "good"));
     link.flush();
-    expect(heard("status")[0]?.status.text).toContain("/a");
-    expect(heard("batch")[0]?.messages).toHaveLength(1);
+    expect(received("status")[0]?.status.text).toContain("/a");
+    expect(received("batch")[0]?.messages).toHaveLength(1);
   });
 });
 
@@ -140,8 +140,8 @@ describe("robot time", () => {
     link.receiveBinary(time(8));
     link.receiveBinary(message(subscription(), "later"));
     link.flush();
-    expect(heard("batch")[0]?.clock).toMatchObject({ robot: 8, announced: true });
-    expect(Math.abs((heard("batch")[0]?.clock?.at ?? 0) - Date.now())).toBeLessThan(5000);
+    expect(received("batch")[0]?.clock).toMatchObject({ robot: 8, announced: true });
+    expect(Math.abs((received("batch")[0]?.clock?.at ?? 0) - Date.now())).toBeLessThan(5000);
   });
 
   it("is that of the newest message where the server has no clock", () => {
@@ -151,13 +151,13 @@ describe("robot time", () => {
     link.receiveBinary(message(subscription(), "x"));
     expect(link.hasNews).toBe(true);
     link.flush();
-    expect(heard("batch")[0]?.clock).toMatchObject({ robot: 3, announced: false });
+    expect(received("batch")[0]?.clock).toMatchObject({ robot: 3, announced: false });
   });
 });
 
 it("frames that are not understood are told and do not stop the rest", () => {
   link.receiveBinary(new Uint8Array([99]).buffer);
-  expect(heard("status")[0]?.status.text).toContain("99");
+  expect(received("status")[0]?.status.text).toContain("99");
 });
 
 describe("publishing", () => {
@@ -176,12 +176,12 @@ describe("publishing", () => {
     expect(frames).toHaveLength(2);
     const read = makeReader(channels[0]?.schema as string)((frames[1] as Uint8Array).slice(5));
     expect(read).toMatchObject({ header: { frame_id: "map" }, point: { x: 2 } });
-    expect(heard("published").map(({ error }) => error)).toEqual([undefined, undefined]);
+    expect(received("published").map(({ error }) => error)).toEqual([undefined, undefined]);
   });
 
   it("tells when a type is not known", () => {
     link.receivePage({ kind: "publish", topic: "/x", type: "a/msg/B", message: {} });
-    expect(heard("published")[0]?.error).toContain("a/msg/B");
+    expect(received("published")[0]?.error).toContain("a/msg/B");
   });
 });
 
@@ -201,7 +201,7 @@ describe("services", () => {
     link.receivePage({ kind: "call", id: 8, service: "/s", request: { data: "do" } });
     const answer = new Uint8Array([3, 3, 0, 0, 0, 8, 0, 0, 0, 3, 0, 0, 0, 99, 100, 114, 0, 1, 0, 0, 1]);
     link.receiveBinary(answer.buffer);
-    expect(heard("response")).toEqual([{ kind: "response", id: 8, message: { ok: true } }]);
+    expect(received("response")).toEqual([{ kind: "response", id: 8, message: { ok: true } }]);
   });
 
   it("fail in words", () => {
@@ -211,7 +211,7 @@ describe("services", () => {
     link.receiveText(JSON.stringify({ op: "serviceCallFailure", serviceId: 3, callId: 2, message: "no" }));
     link.receivePage({ kind: "call", id: 3, service: "/s", request: { data: "do" } });
     link.reset();
-    expect(heard("response").map(({ id, error }) => [id, error])).toEqual([
+    expect(received("response").map(({ id, error }) => [id, error])).toEqual([
       [1, "there is no service /none"],
       [2, "no"],
       [3, "the connection was lost"],

@@ -24,7 +24,7 @@ const lines = (...marks: number[]): Lines => ({
   lines: Float32Array.from(marks.flatMap((mark) => [mark, 0, 0, 0])),
   pens: new Uint8Array(4 * marks.length),
 });
-const heard = (clearings: number, drawn: number, ...marks: number[]): TurtleWindow => ({
+const received = (clearings: number, drawn: number, ...marks: number[]): TurtleWindow => ({
   ...lines(...marks),
   clearings,
   drawn,
@@ -47,12 +47,12 @@ describe("a follower", () => {
   it("draws what comes, once", async () => {
     const sheet = new MemorySheet();
     const follower = new DrawingFollower(sheet, async () => answered(0, 2, 1, 2));
-    follower.hear(heard(0, 2, 2));
+    follower.hear(received(0, 2, 2));
     await settle();
     expect(sheet.marks).toEqual([1, 2]);
-    follower.hear(heard(0, 3, 3));
-    follower.hear(heard(0, 3));
-    follower.hear(heard(0, 5, 4, 5));
+    follower.hear(received(0, 3, 3));
+    follower.hear(received(0, 3));
+    follower.hear(received(0, 5, 4, 5));
     expect(sheet.marks).toEqual([1, 2, 3, 4, 5]);
   });
 
@@ -60,11 +60,11 @@ describe("a follower", () => {
     const sheet = new MemorySheet();
     const answers = [answered(0, 1, 1), answered(0, 6, 1, 2, 3, 4, 5, 6)];
     const follower = new DrawingFollower(sheet, async () => answers.shift() as TurtleDrawing);
-    follower.hear(heard(0, 1));
+    follower.hear(received(0, 1));
     await settle();
-    follower.hear(heard(0, 5, 5));
+    follower.hear(received(0, 5, 5));
     await settle();
-    follower.hear(heard(0, 7, 6, 7));
+    follower.hear(received(0, 7, 6, 7));
     expect(sheet.marks).toEqual([1, 2, 3, 4, 5, 6, 7]);
     expect(answers).toEqual([]);
   });
@@ -72,18 +72,18 @@ describe("a follower", () => {
   it("wipes the sheet when the simulator does", async () => {
     const sheet = new MemorySheet();
     const follower = new DrawingFollower(sheet, async () => answered(0, 1, 1));
-    follower.hear(heard(0, 1));
+    follower.hear(received(0, 1));
     await settle();
-    follower.hear(heard(1, 2, 8, 9));
+    follower.hear(received(1, 2, 8, 9));
     expect(sheet.marks).toEqual([8, 9]);
-    follower.hear(heard(2, 0));
+    follower.hear(received(2, 0));
     expect(sheet.marks).toEqual([]);
   });
 
   it("shows a picture of what is too old for lines", async () => {
     const sheet = new MemorySheet();
     const follower = new DrawingFollower(sheet, async () => answered(3, 100, 99, 100));
-    follower.hear(heard(3, 100));
+    follower.hear(received(3, 100));
     await settle();
     expect([sheet.pictures, ...sheet.marks]).toEqual([1, 99, 100]);
   });
@@ -97,9 +97,9 @@ describe("a follower", () => {
       }
       return answered(0, 1, 1);
     });
-    follower.hear(heard(0, 1));
+    follower.hear(received(0, 1));
     await settle();
-    follower.hear(heard(0, 1));
+    follower.hear(received(0, 1));
     await settle();
     expect(sheet.marks).toEqual([1]);
   });
