@@ -49,8 +49,8 @@ class Greeter(Plugin):
     period = 0.5
 
     def update(self, now_ns):
-        self.memory = (self.memory or 0) + 1
-        yield TransformSample(now_ns, "/hello", "a", "b", (self.memory, 0, 0), (0, 0, 0, 1))
+        self.state = (self.state or 0) + 1
+        yield TransformSample(now_ns, "/hello", "a", "b", (self.state, 0, 0), (0, 0, 0, 1))
 
 
 class Nose(Sensor):

@@ -97,7 +97,7 @@ class Component(Endpoint):
     ----------
     period : float
         Seconds between two updates; 0 acts in every step.
-    memory : object
+    state : object
         Everything that changes while it runs. It is copied when the simulation's state is saved and
         made anew by `start` when the simulation is reset.
     random : numpy Generator
@@ -105,14 +105,14 @@ class Component(Endpoint):
     """
 
     period: float = 0.0
-    memory: Any = None
+    state: Any = None
 
     def __init__(self, context: ComponentContext) -> None:
         self.context = context
         self.random = context.stream()
 
     def start(self) -> Any:
-        """Return the memory that it starts with; called once it is bound, and on reset."""
+        """Return the state that it starts with; called once it is bound, and on reset."""
         return None
 
     def prepare(self, build: ModelBuild) -> None:

@@ -28,7 +28,7 @@ class CourseFollower(Component):
     context : ComponentContext
     """
 
-    memory: Course | None
+    state: Course | None
 
     def __init__(self, context: ComponentContext) -> None:
         super().__init__(context)
@@ -40,8 +40,8 @@ class CourseFollower(Component):
 
     def update(self, now_ns: int) -> Iterable[Sample]:
         """Put the joints where they should be now."""
-        if self.memory is not None and place_joints(self._instance, self.memory, now_ns):
-            self.memory = None
+        if self.state is not None and place_joints(self._instance, self.state, now_ns):
+            self.state = None
         return ()
 
 

@@ -27,7 +27,7 @@ from daidalos.simulation.physics import Physics
 from daidalos.simulation.samples import Sample
 from daidalos.simulation.schedule import Schedule
 from daidalos.simulation.stage import Stage
-from daidalos.simulation.state import State, memories_of, remember
+from daidalos.simulation.state import State, copy_states, restore_states
 
 _log = logging.getLogger(__name__)
 _MONITOR_PERIOD_NS = 10_000_000
@@ -196,11 +196,11 @@ class Engine:
 
     def save(self) -> State:
         """Return the state; it can be restored as long as the same models are there."""
-        memories = memories_of(self._components())
+        component_states = copy_states(self._components())
         # All of MuJoCo's data, since sleeping models are no part of its smaller states.
         physics = copy.copy(self.physics.data)
         return State(
-            self.time_ns, physics, self._compilation.number, self._schedule.save(), memories, self.forces.pushes
+            self.time_ns, physics, self._compilation.number, self._schedule.save(), component_states, self.forces.pushes
         )
 
     def restore(self, state: State) -> None:
@@ -214,7 +214,7 @@ class Engine:
         if state.compilation != self._compilation.number:
             raise SimulationError("models came or went since the state was saved")
         mujoco.mj_copyData(self.physics.data, self.physics.model, state.physics)
-        remember(self._components(), state.memories)
+        restore_states(self._components(), state.component_states)
         self._schedule.restore(dict(state.clocks))
         self.time_ns = self._goal_ns = state.time_ns
         self.forces.clear(keep=state.pushes)
@@ -239,7 +239,7 @@ class Engine:
             instance.place_joints()
             for component in instance.components:
                 component.random = component.context.stream()
-                component.memory = component.start()
+                component.state = component.start()
 
     # Inside
 
@@ -281,7 +281,7 @@ class Engine:
             self._begin(component)
 
     def _begin(self, component: Component) -> None:
-        component.memory = component.start()
+        component.state = component.start()
         self._schedule.add(component, self.time_ns)
 
     def _attach(self, component: Component, instance: Instance) -> None:

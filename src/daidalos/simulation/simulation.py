@@ -172,7 +172,7 @@ class Simulation(Engine):
         if follower is None:
             follower = CourseFollower(self._setting(instance.model, instance.namespace, "course"))
             self._attach(follower, instance)
-        follower.memory = Course(course, self.time_ns)
+        follower.state = Course(course, self.time_ns)
 
     def set_joint_properties(
         self, model: str, joint: str, damping: float | None, limits: tuple[float, float] | None

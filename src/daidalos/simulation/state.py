@@ -19,17 +19,17 @@ class State:
     physics: Any
     compilation: int
     clocks: Mapping[int, tuple[int, int, int]]
-    memories: tuple[tuple[Any, Any], ...]
+    component_states: tuple[tuple[Any, Any], ...]
     pushes: tuple[Push | JointPush, ...]
 
 
-def memories_of(components: Iterable[Component]) -> tuple[tuple[Any, Any], ...]:
-    """Return copies of what components remember, and of where their random numbers are."""
-    return tuple((copy.deepcopy(c.memory), copy.deepcopy(c.random.bit_generator.state)) for c in components)
+def copy_states(components: Iterable[Component]) -> tuple[tuple[Any, Any], ...]:
+    """Return copies of the states of components and of their random generators."""
+    return tuple((copy.deepcopy(c.state), copy.deepcopy(c.random.bit_generator.state)) for c in components)
 
 
-def remember(components: Iterable[Component], memories: tuple[tuple[Any, Any], ...]) -> None:
-    """Give components back what `memories_of` returned for them."""
-    for component, (memory, random) in zip(components, memories, strict=True):
-        component.memory = copy.deepcopy(memory)
+def restore_states(components: Iterable[Component], component_states: tuple[tuple[Any, Any], ...]) -> None:
+    """Restore what `copy_states` returned for the components."""
+    for component, (state, random) in zip(components, component_states, strict=True):
+        component.state = copy.deepcopy(state)
         component.random.bit_generator.state = copy.deepcopy(random)

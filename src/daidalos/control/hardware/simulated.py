@@ -97,7 +97,7 @@ class SimulatedSystem(Hardware):
 
     def switch(self, start: Sequence[str], stop: Sequence[str]) -> None:
         """Set what the motors do; those that nobody commands hold or are free."""
-        state = self._plugin.memory
+        state = self._plugin.state
         for name in stop:
             row = self._commands.pop(self.commands.index[name], None)
             if row is not None:
@@ -130,10 +130,10 @@ class SimulatedSystem(Hardware):
 
     def write(self, now_ns: int, period: float) -> None:
         """Pass the commands on."""
-        targets = self._plugin.memory.targets
+        targets = self._plugin.state.targets
         for place, row in self._commands.items():
             targets[row] = self.commands.values[place]
 
     def deactivate(self) -> None:
         """Hold, or leave the joints free."""
-        self._plugin.memory.targets[list(self._driven.values())] = np.nan
+        self._plugin.state.targets[list(self._driven.values())] = np.nan

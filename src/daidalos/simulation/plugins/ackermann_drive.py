@@ -53,7 +53,7 @@ class AckermannDrive(Plugin):
         for what in ("left_steering", "right_steering", "linear_velocity")
         for gain in ("pid_gain", "i_range")
     )
-    memory: Motion
+    state: Motion
 
     def __init__(self, description: Description, context: ComponentContext) -> None:
         super().__init__(description, context)
@@ -108,7 +108,7 @@ class AckermannDrive(Plugin):
 
     def update(self, now_ns: int) -> Iterable[Sample]:
         """Measure, then drive and steer."""
-        s, motion = self.settings, self.memory
+        s, motion = self.settings, self.state
         step = self.period or self._instance.physics.model.opt.timestep
         elapsed = step if motion.stamp_ns < 0 else (now_ns - motion.stamp_ns) * 1e-9
         motion.stamp_ns = now_ns
@@ -129,10 +129,10 @@ class AckermannDrive(Plugin):
             yield NumberSample(now_ns, s.distance_topic, "", motion.distance)
 
     def _command(self, command: TwistCommand) -> None:
-        self.memory.command = np.array((float(command.linear[0]), float(command.angular[2])))
+        self.state.command = np.array((float(command.linear[0]), float(command.angular[2])))
 
     def _drive(self, elapsed: float) -> None:
-        s, motion = self.settings, self.memory
+        s, motion = self.settings, self.state
         speed, turn = motion.command.tolist()
         motion.speed = s.linear.apply(speed, motion.speed, elapsed)
         if s.steers_by_angle:
@@ -160,7 +160,7 @@ class AckermannDrive(Plugin):
         return np.array(factors)
 
     def _odometry(self, now_ns: int, elapsed: float) -> OdometrySample:
-        s, motion = self.settings, self.memory
+        s, motion = self.settings, self.state
         if s.truth:
             return true_odometry(self._base, now_ns, s.odometry_topic, s.odometry_frame, s.base_frame)
         angles = self._angles()

@@ -33,7 +33,7 @@ class LinearBattery(Plugin):
 
     names = ("gz-sim-linearbatteryplugin-system", "gz-sim-linear-battery-plugin-system")
     unused = ("fix_issue_225", "recharge_by_topic", "soc_threshold")
-    memory: Charge
+    state: Charge
     period = _PERIOD
 
     def __init__(self, description: Description, context: ComponentContext) -> None:
@@ -95,7 +95,7 @@ class LinearBattery(Plugin):
 
     def update(self, now_ns: int) -> Iterable[Sample]:
         """Let the current flow since the last time."""
-        state = self.memory
+        state = self.state
         elapsed = (now_ns - state.stamp_ns) * 1e-9 if state.stamp_ns >= 0 else 0.0
         state.stamp_ns = now_ns
         voltage = self._voltage(state)
@@ -110,7 +110,7 @@ class LinearBattery(Plugin):
         return self.full + self.slope * (1.0 - state.charge / self.capacity) + self.resistance * state.current
 
     def _drain(self, draining: bool, command: SignalCommand) -> None:
-        self.memory.draining = draining
+        self.state.draining = draining
 
     def _recharge(self, on: bool) -> None:
-        self.memory.charging = on
+        self.state.charging = on

@@ -31,7 +31,7 @@ class DetachableJoint(Plugin):
 
     names = ("gz-sim-detachable-joint-system",)
     unused = ("suppress_child_warning",)
-    memory: Attachment
+    state: Attachment
 
     def __init__(self, description: Description, context: ComponentContext) -> None:
         super().__init__(description, context)
@@ -78,7 +78,7 @@ class DetachableJoint(Plugin):
 
     def update(self, now_ns: int) -> Iterable[Sample]:
         """Hold, or let go."""
-        state = self.memory
+        state = self.state
         target = self._target() if state.wanted else None
         if target is None:
             state.place = None
@@ -92,7 +92,7 @@ class DetachableJoint(Plugin):
             yield TextSample(now_ns, self.output, "", word)
 
     def _switch(self, on: bool) -> None:
-        self.memory.wanted = on
+        self.state.wanted = on
 
     def _target(self) -> LinkView | None:
         """Return the other link; None while it is not there."""

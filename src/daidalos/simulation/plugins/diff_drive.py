@@ -67,7 +67,7 @@ class DiffDrive(Plugin):
 
     names = ("gazebo_ros_diff_drive", "gazebo_ros_skid_steer_drive", "gz-sim-diff-drive-system")
     unused = ("num_wheel_pairs",)
-    memory: Motion
+    state: Motion
 
     def __init__(self, description: Description, context: ComponentContext) -> None:
         super().__init__(description, context)
@@ -128,7 +128,7 @@ class DiffDrive(Plugin):
 
     def update(self, now_ns: int) -> Iterable[Sample]:
         """Measure the wheels, then give them their speeds for the time to come."""
-        motion = self.memory
+        motion = self.state
         elapsed = self.period or self._instance.physics.model.opt.timestep
         if motion.stamp_ns >= 0:
             elapsed = (now_ns - motion.stamp_ns) * 1e-9
@@ -147,10 +147,10 @@ class DiffDrive(Plugin):
             yield self._joint_states(now_ns)
 
     def _command(self, command: TwistCommand) -> None:
-        self.memory.command = np.array((float(command.linear[0]), float(command.angular[2])))
+        self.state.command = np.array((float(command.linear[0]), float(command.angular[2])))
 
     def _drive(self, elapsed: float) -> None:
-        settings, motion = self.settings, self.memory
+        settings, motion = self.settings, self.state
         motion.allowed = np.array(
             (
                 settings.linear.apply(motion.command[0], motion.allowed[0], elapsed),
@@ -165,7 +165,7 @@ class DiffDrive(Plugin):
         self._instance.physics.data.ctrl[self._controls] = speeds
 
     def _odometry(self, now_ns: int, elapsed: float) -> OdometrySample:
-        settings, motion = self.settings, self.memory
+        settings, motion = self.settings, self.state
         angles = self._angles()
         travel = (angles - motion.angles) * self._radii
         motion.angles = angles

@@ -18,7 +18,7 @@ class Force(Plugin):
     """``libgazebo_ros_force.so`` of ROS 1 and 2."""
 
     names = ("gazebo_ros_force",)
-    memory: WrenchCommand
+    state: WrenchCommand
 
     def __init__(self, description: Description, context: ComponentContext) -> None:
         super().__init__(description, context)
@@ -47,8 +47,8 @@ class Force(Plugin):
     def update(self, now_ns: int) -> Iterable[Sample]:
         """Push at the centre of mass."""
         turn = rotation_matrix(self._link.pose.orientation) if self.follows else np.eye(3)
-        self._forces.hold(self._key, self._link.body, turn @ self.memory.force, turn @ self.memory.torque)
+        self._forces.hold(self._key, self._link.body, turn @ self.state.force, turn @ self.state.torque)
         return ()
 
     def _command(self, command: WrenchCommand) -> None:
-        self.memory = command
+        self.state = command

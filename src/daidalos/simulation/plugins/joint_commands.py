@@ -33,7 +33,7 @@ class JointPoseTrajectory(Plugin):
         *("serviceName", "use_header_start_time"),
         *(f"{kind}_{what}" for kind in ("position", "velocity") for what in _GAINS),
     )
-    memory: Course | None
+    state: Course | None
 
     def __init__(self, description: Description, context: ComponentContext) -> None:
         super().__init__(description, context)
@@ -68,11 +68,11 @@ class JointPoseTrajectory(Plugin):
     def update(self, now_ns: int) -> Iterable[Sample]:
         """Put the joints where they should be now: between two points in proportion to time."""
         self._now_ns = now_ns
-        course = self.memory
+        course = self.state
         if course is None:
             return ()
         if place_joints(self._instance, course, now_ns, self.parameters.scoped) and not self._holds:
-            self.memory = None
+            self.state = None
         return ()
 
     def _command(self, command: TrajectoryCommand) -> None:
@@ -81,7 +81,7 @@ class JointPoseTrajectory(Plugin):
             words = f"there is no movable joint {unknown[0]!r}" if unknown else "it has no points"
             self.context.warn(f"{self.topic}: the trajectory is ignored, {words}")
             return
-        self.memory = Course(command, self._now_ns)
+        self.state = Course(command, self._now_ns)
 
     def _initial_course(self, element: Element) -> Course | None:
         """Return a course that stands still at the initial positions, which are in the order of the joints."""
@@ -119,7 +119,7 @@ class JointController(Plugin):
 
     names = ("gz-sim-joint-controller-system", "gz-sim-joint-position-controller-system")
     unused = ("use_force_commands", *_GAINS)
-    memory: Hold
+    state: Hold
     period = 0.01
 
     def __init__(self, description: Description, context: ComponentContext) -> None:
@@ -176,7 +176,7 @@ class JointController(Plugin):
 
     def update(self, now_ns: int) -> Iterable[Sample]:
         """Add to the integrals."""
-        hold = self.memory
+        hold = self.state
         elapsed = (now_ns - hold.stamp_ns) * 1e-9 if hold.stamp_ns >= 0 else 0.0
         hold.stamp_ns = now_ns
         if self.integral_gain > 0:
@@ -192,5 +192,5 @@ class JointController(Plugin):
             self._data.ctrl[control] = hold.target + (integral / self.gain if self.gain > 0 else 0.0)
 
     def _command(self, command: NumberCommand) -> None:
-        self.memory.target = command.value
-        self._tell(self.memory)
+        self.state.target = command.value
+        self._tell(self.state)

@@ -20,7 +20,7 @@ class ApplyJointForce(Plugin):
     """gz's ApplyJointForce system: an effort on a joint, until the next one comes."""
 
     names = ("gz-sim-apply-joint-force-system",)
-    memory: float
+    state: float
 
     def __init__(self, description: Description, context: ComponentContext) -> None:
         super().__init__(description, context)
@@ -48,11 +48,11 @@ class ApplyJointForce(Plugin):
 
     def update(self, now_ns: int) -> Iterable[Sample]:
         """Push."""
-        self._data.ctrl[self._control] = self.memory
+        self._data.ctrl[self._control] = self.state
         return ()
 
     def _command(self, command: NumberCommand) -> None:
-        self.memory = command.value
+        self.state = command.value
 
 
 class Thruster(Plugin):
@@ -64,7 +64,7 @@ class Thruster(Plugin):
 
     names = ("gz-sim-thruster-system",)
     unused = ("velocity_control", "p_gain", "i_gain", "d_gain", "wake_fraction", "alpha_1", "alpha_2")
-    memory: float
+    state: float
 
     def __init__(self, description: Description, context: ComponentContext) -> None:
         super().__init__(description, context)
@@ -105,13 +105,13 @@ class Thruster(Plugin):
 
     def update(self, now_ns: int) -> Iterable[Sample]:
         """Push at the propeller's centre of mass."""
-        self._forces.hold(self._key, self._link.body, self._link.rotation @ self._axis * self.memory, np.zeros(3))
+        self._forces.hold(self._key, self._link.body, self._link.rotation @ self._axis * self.state, np.zeros(3))
         return ()
 
     def _command(self, command: NumberCommand) -> None:
         value = command.value
         thrust = self.factor * value * abs(value) if self.takes_speeds else value
-        self.memory = min(max(thrust, self.limits[0]), self.limits[1])
+        self.state = min(max(thrust, self.limits[0]), self.limits[1])
 
 
 def joint_of(plugin: Plugin, tag: str) -> str:

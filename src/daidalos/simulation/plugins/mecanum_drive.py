@@ -43,7 +43,7 @@ class MecanumDrive(Plugin):
     """gz's MecanumDrive system; the wheels' surfaces say with ``<fdir1>`` how their rollers lie."""
 
     names = ("gz-sim-mecanum-drive-system",)
-    memory: Motion
+    state: Motion
 
     def __init__(self, description: Description, context: ComponentContext) -> None:
         super().__init__(description, context)
@@ -103,7 +103,7 @@ class MecanumDrive(Plugin):
 
     def update(self, now_ns: int) -> Iterable[Sample]:
         """Measure, then drive."""
-        motion = self.memory
+        motion = self.state
         step = self.period or self._physics.model.opt.timestep
         elapsed = step if motion.stamp_ns < 0 else (now_ns - motion.stamp_ns) * 1e-9
         motion.stamp_ns = now_ns
@@ -116,10 +116,10 @@ class MecanumDrive(Plugin):
         yield transform_of(odometry, self.tf_topic)
 
     def _command(self, command: TwistCommand) -> None:
-        self.memory.command = np.array((command.linear[0], command.linear[1], command.angular[2]), dtype=np.float64)
+        self.state.command = np.array((command.linear[0], command.linear[1], command.angular[2]), dtype=np.float64)
 
     def _odometry(self, now_ns: int, elapsed: float) -> OdometrySample:
-        motion = self.memory
+        motion = self.state
         angles = self._angles()
         ahead, left, turn = (self._unmix @ (angles - motion.angles) * self.radius).tolist()
         motion.angles = angles

@@ -101,7 +101,7 @@ class OdometryPublisher(Plugin):
     def update(self, now_ns: int) -> Iterable[Sample]:
         """Say where the model is."""
         frames = self.odometry_frame, self.base_frame
-        odometry = _moved(true_odometry(self._link, now_ns, self.topic, *frames, start=self.memory), self.offset)
+        odometry = _moved(true_odometry(self._link, now_ns, self.topic, *frames, start=self.state), self.offset)
         if self.noise:
             noise = self.random.normal(0.0, self.noise, (3, 3))
             odometry = replace(

@@ -36,7 +36,7 @@ class PlanarMove(Plugin):
 
     names = ("gazebo_ros_planar_move",)
     unused = ("update_rate",)
-    memory: Motion
+    state: Motion
 
     def __init__(self, description: Description, context: ComponentContext) -> None:
         super().__init__(description, context)
@@ -78,7 +78,7 @@ class PlanarMove(Plugin):
 
     def update(self, now_ns: int) -> Iterable[Sample]:
         """Give the base its velocity in the plane; it may fall and tilt as it likes."""
-        motion = self.memory
+        motion = self.state
         self._move()
         if now_ns < motion.due_ns:
             return
@@ -92,10 +92,10 @@ class PlanarMove(Plugin):
             yield transform_of(odometry, "/tf")
 
     def _command(self, command: TwistCommand) -> None:
-        self.memory.linear, self.memory.angular = np.array(command.linear), np.array(command.angular)
+        self.state.linear, self.state.angular = np.array(command.linear), np.array(command.angular)
 
     def _move(self) -> None:
-        motion = self.memory
+        motion = self.state
         linear, angular = self._base.velocity()
         yaw = self._base.pose.yaw
         ahead = np.array(((np.cos(yaw), -np.sin(yaw)), (np.sin(yaw), np.cos(yaw))))
@@ -108,7 +108,7 @@ class VelocityControl(Plugin):
     """gz's VelocityControl system: the model flies as commanded, in its own axes."""
 
     names = ("gz-sim-velocity-control-system",)
-    memory: Motion
+    state: Motion
 
     def __init__(self, description: Description, context: ComponentContext) -> None:
         super().__init__(description, context)
@@ -135,9 +135,9 @@ class VelocityControl(Plugin):
     def update(self, now_ns: int) -> Iterable[Sample]:
         """Give the model its velocity."""
         turn = rotation_matrix(self._base.pose.orientation)
-        self._instance.set_velocity(turn @ self.memory.linear, turn @ self.memory.angular)
+        self._instance.set_velocity(turn @ self.state.linear, turn @ self.state.angular)
         self._instance.physics.changed()
         return ()
 
     def _command(self, command: TwistCommand) -> None:
-        self.memory.linear, self.memory.angular = np.array(command.linear), np.array(command.angular)
+        self.state.linear, self.state.angular = np.array(command.linear), np.array(command.angular)

@@ -51,7 +51,7 @@ class Ros2Control(Plugin):
         *("robot_param", "robot_param_node", "robotSimType", "robot_sim_type", "controlPeriod", "control_period"),
         *("position_proportional_gain", "legacyModeNS"),
     )
-    memory: DriveState
+    state: DriveState
 
     def __init__(self, description: Description, context: ComponentContext) -> None:
         super().__init__(description, context)
@@ -99,8 +99,8 @@ class Ros2Control(Plugin):
         """Put the joints where their initial values are."""
         self.drives.place(self._initial)
         state = self.drives.start(self.holds)
-        if self.memory is not None:  # a reset; whoever commands the joints goes on
-            state.modes = self.memory.modes
+        if self.state is not None:  # a reset; whoever commands the joints goes on
+            state.modes = self.state.modes
         self.drives.command(state, self.period)
         return state
 
@@ -108,7 +108,7 @@ class Ros2Control(Plugin):
         """Let the controllers run; without any the joints hold."""
         if self.cycle is not None:
             self.cycle(now_ns)
-        self.drives.command(self.memory, self.period)
+        self.drives.command(self.state, self.period)
         return ()
 
     def has_sensor(self, name: str) -> bool:

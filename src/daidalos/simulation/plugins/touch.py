@@ -30,7 +30,7 @@ class Touch(Plugin):
     """
 
     names = ("gz-sim-touchplugin-system", "gz-sim-touch-plugin-system")
-    memory: Watch
+    state: Watch
 
     def __init__(self, description: Description, context: ComponentContext) -> None:
         super().__init__(description, context)
@@ -71,7 +71,7 @@ class Touch(Plugin):
 
     def update(self, now_ns: int) -> Iterable[Sample]:
         """Look."""
-        watch = self.memory
+        watch = self.state
         if not watch.on:
             return
         self._physics.refresh_positions()
@@ -86,4 +86,4 @@ class Touch(Plugin):
             yield FlagSample(now_ns, self.topic, "", value=True)
 
     def _switch(self, on: bool) -> None:
-        self.memory.on, self.memory.since_ns = on, None
+        self.state.on, self.state.since_ns = on, None

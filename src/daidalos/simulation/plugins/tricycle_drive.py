@@ -45,7 +45,7 @@ class TricycleDrive(Plugin):
 
     names = ("gazebo_ros_tricycle_drive",)
     unused = ("wheel_speed_tolerance", "steering_angle_tolerance", "odometry_source")
-    memory: Motion
+    state: Motion
 
     def __init__(self, description: Description, context: ComponentContext) -> None:
         super().__init__(description, context)
@@ -113,7 +113,7 @@ class TricycleDrive(Plugin):
 
     def update(self, now_ns: int) -> Iterable[Sample]:
         """Count the wheels' turns, then drive and steer."""
-        motion = self.memory
+        motion = self.state
         step = self.period or self._instance.physics.model.opt.timestep
         elapsed = step if motion.stamp_ns < 0 else (now_ns - motion.stamp_ns) * 1e-9
         motion.stamp_ns = now_ns
@@ -131,17 +131,17 @@ class TricycleDrive(Plugin):
 
     def _command(self, command: TwistCommand) -> None:
         angle = min(max(float(command.angular[2]), -self.most), self.most)
-        self.memory.command = np.array((float(command.linear[0]), angle))
+        self.state.command = np.array((float(command.linear[0]), angle))
 
     def _drive(self, elapsed: float) -> None:
-        motion = self.memory
+        motion = self.state
         speed, angle = motion.command.tolist()
         motion.speed = _nearer(motion.speed, speed, self.acceleration * elapsed)
         motion.angle = _nearer(motion.angle, angle, self.steering_speed * elapsed)
         self._instance.physics.data.ctrl[list(self._controls)] = motion.speed / self.driven_radius, motion.angle
 
     def _odometry(self, now_ns: int, elapsed: float) -> OdometrySample:
-        motion = self.memory
+        motion = self.state
         turns = self._turns()
         left, right = ((turns - motion.turns) * self.encoder_radius).tolist()
         motion.turns = turns

@@ -38,7 +38,7 @@ class VacuumGripper(Plugin):
     """
 
     names = ("gazebo_ros_vacuum_gripper",)
-    memory: Hold
+    state: Hold
 
     def __init__(self, description: Description, context: ComponentContext) -> None:
         super().__init__(description, context)
@@ -70,7 +70,7 @@ class VacuumGripper(Plugin):
 
     def switch(self, on: bool) -> None:
         """Turn the pump on or off."""
-        self.memory.on = on
+        self.state.on = on
 
     def bind(self, instance: Instance) -> None:
         """Find the gripper."""
@@ -84,7 +84,7 @@ class VacuumGripper(Plugin):
 
     def update(self, now_ns: int) -> Iterable[Sample]:
         """Take, hold or let go."""
-        hold = self.memory
+        hold = self.state
         if hold.on and hold.held is None:
             self._take()
         elif not hold.on and hold.held is not None:
@@ -100,9 +100,9 @@ class VacuumGripper(Plugin):
 
     def _target(self) -> LinkView | None:
         """Return the link that is held; None when it is gone."""
-        if self.memory.held is None:
+        if self.state.held is None:
             return None
-        body = mujoco.mj_name2id(self._physics.model, mujoco.mjtObj.mjOBJ_BODY, "::".join(self.memory.held))
+        body = mujoco.mj_name2id(self._physics.model, mujoco.mjtObj.mjOBJ_BODY, "::".join(self.state.held))
         return LinkView(self._physics, body) if body >= 0 else None
 
     def _take(self) -> None:
@@ -118,8 +118,8 @@ class VacuumGripper(Plugin):
             away = self._distance(geom, here)
             if away < best:
                 best = away
-                self.memory.held = model, info.link
-                self.memory.place = self._gripper.pose.inverse @ LinkView(physics, body).pose
+                self.state.held = model, info.link
+                self.state.place = self._gripper.pose.inverse @ LinkView(physics, body).pose
 
     def _distance(self, geom: int, point: Array) -> float:
         """Return how far a point is from the box around a geom."""

@@ -119,8 +119,8 @@ class WheelSlip(Plugin):
                 physics.forces.hold(key, int(self._bodies[row]), forces[row], torques[row])
             else:
                 physics.forces.release(key)
-        if now_ns >= self.memory:
-            self.memory = now_ns + 100_000_000
+        if now_ns >= self.state:
+            self.state = now_ns + 100_000_000
             names = tuple(wheel.link for wheel in self.wheels)
             shares = np.where(touching[:, None], _shares(slips, rims, linear), 0.0)
             yield WheelSlipSample(now_ns, self.topic, "", names, shares[:, 0], shares[:, 1])

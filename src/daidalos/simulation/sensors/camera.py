@@ -88,7 +88,7 @@ class Camera(Sensor):
         The topic, and the class of its commands, that makes it look; None where it looks by itself.
     """
 
-    memory: Trigger
+    state: Trigger
 
     types = (
         *("camera", "depth", "depth_camera", "rgbd", "rgbd_camera", "multicamera"),
@@ -122,7 +122,7 @@ class Camera(Sensor):
         return {self.trigger[0]: Subscription(self.trigger[1], self._pull_trigger)} if self.trigger else {}
 
     def _pull_trigger(self, command: FlagCommand | SignalCommand) -> None:
-        self.memory.due = isinstance(command, SignalCommand) or command.value
+        self.state.due = isinstance(command, SignalCommand) or command.value
 
     def start(self) -> Trigger:
         """Make the eyes anew, so that a plugin may have changed their settings."""
@@ -133,9 +133,9 @@ class Camera(Sensor):
 
     def update(self, now_ns: int) -> Iterable[Sample]:
         """Look with the eyes that somebody listens to."""
-        if self.trigger and not self.memory.due:
+        if self.trigger and not self.state.due:
             return
-        self.memory.due = False
+        self.state.due = False
         has_subscribers = self.instance.has_subscribers
         for number, lens in enumerate(self.lenses):
             wanted = {topic for topic in lens.topics() if has_subscribers(topic)}

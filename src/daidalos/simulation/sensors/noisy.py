@@ -28,7 +28,7 @@ class Biases:
 class NoisySensor(Sensor):
     """A sensor of n numbers that are measured together."""
 
-    memory: Biases
+    state: Biases
 
     @property
     @abstractmethod
@@ -43,7 +43,7 @@ class NoisySensor(Sensor):
 
     def disturb(self, values: Array, now_ns: int) -> Array:
         """Return the values (n,) with noise and bias."""
-        biases, noise = self.memory, self._noise
+        biases, noise = self.state, self._noise
         biases.wandering = noise.wander(biases.wandering, (now_ns - biases.stamp_ns) * 1e-9, self.random)
         biases.stamp_ns = now_ns
         return noise.apply(values, biases.constant + biases.wandering, self.random)
