@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING
 
-from rclpy.impl.lent_names import lend
+from rclpy.impl.lazy_reexport import lazy_reexport
 
 from .cache import Cache as Cache
 from .chain import Chain as Chain
@@ -19,7 +19,7 @@ from .synchronizers import TimeSynchronizer as TimeSynchronizer
 from .time_sequencer import TimeSequencer as TimeSequencer
 
 if not TYPE_CHECKING:
-    __getattr__ = lend(
+    __getattr__ = lazy_reexport(
         __name__,
         {"rclpy.clock": ("Clock",), "rclpy.duration": ("Duration",), "rclpy.time": ("Time",)},
     )

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from rclpy.callback_groups import CallbackGroup
 from rclpy.context import Context
 from rclpy.impl.entities import ClientHandle
-from rclpy.impl.lent_names import lend
+from rclpy.impl.lazy_reexport import lazy_reexport
 from rclpy.impl.running import THREAD, wait_for
 from rclpy.impl.service_end import ServiceEnd
 from rclpy.qos import QoSProfile
@@ -170,4 +170,6 @@ class _Forget:
 
 
 if not TYPE_CHECKING:
-    __getattr__ = lend(__name__, {"rclpy.impl.type_variables": ("SrvType", "SrvTypeRequest", "SrvTypeResponse")})
+    __getattr__ = lazy_reexport(
+        __name__, {"rclpy.impl.type_variables": ("SrvType", "SrvTypeRequest", "SrvTypeResponse")}
+    )

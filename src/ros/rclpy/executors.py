@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any, Self
 from rclpy.context import Context
 from rclpy.exceptions import ExternalShutdownException as ExternalShutdownException
 from rclpy.impl.callback_runner import CallbackRunner
-from rclpy.impl.lent_names import lend
+from rclpy.impl.lazy_reexport import lazy_reexport
 from rclpy.impl.ready import ReadyHook
 from rclpy.impl.thread_pool import ThreadPool, processors
 from rclpy.task import Future, Task
@@ -379,7 +379,7 @@ class MultiThreadedExecutor(Executor):
 
 
 if not TYPE_CHECKING:
-    __getattr__ = lend(
+    __getattr__ = lazy_reexport(
         __name__,
         {
             "concurrent.futures": ("ThreadPoolExecutor",),

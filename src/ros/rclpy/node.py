@@ -13,7 +13,7 @@ from rclpy.context import Context
 from rclpy.exceptions import NotInitializedException
 from rclpy.impl.entities import NodeHandle
 from rclpy.impl.errors import InvalidHandle
-from rclpy.impl.lent_names import lend
+from rclpy.impl.lazy_reexport import lazy_reexport
 from rclpy.impl.node_entities import NodeEntities, depth_or_profile
 from rclpy.impl.node_graph import NodeGraph
 from rclpy.impl.node_members import KINDS, attach, detach
@@ -302,7 +302,7 @@ class Node(NodeEntities, NodeParameters, NodeGraph):
 
 
 if not TYPE_CHECKING:
-    __getattr__ = lend(
+    __getattr__ = lazy_reexport(
         __name__,
         {
             "rcl_interfaces.msg": (

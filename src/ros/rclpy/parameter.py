@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from enum import IntEnum
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
-from rclpy.impl.lent_names import lend
+from rclpy.impl.lazy_reexport import lazy_reexport
 
 if TYPE_CHECKING:
     from rcl_interfaces.msg import Parameter as ParameterMsg
@@ -271,4 +271,4 @@ def _is_wanted(node: str, targets: Sequence[str], use_wildcard: bool) -> bool:
 
 
 if not TYPE_CHECKING:
-    __getattr__ = lend(__name__, {"rcl_interfaces.msg": ("ParameterValue",)})
+    __getattr__ = lazy_reexport(__name__, {"rcl_interfaces.msg": ("ParameterValue",)})

@@ -10,7 +10,7 @@ from rclpy.callback_groups import CallbackGroup
 from rclpy.duration import Duration
 from rclpy.event_handler import EventHandler, PublisherEventCallbacks
 from rclpy.impl.entities import PublisherHandle
-from rclpy.impl.lent_names import lend
+from rclpy.impl.lazy_reexport import lazy_reexport
 from rclpy.qos import QoSProfile
 
 
@@ -102,4 +102,4 @@ class Publisher:
 
 
 if not TYPE_CHECKING:
-    __getattr__ = lend(__name__, {"rclpy.impl.type_variables": ("MsgType",)})
+    __getattr__ = lazy_reexport(__name__, {"rclpy.impl.type_variables": ("MsgType",)})

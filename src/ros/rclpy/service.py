@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from rclpy.callback_groups import CallbackGroup
 from rclpy.impl.entities import ServiceHandle
-from rclpy.impl.lent_names import lend
+from rclpy.impl.lazy_reexport import lazy_reexport
 from rclpy.impl.service_end import ServiceEnd
 from rclpy.qos import QoSProfile
 
@@ -64,4 +64,6 @@ class Service(ServiceEnd):
 
 
 if not TYPE_CHECKING:
-    __getattr__ = lend(__name__, {"rclpy.impl.type_variables": ("SrvType", "SrvTypeRequest", "SrvTypeResponse")})
+    __getattr__ = lazy_reexport(
+        __name__, {"rclpy.impl.type_variables": ("SrvType", "SrvTypeRequest", "SrvTypeResponse")}
+    )

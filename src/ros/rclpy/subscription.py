@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Self, TypedDict
 from rclpy.callback_groups import CallbackGroup
 from rclpy.event_handler import EventHandler, SubscriptionEventCallbacks
 from rclpy.impl.entities import SubscriptionHandle
-from rclpy.impl.lent_names import lend
+from rclpy.impl.lazy_reexport import lazy_reexport
 from rclpy.impl.ready import ReadyHook
 from rclpy.qos import QoSProfile
 
@@ -208,4 +208,4 @@ def _callback_type(callback: Callable[..., Any]) -> Subscription.CallbackType:
 
 
 if not TYPE_CHECKING:
-    __getattr__ = lend(__name__, {"rclpy.impl.type_variables": ("MsgType",)})
+    __getattr__ = lazy_reexport(__name__, {"rclpy.impl.type_variables": ("MsgType",)})

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from rclpy.clock import ROSClock
 from rclpy.clock_type import ClockType
 from rclpy.impl.entities import SubscriptionHandle
-from rclpy.impl.lent_names import lend
+from rclpy.impl.lazy_reexport import lazy_reexport
 from rclpy.parameter import Parameter
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rclpy.time import Time
@@ -146,7 +146,7 @@ class TimeSource:
 
 
 if not TYPE_CHECKING:
-    __getattr__ = lend(
+    __getattr__ = lazy_reexport(
         __name__,
         {"rcl_interfaces.msg": ("ParameterEvent", "SetParametersResult"), "rclpy.clock": ("Clock",)},
     )

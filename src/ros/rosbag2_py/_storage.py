@@ -8,7 +8,7 @@ from enum import IntEnum
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rclpy.impl.lent_names import lend
+from rclpy.impl.lazy_reexport import lazy_reexport
 
 from daidalos.bags.compression import Compression
 from daidalos.bags.selection import Selection
@@ -134,7 +134,7 @@ def get_default_storage_id() -> str:
 
 
 if not TYPE_CHECKING:
-    __getattr__ = lend(
+    __getattr__ = lazy_reexport(
         __name__,
         {
             "rosbag2_py._metadata": (

@@ -7,7 +7,7 @@ from geometry_msgs.msg import PoseStamped as PoseStamped
 from geometry_msgs.msg import PoseWithCovarianceStamped as PoseWithCovarianceStamped
 from geometry_msgs.msg import Vector3Stamped as Vector3Stamped
 from geometry_msgs.msg import WrenchStamped as WrenchStamped
-from rclpy.impl.lent_names import lend
+from rclpy.impl.lazy_reexport import lazy_reexport
 
 from .tf2_geometry_msgs import do_transform_point as do_transform_point
 from .tf2_geometry_msgs import do_transform_polygon_stamped as do_transform_polygon_stamped
@@ -24,7 +24,7 @@ from .tf2_geometry_msgs import to_msg_msg as to_msg_msg
 from .tf2_geometry_msgs import transform_covariance as transform_covariance
 
 if not TYPE_CHECKING:
-    __getattr__ = lend(
+    __getattr__ = lazy_reexport(
         __name__,
         {"geometry_msgs.msg": ("TransformStamped",)},
     )

@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING
 
-from rclpy.impl.lent_names import lend
+from rclpy.impl.lazy_reexport import lazy_reexport
 from tf2_py import BufferCore as BufferCore
 from tf2_py import ConnectivityException as ConnectivityException
 from tf2_py import ExtrapolationException as ExtrapolationException
@@ -58,7 +58,7 @@ __all__ = [
 
 
 if not TYPE_CHECKING:
-    __getattr__ = lend(
+    __getattr__ = lazy_reexport(
         __name__,
         {
             "geometry_msgs.msg": ("TransformStamped",),

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from rclpy.clock import Clock, JumpHandle, JumpThreshold, TimeJump
 from rclpy.duration import Duration
-from rclpy.impl.lent_names import lend
+from rclpy.impl.lazy_reexport import lazy_reexport
 from rclpy.impl.timer import TimerHandle
 from rclpy.task import Future
 from rclpy.utilities import get_default_context
@@ -281,7 +281,7 @@ class _Deadline:
 
 
 if not TYPE_CHECKING:
-    __getattr__ = lend(
+    __getattr__ = lazy_reexport(
         __name__,
         {
             "geometry_msgs.msg": ("TransformStamped",),

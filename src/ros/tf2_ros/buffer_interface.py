@@ -7,7 +7,7 @@ from copy import deepcopy
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from rclpy.duration import Duration
-from rclpy.impl.lent_names import lend
+from rclpy.impl.lazy_reexport import lazy_reexport
 
 if TYPE_CHECKING:
     from geometry_msgs.msg import TransformStamped
@@ -227,4 +227,4 @@ def convert(a: Any, b_type: Any) -> Any:
 
 
 if not TYPE_CHECKING:
-    __getattr__ = lend(__name__, {"geometry_msgs.msg": ("TransformStamped",), "rclpy.time": ("Time",)})
+    __getattr__ = lazy_reexport(__name__, {"geometry_msgs.msg": ("TransformStamped",), "rclpy.time": ("Time",)})

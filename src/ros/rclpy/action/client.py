@@ -12,7 +12,7 @@ from rclpy.action._client_goal import ClientGoalHandle as ClientGoalHandle
 from rclpy.callback_groups import CallbackGroup
 from rclpy.impl.entities import ClientHandle, SubscriptionHandle
 from rclpy.impl.errors import InvalidHandle
-from rclpy.impl.lent_names import lend
+from rclpy.impl.lazy_reexport import lazy_reexport
 from rclpy.impl.running import wait_for
 from rclpy.qos import (
     QoSProfile,
@@ -311,7 +311,7 @@ status_sub_qos_profile
 
 
 if not TYPE_CHECKING:
-    __getattr__ = lend(
+    __getattr__ = lazy_reexport(
         __name__,
         {
             "action_msgs.msg": ("GoalStatus",),

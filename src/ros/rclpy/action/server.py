@@ -14,7 +14,7 @@ from rclpy.action._goal_state import GoalEvent, GoalState
 from rclpy.action._server_goal import ServerGoalHandle as ServerGoalHandle
 from rclpy.callback_groups import CallbackGroup
 from rclpy.impl.entities import PublisherHandle, ServiceHandle
-from rclpy.impl.lent_names import lend
+from rclpy.impl.lazy_reexport import lazy_reexport
 from rclpy.qos import (
     QoSProfile,
     qos_profile_action_status_default,
@@ -390,7 +390,7 @@ def _stamp(goal: ServerGoalHandle) -> tuple[int, int]:
 
 
 if not TYPE_CHECKING:
-    __getattr__ = lend(
+    __getattr__ = lazy_reexport(
         __name__,
         {
             "action_msgs.msg": ("GoalInfo", "GoalStatus"),

@@ -210,8 +210,8 @@ class EndpointHandle(Announcer, Destroyable):
             self.node.session.abandon(self.impl.close)
 
 
-def signs_topic(topic: str) -> str:
-    """Return the hidden topic on which a topic's manual publishers show that they are alive without publishing."""
+def liveliness_topic(topic: str) -> str:
+    """Return the hidden topic on which manual publishers of `topic` assert their liveliness."""
     return f"{topic}/_liveliness"
 
 
@@ -222,7 +222,7 @@ class PublisherHandle(EndpointHandle):
         super().__init__(node)
         resolved = best_available_offer(qos, node.graph, topic).resolved()
         self.impl = node.session.create_publisher(node.info, topic, message_type, resolved)
-        self._signs: Publisher | None = None
+        self._liveliness: Publisher | None = None
 
     def get_topic_name(self) -> str:
         """Return the full topic name."""
@@ -234,16 +234,18 @@ class PublisherHandle(EndpointHandle):
             return
         from rmw_dds_common.msg import Gid
 
-        if self._signs is None:
-            self._signs = self.node.session.create_publisher(self.node.info, signs_topic(self.name), Gid, Qos())
+        if self._liveliness is None:
+            self._liveliness = self.node.session.create_publisher(
+                self.node.info, liveliness_topic(self.name), Gid, Qos()
+            )
         self.impl.note()
-        self._signs.publish(Gid(data=list(self.endpoint.gid)))
+        self._liveliness.publish(Gid(data=list(self.endpoint.gid)))
 
     def retire(self) -> None:
         """Leave the graph; the handle stays, and reaches nobody."""
         super().retire()
-        if self._signs is not None:
-            self._signs.close()
+        if self._liveliness is not None:
+            self._liveliness.close()
 
     def _destroy(self) -> None:
         self.retire()

@@ -18,7 +18,7 @@ from daidalos.transport.backend import SampleInfo
 from daidalos.transport.graph import EndpointInfo, EndpointKind
 from daidalos.transport.qos import INFINITE_NS, Liveliness, Qos, incompatibilities
 from daidalos.transport.subscription import Subscription
-from rclpy.impl.entities import EndpointHandle, signs_topic
+from rclpy.impl.entities import EndpointHandle, liveliness_topic
 from rclpy.impl.errors import UnsupportedEventTypeError
 from rclpy.impl.event_statuses import (
     IncompatibleTypeStatus,
@@ -146,7 +146,7 @@ class LivelinessChangedSource(GraphSource):
 
     def __init__(self, handle: EndpointHandle, on_ready: Callable[[], None], status: Any) -> None:
         self._leases: dict[bytes, _Lease] = {}
-        self._signs: Subscription | None = None
+        self._assertions: Subscription | None = None
         super().__init__(handle, on_ready, status)
         handle.impl.observe(weakly(self._on_sample))
 
@@ -156,8 +156,8 @@ class LivelinessChangedSource(GraphSource):
         if added:
             if other.qos.liveliness is Liveliness.MANUAL_BY_TOPIC and other.qos.liveliness_lease_ns < INFINITE_NS:
                 self._leases[other.gid] = _Lease(other.qos.liveliness_lease_ns, self._on_lapse)
-                if self._signs is None:
-                    self._signs = self._listen_for_signs()
+                if self._assertions is None:
+                    self._assertions = self._subscribe_to_liveliness()
             self._change(alive_count=1)
             return
         lease = self._leases.pop(other.gid, None)
@@ -166,19 +166,19 @@ class LivelinessChangedSource(GraphSource):
         else:
             self._change(not_alive_count=-1)
 
-    def _listen_for_signs(self) -> Subscription:
+    def _subscribe_to_liveliness(self) -> Subscription:
         from rmw_dds_common.msg import Gid
 
         node = self._handle.node
-        on_ready = weakly(self._read_signs)
-        return node.session.create_subscription(node.info, signs_topic(self._mine.name), Gid, Qos(), on_ready)
+        on_ready = weakly(self._read_assertions)
+        return node.session.create_subscription(node.info, liveliness_topic(self._mine.name), Gid, Qos(), on_ready)
 
-    def _read_signs(self) -> None:
-        signs = self._signs
-        taken = signs.take() if signs is not None else None
-        while signs is not None and taken is not None:
+    def _read_assertions(self) -> None:
+        assertions = self._assertions
+        taken = assertions.take() if assertions is not None else None
+        while assertions is not None and taken is not None:
             self._on_sign(bytes(taken[0].data))
-            taken = signs.take()
+            taken = assertions.take()
 
     def _on_lapse(self) -> None:
         self._change(alive_count=-1, not_alive_count=1)
@@ -194,8 +194,8 @@ class LivelinessChangedSource(GraphSource):
     def close(self) -> None:
         """Watch no more."""
         super().close()
-        if self._signs is not None:
-            self._signs.close()
+        if self._assertions is not None:
+            self._assertions.close()
         for lease in self._leases.values():
             lease.end()
 

@@ -1,4 +1,4 @@
-"""Names that programs import from modules of ROS 2 that only use them, such as ``tf2_ros.TransformStamped``."""
+"""Lazy re-export of names that programs import from other modules, such as ``tf2_ros.TransformStamped``."""
 
 from __future__ import annotations
 
@@ -8,22 +8,22 @@ from importlib import import_module
 from typing import Any
 
 
-def lend(module: str, names: Mapping[str, tuple[str, ...]]) -> Callable[[str], Any]:
-    """Make a module's ``__getattr__``, which imports a name when it is asked for: most programs ask for none.
+def lazy_reexport(module: str, names: Mapping[str, tuple[str, ...]]) -> Callable[[str], Any]:
+    """Return a module's ``__getattr__`` that imports re-exported names on first access.
 
     Parameters
     ----------
     module
-        Whose names they seem to be.
+        Name of the module that re-exports them.
     names
-        The names, by the modules where they are at home.
+        The re-exported names, by the module that defines them.
     """
-    homes = {name: home for home, each in names.items() for name in each}
+    origins = {name: origin for origin, each in names.items() for name in each}
 
     def find(name: str) -> Any:
-        if name not in homes:
+        if name not in origins:
             raise AttributeError(f"module {module!r} has no attribute {name!r}", name=name, obj=sys.modules[module])
-        value = getattr(import_module(homes[name]), name)
+        value = getattr(import_module(origins[name]), name)
         setattr(sys.modules[module], name, value)
         return value
 
