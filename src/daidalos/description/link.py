@@ -220,7 +220,7 @@ class Link:
 
 @dataclass(frozen=True)
 class Light:
-    """A lamp.
+    """A light.
 
     Parameters
     ----------

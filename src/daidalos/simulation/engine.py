@@ -69,7 +69,7 @@ class Engine:
 
     @property
     def stage(self) -> Stage:
-        """What cameras see: the models, the lamps and the sky."""
+        """What cameras see: the models, the lights and the sky."""
         return self._compilation.stage
 
     @property

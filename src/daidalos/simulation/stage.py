@@ -1,4 +1,4 @@
-"""All that cameras see: what the models look like, the lamps, and the sky."""
+"""All that cameras see: what the models look like, the lights, and the sky."""
 
 from __future__ import annotations
 
@@ -67,15 +67,15 @@ class Stage:
             look.shadows,
         )
 
-    # Lamps
+    # Lights
 
     @property
     def lights(self) -> dict[str, Light]:
-        """The lamps by name, those on links as ``model::link::name``, with their poses in the world."""
+        """The lights by name, those on links as ``model::link::name``, with their poses in the world."""
         return {name: replace(light, pose=pose) for name, light, pose in self._shining()}
 
     def light(self, name: str) -> Light:
-        """Return a lamp.
+        """Return a light.
 
         Raises
         ------
@@ -87,7 +87,7 @@ class Stage:
         return lights[name]
 
     def add_light(self, light: Light) -> None:
-        """Put a lamp into the world.
+        """Put a light into the world.
 
         Raises
         ------
@@ -98,7 +98,7 @@ class Stage:
         self._lamps[light.name] = light
 
     def set_light(self, name: str, light: Light) -> None:
-        """Change a lamp; one on a link stays where it is.
+        """Change a light; one on a link stays where it is.
 
         Raises
         ------
@@ -108,7 +108,7 @@ class Stage:
         (self._lamps if name in self._lamps else self._switched)[name] = light
 
     def remove_light(self, name: str) -> None:
-        """Take a lamp of the world away.
+        """Take a light of the world away.
 
         Raises
         ------

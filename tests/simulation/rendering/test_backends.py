@@ -32,8 +32,8 @@ def pictures(renderer):
     seen = scene()
     view = renderer.render(seen, BODIES, rotations, EYE)
     sun = Light("sun", "directional", cast_shadows=True, direction=(0.5, 0.3, -1.0), diffuse=(0.6, 0.6, 0.6, 1.0))
-    lamp = Light("lamp", "point", diffuse=(0.5, 0.5, 0.3, 1.0), attenuation_range=8.0)
-    lights = [(sun, Pose()), (lamp, Pose((2.0, 1.5, 1.5)))]
+    point = Light("point", "point", diffuse=(0.5, 0.5, 0.3, 1.0), attenuation_range=8.0)
+    lights = [(sun, Pose()), (point, Pose((2.0, 1.5, 1.5)))]
     return view, renderer.paint(BODIES, rotations, Lighting(lights, sky=True)).astype(int)
 
 

@@ -59,15 +59,15 @@ def test_what_casts_no_shadow_leaves_the_floor_bright():
 
 
 def test_a_lamp_lights_what_is_near_it():
-    lamp = (
+    light = (
         "<light name='lamp' type='point'><pose>1 0 1 0 0 0</pose><diffuse>0.5 0.5 0.5 1</diffuse>"
         "<attenuation><range>5</range><constant>1</constant><linear>0</linear><quadratic>0</quadratic></attenuation>"
         "</light>"
     )
-    seen = picture(lamp)
+    seen = picture(light)
     ambient = round(255 * 0.4)
     assert ground(seen, 1.0, 0.0) == pytest.approx(255 * 0.9, abs=2)
-    # Lambert: one metre aside of a lamp one metre up, the cosine is 1 / sqrt(2).
+    # Lambert: one metre aside of a light one metre up, the cosine is 1 / sqrt(2).
     assert ground(seen, 0.0, 0.0) == pytest.approx(ambient + 255 * 0.5 / np.sqrt(2), abs=2)
 
 

@@ -105,7 +105,7 @@ def labelled(links: Mapping[str, Link], label: int | None) -> dict[str, Link]:
 
 
 def read_light(element: Element, pose: Pose) -> Light:
-    """Read a lamp that stands in the world or on a link."""
+    """Read a light that stands in the world or on a link."""
     fade = element.first("attenuation") or Element("attenuation")
     spot = element.first("spot") or Element("spot")
     x, y, z = element.vector_of("direction", size=3, default=(0.0, 0.0, -1.0))

@@ -16,7 +16,7 @@ from daidalos.simulation.rendering.lighting import Lighting
 from daidalos.simulation.rendering.optics import OPTICAL, Pinhole
 from daidalos.simulation.rendering.pool import Pool
 from daidalos.simulation.rendering.raster import NOTHING, place_parts
-from daidalos.simulation.rendering.renderer import View, background_of, lamp_table, shines, sort_lights, strength
+from daidalos.simulation.rendering.renderer import View, background_of, light_table, shines, sort_lights, strength
 from daidalos.simulation.rendering.scene import Scene
 from daidalos.simulation.rendering.shadows import ShadowMap
 
@@ -87,8 +87,8 @@ class GlRenderer:
         """Return the colours (rows, columns, 3) of what the last `render` saw; glass in front of it included."""
         scene = self._scene
         assert scene is not None
-        sun, lamps = sort_lights(lighting)
-        self._set_light(scene, positions, rotations, lighting, sun, lamps)
+        sun, lights = sort_lights(lighting)
+        self._set_light(scene, positions, rotations, lighting, sun, lights)
         self._picture.use()
         self._picture.clear()
         self._gl.disable(moderngl.DEPTH_TEST | moderngl.BLEND)
@@ -107,7 +107,7 @@ class GlRenderer:
     def _draw(self, program: Any, vertices: Any, wanted: float) -> None:
         self._gl.enable(moderngl.DEPTH_TEST)
         program["wanted"].value = wanted
-        for place, name in enumerate(("parts", "atlas", "levels", "lamps", "shadow")):
+        for place, name in enumerate(("parts", "atlas", "levels", "lights", "shadow")):
             if name in program and name in self._textures:
                 program[name].value = place
                 self._textures[name].use(place)
@@ -156,7 +156,7 @@ class GlRenderer:
         rotations: Array,
         lighting: Lighting,
         sun: tuple[Light, Pose] | None,
-        lamps: list[tuple[Light, Pose]],
+        lights: list[tuple[Light, Pose]],
     ) -> None:
         direction = np.array((0.0, 0.0, -1.0)) if sun is None else shines(*sun)
         shadowed = sun is not None and sun[0].cast_shadows and lighting.shadows
@@ -167,11 +167,11 @@ class GlRenderer:
         program["ambient"].value = tuple(map(float, lighting.ambient[:3]))
         program["sun"].value = tuple((-(self._view[:, :3] @ direction)).tolist())
         program["sun_color"].value = (0.0, 0.0, 0.0) if sun is None else tuple(strength(sun[0]).tolist())
-        table = np.zeros((max(len(lamps), 1), shaders.LAMP_TEXELS * 4), dtype=np.float32)
-        numbers = lamp_table(lamps, self._view)
-        table[: len(lamps), : numbers.shape[1]] = numbers
-        self._fill("lamps", table.reshape(len(table), shaders.LAMP_TEXELS, 4), 4)
-        program["lamp_count"].value = len(lamps)
+        table = np.zeros((max(len(lights), 1), shaders.LIGHT_TEXELS * 4), dtype=np.float32)
+        numbers = light_table(lights, self._view)
+        table[: len(lights), : numbers.shape[1]] = numbers
+        self._fill("lights", table.reshape(len(table), shaders.LIGHT_TEXELS, 4), 4)
+        program["light_count"].value = len(lights)
         low, high = background_of(lighting)
         self._sky["low"].value, self._sky["high"].value = low[:3], high[:3]
         self._sky["lens"].value = tuple(self.pinhole.lens.tolist())

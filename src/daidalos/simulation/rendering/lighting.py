@@ -16,7 +16,7 @@ class Lighting:
     Parameters
     ----------
     lights : sequence of (Light, Pose)
-        Lamps with their poses in the world.
+        Lights with their poses in the world.
     ambient, background : tuple of 4 floats
         Colours, 0..1.
     sky : bool

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from daidalos.description.link import Light, Rgba
 from daidalos.description.pose import Pose, rotate
 from daidalos.simulation.rendering.film import depths_of
-from daidalos.simulation.rendering.lamps import DIRECTIONAL, LAMP, POINT, SPOT
+from daidalos.simulation.rendering.lights import DIRECTIONAL, LIGHT_SIZE, POINT, SPOT
 from daidalos.simulation.rendering.lighting import Lighting
 from daidalos.simulation.rendering.optics import OPTICAL, Pinhole
 from daidalos.simulation.rendering.pool import Pool
@@ -128,11 +128,11 @@ class Renderer:
         """Return the colours (rows, columns, 3) of what the last `render` saw; glass in front of it included."""
         assert self._buffers is not None
         scene = self._buffers.scene
-        sun, lamps = sort_lights(lighting)
+        sun, lights = sort_lights(lighting)
         direction = np.array((0.0, 0.0, -1.0)) if sun is None else shines(*sun)
         shadow = self._shadow(scene, positions, rotations, direction, lighting, sun)
         picture = self._pool.take((*self._triangles.shape, 3), np.uint8)
-        self._shade(self._triangles, self._inverse, lighting, sun, direction, lamps, shadow, picture, blend=False)
+        self._shade(self._triangles, self._inverse, lighting, sun, direction, lights, shadow, picture, blend=False)
         if self._transparent.any():
             if self._glass is None:
                 self._glass = np.empty_like(self._inverse), np.empty_like(self._triangles)
@@ -140,7 +140,7 @@ class Renderer:
             np.copyto(inverse, self._inverse)
             triangles.fill(NOTHING)
             self._draw(self._transparent, inverse, triangles)
-            self._shade(triangles, inverse, lighting, sun, direction, lamps, shadow, picture, blend=True)
+            self._shade(triangles, inverse, lighting, sun, direction, lights, shadow, picture, blend=True)
         return picture
 
     def _draw(self, wanted: NDArray[np.bool_], inverse: NDArray[np.float32], triangles: NDArray[np.int32]) -> None:
@@ -177,7 +177,7 @@ class Renderer:
         lighting: Lighting,
         sun: tuple[Light, Pose] | None,
         direction: Array,
-        lamps: list[tuple[Light, Pose]],
+        lights: list[tuple[Light, Pose]],
         shadow: ShadowMap | None,
         picture: NDArray[np.uint8],
         blend: bool,
@@ -194,7 +194,7 @@ class Renderer:
             scene.atlas.textures, scene.atlas.levels, self.pinhole.lens,
             np.array([color[:3] for color in colors], dtype=np.float32), np.ascontiguousarray(eye[2, :3]),
             np.array(lighting.ambient[:3], dtype=np.float32), -(view[:, :3] @ direction),
-            np.zeros(3, dtype=np.float32) if sun is None else strength(sun[0]), lamp_table(lamps, view),
+            np.zeros(3, dtype=np.float32) if sun is None else strength(sun[0]), light_table(lights, view),
             _NO_SHADOW if shadow is None else shadow.depths, _NO_SHADOW if shadow is None else shadow.coarse,
             to_shadow, offset, picture, blend,
         )  # fmt: skip
@@ -225,10 +225,10 @@ def strength(light: Light) -> NDArray[np.float32]:
     return np.array(light.diffuse[:3], dtype=np.float32) * np.float32(light.intensity)
 
 
-def lamp_table(lamps: list[tuple[Light, Pose]], view: Array) -> Array:
-    """Return lamps in the camera's frame (n, LAMP), as `lamps` describes them."""
-    table = np.zeros((len(lamps), LAMP))
-    for row, (light, pose) in zip(table, lamps, strict=True):
+def light_table(lights: list[tuple[Light, Pose]], view: Array) -> Array:
+    """Return an array (n, LIGHT_SIZE) of lights in the camera frame; see `rendering.lights` for the columns."""
+    table = np.zeros((len(lights), LIGHT_SIZE))
+    for row, (light, pose) in zip(table, lights, strict=True):
         row[0] = _KINDS.get(light.type, POINT)
         row[1:4] = view[:, :3] @ pose.position + view[:, 3]
         row[4:7] = view[:, :3] @ shines(light, pose)

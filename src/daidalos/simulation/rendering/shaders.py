@@ -7,8 +7,8 @@ part lies in a texture with a row for each: three texels of pose, colour, glow w
 PARTS = 6
 """Texels of a part."""
 
-LAMP_TEXELS = 5
-"""Texels of a lamp: the numbers of `lamps.LAMP`, filled up."""
+LIGHT_TEXELS = 5
+"""Texels of a light: the numbers of `lights.LIGHT_SIZE`, filled up."""
 
 ATLAS_WIDTH = 4096
 
@@ -87,9 +87,9 @@ COLOR = (
     + """
 uniform sampler2D atlas;
 uniform sampler2D levels;
-uniform sampler2D lamps;
+uniform sampler2D lights;
 uniform sampler2D shadow;
-uniform int lamp_count;
+uniform int light_count;
 uniform bool shadowed;
 uniform mat4 to_shadow;
 uniform vec2 offset;
@@ -98,32 +98,32 @@ uniform vec3 sun;
 uniform vec3 sun_color;
 out vec4 color;
 
-float number(int lamp, int place) {
-    return texelFetch(lamps, ivec2(place / 4, lamp), 0)[place % 4];
+float number(int light, int place) {
+    return texelFetch(lights, ivec2(place / 4, light), 0)[place % 4];
 }
 
-vec3 numbers(int lamp, int place) {
-    return vec3(number(lamp, place), number(lamp, place + 1), number(lamp, place + 2));
+vec3 numbers(int light, int place) {
+    return vec3(number(light, place), number(light, place + 1), number(light, place + 2));
 }
 
-float lamp_light(int lamp, vec3 normal) {
-    float kind = number(lamp, 0);
-    vec3 shines = numbers(lamp, 4);
+float light_intensity(int light, vec3 normal) {
+    float kind = number(light, 0);
+    vec3 shines = numbers(light, 4);
     vec3 up = normalize(normal);
     if (kind == 2.0) return max(0.0, -dot(up, shines));
-    vec3 way = numbers(lamp, 1) - seen_place;
+    vec3 way = numbers(light, 1) - seen_place;
     float distance = length(way) + 1e-12;
     float facing = dot(up, way) / distance;
-    if (distance > number(lamp, 10) || facing <= 0.0) return 0.0;
-    float fading = number(lamp, 11) + number(lamp, 12) * distance + number(lamp, 13) * distance * distance;
-    float light = facing / max(fading, 1e-6);
+    if (distance > number(light, 10) || facing <= 0.0) return 0.0;
+    float fading = number(light, 11) + number(light, 12) * distance + number(light, 13) * distance * distance;
+    float intensity = facing / max(fading, 1e-6);
     if (kind == 1.0) {
         float along = -dot(way, shines) / distance;
-        float inner = number(lamp, 14), outer = number(lamp, 15);
+        float inner = number(light, 14), outer = number(light, 15);
         if (along <= outer) return 0.0;
-        if (along < inner) light *= pow((along - outer) / (inner - outer), number(lamp, 16));
+        if (along < inner) intensity *= pow((along - outer) / (inner - outer), number(light, 16));
     }
-    return light;
+    return intensity;
 }
 
 float compared(ivec2 place, float depth) {
@@ -169,11 +169,11 @@ void main() {
     vec3 normal = gl_FrontFacing ? seen_normal : -seen_normal;
     float lit = max(0.0, dot(normal, sun));
     if (shadowed && lit > 0.0) lit *= sunshine(normal);
-    vec3 light = ambient + lit * sun_color;
-    for (int lamp = 0; lamp < lamp_count; lamp++) light += lamp_light(lamp, normal) * numbers(lamp, 7);
+    vec3 irradiance = ambient + lit * sun_color;
+    for (int light = 0; light < light_count; light++) irradiance += light_intensity(light, normal) * numbers(light, 7);
     vec4 material = texelFetch(parts, ivec2(3, seen_part), 0);
     vec3 glow = texelFetch(parts, ivec2(4, seen_part), 0).rgb;
-    color = vec4(clamp(material.rgb * light * paint + glow, 0.0, 1.0), material.a);
+    color = vec4(clamp(material.rgb * irradiance * paint + glow, 0.0, 1.0), material.a);
 }
 """
 )

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from daidalos.simulation.rendering.compilation import compiled_loosely
-from daidalos.simulation.rendering.lamps import lamp_light
+from daidalos.simulation.rendering.lights import light_intensity
 from daidalos.simulation.rendering.sunlight import aim_at_shadow, clear, sunshine
 from daidalos.simulation.rendering.textures import mip_level, sample
 
@@ -43,7 +43,7 @@ def shade(
     ambient: Any,
     sun: Any,
     sun_color: Any,
-    lamps: Any,
+    lights: Any,
     shadow: Any,
     coarse: Any,
     to_shadow: Any,
@@ -86,7 +86,7 @@ def shade(
     ambient, sun_color : array (3,) of float32
     sun : array (3,)
         Unit vector towards the parallel light, in the camera's frame.
-    lamps : array (l, LAMP)
+    lights : array (l, LIGHT_SIZE)
         Further lights, in the camera's frame.
     shadow : array (rows, columns) of float32
         Depths of what the sun sees; no rows for no shadow.
@@ -138,7 +138,7 @@ def shade(
             sr, sg, sb = red * sun_color[0], green * sun_color[1], blue * sun_color[2]
             gr, gg, gb = emissions[part, 0], emissions[part, 1], emissions[part, 2]
             alpha = alphas[part] if blend else np.float32(1.0)
-            plain = texture_of[part] < 0 and len(lamps) == 0
+            plain = texture_of[part] < 0 and len(lights) == 0
             if plain and not lit:
                 put(line, start, column, ar + gr, ag + gg, ab + gb, alpha)
                 continue
@@ -174,7 +174,7 @@ def shade(
                     paint_rich(
                         line, depths, first, last, row, face, part, dy, turn, edges, faces, normals, uv, pose, colors,
                         emissions, alpha, texture_of, texels, texture_levels, levels, fx, cx, ambient, sun_color,
-                        lamps, slope, base, dark, shadow, aim,
+                        lights, slope, base, dark, shadow, aim,
                     )  # fmt: skip
                 elif dark:
                     shine = np.float32(1.0)
@@ -217,14 +217,14 @@ def paint_rich(
     cx: Any,
     ambient: Any,
     sun_color: Any,
-    lamps: Any,
+    lights: Any,
     slope: Any,
     base: Any,
     dark: Any,
     shadow: Any,
     aim: Any,
 ) -> None:
-    """Colour pixels of one triangle that has a texture, or the light of lamps."""
+    """Colour pixels of one triangle that has a texture, or point lights and spot lights."""
     e = edges[face]
     a0, a1, a2 = e[0], e[3], e[6]
     r0, r1, r2 = e[1] * row + e[2], e[4] * row + e[5], e[7] * row + e[8]
@@ -250,7 +250,7 @@ def paint_rich(
         if dark:
             g *= sunshine(shadow, aim, x, depths[x])
         red, green, blue = ambient[0] + g * sun_color[0], ambient[1] + g * sun_color[1], ambient[2] + g * sun_color[2]
-        if len(lamps) > 0:
+        if len(lights) > 0:
             w0, w1, w2 = turn * (a0 * x + r0) * z, turn * (a1 * x + r1) * z, turn * (a2 * x + r2) * z
             nx = w0 * normals[i, 0] + w1 * normals[j, 0] + w2 * normals[k, 0]
             ny = w0 * normals[i, 1] + w1 * normals[j, 1] + w2 * normals[k, 1]
@@ -258,9 +258,9 @@ def paint_rich(
             cnx = pose[0, 0] * nx + pose[0, 1] * ny + pose[0, 2] * nz
             cny = pose[1, 0] * nx + pose[1, 1] * ny + pose[1, 2] * nz
             cnz = pose[2, 0] * nx + pose[2, 1] * ny + pose[2, 2] * nz
-            for lamp in lamps:
-                g = lamp_light(lamp, (x - cx) / fx * z, dy * z, z, cnx, cny, cnz)
-                red, green, blue = red + g * lamp[7], green + g * lamp[8], blue + g * lamp[9]
+            for light in lights:
+                g = light_intensity(light, (x - cx) / fx * z, dy * z, z, cnx, cny, cnz)
+                red, green, blue = red + g * light[7], green + g * light[8], blue + g * light[9]
         if texture >= 0:
             tr, tg, tb = sample(texels, levels[level], (ua * x + ur) * z, (va * x + vr) * z)
             red, green, blue = red * tr, green * tg, blue * tb
