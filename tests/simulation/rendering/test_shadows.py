@@ -58,9 +58,9 @@ def test_what_casts_no_shadow_leaves_the_floor_bright():
     assert ground(seen, 0.8, 0.0) == ground(seen, -1.0, 0.0)
 
 
-def test_a_lamp_lights_what_is_near_it():
+def test_a_point_light_lights_what_is_near_it():
     light = (
-        "<light name='lamp' type='point'><pose>1 0 1 0 0 0</pose><diffuse>0.5 0.5 0.5 1</diffuse>"
+        "<light name='point' type='point'><pose>1 0 1 0 0 0</pose><diffuse>0.5 0.5 0.5 1</diffuse>"
         "<attenuation><range>5</range><constant>1</constant><linear>0</linear><quadratic>0</quadratic></attenuation>"
         "</light>"
     )

@@ -294,9 +294,9 @@ function EditBar({ tools: { simulator, editor, stage } }: { tools: Tools }) {
       <span class="tool-gap" />
       <button
         class="tool"
-        title={editor.undoing.next.value ? `Undo: ${editor.undoing.next.value} (Ctrl+Z)` : "Nothing to undo"}
+        title={editor.undoStack.next.value ? `Undo: ${editor.undoStack.next.value} (Ctrl+Z)` : "Nothing to undo"}
         data-test="undo"
-        disabled={!editor.undoing.next.value}
+        disabled={!editor.undoStack.next.value}
         onClick={() => editor.undo()}
       >
         <Icon name="undo" />

@@ -6,7 +6,7 @@ import type { ColorRGBA, Marker, Pose } from "../../ros/messages";
 import { Gizmo, type Motion, SNAP } from "./gizmo";
 import type { Resource, Simulator } from "./simulator";
 import { movedPose, type Stage } from "./stage";
-import { Undoing } from "./undoing";
+import { UndoStack } from "./undo_stack";
 
 export type Mode = "look" | Motion | "insert";
 export type Shape = "box" | "sphere" | "cylinder";
@@ -47,7 +47,7 @@ export class Editor {
   readonly size = signal(0.3);
   readonly mass = signal(1);
   readonly complaint = signal("");
-  readonly undoing = new Undoing();
+  readonly undoStack = new UndoStack();
   private readonly gizmo: Gizmo;
   private hold: Hold | undefined;
   private pressed: { x: number; y: number } | undefined;
@@ -88,13 +88,13 @@ export class Editor {
   async remove(): Promise<void> {
     const name = this.stage.selected.value;
     if (name && (await this.do(() => this.simulator.remove(name)))) {
-      this.undoing.note(name, "delete", () => this.bringBack(name));
+      this.undoStack.push(name, "delete", () => this.bringBack(name));
     }
   }
 
   /** Take back what was done last: what was put goes, what was deleted comes back, all else is as before. */
   undo(): void {
-    const last = this.undoing.take();
+    const last = this.undoStack.pop();
     if (last) {
       void this.do(last.undo);
     }
@@ -324,7 +324,7 @@ export class Editor {
     });
     if (name) {
       this.inserted++;
-      this.undoing.note(name, "insert", () => this.simulator.remove(name));
+      this.undoStack.push(name, "insert", () => this.simulator.remove(name));
       this.stage.select(name);
     }
   }
@@ -357,7 +357,7 @@ export class Editor {
     if (isDone) {
       const back = new Vector3(1 / factors.x, 1 / factors.y, 1 / factors.z);
       const undo = () => (mode === "scale" ? this.simulator.scale(name, back) : this.simulator.move(name, pose));
-      this.undoing.note(name, mode, undo);
+      this.undoStack.push(name, mode, undo);
     }
   }
 
