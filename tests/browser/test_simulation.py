@@ -113,7 +113,7 @@ def test_world_is_edited_while_it_runs(browser: Chromium, tmp_path: Path, monkey
         _time_is_steered(browser)
         _models_are_put(browser)
         _all_is_taken_back(browser)
-        assert browser.evaluate("document.querySelector('.complaint-text')?.textContent ?? ''") == ""
+        assert browser.evaluate("document.querySelector('.error-text')?.textContent ?? ''") == ""
         browser.open(f"{url}?front=simulation")
         browser.wait_for(f"{_MODELS} === '3 models' && document.querySelector('[data-panel=displays]') !== null")
         simulator.interrupt()

@@ -28,7 +28,7 @@ MAP = [*DAIDALOS, "map", "-o", "built"]
 
 
 @pytest.mark.parametrize(
-    ("command", "name", "complaint"),
+    ("command", "name", "error"),
     [
         (PUBLISH, "missing.urdf", "missing.urdf"),
         (PUBLISH, "sizes.urdf", "sizes.urdf:3: <box>"),
@@ -47,7 +47,7 @@ MAP = [*DAIDALOS, "map", "-o", "built"]
     ids=lambda value: value if isinstance(value, str) and "." in value and ":" not in value else "",
 )
 def test_a_faulty_file_is_named_in_one_line(
-    command: list[str], name: str, complaint: str, domain: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    command: list[str], name: str, error: str, domain: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
     for file, text in FILES.items():
@@ -56,5 +56,5 @@ def test_a_faulty_file_is_named_in_one_line(
     assert done.returncode == 2, done.stderr
     told = [line for line in done.stderr.splitlines() if "[INFO]" not in line]
     assert len(told) == 1, done.stderr
-    assert complaint in told[0]
+    assert error in told[0]
     assert {path.name for path in tmp_path.iterdir()} == set(FILES), "something was half written"

@@ -76,7 +76,7 @@ def test_a_browser_is_opened_where_there_is_one(domain: int, tmp_path: Path) -> 
 
 
 @pytest.mark.parametrize(
-    ("words", "complaint"),
+    ("words", "error"),
     [
         (("rviz2", "rviz2", "-d", "missing.rviz"), "there is no file 'missing.rviz'"),
         (("rviz2", "rviz2", "-d", __file__), "test_studio_commands.py:1: not YAML"),
@@ -84,10 +84,10 @@ def test_a_browser_is_opened_where_there_is_one(domain: int, tmp_path: Path) -> 
         (("rqt", "rqt", "-s", "rqt_coffee"), "there is no plugin 'rqt_coffee'; there are: rqt_console, rqt_graph"),
     ],
 )
-def test_mistakes_are_named(words: tuple[str, ...], complaint: str, domain: int) -> None:
+def test_mistakes_are_named(words: tuple[str, ...], error: str, domain: int) -> None:
     with Terminal("run", *words, domain=domain) as program:
         assert program.wait(30) == 2
-        assert complaint in program.text
+        assert error in program.text
 
 
 def test_a_window_leaves_no_traces_in_the_graph(domain: int) -> None:

@@ -328,7 +328,7 @@ def test_every_kind_of_display_draws(browser, source, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("description", "complaint"),
+    ("description", "error"),
     [
         ("<robot name='r'><link name='a'></robot>", "not well-formed"),
         ("<sdf/>", "expected <robot>, found <sdf>"),
@@ -339,14 +339,14 @@ def test_every_kind_of_display_draws(browser, source, tmp_path):
         ),
     ],
 )
-def test_a_bad_robot_description_is_told_at_its_display(browser, source, tmp_path, description, complaint):
+def test_a_bad_robot_description_is_told_at_its_display(browser, source, tmp_path, description, error):
     name = "std_msgs/msg/String"
     source.add_topic("/robot_description", name, latched=True)
     source.send("/robot_description", encode(name, make(name, data=description)))
     with StudioServer(source, port=0, assets=AssetResolver(lambda _: tmp_path)) as server:
         show(browser, server.url)
         browser.wait_for("daidalos.state().displays.Robot.level === 'error'")
-        assert complaint in browser.evaluate("daidalos.state().displays.Robot.text")
+        assert error in browser.evaluate("daidalos.state().displays.Robot.text")
 
 
 def test_a_small_window_still_shows_the_view_and_the_displays(browser, source, robot):

@@ -57,13 +57,13 @@ def test_plots_and_their_places(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("text", "complaint"),
+    ("text", "error"),
     [
         ("<root>\n<tabbed_widget>", r"plots.xml:2: "),
         ("<robot/>", r"plots.xml: no layout of PlotJuggler"),
         ("plain text", r"plots.xml:1: "),
     ],
 )
-def test_mistakes_are_named(tmp_path, text, complaint):
-    with pytest.raises(ArrangementError, match=complaint):
+def test_mistakes_are_named(tmp_path, text, error):
+    with pytest.raises(ArrangementError, match=error):
         read(tmp_path, text)

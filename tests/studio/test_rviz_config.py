@@ -92,15 +92,15 @@ def test_displays_of_ros_1(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("text", "complaint"),
+    ("text", "error"),
     [
         ("Panels: []", "view.rviz: no display configuration: 'Visualization Manager' is missing"),
         ("- 1\n- [", "view.rviz:2: not YAML"),
         ("just words", "'Visualization Manager' is missing"),
     ],
 )
-def test_mistakes_are_named(tmp_path, text, complaint):
-    with pytest.raises(ArrangementError, match=complaint.replace("[", r"\[")):
+def test_mistakes_are_named(tmp_path, text, error):
+    with pytest.raises(ArrangementError, match=error.replace("[", r"\[")):
         read(tmp_path, text)
 
 

@@ -150,8 +150,8 @@ def test_topics_come_and_go(server, source):
         gone = await client.expect("unadvertise")
         assert gone["channelIds"] == [channel["id"]]
         await client.say("subscribe", subscriptions=[{"id": 2, "channelId": channel["id"]}])
-        complaint = await client.expect("status", level=1)
-        assert "does not exist" in complaint["message"]
+        error = await client.expect("status", level=1)
+        assert "does not exist" in error["message"]
 
     talk(server, conversation)
 
@@ -159,11 +159,11 @@ def test_topics_come_and_go(server, source):
 def test_unknown_definitions_are_told_and_the_word_withdrawn(server, source):
     async def conversation(client):
         source.add_topic("/odd", STRING, known=False)
-        complaint = await client.expect("status")
-        assert "/odd" in complaint["message"]
+        error = await client.expect("status")
+        assert "/odd" in error["message"]
         assert "schemaEncoding" not in (await client.channel("/odd"))
         source.remove_topic("/odd")
-        assert (await client.expect("removeStatus"))["statusIds"] == [complaint["id"]]
+        assert (await client.expect("removeStatus"))["statusIds"] == [error["id"]]
 
     talk(server, conversation)
 

@@ -314,7 +314,7 @@ def _changes(changes: Changes) -> list[str]:
 
 
 def _announce(topics: Mapping[int, Topic]) -> list[str]:
-    complaints = [
+    statuses = [
         protocol.status(
             Level.WARNING,
             f"{topic.name}: the definition of {topic.type} is not known here; its messages stay bytes",
@@ -322,7 +322,7 @@ def _announce(topics: Mapping[int, Topic]) -> list[str]:
         )
         for topic in _without_definition(topics)
     ]
-    return [protocol.advertise(topics), *complaints]
+    return [protocol.advertise(topics), *statuses]
 
 
 def _without_definition(topics: Mapping[int, Topic]) -> list[Topic]:

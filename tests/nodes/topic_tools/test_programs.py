@@ -132,7 +132,7 @@ def test_transform(domain: int) -> None:
 
 
 @pytest.mark.parametrize(
-    ("words", "status", "complaint"),
+    ("words", "status", "error"),
     [
         (("drop", "/chatter", "2"), 1, "usage: drop <intopic> <X> <Y> [outtopic]"),
         (("drop", "/chatter", "3", "2"), 2, "drop needs 0 <= x <= y and y > 0, not x = 3 and y = 2"),
@@ -142,10 +142,10 @@ def test_transform(domain: int) -> None:
         (("transform", "/chatter", "/out", "std_msgs/Flat64"), 2, "the message type 'std_msgs/Flat64' is unknown"),
     ],
 )
-def test_mistakes_are_named(words: tuple[str, ...], status: int, complaint: str, domain: int) -> None:
+def test_mistakes_are_named(words: tuple[str, ...], status: int, error: str, domain: int) -> None:
     with Terminal("run", "topic_tools", *words, domain=domain) as program:
         assert program.wait(30) == status
-        assert complaint in program.text
+        assert error in program.text
 
 
 def test_a_mistake_in_an_expression_is_named(domain: int) -> None:

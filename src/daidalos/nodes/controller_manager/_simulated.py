@@ -47,9 +47,9 @@ class SimulatedManager:
         self._said: list[tuple[str, Sample]] = []
         try:
             self._node.update_rate = plugin.rate
-            context = HardwareContext(plugin.rate, self._node.warn)
+            hardware_context = HardwareContext(plugin.rate, self._node.warn)
             model = plugin.context.model
-            self._node.start(model, [self._hardware(info, context) for info in plugin.hardware])
+            self._node.start(model, [self._hardware(info, hardware_context) for info in plugin.hardware])
         except Exception:
             self._node.destroy_node()
             raise

@@ -118,7 +118,7 @@ class Passage:
 
 
 def _message_class(node: Node, type_name: str) -> Any:
-    """Return a class, None (and a complaint) where it is not known."""
+    """Return a message class; None, and log an error, where it is not known."""
     from rosidl_runtime_py.utilities import get_message
 
     try:

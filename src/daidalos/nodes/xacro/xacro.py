@@ -7,7 +7,7 @@ import io
 import sys
 
 _IN_ORDER = ("--inorder", "-i")
-"""Options of ROS 1, which ROS 2's command takes with a complaint that launch files stumble over."""
+"""Options of ROS 1, which ROS 2's command accepts with a warning that breaks launch files."""
 
 _WAY = ("when ", "in file", "included from", "instantiated from")
 _SHOWN = 8

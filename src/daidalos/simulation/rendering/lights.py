@@ -8,8 +8,8 @@ from typing import Any
 from daidalos.simulation.rendering.compilation import compiled_loosely
 
 LIGHT_SIZE = 18
-"""Numbers that describe a light: type, position, direction, colour, range, fading (3), cosines of the cone (2), falloff,
-whether it is on."""
+"""Numbers that describe a light: type, position, direction, colour, range, fading (3), cosines of the cone (2),
+falloff, whether it is on."""
 
 POINT, SPOT, DIRECTIONAL = 0.0, 1.0, 2.0
 

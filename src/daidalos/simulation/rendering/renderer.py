@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from daidalos.description.link import Light, Rgba
 from daidalos.description.pose import Pose, rotate
 from daidalos.simulation.rendering.film import depths_of
-from daidalos.simulation.rendering.lights import DIRECTIONAL, LIGHT_SIZE, POINT, SPOT
 from daidalos.simulation.rendering.lighting import Lighting
+from daidalos.simulation.rendering.lights import DIRECTIONAL, LIGHT_SIZE, POINT, SPOT
 from daidalos.simulation.rendering.optics import OPTICAL, Pinhole
 from daidalos.simulation.rendering.pool import Pool
 from daidalos.simulation.rendering.raster import EDGES, NOTHING, PROJECTED, draw, place_parts

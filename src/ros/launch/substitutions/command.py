@@ -80,14 +80,14 @@ class Command(Substitution):
                 f"Captured stderr output: {result.stderr or result.stdout}"
             )
         if result.stderr and on_stderr in ("fail", "warn"):
-            complaint = (
+            message = (
                 f"executed command showed stderr output. Command: {line}\nCaptured stderr output:\n{result.stderr}"
             )
             if on_stderr == "fail":
-                raise SubstitutionFailure(complaint)
+                raise SubstitutionFailure(message)
             from ..logging import get_logger
 
-            get_logger("launch.substitutions.Command").warning(complaint)
+            get_logger("launch.substitutions.Command").warning(message)
         return result.stdout
 
 

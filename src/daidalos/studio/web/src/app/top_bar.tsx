@@ -18,7 +18,7 @@ export function TopBar({ studio, layout }: { studio: Studio; layout: () => Layou
         <span class="wide-only">Daidalos</span>
       </span>
       <Connection studio={studio} />
-      <Complaints studio={studio} />
+      <LatestStatus studio={studio} />
       <span class="stretch" />
       <Clock studio={studio} />
       <span class="stretch" />
@@ -67,14 +67,14 @@ function Connection({ studio: { session } }: { studio: Studio }) {
   );
 }
 
-/** What the server complains about: the newest, until it is dismissed. */
-function Complaints({ studio: { session } }: { studio: Studio }) {
+/** The latest status message of the server, until it is dismissed. */
+function LatestStatus({ studio: { session } }: { studio: Studio }) {
   const last = session.statuses.value.at(-1);
   if (!last) {
     return null;
   }
   return (
-    <span class={`pill complaint level-${last.level}`} title={last.text}>
+    <span class={`pill status level-${last.level}`} title={last.text}>
       <span class="ellipsis">{last.text}</span>
       <button class="bare" title="Dismiss" onClick={() => (session.statuses.value = [])}>
         <Icon name="close" size={12} />

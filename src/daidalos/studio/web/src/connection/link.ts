@@ -139,7 +139,7 @@ export class Link {
     const frame = attempt(() => parseFrame(buffer));
     if (frame instanceof Error) {
       // A newer protocol may have more to say; what we know goes on.
-      this.complain(frame.message, "frame");
+      this.reportError(frame.message, "frame");
       return;
     }
     switch (frame.op) {
@@ -219,7 +219,7 @@ export class Link {
             transfer.push(payload.buffer as ArrayBuffer);
           }
         } catch (error) {
-          this.complain(`${topic}: a message can not be read: ${String(error)}`, `read:${topic}`);
+          this.reportError(`${topic}: a message can not be read: ${String(error)}`, `read:${topic}`);
         }
       }
     }
@@ -326,7 +326,7 @@ export class Link {
       reader = attempt(() => makeReader(channel.schema));
       this.readers.set(topic, reader);
       if (reader instanceof Error && channel.schemaEncoding !== undefined) {
-        this.complain(`${topic}: the definition of ${channel.schemaName} can not be read: ${reader.message}`);
+        this.reportError(`${topic}: the definition of ${channel.schemaName} can not be read: ${reader.message}`);
       }
     }
     return reader instanceof Error ? undefined : reader;
@@ -349,7 +349,7 @@ export class Link {
     this.out.toPage({ kind: "topics", topics });
   }
 
-  private complain(text: string, id?: string): void {
+  private reportError(text: string, id?: string): void {
     this.out.toPage({ kind: "status", status: { level: 1, text, ...(id === undefined ? {} : { id }) } });
   }
 

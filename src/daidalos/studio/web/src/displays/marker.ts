@@ -21,7 +21,7 @@ interface Shown {
 
 class MarkerDisplay extends TopicDisplay<Marker | MarkerArray> {
   private readonly shown = new Map<string, Shown>();
-  private complaint = "";
+  private error = "";
 
   constructor(context: DisplayContext, settings: Settings) {
     super(context, settings, KEEP);
@@ -43,8 +43,8 @@ class MarkerDisplay extends TopicDisplay<Marker | MarkerArray> {
         lost = this.context.tf.explain(frame.fixed, frameOf(shown.marker), stampOf(shown.marker));
       }
     }
-    if (lost || this.complaint) {
-      this.report("error", this.complaint || lost);
+    if (lost || this.error) {
+      this.report("error", this.error || lost);
     } else if (this.count) {
       this.report("ok", `${this.shown.size} markers`);
     }
@@ -69,10 +69,10 @@ class MarkerDisplay extends TopicDisplay<Marker | MarkerArray> {
       assets: this.context.assets,
       dark: this.context.theme() === "dark",
       changed: this.context.invalidate,
-      complain: (text) => (this.complaint = text),
+      onError: (text) => (this.error = text),
     });
     if (!object) {
-      this.complaint = `marker type ${marker.type} is not known`;
+      this.error = `marker type ${marker.type} is not known`;
       return;
     }
     const holder = new Group().add(object);

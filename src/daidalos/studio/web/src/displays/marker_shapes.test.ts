@@ -8,7 +8,7 @@ const CONTEXT = {
   assets: {} as Assets,
   dark: true,
   changed: () => undefined,
-  complain: (text: string) => {
+  onError: (text: string) => {
     throw new Error(text);
   },
 };

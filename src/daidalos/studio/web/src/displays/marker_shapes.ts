@@ -47,7 +47,7 @@ export interface MarkerContext {
   assets: Assets;
   dark: boolean;
   changed: () => void;
-  complain: (text: string) => void;
+  onError: (text: string) => void;
 }
 
 /** Build a marker's object at its pose within its frame; undefined for types that are not known. */
@@ -94,7 +94,7 @@ function shapeOf(marker: Marker, context: MarkerContext): Object3D | undefined {
 }
 
 /** A shape of unit size, as large as the marker says and with its image. */
-function sized(geometry: BufferGeometry, marker: Marker, { assets, changed, complain }: MarkerContext): Mesh {
+function sized(geometry: BufferGeometry, marker: Marker, { assets, changed, onError }: MarkerContext): Mesh {
   const { type, scale, texture_resource: image } = marker;
   if (image) {
     (type === MarkerType.CUBE ? wrapBox : wrapRound)(geometry);
@@ -109,7 +109,7 @@ function sized(geometry: BufferGeometry, marker: Marker, { assets, changed, comp
         look.needsUpdate = true;
         changed();
       })
-      .catch((error: Error) => complain(error.message));
+      .catch((error: Error) => onError(error.message));
   }
   return object;
 }
@@ -221,7 +221,7 @@ function label(marker: Marker, dark: boolean): Object3D {
   return object;
 }
 
-function mesh(marker: Marker, { assets, changed, complain }: MarkerContext): Object3D {
+function mesh(marker: Marker, { assets, changed, onError }: MarkerContext): Object3D {
   const holder = new Group();
   holder.scale.set(marker.scale.x, marker.scale.y, marker.scale.z);
   assets
@@ -237,7 +237,7 @@ function mesh(marker: Marker, { assets, changed, complain }: MarkerContext): Obj
       holder.add(model);
       changed();
     })
-    .catch((error: Error) => complain(error.message));
+    .catch((error: Error) => onError(error.message));
   return holder;
 }
 

@@ -31,7 +31,7 @@ it("lets messages through when their transform has come", () => {
   expect(filter.take(buffer, "map", 0.3)).toEqual([]);
   move(buffer, 4);
   expect(filter.take(buffer, "map", 0.4)).toEqual([message("base", 3)]);
-  expect(filter.complaint).toBe("");
+  expect(filter.error).toBe("");
 });
 
 it("needs no transform in the fixed frame itself, and takes the newest for a stamp of zero", () => {
@@ -49,9 +49,9 @@ it("gives up after a while and says why", () => {
   const filter = new MessageFilter();
   filter.add(message("nowhere", 1), 0);
   filter.take(buffer, "map", 1);
-  expect(filter.complaint).toBe("");
+  expect(filter.error).toBe("");
   filter.take(buffer, "map", 3);
-  expect(filter.complaint).toContain("does not exist");
+  expect(filter.error).toContain("does not exist");
 });
 
 it("holds only so many", () => {

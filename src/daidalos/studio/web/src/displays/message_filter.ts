@@ -17,7 +17,7 @@ const PROBE = new Transform();
 export class MessageFilter<M extends Stamped> {
   private held: Held<M>[] = [];
   /** Why messages were given up; empty while all goes well. */
-  complaint = "";
+  error = "";
 
   add(message: M, page: number): void {
     this.held.push({ message, since: page });
@@ -37,13 +37,13 @@ export class MessageFilter<M extends Stamped> {
         return false;
       }
       if (page - since > TIMEOUT_S) {
-        this.complaint = tf.explain(fixed, frame, when);
+        this.error = tf.explain(fixed, frame, when);
         return false;
       }
       return true;
     });
     if (ready.length) {
-      this.complaint = "";
+      this.error = "";
     }
     return ready;
   }

@@ -51,7 +51,7 @@ class MapDisplay extends StampedDisplay<OccupancyGrid> {
   private texture: DataTexture | undefined;
   private pixels = new Uint32Array();
   private painted: string | undefined;
-  private complaint = "";
+  private error = "";
 
   constructor(context: DisplayContext, settings: Settings) {
     super(context, settings, "latest");
@@ -69,8 +69,8 @@ class MapDisplay extends StampedDisplay<OccupancyGrid> {
 
   protected override show(grid: OccupancyGrid): void {
     const { width, height, resolution, origin } = grid.info;
-    this.complaint = complaintAbout(grid);
-    if (this.complaint) {
+    this.error = errorIn(grid);
+    if (this.error) {
       return;
     }
     if (!this.texture || this.texture.image.width !== width || this.texture.image.height !== height) {
@@ -89,8 +89,8 @@ class MapDisplay extends StampedDisplay<OccupancyGrid> {
     if (this.shown && this.painted !== this.scheme()) {
       this.show(this.shown);
     }
-    if (this.complaint) {
-      this.report("error", this.complaint);
+    if (this.error) {
+      this.report("error", this.error);
     }
   }
 
@@ -157,7 +157,7 @@ class MapDisplay extends StampedDisplay<OccupancyGrid> {
   }
 }
 
-function complaintAbout({ info, data }: OccupancyGrid): string {
+function errorIn({ info, data }: OccupancyGrid): string {
   if (info.width * info.height !== data.length) {
     return `${data.length} cells do not fill ${info.width} × ${info.height}`;
   }

@@ -57,8 +57,8 @@ export abstract class PointsDisplay<M extends Stamped> extends Display {
         this.put(shot, frame);
       }
     }
-    if (this.filter.complaint) {
-      this.report("error", this.filter.complaint);
+    if (this.filter.error) {
+      this.report("error", this.filter.error);
     }
   }
 

@@ -84,8 +84,8 @@ export abstract class StampedDisplay<M extends Stamped> extends TopicDisplay<M> 
     if (this.shown && (this.anchor === "latest" || this.placedIn !== frame.fixed)) {
       this.put(frame, this.shown);
     }
-    if (this.filter.complaint) {
-      this.report("error", this.filter.complaint);
+    if (this.filter.error) {
+      this.report("error", this.filter.error);
     }
   }
 

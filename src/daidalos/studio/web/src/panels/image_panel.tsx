@@ -23,13 +23,13 @@ function ImagePanel({ studio, visible, params, remember }: PanelProps) {
   const topic = chosen.value;
   const canvas = useRef<HTMLCanvasElement>(null);
   const caption = useSignal("");
-  const complaint = useSignal("");
+  const errorText = useSignal("");
   useEffect(() => {
     if (!visible.value || !topic) {
       return undefined;
     }
     let drawing = false;
-    caption.value = complaint.value = "";
+    caption.value = errorText.value = "";
     return session.subscribe<Image | CompressedImage>(topic, 1, (image) => {
       // The next one comes soon: better to leave one out than to fall behind.
       if (!drawing) {
@@ -37,10 +37,10 @@ function ImagePanel({ studio, visible, params, remember }: PanelProps) {
         draw(canvas.current, image)
           .then((text) => {
             caption.value = text;
-            complaint.value = "";
+            errorText.value = "";
           })
           .catch((error: Error) => {
-            complaint.value = error instanceof ImageError ? error.message : `${topic}: the image can not be decoded`;
+            errorText.value = error instanceof ImageError ? error.message : `${topic}: the image can not be decoded`;
           })
           .finally(() => (drawing = false));
       }
@@ -67,7 +67,7 @@ function ImagePanel({ studio, visible, params, remember }: PanelProps) {
             No topic carries images.
           </Empty>
         )}
-        {topic && !caption.value && <Empty icon="image" title={complaint.value || `Nothing on ${topic} yet`} />}
+        {topic && !caption.value && <Empty icon="image" title={errorText.value || `Nothing on ${topic} yet`} />}
       </div>
     </div>
   );

@@ -47,7 +47,7 @@ function Sliders({ studio, node, isVisible }: { studio: Studio; node: string; is
   if (joints.length === 0) {
     return (
       <Empty icon="sliders" title="No joints yet">
-        {model.complaint.value || "They appear with the robot’s description."}
+        {model.error.value || "They appear with the robot’s description."}
       </Empty>
     );
   }
@@ -65,7 +65,7 @@ function Sliders({ studio, node, isVisible }: { studio: Studio; node: string; is
         <button class="button" title="Put every joint back" data-test="center" onClick={() => model.center()}>
           <Icon name="focus" /> Center
         </button>
-        <span class="stretch complaint-text ellipsis">{model.complaint.value}</span>
+        <span class="stretch error-text ellipsis">{model.error.value}</span>
         <span class="faint figures">{joints.length}</span>
       </footer>
     </>

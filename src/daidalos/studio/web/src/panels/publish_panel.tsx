@@ -73,8 +73,8 @@ function PublishPanel({ studio: { session }, params, remember }: PanelProps) {
       <footer class="bar faint">
         <span class="ellipsis">{topic?.type ?? ""}</span>
         <span class="stretch" />
-        <span class="complaint-text ellipsis" role="alert">
-          {draft.complaint.value || error}
+        <span class="error-text ellipsis" role="alert">
+          {draft.error.value || error}
         </span>
       </footer>
     </div>

@@ -21,7 +21,7 @@ function ServicePanel({ studio: { session }, params, remember }: PanelProps) {
     try {
       answer.value = toText(await session.call(name.value, request));
     } catch (error) {
-      draft.complaint.value = error instanceof Error ? error.message : String(error);
+      draft.error.value = error instanceof Error ? error.message : String(error);
     }
     isWaiting.value = false;
   };
@@ -62,8 +62,8 @@ function ServicePanel({ studio: { session }, params, remember }: PanelProps) {
       <footer class="bar faint">
         <span class="ellipsis">{service?.type ?? ""}</span>
         <span class="stretch" />
-        <span class="complaint-text ellipsis" role="alert" title={draft.complaint.value}>
-          {draft.complaint.value}
+        <span class="error-text ellipsis" role="alert" title={draft.error.value}>
+          {draft.error.value}
         </span>
       </footer>
     </div>

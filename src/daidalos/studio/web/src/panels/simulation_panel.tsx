@@ -357,9 +357,9 @@ function Foot({ tools: { stage, editor } }: { tools: Tools }) {
         </span>
       )}
       <span class="stretch" />
-      {editor.complaint.value && (
-        <span class="complaint-text ellipsis" role="alert" title={editor.complaint.value}>
-          {editor.complaint.value}
+      {editor.error.value && (
+        <span class="error-text ellipsis" role="alert" title={editor.error.value}>
+          {editor.error.value}
         </span>
       )}
     </footer>

@@ -61,10 +61,10 @@ function TurtlesimPanel({ studio, visible, params, remember }: PanelProps) {
 }
 
 function Bar({ studio: { session }, topic }: { studio: Studio; topic: string }) {
-  const complaint = useSignal("");
+  const errorText = useSignal("");
   const call = (service: string, request: object) => {
-    complaint.value = "";
-    session.call(`${namespaceOf(topic)}${service}`, request).catch((error: Error) => (complaint.value = error.message));
+    errorText.value = "";
+    session.call(`${namespaceOf(topic)}${service}`, request).catch((error: Error) => (errorText.value = error.message));
   };
   const spawn = () => {
     const place = () => 1.5 + 8 * Math.random();
@@ -73,7 +73,7 @@ function Bar({ studio: { session }, topic }: { studio: Studio; topic: string }) 
   return (
     <div class="bar">
       <strong class="ellipsis">{nodeOf(topic)}</strong>
-      <span class="faint ellipsis">{complaint.value}</span>
+      <span class="faint ellipsis">{errorText.value}</span>
       <span class="stretch" />
       <button class="button" title="Add a turtle somewhere (spawn)" data-test="spawn" onClick={spawn}>
         <Icon name="add" /> Spawn

@@ -37,22 +37,22 @@ export function NameField({ id, label, value, names, onChange }: NameProps) {
 export interface Draft {
   text: Signal<string>;
   /** What is wrong with it. */
-  complaint: Signal<string>;
-  /** The message, or nothing where the text is none: then `complaint` says why. */
+  error: Signal<string>;
+  /** The message, or nothing where the text is none: then `error` says why. */
   read(): unknown;
 }
 
 /** A draft of a request or message, begun anew when another service or topic is named. */
 export function useDraft(session: Session, of: "service" | "topic", name: string, isThere: boolean): Draft {
   const text = useSignal("");
-  const complaint = useSignal("");
+  const errorText = useSignal("");
   useEffect(() => {
     let isWanted = true;
-    [text.value, complaint.value] = ["", ""];
+    [text.value, errorText.value] = ["", ""];
     if (name && isThere) {
       session.template(of, name).then(
         (message) => isWanted && (text.value = toText(message)),
-        (error: Error) => isWanted && (complaint.value = error.message),
+        (error: Error) => isWanted && (errorText.value = error.message),
       );
     }
     return () => {
@@ -61,14 +61,14 @@ export function useDraft(session: Session, of: "service" | "topic", name: string
   }, [name, isThere]);
   const read = () => {
     try {
-      complaint.value = "";
+      errorText.value = "";
       return fromText(text.value || "{}");
     } catch (error) {
-      complaint.value = error instanceof Error ? error.message : String(error);
+      errorText.value = error instanceof Error ? error.message : String(error);
       return undefined;
     }
   };
-  return { text, complaint, read };
+  return { text, error: errorText, read };
 }
 
 export function DraftField({ draft, label }: { draft: Draft; label: string }) {

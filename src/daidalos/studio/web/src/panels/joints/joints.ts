@@ -37,7 +37,7 @@ interface Descriptor {
 
 export class Joints {
   readonly joints = signal<readonly Joint[]>([]);
-  readonly complaint = signal("");
+  readonly error = signal("");
   /** Positions that are not sent yet: one call is under way at a time, and the newest position wins. */
   private readonly unsent = new Map<string, number>();
   private isSending = false;
@@ -138,9 +138,9 @@ export class Joints {
   private async try(work: () => Promise<unknown>): Promise<void> {
     try {
       await work();
-      this.complaint.value = "";
+      this.error.value = "";
     } catch (error) {
-      this.complaint.value = error instanceof Error ? error.message : String(error);
+      this.error.value = error instanceof Error ? error.message : String(error);
     }
   }
 

@@ -46,7 +46,7 @@ export class Editor {
   readonly goods = signal<Shape | Resource>("box");
   readonly size = signal(0.3);
   readonly mass = signal(1);
-  readonly complaint = signal("");
+  readonly error = signal("");
   readonly undoStack = new UndoStack();
   private readonly gizmo: Gizmo;
   private hold: Hold | undefined;
@@ -107,7 +107,7 @@ export class Editor {
 
   /** Do something with the simulator, say what went wrong, and look again. */
   async do(work: () => Promise<unknown>): Promise<boolean> {
-    this.complaint.value = "";
+    this.error.value = "";
     this.doing++;
     try {
       await this.telling; // answers may overtake each other: the last word is to be the last
@@ -115,7 +115,7 @@ export class Editor {
       this.stage.show(await this.simulator.look());
       return true;
     } catch (error) {
-      this.complaint.value = error instanceof Error ? error.message : String(error);
+      this.error.value = error instanceof Error ? error.message : String(error);
       return false;
     } finally {
       this.doing--;
@@ -337,7 +337,7 @@ export class Editor {
     this.telling = this.simulator
       .move(hold.name, movedPose(hold.pose, hold.motion))
       .catch((error: unknown) => {
-        this.complaint.value = error instanceof Error ? error.message : String(error);
+        this.error.value = error instanceof Error ? error.message : String(error);
       })
       .finally(() => {
         this.telling = undefined;

@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import type { Session } from "../../connection/session";
-import { complaintOf, Simulator } from "./simulator";
+import { errorOf, Simulator } from "./simulator";
 
 function simulator(answer: unknown) {
   const asked: [string, unknown][] = [];
@@ -37,7 +37,7 @@ describe("the simulator", () => {
   it("says why it refuses", async () => {
     const { made } = simulator({ result: { result: 2, error_message: "no crate" } });
     await expect(made.remove("crate")).rejects.toThrow("no crate");
-    expect(complaintOf({ success: false, status_message: "too small" })).toBe("too small");
-    expect(complaintOf({ success: true })).toBeUndefined();
+    expect(errorOf({ success: false, status_message: "too small" })).toBe("too small");
+    expect(errorOf({ success: true })).toBeUndefined();
   });
 });

@@ -149,9 +149,9 @@ export class Simulator {
 
   private async call(service: string, request: object): Promise<unknown> {
     const answer = await this.session.call(`${this.name}/${service}`, request);
-    const complaint = complaintOf(answer as Answer);
-    if (complaint !== undefined) {
-      throw new Error(complaint);
+    const errorText = errorOf(answer as Answer);
+    if (errorText !== undefined) {
+      throw new Error(errorText);
     }
     return answer;
   }
@@ -172,7 +172,7 @@ interface Answer {
 }
 
 /** Why a simulator did not do what it was asked; undefined where it did. */
-export function complaintOf({ result, success, status_message }: Answer): string | undefined {
+export function errorOf({ result, success, status_message }: Answer): string | undefined {
   if (result && result.result !== RESULT_OK) {
     return result.error_message || `refused with code ${result.result}`;
   }

@@ -275,7 +275,7 @@ export class Stage {
       assets: this.context.assets,
       dark: true,
       changed: this.touch,
-      complain: () => undefined, // a mesh that this page may not read: the rest is shown
+      onError: () => undefined, // a mesh that this page may not read: the rest is shown
     });
   }
 
