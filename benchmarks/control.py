@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from daidalos.common.pose3 import Pose
 from daidalos.control.controllers.base import ControllerContext
 from daidalos.control.hardware.base import Hardware
 from daidalos.control.hardware.generic import GenericSystem
@@ -20,7 +21,6 @@ from daidalos.control.manager import ControllerManager
 from daidalos.control.parameters import parameters_from
 from daidalos.control.samples import TrajectoryCommand, TrajectoryPoint
 from daidalos.description import sdf, urdf
-from daidalos.description.pose import Pose
 from daidalos.description.ros2_control import read_hardware
 from daidalos.simulation import Simulation
 from daidalos.simulation.plugins.ros2_control import Ros2Control

@@ -10,7 +10,8 @@ from pathlib import Path
 
 import numpy as np
 
-from daidalos.mapping import pose2, warm_up
+from daidalos.common import pose2
+from daidalos.common.kernels import warm_up
 from daidalos.mapping.evaluation import read_relations, relation_errors
 from daidalos.mapping.grid import ScanGrid
 from daidalos.mapping.log import Log, read_log
@@ -26,7 +27,7 @@ LOGS = ("intel", "fr079")
 def run() -> dict[str, float | str]:
     """Measure everything; times are medians."""
     start = time.perf_counter()
-    warm_up()
+    warm_up("daidalos.mapping")
     results: dict[str, float | str] = {"mapping.warm_up_s": time.perf_counter() - start}
     for name in LOGS:
         if (DATA / name).is_dir():

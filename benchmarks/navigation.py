@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from daidalos import localization, navigation
+from daidalos.common.kernels import warm_up
 from daidalos.localization.amcl import Amcl
 from daidalos.localization.config import AmclConfig
 from daidalos.navigation.controllers.controller import ControlInput
@@ -39,8 +39,8 @@ ROBOT = Footprint.circle(0.22)
 def run() -> dict[str, float | str]:
     """Measure everything; times are medians."""
     start = time.perf_counter()
-    navigation.warm_up()
-    localization.warm_up()
+    warm_up("daidalos.navigation")
+    warm_up("daidalos.localization")
     results: dict[str, float | str] = {"navigation.warm_up_s": time.perf_counter() - start}
     results |= measure_planner() | measure_costmaps() | measure_controllers() | measure_amcl()
     results |= measure_arena("mppi") | measure_arena("rpp")

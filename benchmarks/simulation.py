@@ -15,8 +15,8 @@ from pathlib import Path
 import numpy as np
 
 import daidalos
+from daidalos.common.pose3 import Pose
 from daidalos.description import sdf, urdf
-from daidalos.description.pose import Pose
 from daidalos.description.robot import Robot
 from daidalos.simulation import Simulation
 from daidalos.simulation.samples import LaserScanSample, OdometrySample, TwistCommand

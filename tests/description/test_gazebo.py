@@ -1,8 +1,8 @@
 import pytest
 
+from daidalos.common.pose3 import Pose
 from daidalos.description import urdf
 from daidalos.description.gazebo import model_from_robot
-from daidalos.description.pose import Pose
 from description.robots import ARM
 
 EXTRA = """

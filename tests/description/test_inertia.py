@@ -2,11 +2,11 @@ import numpy as np
 import pytest
 import trimesh
 
+from daidalos.common.pose3 import Pose
 from daidalos.description.geometry import Box, Capsule, Cone, Cylinder, Ellipsoid, Mesh, Plane, Polyline, Sphere
 from daidalos.description.inertia import combine, doubts, link_properties, solid_properties
 from daidalos.description.link import Collision, Inertial, Link
 from daidalos.description.meshes import triangles_of
-from daidalos.description.pose import Pose
 
 SHAPES = (
     Box((1, 2, 3)),

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from daidalos.common.pose3 import Pose
 from daidalos.description import sdf, urdf
 from daidalos.description.joint import Axis, Joint, JointType, Mimic
 from daidalos.description.kinematics import KinematicTree, UnknownJointError, link_poses_at_zero
 from daidalos.description.link import Link
-from daidalos.description.pose import Pose
 from daidalos.description.robot import Robot
 from description.robots import ARM
 

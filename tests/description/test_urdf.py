@@ -5,12 +5,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from daidalos.common.pose3 import Pose
 from daidalos.description import urdf
 from daidalos.description.errors import DescriptionError
 from daidalos.description.geometry import Box, Capsule, Cylinder, Empty, Mesh, Plane
 from daidalos.description.joint import JointType
 from daidalos.description.markup import parse_markup
-from daidalos.description.pose import Pose
 from description.robots import ARM, SHARE, problem_of, share_of
 
 

@@ -5,10 +5,10 @@ import math
 import numpy as np
 import pytest
 
+from daidalos.common.pose2 import compose, wrap
 from daidalos.localization.amcl import Amcl
 from daidalos.localization.config import AmclConfig
 from daidalos.localization.errors import LocalizationError
-from daidalos.mapping.pose2 import compose, wrap
 from daidalos.mapping.scan import LaserScanData
 from navigation.flat_world import FlatRobot, arena
 

@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 
+from daidalos.common.pose2 import compose
 from daidalos.mapping.grid import OccupancyGrid
-from daidalos.mapping.pose2 import compose
 
 RESOLUTION = 0.05
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from rosbags.rosbag2 import StoragePlugin
 
-from daidalos.mapping import pose2
+from daidalos.common import pose2
 from daidalos.mapping.errors import LogError
 from daidalos.mapping.log import read_log
 

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from daidalos.mapping import pose2
+from daidalos.common import pose2
 from daidalos.mapping.config import SlamConfig
 from daidalos.mapping.loop_closing import (
     DRIFT_OF_CLOSURE,

@@ -3,7 +3,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from daidalos.mapping import pose2
+from daidalos.common import pose2
 from daidalos.mapping.evaluation import (
     Relations,
     compare_with_truth,

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from daidalos.mapping import pose2
+from daidalos.common import pose2
 from daidalos.mapping.pose_graph import OUTLIER_CHI2, Edge, optimize, squared_errors
 
 TIGHT = np.diag([1e4, 1e4, 1e4])

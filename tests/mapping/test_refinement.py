@@ -1,6 +1,6 @@
 import numpy as np
 
-from daidalos.mapping import pose2
+from daidalos.common import pose2
 from daidalos.mapping.pose_graph import Edge
 from daidalos.mapping.refinement import refine_poses
 from daidalos.mapping.scan import to_cloud

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from daidalos.mapping import pose2
+from daidalos.common import pose2
 from daidalos.mapping.scan import LINE_TOLERANCE, SPACING, LaserScanData, to_cloud
 
 from .worlds import Lidar, arena, box, cast, room_scan

@@ -4,7 +4,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from daidalos.mapping import pose2
+from daidalos.common import pose2
 from daidalos.mapping.evaluation import compare_with_truth
 from daidalos.mapping.grid import ScanGrid
 from daidalos.mapping.scan import LaserScanData

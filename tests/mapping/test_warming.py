@@ -1,28 +1,14 @@
-import subprocess
-import sys
+import numpy as np
 
-from daidalos.mapping import warm_up
-from daidalos.mapping.compilation import KERNELS
+from daidalos.common.kernels import KERNELS, warm_up
 from daidalos.mapping.slam import Slam
 
 from .worlds import Lidar, arena, drive, room_scan, wheel_odometry
 
 
-def test_progress_runs_from_nothing_to_all() -> None:
-    shares: list[float] = []
-    names: list[str] = []
-    warm_up(lambda share, step: (shares.append(share), names.append(step)))
-    assert shares[0] == 0.0
-    assert shares[-1] == 1.0
-    assert shares == sorted(shares)
-    assert all(names)
-
-
 def test_nothing_is_left_to_compile_for_slam() -> None:
     """No kernel meets types that it has not met before, in a run with turns, closures and a map."""
-    import numpy as np
-
-    warm_up()
+    warm_up("daidalos.mapping")
     before = {kernel.py_func.__qualname__: list(kernel.signatures) for kernel in KERNELS}
     rng = np.random.default_rng(0)
     true = drive(np.array([[-3.0, -2.3], [3.0, -2.3], [3.2, 2.2], [-3.0, 2.3], [-3.0, -2.0], [2.0, -2.0]]), rate=5.0)
@@ -36,8 +22,3 @@ def test_nothing_is_left_to_compile_for_slam() -> None:
     slam.finish()
     assert closed > 0
     assert {kernel.py_func.__qualname__: list(kernel.signatures) for kernel in KERNELS} == before
-
-
-def test_importing_the_layer_costs_nothing() -> None:
-    code = "import sys, daidalos.mapping; sys.exit(any(m in sys.modules for m in ('numba', 'scipy', 'gtsam')))"
-    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from py_trees.common import Status
 
+from daidalos.common.pose2 import wrap
 from daidalos.mapping.grid import OccupancyGrid
-from daidalos.mapping.pose2 import wrap
 from daidalos.navigation.behaviors.back_up import BackUp, BackUpCommand
 from daidalos.navigation.behaviors.behavior import BehaviorError
 from daidalos.navigation.behaviors.spin import Spin, SpinCommand

@@ -5,10 +5,10 @@ import math
 import numpy as np
 import pytest
 
+from daidalos.common.pose3 import Pose
 from daidalos.description import sdf, urdf
 from daidalos.description.joint import JointType
 from daidalos.description.kinematics import KinematicTree
-from daidalos.description.pose import Pose
 from daidalos.simulation import Simulation
 from daidalos.simulation.samples import ImageSample, LaserScanSample, OdometrySample, PointCloudSample, TwistCommand
 from description.robots import SHARE, share_of

@@ -2,7 +2,7 @@
 
 import pytest
 
-from daidalos.description.pose import Pose
+from daidalos.common.pose3 import Pose
 from daidalos.description.world import World
 from daidalos.simulation.compilation import Compilation
 from daidalos.simulation.errors import SimulationError

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from daidalos.description.pose import Pose
+from daidalos.common.pose3 import Pose
 from daidalos.simulation import Simulation
 from daidalos.simulation.samples import TwistCommand
 from simulation.models import arena, box, turtlebot, world

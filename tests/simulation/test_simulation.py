@@ -1,10 +1,10 @@
 import numpy as np
 import pytest
 
+from daidalos.common.pose3 import Pose
 from daidalos.description import sdf, urdf
 from daidalos.description.errors import DescriptionError
 from daidalos.description.link import Inertial
-from daidalos.description.pose import Pose
 from daidalos.simulation import Simulation
 from daidalos.simulation.errors import NameTakenError, SimulationError, UnknownNameError
 from daidalos.simulation.samples import ImuSample, LaserScanSample, TwistCommand

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import bisect
 
-from daidalos.description.pose import Pose, interpolate
+from daidalos.common.pose3 import Pose, interpolate
 from daidalos.description.world import Actor
 
 

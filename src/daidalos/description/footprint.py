@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.common.pose3 import Pose, rotation_matrix
 from daidalos.description.geometry import Empty, Heightmap, Plane
 from daidalos.description.meshes import TriangleMesh, triangles_of
-from daidalos.description.pose import Pose, rotation_matrix
 from daidalos.description.world import World
 
 Array = NDArray[np.float64]

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from daidalos.common.pose3 import Vector
 from daidalos.description.errors import DescriptionError
-from daidalos.description.pose import Vector
 
 
 @dataclass(frozen=True)

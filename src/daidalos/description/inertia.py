@@ -8,11 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.common.pose3 import Pose, rotation_matrix
 from daidalos.description.errors import DescriptionError
 from daidalos.description.geometry import Box, Cylinder, Ellipsoid, Empty, Geometry, Heightmap, Plane, Sphere
 from daidalos.description.link import Collision, Inertial, Link, Visual
 from daidalos.description.meshes import triangles_of
-from daidalos.description.pose import Pose, rotation_matrix
 
 Array = NDArray[np.float64]
 

@@ -6,8 +6,8 @@ import math
 from dataclasses import dataclass, field
 from enum import StrEnum
 
+from daidalos.common.pose3 import Pose, Vector
 from daidalos.description.link import Sensor
-from daidalos.description.pose import Pose, Vector
 
 
 class JointType(StrEnum):

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.common.pose3 import Pose
 from daidalos.description.joint import Joint, JointType
-from daidalos.description.pose import Pose
 from daidalos.description.robot import Robot
 from daidalos.description.world import Model
 

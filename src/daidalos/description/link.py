@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from daidalos.common.pose3 import Pose, Vector
 from daidalos.description.geometry import Geometry
 from daidalos.description.markup import Element
-from daidalos.description.pose import Pose, Vector
 
 Rgba = tuple[float, float, float, float]
 

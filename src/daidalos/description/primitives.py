@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from daidalos.common.pose3 import Vector
 from daidalos.description.geometry import Box, Cylinder, Geometry, Sphere
 from daidalos.description.inertia import link_properties
 from daidalos.description.link import Collision, Link, Material, Rgba, Visual
-from daidalos.description.pose import Vector
 from daidalos.description.world import Model
 
 SHAPES = ("box", "sphere", "cylinder")

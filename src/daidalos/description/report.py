@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from daidalos.common.pose3 import Pose
 from daidalos.description.inertia import doubts
 from daidalos.description.joint import Joint, JointType
-from daidalos.description.pose import Pose
 from daidalos.description.robot import Robot
 from daidalos.description.tree import link_tree
 from daidalos.description.world import Model, World

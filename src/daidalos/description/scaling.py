@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TypeVar
 
+from daidalos.common.pose3 import Pose, Vector
 from daidalos.description.geometry import (
     Box,
     Capsule,
@@ -20,7 +21,6 @@ from daidalos.description.geometry import (
 )
 from daidalos.description.joint import Joint, JointType
 from daidalos.description.link import Collision, Inertial, Link, Visual
-from daidalos.description.pose import Pose, Vector
 from daidalos.description.world import Model
 
 Part = TypeVar("Part", Visual, Collision)

@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.common.pose3 import quaternion_between, rotation_matrix
 from daidalos.description.errors import DescriptionError
 from daidalos.description.geometry import Box, Empty, Heightmap, Mesh, Plane
 from daidalos.description.images import read_grey, read_rgba
 from daidalos.description.link import Material, Rgba, Visual
 from daidalos.description.meshes import read_scene, triangles_of
-from daidalos.description.pose import quaternion_between, rotation_matrix
 
 GREY: Rgba = (0.7, 0.7, 0.7, 1.0)
 WHITE: Rgba = (1.0, 1.0, 1.0, 1.0)

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from daidalos.common.pose3 import Pose, Vector
 from daidalos.description.joint import Joint
 from daidalos.description.link import Light, Link, Plugin, Rgba
 from daidalos.description.markup import Element
-from daidalos.description.pose import Pose, Vector
 
 
 @dataclass(frozen=True)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.common.pose2 import between, compose, inverse, wrap
 from daidalos.localization.config import AmclConfig
 from daidalos.localization.errors import LocalizationError
 from daidalos.localization.likelihood_map import LikelihoodMap
@@ -26,7 +27,6 @@ from daidalos.localization.sensor_models.likelihood_field import (
 )
 from daidalos.localization.sensor_models.sensor_model import Beams, SensorModel
 from daidalos.mapping.grid import OccupancyGrid
-from daidalos.mapping.pose2 import between, compose, inverse, wrap
 from daidalos.mapping.scan import LaserScanData
 
 Array = NDArray[np.float64]

@@ -6,8 +6,8 @@ from statistics import NormalDist
 import numpy as np
 from numpy.typing import NDArray
 
-from daidalos.mapping.compilation import compiled
-from daidalos.mapping.pose2 import wrap
+from daidalos.common.kernels import compiled
+from daidalos.common.pose2 import wrap
 
 Array = NDArray[np.float64]
 

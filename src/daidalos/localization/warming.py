@@ -1,6 +1,6 @@
-"""Compiling every kernel of localization ahead of its first use."""
+"""Compilation of every kernel of localization ahead of its first use."""
 
-from collections.abc import Callable
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -10,14 +10,13 @@ from daidalos.mapping.grid import OccupancyGrid
 from daidalos.mapping.scan import LaserScanData
 
 
-def warm_up(progress: Callable[[float, str], None] = lambda share, step: None) -> None:
-    """Let each sensor model see a scan in a small room; see `daidalos.localization.warm_up`."""
+def steps() -> Iterator[tuple[float, str]]:
+    """Update a filter of each sensor model with a scan of a small room; see `daidalos.common.kernels.warm_up`."""
     data = np.zeros((40, 40), dtype=np.int8)
     data[0], data[-1], data[:, 0], data[:, -1] = 100, 100, 100, 100
     room = OccupancyGrid(data, 0.05, (-1.0, -1.0, 0.0))
     scan = LaserScanData(np.ones(8), -np.pi, np.pi / 4.0, 0.1, 10.0)
     for done, model in enumerate(SENSOR_MODELS):
-        progress(done / len(SENSOR_MODELS), model)
+        yield done / len(SENSOR_MODELS), model
         config = AmclConfig(laser_model_type=model, min_particles=10, max_particles=20)
         Amcl(config, room).update(np.zeros(3), scan)
-    progress(1.0, "ready")

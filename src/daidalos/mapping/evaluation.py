@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from daidalos.mapping import pose2
+from daidalos.common import pose2
 from daidalos.mapping.errors import RelationsError
 from daidalos.mapping.grid import OCCUPIED, OccupancyGrid
 

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from daidalos.bags.errors import BagError
 from daidalos.bags.reader import BagReader
+from daidalos.common import pose2
 from daidalos.interfaces.codec import CdrError, Codec, codec_of
-from daidalos.mapping import pose2
 from daidalos.mapping.errors import LogError
 from daidalos.mapping.evaluation import poses_at
 from daidalos.mapping.scan import LaserScanData

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from daidalos.mapping import pose2
+from daidalos.common import pose2
 from daidalos.mapping.config import SlamConfig
 from daidalos.mapping.pose_graph import Edge
 from daidalos.mapping.scan import Cloud

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from daidalos.mapping import pose2
+from daidalos.common import pose2
 from daidalos.mapping.grid import OccupancyGrid
 from daidalos.mapping.log import Log
 from daidalos.mapping.slam import Slam, SlamConfig

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from daidalos.mapping import pose2
+from daidalos.common import pose2
 
 Array = NDArray[np.float64]
 

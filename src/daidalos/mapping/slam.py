@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from daidalos.mapping import pose2
+from daidalos.common import pose2
 from daidalos.mapping.config import SlamConfig
 from daidalos.mapping.grid import OccupancyGrid, ScanGrid
 from daidalos.mapping.loop_closing import LoopCloser

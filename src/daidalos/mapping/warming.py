@@ -1,11 +1,11 @@
-"""Compiling every kernel of online SLAM ahead of its first use."""
+"""Compilation of every kernel of online SLAM ahead of its first use."""
 
-from collections.abc import Callable
+from collections.abc import Iterator
 
 import numpy as np
 from numpy.typing import NDArray
 
-from daidalos.mapping import pose2
+from daidalos.common import pose2
 from daidalos.mapping.grid import ScanGrid
 from daidalos.mapping.loop_closing import LoopCloser
 from daidalos.mapping.pose_graph import Edge, optimize
@@ -16,22 +16,21 @@ from daidalos.mapping.slam import SlamConfig
 Array = NDArray[np.float64]
 
 
-def warm_up(progress: Callable[[float, str], None] = lambda share, step: None) -> None:
-    """Call every kernel once with data of the types of a real scan; see `daidalos.mapping.warm_up`."""
-    progress(0.0, "laser scans")
+def steps() -> Iterator[tuple[float, str]]:
+    """Call every kernel with data of the types of a real scan; see `daidalos.common.kernels.warm_up`."""
+    yield 0.0, "laser scans"
     cloud = _square_room()
     placed = PointMap([cloud], np.zeros((1, 3)))
-    steps: list[tuple[str, Callable[[], object]]] = [
-        ("correlation", lambda: placed.correlate(cloud.points, np.zeros(3), Window(0.5, 0.5))),
-        ("point to line", lambda: placed.refine(cloud.points, cloud.normals, np.zeros(3))),
-        ("occupancy grid", lambda: _draw(cloud)),
-        ("pose graph", _solve),
-        ("loop closing", lambda: _close(cloud)),
-    ]
-    for done, (name, step) in enumerate(steps, 1):
-        progress(done / (len(steps) + 1), name)
-        step()
-    progress(1.0, "ready")
+    yield 0.2, "correlation"
+    placed.correlate(cloud.points, np.zeros(3), Window(0.5, 0.5))
+    yield 0.4, "point to line"
+    placed.refine(cloud.points, cloud.normals, np.zeros(3))
+    yield 0.5, "occupancy grid"
+    _draw(cloud)
+    yield 0.7, "pose graph"
+    _solve()
+    yield 0.8, "loop closing"
+    _close(cloud)
 
 
 def _square_room() -> Cloud:
@@ -59,7 +58,7 @@ def _solve() -> None:
 
 
 def _close(cloud: Cloud) -> None:
-    """Look for closures of a robot that stands still and is told that it may have drifted."""
+    """Search closures of a robot that stands still and may have drifted."""
     config = SlamConfig()
     count = config.scan_buffer_size + 3 * config.loop_match_minimum_chain_size
     poses = np.zeros((count, 3))

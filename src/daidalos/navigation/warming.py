@@ -1,6 +1,6 @@
-"""Compiling every kernel of navigation ahead of its first use."""
+"""Compilation of every kernel of navigation ahead of its first use."""
 
-from collections.abc import Callable
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -21,22 +21,18 @@ from daidalos.navigation.smoothers.simple_smoother import SimpleSmoother
 OUTLINE = Footprint.of_corners(np.array([[0.2, 0.2], [0.2, -0.2], [-0.2, -0.2], [-0.2, 0.2]]))
 
 
-def warm_up(progress: Callable[[float, str], None] = lambda share, step: None) -> None:
-    """Call every kernel once with data of the types of a real robot; see `daidalos.navigation.warm_up`."""
-    progress(0.0, "costmap")
+def steps() -> Iterator[tuple[float, str]]:
+    """Call every kernel with data of the types of a real robot; see `daidalos.common.kernels.warm_up`."""
+    yield 0.0, "costmap"
     costmap = _costmap()
-    steps: list[tuple[str, Callable[[], object]]] = [
-        ("planner", lambda: _plan(costmap)),
-        ("controller", lambda: _control(costmap)),
-    ]
-    for done, (name, step) in enumerate(steps, 1):
-        progress(done / (len(steps) + 1), name)
-        step()
-    progress(1.0, "ready")
+    yield 0.3, "planner"
+    _plan(costmap)
+    yield 0.6, "controller"
+    _control(costmap)
 
 
 def _costmap() -> Costmap:
-    """Put a map, a scan and inflation together."""
+    """Return a costmap of a map, a scan and inflation."""
     data = np.zeros((80, 80), dtype=np.int8)
     data[0] = 100
     static, obstacles = StaticLayer(), ObstacleLayer(OUTLINE)
@@ -59,7 +55,7 @@ def _plan(costmap: Costmap) -> None:
 
 
 def _control(costmap: Costmap) -> None:
-    """Let a controller see a far goal, and a near one, with each of its critics."""
+    """Drive a controller with each of its critics to a far goal and to a near one."""
     pose, rest = np.array([1.0, 2.0, 0.0]), np.zeros(3)
     path = np.stack([np.linspace(1.0, 3.0, 41), np.full(41, 2.0), np.zeros(41)], axis=-1)
     outline = CostCritic(CostCriticParameters(consider_footprint=True))

@@ -1,58 +1,57 @@
-"""Compiling a library's kernels beside a node that is already up, and saying so when it takes long."""
+"""Compilation of a package's kernels in the background of a running node, with its progress in the log."""
 
 from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Callable
 
 from rclpy.impl.rcutils_logger import RcutilsLogger
 from rclpy.task import Future
 
-_SILENT_S = 3.0
-"""Time after which the user is told; what was compiled before is ready sooner."""
+from daidalos.common.kernels import warm_up
 
-WarmUp = Callable[[Callable[[float, str], None]], None]
+_SILENT_S = 3.0
+"""Time after which progress is logged [s]; kernels from the cache on disk are ready sooner."""
 
 _lock = threading.Lock()
-_compiled: dict[WarmUp, Future] = {}
+_compiled: dict[str, Future] = {}
 
 
-def warm_up_in_background(warm_up: WarmUp, logger: RcutilsLogger) -> Future:
-    """Compile in a thread, once in a process; the result is done when that is.
+def warm_up_in_background(package: str, logger: RcutilsLogger) -> Future:
+    """Compile the kernels of a package in a thread, once per process; the future is done when they are compiled.
 
     Parameters
     ----------
-    warm_up : callable
-        Takes what to call with the share done, from 0 to 1, and the next step.
+    package : str
+        As for `daidalos.common.kernels.warm_up`.
     logger
-        Told of the progress when it takes longer than a moment.
+        Logs the progress when compilation takes longer than `_SILENT_S`.
     """
     with _lock:
-        if warm_up not in _compiled:
-            compiled = _compiled[warm_up] = Future()
-            threading.Thread(target=_compile, args=(warm_up, logger, compiled), name="compiler", daemon=True).start()
-        return _compiled[warm_up]
+        if package not in _compiled:
+            compiled = _compiled[package] = Future()
+            threading.Thread(target=_compile, args=(package, logger, compiled), name="compiler", daemon=True).start()
+        return _compiled[package]
 
 
-def _compile(warm_up: WarmUp, logger: RcutilsLogger, compiled: Future) -> None:
-    begun = time.monotonic()
-    said = -1
+def _compile(package: str, logger: RcutilsLogger, compiled: Future) -> None:
+    start = time.monotonic()
+    logged_tenth = -1
 
     def progress(share: float, step: str) -> None:
-        nonlocal said
-        if time.monotonic() - begun < _SILENT_S or int(10 * share) == said:
+        nonlocal logged_tenth
+        if time.monotonic() - start < _SILENT_S or int(10 * share) == logged_tenth:
             return
-        if said < 0:
+        if logged_tenth < 0:
             logger.info("preparing the algorithms; the first start on a machine compiles them")
-        said = int(10 * share)
+        logged_tenth = int(10 * share)
         logger.info(f"compiling: {100 * share:.0f} % ({step})")
 
     try:
-        warm_up(progress)
+        warm_up(package, progress)
     except Exception as error:
         compiled.set_exception(error)
         return
-    if said >= 0:
-        logger.info(f"compiled in {time.monotonic() - begun:.0f} s")
+    if logged_tenth >= 0:
+        logger.info(f"compiled in {time.monotonic() - start:.0f} s")
     compiled.set_result(None)

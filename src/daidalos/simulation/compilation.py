@@ -8,8 +8,8 @@ from typing import Any
 import mujoco
 import numpy as np
 
+from daidalos.common.pose3 import Pose
 from daidalos.description.joint import Joint
-from daidalos.description.pose import Pose
 from daidalos.description.world import Model, World
 from daidalos.simulation.component import Component
 from daidalos.simulation.conversion.assets import Assets

@@ -10,9 +10,9 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.common.pose3 import Pose
 from daidalos.description.gazebo import model_from_robot
 from daidalos.description.joint import Joint, JointType
-from daidalos.description.pose import Pose
 from daidalos.description.robot import Robot
 from daidalos.description.world import Model
 from daidalos.simulation.conversion.assets import Assets

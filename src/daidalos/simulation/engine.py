@@ -11,8 +11,8 @@ from typing import Any
 
 import mujoco
 
+from daidalos.common.pose3 import Pose, Vector
 from daidalos.description.actors import actor_pose
-from daidalos.description.pose import Pose, Vector
 from daidalos.description.world import Actor, Model, World
 from daidalos.simulation.actors import ActorMotion
 from daidalos.simulation.assembly import check_world_plugins, make_components

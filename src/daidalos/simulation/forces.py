@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from daidalos.description.pose import Vector, rotate
+from daidalos.common.pose3 import Vector, rotate
 
 if TYPE_CHECKING:
     from daidalos.simulation.instance import Instance

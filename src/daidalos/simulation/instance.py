@@ -9,7 +9,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from daidalos.description.pose import Pose
+from daidalos.common.pose3 import Pose
 from daidalos.description.world import Model
 from daidalos.simulation.conversion.model_build import ModelBuild
 from daidalos.simulation.errors import SimulationError, UnknownNameError

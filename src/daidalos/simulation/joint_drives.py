@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from daidalos.description.pose import rotation_matrix
+from daidalos.common.pose3 import rotation_matrix
 from daidalos.simulation.errors import UnknownNameError
 
 if TYPE_CHECKING:

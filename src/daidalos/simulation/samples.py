@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from daidalos.description.pose import Pose
+from daidalos.common.pose3 import Pose
 
 if TYPE_CHECKING:
     from daidalos.simulation.contacts import Contact

@@ -9,9 +9,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.common.pose3 import Pose, Vector
 from daidalos.description.gazebo import model_from_robot
 from daidalos.description.link import Inertial
-from daidalos.description.pose import Pose, Vector
 from daidalos.description.robot import Robot
 from daidalos.description.scaling import scaled
 from daidalos.description.world import Model

@@ -6,8 +6,8 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from daidalos.common.pose3 import Pose
 from daidalos.description.link import Light
-from daidalos.description.pose import Pose
 from daidalos.description.world import World
 from daidalos.simulation.errors import NameTakenError, UnknownNameError
 from daidalos.simulation.rendering.lighting import Lighting

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 
+from daidalos.common.pose3 import Vector
 from daidalos.description.markup import Element
-from daidalos.description.pose import Vector
 from daidalos.description.world import Model, World
 from daidalos.simulation.component import Component, ComponentContext
 from daidalos.simulation.forces import Push

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from control_robots import alone, arm, cycle
 
+from daidalos.common.pose3 import Pose
 from daidalos.control.errors import ParameterError
 from daidalos.control.samples import DynamicJointSample
-from daidalos.description.pose import Pose
 from daidalos.simulation.samples import JointStateSample, TransformSample
 
 STATES = ("elbow/position", "elbow/velocity", "wrist/position", "wrist/torque", "gauge/pressure")

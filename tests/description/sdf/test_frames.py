@@ -2,10 +2,10 @@ import math
 
 import pytest
 
+from daidalos.common.pose3 import Pose
 from daidalos.description import sdf
 from daidalos.description.errors import DescriptionError
 from daidalos.description.markup import parse_markup
-from daidalos.description.pose import Pose
 from daidalos.description.sdf.frames import read_pose
 
 

@@ -4,6 +4,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from daidalos.common.pose3 import Pose
 from daidalos.description import sdf
 from daidalos.description.errors import DescriptionError
 from daidalos.description.geometry import (
@@ -21,7 +22,6 @@ from daidalos.description.geometry import (
 )
 from daidalos.description.joint import JointType
 from daidalos.description.markup import parse_markup
-from daidalos.description.pose import Pose
 from daidalos.description.sdf.context import BUILT_IN_MODELS
 from description.robots import ARM, SHARE, problem_of
 

@@ -7,10 +7,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from daidalos.common.pose2 import between, compose, wrap
 from daidalos.localization.config import AmclConfig
 from daidalos.localization.motion_models.differential import DifferentialMotionModel
 from daidalos.localization.motion_models.omnidirectional import OmniMotionModel
-from daidalos.mapping.pose2 import between, compose, wrap
 
 QUIET = AmclConfig(alpha1=0.0, alpha2=0.0, alpha3=0.0, alpha4=0.0, alpha5=0.0)
 poses = st.tuples(st.floats(-5.0, 5.0), st.floats(-5.0, 5.0), st.floats(-3.1, 3.1)).map(np.array)

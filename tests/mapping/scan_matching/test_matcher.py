@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from daidalos.mapping import pose2
+from daidalos.common import pose2
 from daidalos.mapping.scan import to_cloud
 from daidalos.mapping.scan_matching.matcher import PointMap, Window, merge
 

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from daidalos.mapping import pose2
+from daidalos.common import pose2
 from daidalos.mapping.scan import Cloud, LaserScanData, to_cloud
 from daidalos.mapping.scan_matching.buckets import build_reference
 from daidalos.mapping.scan_matching.point_to_line import POINT_DEVIATION, match_information, refine

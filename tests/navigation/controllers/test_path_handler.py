@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from daidalos.mapping.pose2 import between
+from daidalos.common.pose2 import between
 from daidalos.navigation.controllers.controller import InvalidPath
 from daidalos.navigation.controllers.path_handler import PathHandler
 from daidalos.navigation.paths import with_headings

@@ -3,9 +3,9 @@ import math
 import numpy as np
 import pytest
 
+from daidalos.common.pose3 import Pose
 from daidalos.description import sdf, urdf
 from daidalos.description.kinematics import KinematicTree
-from daidalos.description.pose import Pose
 from daidalos.simulation import Simulation
 from description.robots import ARM
 from simulation.models import box, world

@@ -2,8 +2,8 @@ import math
 
 import pytest
 
+from daidalos.common.pose3 import Pose
 from daidalos.description import sdf
-from daidalos.description.pose import Pose
 from daidalos.simulation import Simulation
 
 SECOND = 1_000_000_000

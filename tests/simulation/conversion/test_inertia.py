@@ -3,8 +3,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from daidalos.common.pose3 import Pose, rotation_matrix
 from daidalos.description.link import Inertial
-from daidalos.description.pose import Pose, rotation_matrix
 from daidalos.simulation.conversion.inertia import principal_inertia
 
 moment = st.floats(-0.1, 2)

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 import trimesh
 
+from daidalos.common.pose3 import Pose, quaternion_from_rpy
 from daidalos.description.geometry import Box, Cylinder, Mesh
 from daidalos.description.joint import Axis, Joint, JointType
 from daidalos.description.link import Collision
-from daidalos.description.pose import Pose, quaternion_from_rpy
 from daidalos.simulation import Simulation
 from daidalos.simulation.conversion.wheels import wheel_disc
 from daidalos.simulation.samples import OdometrySample, TwistCommand

@@ -3,9 +3,9 @@ import math
 import numpy as np
 import pytest
 
+from daidalos.common.pose3 import Pose
 from daidalos.description import urdf
 from daidalos.description.errors import DescriptionError
-from daidalos.description.pose import Pose
 from daidalos.simulation import Simulation
 from daidalos.simulation.plugins.diff_drive_settings import Limits
 from daidalos.simulation.samples import JointStateSample, OdometrySample, TransformSample, TwistCommand

@@ -5,9 +5,9 @@ import sys
 import numpy as np
 import pytest
 
+from daidalos.common.pose3 import Pose
 from daidalos.description.geometry import Box, Plane, Sphere
 from daidalos.description.link import Light, Material, Visual
-from daidalos.description.pose import Pose
 from daidalos.simulation.rendering import backends
 from daidalos.simulation.rendering.lighting import Lighting
 from daidalos.simulation.rendering.optics import Pinhole

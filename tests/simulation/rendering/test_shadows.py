@@ -1,10 +1,10 @@
 import numpy as np
 import pytest
 
+from daidalos.common.pose3 import Pose
 from daidalos.description import sdf
 from daidalos.description.geometry import Sphere
 from daidalos.description.link import Visual
-from daidalos.description.pose import Pose
 from daidalos.simulation import Simulation
 from daidalos.simulation.rendering.scene import Item, make_scene
 from daidalos.simulation.rendering.shadows import simplify

@@ -1,9 +1,9 @@
 import numpy as np
 import pytest
 
+from daidalos.common.pose3 import Pose
 from daidalos.description import sdf, urdf
 from daidalos.description.errors import DescriptionError
-from daidalos.description.pose import Pose
 from daidalos.simulation import Simulation
 from daidalos.simulation.samples import LaserScanSample, PointCloudSample
 from simulation.models import box, world

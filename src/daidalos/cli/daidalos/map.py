@@ -110,7 +110,7 @@ def _run(args: argparse.Namespace) -> dict[str, Any]:
 
 def _map(log: "Log", args: argparse.Namespace) -> tuple["LogMap", float]:
     """Return the map and the seconds it took, without those for compiling the kernels."""
-    from daidalos.mapping import warm_up
+    from daidalos.common.kernels import warm_up
     from daidalos.mapping.offline import map_log
     from daidalos.mapping.slam import SlamConfig
 
@@ -121,7 +121,7 @@ def _map(log: "Log", args: argparse.Namespace) -> tuple["LogMap", float]:
         minimum_travel_heading=0.3,
     )
     with _progress_bar(len(log.scans)) as (prepare, advance):
-        warm_up(prepare)
+        warm_up("daidalos.mapping", prepare)
         start = time.perf_counter()
         mapped = map_log(log, config, advance)
         return mapped, time.perf_counter() - start

@@ -92,7 +92,7 @@ def _simulated(description: "Robot | Model | World") -> list[str]:
 
     As in Gazebo a mesh or an image that is missing or broken is no more than a warning.
     """
-    from daidalos.description.pose import Pose
+    from daidalos.common.pose3 import Pose
     from daidalos.description.world import World
     from daidalos.simulation import Simulation
 

@@ -7,13 +7,13 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from daidalos.common.pose3 import Pose, multiply
 from daidalos.control.controllers.base import Controller
 from daidalos.control.errors import ParameterError
 from daidalos.control.interfaces import Interfaces
 from daidalos.control.parameters import not_empty, parameter, size
 from daidalos.control.pulse import Pulse
 from daidalos.control.samples import PoseSample, VariedRangeSample
-from daidalos.description.pose import Pose, multiply
 from daidalos.simulation.samples import ImuSample, Sample, TransformSample, WrenchSample
 
 _NINE = (0.0,) * 9

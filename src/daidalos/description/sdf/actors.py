@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from daidalos.common.pose3 import Pose
 from daidalos.description.geometry import Mesh
 from daidalos.description.link import Link, Visual
 from daidalos.description.markup import Element
-from daidalos.description.pose import Pose
 from daidalos.description.sdf.context import Context
 from daidalos.description.sdf.frames import read_pose
 from daidalos.description.sdf.links import read_link, read_plugin

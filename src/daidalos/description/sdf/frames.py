@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from daidalos.common.pose3 import Pose, normalize
 from daidalos.description.markup import Element
-from daidalos.description.pose import Pose, normalize
 
 
 @dataclass(frozen=True)

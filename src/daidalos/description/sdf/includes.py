@@ -7,10 +7,10 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from daidalos.common.pose3 import Pose
 from daidalos.description.errors import DescriptionError
 from daidalos.description.link import Light
 from daidalos.description.markup import Element, parse_markup
-from daidalos.description.pose import Pose
 from daidalos.description.sdf.actors import read_actor
 from daidalos.description.sdf.context import Context
 from daidalos.description.sdf.frames import FrameGraph, RelativePose, read_pose

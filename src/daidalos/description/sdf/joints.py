@@ -6,9 +6,9 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 
+from daidalos.common.pose3 import Pose, rotate
 from daidalos.description.joint import Axis, Joint, JointType, Mimic
 from daidalos.description.markup import Element
-from daidalos.description.pose import Pose, rotate
 from daidalos.description.sdf.context import Context
 from daidalos.description.sdf.frames import read_pose
 from daidalos.description.sdf.links import read_sensor

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 
+from daidalos.common.pose3 import Pose, Vector
 from daidalos.description.inertia import WATER, link_properties
 from daidalos.description.link import (
     Collision,
@@ -17,7 +18,6 @@ from daidalos.description.link import (
     Visual,
 )
 from daidalos.description.markup import Element
-from daidalos.description.pose import Pose, Vector
 from daidalos.description.sdf.context import Context
 from daidalos.description.sdf.geometry import read_geometry
 from daidalos.description.sdf.materials import read_color, read_material

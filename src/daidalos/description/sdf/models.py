@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from daidalos.common.pose3 import Pose
 from daidalos.description.joint import Joint
 from daidalos.description.link import Link, Plugin
 from daidalos.description.markup import Element
-from daidalos.description.pose import Pose
 from daidalos.description.sdf.context import Context
 from daidalos.description.sdf.frames import FrameGraph, RelativePose, read_pose
 from daidalos.description.sdf.includes import read_include, settle_missing

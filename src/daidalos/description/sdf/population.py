@@ -8,8 +8,8 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
+from daidalos.common.pose3 import Pose, Vector
 from daidalos.description.markup import Element
-from daidalos.description.pose import Pose, Vector
 
 MAX_MODELS = 10_000
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
+from daidalos.common.pose3 import Pose
 from daidalos.description.joint import Joint
 from daidalos.description.link import Light
 from daidalos.description.markup import Element
-from daidalos.description.pose import Pose
 from daidalos.description.sdf.actors import read_actor
 from daidalos.description.sdf.context import Context
 from daidalos.description.sdf.frames import FrameGraph, RelativePose, read_pose

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
+from daidalos.common.pose3 import Pose
 from daidalos.description.geometry import Box, Capsule, Cylinder, Empty, Geometry, Mesh, Plane, Sphere
 from daidalos.description.link import Collision, Inertial, Link, Material, Visual
 from daidalos.description.markup import Element
-from daidalos.description.pose import Pose
 from daidalos.description.resolve import PackageResolver, default_model_path, resolve_uri
 
 

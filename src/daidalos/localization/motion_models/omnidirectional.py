@@ -5,9 +5,9 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.common.pose2 import between, wrap
 from daidalos.localization.config import AmclConfig
 from daidalos.localization.motion_models.motion_model import MotionModel
-from daidalos.mapping.pose2 import between, wrap
 
 Array = NDArray[np.float64]
 

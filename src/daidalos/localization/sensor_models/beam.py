@@ -5,11 +5,11 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.common.kernels import compiled
+from daidalos.common.pose2 import compose
 from daidalos.localization.config import AmclConfig
 from daidalos.localization.likelihood_map import LikelihoodMap
 from daidalos.localization.sensor_models.sensor_model import Beams, SensorModel
-from daidalos.mapping.compilation import compiled
-from daidalos.mapping.pose2 import compose
 
 Array = NDArray[np.float64]
 

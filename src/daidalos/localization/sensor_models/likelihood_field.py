@@ -5,10 +5,10 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.common.kernels import compiled
 from daidalos.localization.config import AmclConfig
 from daidalos.localization.likelihood_map import LikelihoodMap
 from daidalos.localization.sensor_models.sensor_model import Beams, SensorModel
-from daidalos.mapping.compilation import compiled
 
 Array = NDArray[np.float64]
 

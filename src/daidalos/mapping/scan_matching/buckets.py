@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from daidalos.mapping.compilation import compiled
+from daidalos.common.kernels import compiled
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]

@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from daidalos.mapping.compilation import compiled
+from daidalos.common.kernels import compiled
 from daidalos.mapping.scan import Cloud
 from daidalos.mapping.scan_matching.branch_and_bound import Match, search
 from daidalos.mapping.scan_matching.buckets import Reference, build_reference

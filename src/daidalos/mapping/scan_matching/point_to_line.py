@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from daidalos.mapping.compilation import compiled
+from daidalos.common.kernels import compiled
 from daidalos.mapping.scan_matching.buckets import Indices, Reference
 
 Array = NDArray[np.float64]

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from daidalos.mapping.compilation import compiled
+from daidalos.common.kernels import compiled
 from daidalos.navigation.controllers.controller import ControlInput, Controller, NoValidControl
 from daidalos.navigation.controllers.mppi.critics.cost_critic import CostCritic
 from daidalos.navigation.controllers.mppi.critics.critic import Critic, Scene

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from daidalos.mapping.pose2 import compose
+from daidalos.common.pose2 import compose
 from daidalos.navigation.controllers.controller import InvalidPath
 from daidalos.navigation.paths import distances_along
 

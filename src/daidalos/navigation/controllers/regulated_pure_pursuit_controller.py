@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from daidalos.mapping.pose2 import between
+from daidalos.common.pose2 import between
 from daidalos.navigation.controllers.controller import ControlInput, Controller, NoValidControl
 from daidalos.navigation.controllers.rotation import rotation_speed
 from daidalos.navigation.costmap.costmap import INSCRIBED_INFLATED_OBSTACLE, MAX_NON_OBSTACLE, NO_INFORMATION

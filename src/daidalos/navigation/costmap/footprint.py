@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from daidalos.mapping.compilation import compiled
-from daidalos.mapping.pose2 import transform_points
+from daidalos.common.kernels import compiled
+from daidalos.common.pose2 import transform_points
 from daidalos.navigation.costmap.costmap import (
     INSCRIBED_INFLATED_OBSTACLE,
     LETHAL_OBSTACLE,

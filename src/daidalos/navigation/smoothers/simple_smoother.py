@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from daidalos.mapping.compilation import compiled
+from daidalos.common.kernels import compiled
 from daidalos.navigation.costmap.costmap import INSCRIBED_INFLATED_OBSTACLE, NO_INFORMATION, Costmap, Costs
 from daidalos.navigation.paths import with_headings
 from daidalos.navigation.smoothers.smoother import Smoother

@@ -15,7 +15,7 @@ from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.time import Time
 from tf2_ros import Buffer, TransformException
 
-from daidalos.mapping.pose2 import between
+from daidalos.common.pose2 import between
 from daidalos.nodes.conversions import nanoseconds, pose2_of, pose2_of_transform
 
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)

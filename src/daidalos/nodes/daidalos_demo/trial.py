@@ -15,9 +15,9 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 from tf2_ros import Buffer, TransformListener
 
+from daidalos.common.pose2 import wrap
 from daidalos.description.footprint import Footprint, footprint
 from daidalos.mapping.grid import OccupancyGrid
-from daidalos.mapping.pose2 import wrap
 from daidalos.nodes.conversions import grid_array, pose2_of
 from daidalos.nodes.daidalos_demo._measuring import TruthRecorder
 from daidalos.nodes.daidalos_demo._robot import Robot

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from daidalos.description.pose import Pose, rotate
+from daidalos.common.pose3 import Pose, rotate
 from daidalos.simulation import Simulation
 from daidalos.simulation.errors import UnknownNameError
 

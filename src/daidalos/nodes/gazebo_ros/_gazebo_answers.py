@@ -174,7 +174,7 @@ def get_world_properties(simulation: Simulation, request: Any, response: Any) ->
 
 def push(simulation: Simulation, name: str, request: Any) -> None:
     """Push a link; the wrench is in the axes of the reference, the point in the link."""
-    from daidalos.description.pose import rotate
+    from daidalos.common.pose3 import rotate
 
     entity = _link(simulation, name)
     force, torque = vector_of(request.wrench.force), vector_of(request.wrench.torque)

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from daidalos.common.pose3 import Pose, Vector
 from daidalos.description.joint import JointType
-from daidalos.description.pose import Pose, Vector
 from daidalos.description.world import Physics
 from daidalos.nodes.gazebo_ros._entities import find_entity
 from daidalos.nodes.gazebo_ros._pacing import PacedSimulation

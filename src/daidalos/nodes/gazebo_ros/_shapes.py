@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.common.pose3 import Pose, Vector
 from daidalos.description.geometry import (
     Box,
     Capsule,
@@ -24,7 +25,6 @@ from daidalos.description.geometry import (
 )
 from daidalos.description.images import read_grey
 from daidalos.description.link import Link, Material, Rgba, Visual
-from daidalos.description.pose import Pose, Vector
 from daidalos.description.robot import Robot
 from daidalos.description.visuals import GREY, WHITE, visual_parts
 from daidalos.description.world import Model

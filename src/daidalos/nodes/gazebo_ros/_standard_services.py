@@ -23,7 +23,7 @@ from daidalos.simulation import Simulation
 from daidalos.simulation.errors import NameTakenError, SimulationError, UnknownNameError
 
 if TYPE_CHECKING:
-    from daidalos.description.pose import Pose
+    from daidalos.common.pose3 import Pose
     from daidalos.description.robot import Robot
     from daidalos.description.world import Model
 

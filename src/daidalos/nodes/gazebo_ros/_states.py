@@ -6,8 +6,8 @@ import math
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
+from daidalos.common.pose3 import Pose, Vector
 from daidalos.description.link import Rgba
-from daidalos.description.pose import Pose, Vector
 from daidalos.nodes.conversions import time_message
 
 if TYPE_CHECKING:

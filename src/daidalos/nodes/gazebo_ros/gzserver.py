@@ -250,7 +250,7 @@ class GzServer(Node):
         self._connect_switches(simulation)
         if ImageSample in wanted.values():
             # The first picture should not stop the world for seconds.
-            warm_up_in_background(_warm_up_cameras, self.get_logger())
+            warm_up_in_background("daidalos.simulation.rendering", self.get_logger())
 
     def _connect_switches(self, simulation: Simulation) -> None:
         """Offer the services of plugins."""
@@ -320,12 +320,6 @@ class GzServer(Node):
         self._paced.stop()
         self._companions.close()
         super().destroy_node()
-
-
-def _warm_up_cameras(progress: Callable[[float, str], None]) -> None:
-    from daidalos.simulation.rendering.warming import warm_up
-
-    warm_up(progress)
 
 
 def _has_subscribers(publisher: Any) -> bool:

@@ -78,7 +78,7 @@ def _from_topic(node: Any, topic: str, timeout: float) -> str:
 def _request(arguments: argparse.Namespace, text: str) -> Any:
     from gazebo_msgs.srv import SpawnEntity
 
-    from daidalos.description.pose import Pose
+    from daidalos.common.pose3 import Pose
     from daidalos.nodes.gazebo_ros._states import pose_message
 
     pose = Pose.from_xyz_rpy((arguments.x, arguments.y, arguments.z), (arguments.R, arguments.P, arguments.Y))

@@ -106,7 +106,7 @@ class CostmapNode(LifecycleNode):
         self.buffer = PatientBuffer(node=self)
         self._listener = TransformListener(self.buffer, self)
         self._sensor_poses: dict[str, Any] = {}
-        self._compiled = warm_up_in_background(_warm_up, self.get_logger())
+        self._compiled = warm_up_in_background("daidalos.navigation", self.get_logger())
         self._timers: list[Any] = []
         self._entities: list[Any] = []
 
@@ -358,9 +358,3 @@ class CostmapNode(LifecycleNode):
     def _on_get_costmap(self, request: Any, response: Any) -> Any:
         response.map = costmap_message(self.snapshot(), self.global_frame, self.get_clock().now().to_msg())
         return response
-
-
-def _warm_up(progress: Any) -> None:
-    from daidalos import navigation
-
-    navigation.warm_up(progress)

@@ -11,7 +11,7 @@ from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackRet
 from rclpy.time import Time
 from tf2_ros import TransformException
 
-from daidalos.mapping.pose2 import compose
+from daidalos.common.pose2 import compose
 from daidalos.navigation.errors import NavigationError
 from daidalos.navigation.planners.planner import GlobalPlanner
 from daidalos.navigation.plugins import find_plugin

@@ -118,7 +118,7 @@ def _create(arguments: argparse.Namespace) -> None:
     from ros_gz_interfaces.msg import EntityFactory
     from ros_gz_interfaces.srv import SpawnEntity
 
-    from daidalos.description.pose import Pose
+    from daidalos.common.pose3 import Pose
     from daidalos.nodes.gazebo_ros._states import pose_message
 
     rclpy.init()

@@ -82,7 +82,7 @@ class SlamToolbox(Node):
         self.create_service(SaveMap, "~/save_map", self._on_save)
         self.create_service(GetMap, "~/dynamic_map", self._on_get_map)
         self.create_service(Reset, "~/reset", self._on_reset)
-        warm_up_in_background(_warm_up, self.get_logger()).add_done_callback(self._begin)
+        warm_up_in_background("daidalos.mapping", self.get_logger()).add_done_callback(self._begin)
 
     def _begin(self, compiled: Future) -> None:
         """Take scans from now on."""
@@ -174,12 +174,6 @@ class SlamToolbox(Node):
         self._drawn_keys = -1
         response.result = response.RESULT_SUCCESS
         return response
-
-
-def _warm_up(progress: Any) -> None:
-    from daidalos import mapping
-
-    mapping.warm_up(progress)
 
 
 def main() -> int:

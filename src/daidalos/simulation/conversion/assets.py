@@ -12,8 +12,8 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.common.pose3 import Vector
 from daidalos.description.meshes import TriangleMesh
-from daidalos.description.pose import Vector
 from daidalos.simulation.conversion.convex import content_key, convex_parts
 
 MAX_HULL_VERTICES = 64

@@ -7,11 +7,11 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
+from daidalos.common.pose3 import Pose
 from daidalos.description.errors import DescriptionError
 from daidalos.description.geometry import Heightmap, Mesh, Plane
 from daidalos.description.joint import Joint, JointType
 from daidalos.description.link import Collision, Link, Surface
-from daidalos.description.pose import Pose
 from daidalos.description.world import Model
 from daidalos.simulation.conversion.assets import Assets
 from daidalos.simulation.conversion.contact import set_surface

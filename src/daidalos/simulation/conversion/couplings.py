@@ -6,8 +6,8 @@ from typing import Any
 
 import mujoco
 
+from daidalos.common.pose3 import Pose
 from daidalos.description.joint import Joint
-from daidalos.description.pose import Pose
 from daidalos.simulation.conversion.joints import add_joints
 
 SOLREF = (0.004, 1.0)

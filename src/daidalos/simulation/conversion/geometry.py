@@ -12,6 +12,7 @@ from typing import Any
 import mujoco
 import numpy as np
 
+from daidalos.common.pose3 import Pose, quaternion_between
 from daidalos.description.errors import DescriptionError
 from daidalos.description.geometry import (
     Box,
@@ -30,7 +31,6 @@ from daidalos.description.geometry import (
 )
 from daidalos.description.images import read_grey
 from daidalos.description.meshes import triangles_of
-from daidalos.description.pose import Pose, quaternion_between
 from daidalos.simulation.conversion.assets import Assets, Solid
 
 SOLID, SEEN, TOUCHED = 0, 1, 3

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.common.pose3 import Pose, Quaternion, multiply, quaternion_from_matrix
 from daidalos.description.link import Inertial
-from daidalos.description.pose import Pose, Quaternion, multiply, quaternion_from_matrix
 
 SMALLEST_MASS = 1e-3
 SMALLEST_INERTIA = 1e-9

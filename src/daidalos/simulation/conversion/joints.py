@@ -11,8 +11,8 @@ from typing import Any
 
 import mujoco
 
+from daidalos.common.pose3 import Pose, Vector, quaternion_between, rotate
 from daidalos.description.joint import Axis, Joint, JointType
-from daidalos.description.pose import Pose, Vector, quaternion_between, rotate
 
 _Type = mujoco.mjtJoint
 

@@ -7,8 +7,8 @@ from typing import Any
 
 import mujoco
 
+from daidalos.common.pose3 import Pose
 from daidalos.description.link import Inertial, Surface
-from daidalos.description.pose import Pose
 from daidalos.description.world import Model
 from daidalos.simulation.conversion.contact import set_friction
 from daidalos.simulation.conversion.inertia import PrincipalInertia, principal_inertia

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.common.pose3 import Pose, quaternion_between, rotate
 from daidalos.description.geometry import Cylinder, Mesh, Polyline
 from daidalos.description.joint import Joint, JointType
 from daidalos.description.link import Collision, Link
 from daidalos.description.meshes import triangles_of
-from daidalos.description.pose import Pose, quaternion_between, rotate
 
 _ALONG = 0.999
 _OFF_CENTRE = 0.02

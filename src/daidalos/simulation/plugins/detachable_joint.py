@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import mujoco
 
+from daidalos.common.pose3 import Pose
 from daidalos.description.link import Plugin as Description
-from daidalos.description.pose import Pose
 from daidalos.simulation.component import ComponentContext, Subscription
 from daidalos.simulation.instance import Instance, LinkView
 from daidalos.simulation.plugins.base import Plugin

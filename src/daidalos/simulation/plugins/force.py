@@ -6,8 +6,8 @@ from collections.abc import Iterable, Mapping
 
 import numpy as np
 
+from daidalos.common.pose3 import rotation_matrix
 from daidalos.description.link import Plugin as Description
-from daidalos.description.pose import rotation_matrix
 from daidalos.simulation.component import ComponentContext, Subscription
 from daidalos.simulation.instance import Instance
 from daidalos.simulation.plugins.base import Plugin

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from daidalos.common.pose3 import Pose
 from daidalos.description.link import Plugin as PluginDescription
 from daidalos.description.link import Sensor as SensorDescription
 from daidalos.description.markup import Element
-from daidalos.description.pose import Pose
 from daidalos.description.world import SphericalCoordinates
 from daidalos.simulation.component import Component, ComponentContext
 from daidalos.simulation.noise import Noise

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from daidalos.description.pose import Pose
+from daidalos.common.pose3 import Pose
 from daidalos.simulation.forces import Forces
 from daidalos.simulation.instance import LinkView
 

@@ -7,9 +7,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from daidalos.common.pose3 import Pose
 from daidalos.description.link import Plugin as Description
 from daidalos.description.markup import Element
-from daidalos.description.pose import Pose
 from daidalos.simulation.component import ComponentContext
 from daidalos.simulation.instance import Instance
 from daidalos.simulation.odometry import transform_of

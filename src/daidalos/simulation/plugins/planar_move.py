@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.common.pose3 import Pose, rotation_matrix
 from daidalos.description.link import Plugin as Description
-from daidalos.description.pose import Pose, rotation_matrix
 from daidalos.simulation.component import ComponentContext, Subscription
 from daidalos.simulation.instance import Instance
 from daidalos.simulation.odometry import transform_of

@@ -6,9 +6,9 @@ from collections.abc import Iterable, Mapping
 
 import numpy as np
 
+from daidalos.common.pose3 import Pose
 from daidalos.description.joint import JointType
 from daidalos.description.link import Plugin as Description
-from daidalos.description.pose import Pose
 from daidalos.simulation.component import ComponentContext
 from daidalos.simulation.instance import Instance
 from daidalos.simulation.plugins.base import Plugin

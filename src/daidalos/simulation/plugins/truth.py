@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 
 import numpy as np
 
-from daidalos.description.pose import Pose, Quaternion, rotate
+from daidalos.common.pose3 import Pose, Quaternion, rotate
 from daidalos.simulation.instance import Instance, LinkView
 from daidalos.simulation.odometry import Array, planar_covariance
 from daidalos.simulation.samples import OdometrySample, TransformSample

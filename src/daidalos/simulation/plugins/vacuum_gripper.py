@@ -9,8 +9,8 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.common.pose3 import Pose
 from daidalos.description.link import Plugin as Description
-from daidalos.description.pose import Pose
 from daidalos.simulation.component import ComponentContext, Switch
 from daidalos.simulation.instance import Instance, LinkView
 from daidalos.simulation.plugins.base import Plugin

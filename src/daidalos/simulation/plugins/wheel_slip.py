@@ -8,11 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.common.pose3 import rotate
 from daidalos.description.geometry import Cylinder, Sphere
 from daidalos.description.link import Link, Surface
 from daidalos.description.link import Plugin as Description
 from daidalos.description.markup import Element
-from daidalos.description.pose import rotate
 from daidalos.simulation.component import ComponentContext
 from daidalos.simulation.conversion.contact import DEFAULT_FRICTION, set_friction
 from daidalos.simulation.conversion.model_build import ModelBuild

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from daidalos.description.pose import Pose
+from daidalos.common.pose3 import Pose
 from daidalos.simulation.noise import SILENT, Noise
 from daidalos.simulation.physics import Physics
 from daidalos.simulation.rendering.backends import make_renderer

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from daidalos.simulation.rendering.compilation import compiled
+from daidalos.common.kernels import compiled
 
 
 @compiled

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from daidalos.simulation.rendering.compilation import compiled, compiled_in_place
+from daidalos.common.kernels import compiled
 from daidalos.simulation.rendering.raster import cut, rows_of, transform_vertices
 
 
@@ -86,7 +86,7 @@ def draw_flat(
             )  # fmt: skip
 
 
-@compiled_in_place
+@compiled(fastmath=True, inline=True)
 def fill_flat(
     a0: Any,
     b0: Any,

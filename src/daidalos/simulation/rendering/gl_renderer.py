@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.common.pose3 import Pose, rotate
 from daidalos.description.link import Light
-from daidalos.description.pose import Pose, rotate
 from daidalos.simulation.rendering import shaders
 from daidalos.simulation.rendering.lighting import Lighting
 from daidalos.simulation.rendering.optics import OPTICAL, Pinhole

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from daidalos.common.pose3 import Pose
 from daidalos.description.link import Light, Rgba
-from daidalos.description.pose import Pose
 
 
 @dataclass(frozen=True)

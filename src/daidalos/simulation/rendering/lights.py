@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from daidalos.simulation.rendering.compilation import compiled_loosely
+from daidalos.common.kernels import compiled
 
 LIGHT_SIZE = 18
 """Numbers that describe a light: type, position, direction, colour, range, fading (3), cosines of the cone (2),
@@ -14,7 +14,7 @@ falloff, whether it is on."""
 POINT, SPOT, DIRECTIONAL = 0.0, 1.0, 2.0
 
 
-@compiled_loosely
+@compiled(fastmath=True)
 def light_intensity(light: Any, x: Any, y: Any, z: Any, nx: Any, ny: Any, nz: Any) -> Any:
     """Return the intensity of a light at the point (x, y, z) of a surface with normal (nx, ny, nz)."""
     if light[17] == 0.0:

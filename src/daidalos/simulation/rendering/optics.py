@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from daidalos.description.pose import Pose, quaternion_from_rpy
+from daidalos.common.pose3 import Pose, quaternion_from_rpy
 
 Array = NDArray[np.float64]
 

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from daidalos.simulation.rendering.compilation import compiled, compiled_in_place
+from daidalos.common.kernels import compiled
 
 NOTHING = -1
 """In a buffer of triangles: the background."""
@@ -185,7 +185,7 @@ def draw(
             )  # fmt: skip
 
 
-@compiled_in_place
+@compiled(fastmath=True, inline=True)
 def draw_face(
     face: Any,
     i: Any,
@@ -263,7 +263,7 @@ def draw_face(
         flipped[face] = det > 0.0
 
 
-@compiled_in_place
+@compiled(fastmath=True, inline=True)
 def fill(
     inverse: Any, triangles: Any, row: Any, start: Any, stop: Any, value: Any, change: Any, face: Any, nearest: Any
 ) -> None:
@@ -283,7 +283,7 @@ def fill(
             triangles[row, start + offset] = face
 
 
-@compiled_in_place
+@compiled(fastmath=True, inline=True)
 def cut(slope_x: Any, slope_y: Any, offset: Any) -> Any:
     """Return where slope_x * x + slope_y * row + offset becomes positive, and where it ends to be: two lines over rows.
 
@@ -299,7 +299,7 @@ def cut(slope_x: Any, slope_y: Any, offset: Any) -> Any:
     return 0.0, -np.inf, 0.0, np.inf
 
 
-@compiled_in_place
+@compiled(fastmath=True, inline=True)
 def rows_of(slope_x: Any, slope_y: Any, offset: Any, first: Any, end: Any) -> Any:
     """Narrow a range of rows to where a level edge leaves the inside; others leave all of them."""
     if slope_x == 0.0:

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.common.pose3 import Pose, rotate
 from daidalos.description.link import Light, Rgba
-from daidalos.description.pose import Pose, rotate
 from daidalos.simulation.rendering.film import depths_of
 from daidalos.simulation.rendering.lighting import Lighting
 from daidalos.simulation.rendering.lights import DIRECTIONAL, LIGHT_SIZE, POINT, SPOT

@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.common.pose3 import Pose
 from daidalos.description.errors import DescriptionError
 from daidalos.description.geometry import Mesh
 from daidalos.description.link import Visual
-from daidalos.description.pose import Pose
 from daidalos.description.visuals import Part, visual_parts
 from daidalos.simulation.rendering.textures import TextureAtlas, make_atlas
 

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from daidalos.simulation.rendering.compilation import compiled_loosely
+from daidalos.common.kernels import compiled
 from daidalos.simulation.rendering.lights import light_intensity
 from daidalos.simulation.rendering.sunlight import aim_at_shadow, clear, sunshine
 from daidalos.simulation.rendering.textures import mip_level, sample
@@ -19,7 +19,7 @@ from daidalos.simulation.rendering.textures import mip_level, sample
 _RUN = 32
 
 
-@compiled_loosely
+@compiled(fastmath=True)
 def shade(
     triangles: Any,
     inverse: Any,
@@ -190,7 +190,7 @@ def shade(
                         put_one(line, x, ar + g * sr + gr, ag + g * sg + gg, ab + g * sb + gb, alpha)
 
 
-@compiled_loosely
+@compiled(fastmath=True)
 def paint_rich(
     line: Any,
     depths: Any,
@@ -268,7 +268,7 @@ def paint_rich(
                 colors[part, 2] * blue + emissions[part, 2], alpha)  # fmt: skip
 
 
-@compiled_loosely
+@compiled(fastmath=True)
 def fill_background(line: Any, start: Any, stop: Any, dy: Any, fx: Any, cx: Any, background: Any, horizon: Any) -> None:
     """Colour the sky: one colour, or two that blend with the height over the horizon."""
     r0, g0, b0 = background[0, 0], background[0, 1], background[0, 2]
@@ -283,7 +283,7 @@ def fill_background(line: Any, start: Any, stop: Any, dy: Any, fx: Any, cx: Any,
         put_one(line, x, r0 + share * (r1 - r0), g0 + share * (g1 - g0), b0 + share * (b1 - b0), np.float32(1.0))
 
 
-@compiled_loosely
+@compiled(fastmath=True)
 def put(line: Any, start: Any, stop: Any, red: Any, green: Any, blue: Any, alpha: Any) -> None:
     """Give a run of pixels one colour."""
     if alpha >= 1.0:
@@ -295,7 +295,7 @@ def put(line: Any, start: Any, stop: Any, red: Any, green: Any, blue: Any, alpha
             put_one(line, x, red, green, blue, alpha)
 
 
-@compiled_loosely
+@compiled(fastmath=True)
 def put_one(line: Any, x: Any, red: Any, green: Any, blue: Any, alpha: Any) -> None:
     """Give one pixel a colour, mixed with what is there."""
     if alpha < 1.0:
@@ -306,7 +306,7 @@ def put_one(line: Any, x: Any, red: Any, green: Any, blue: Any, alpha: Any) -> N
     line[x, 0], line[x, 1], line[x, 2] = byte(red), byte(green), byte(blue)
 
 
-@compiled_loosely
+@compiled(fastmath=True)
 def byte(value: Any) -> Any:
     """Return 0..1 as 0..255."""
     return np.uint8(min(max(value, np.float32(0.0)), np.float32(1.0)) * np.float32(255.0) + np.float32(0.5))

@@ -9,14 +9,14 @@ from typing import Any
 
 import numpy as np
 
-from daidalos.simulation.rendering.compilation import compiled, compiled_in_place, compiled_loosely
+from daidalos.common.kernels import compiled
 
 BLOCK_BITS = 4
 _MAX_BLOCKS = 16
 """A run of pixels that lies in more blocks than this is asked pixel by pixel."""
 
 
-@compiled_loosely
+@compiled(fastmath=True)
 def aim_at_shadow(to_shadow: Any, offset: Any, pose: Any, nx: Any, ny: Any, nz: Any, dy: Any, fx: Any, cx: Any) -> Any:
     """Return where in the shadow map the pixels x of a row are: (a x + b) z + c, for each of column, row and depth.
 
@@ -39,7 +39,7 @@ def aim_at_shadow(to_shadow: Any, offset: Any, pose: Any, nx: Any, ny: Any, nz: 
     )
 
 
-@compiled_loosely
+@compiled(fastmath=True)
 def clear(shadow: Any, coarse: Any, aim: Any, first: Any, inverse_first: Any, last: Any, inverse_last: Any) -> Any:
     """Tell whether nothing can shade the pixels between two of a row that see one triangle.
 
@@ -64,7 +64,7 @@ def clear(shadow: Any, coarse: Any, aim: Any, first: Any, inverse_first: Any, la
     return True
 
 
-@compiled_in_place
+@compiled(fastmath=True, inline=True)
 def sunshine(shadow: Any, aim: Any, x: Any, inverse: Any) -> Any:
     """Return how much of the sun reaches what a pixel sees."""
     z = 1.0 / inverse
@@ -74,7 +74,7 @@ def sunshine(shadow: Any, aim: Any, x: Any, inverse: Any) -> Any:
     )  # fmt: skip
 
 
-@compiled_in_place
+@compiled(fastmath=True, inline=True)
 def visibility(shadow: Any, x: Any, y: Any, depth: Any) -> Any:
     """Return how much of the sun reaches a place: the mean of four comparisons, weighted by nearness."""
     rows, columns = shadow.shape

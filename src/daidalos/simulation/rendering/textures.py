@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from daidalos.simulation.rendering.compilation import compiled_loosely
+from daidalos.common.kernels import compiled
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,7 +67,7 @@ def _halved(image: NDArray[np.uint8]) -> NDArray[np.uint8]:
     return ((pairs[:, 0::2] + pairs[:, 1::2] + 2) // 4).astype(np.uint8)
 
 
-@compiled_loosely
+@compiled(fastmath=True)
 def mip_level(levels: Any, texture: Any, ux: Any, vx: Any, uy: Any, vy: Any) -> Any:
     """Return the row of the level whose texels are about as large as pixels."""
     first, count = texture[0], texture[1]
@@ -80,7 +80,7 @@ def mip_level(levels: Any, texture: Any, ux: Any, vx: Any, uy: Any, vy: Any) -> 
     return first + min(count - 1, int(0.5 * math.log2(size) + 0.5))
 
 
-@compiled_loosely
+@compiled(fastmath=True)
 def sample(texels: Any, level: Any, u: Any, v: Any) -> Any:
     """Return the colour of a texture that repeats, between its four nearest texels."""
     first, width, height = level[0], level[1], level[2]

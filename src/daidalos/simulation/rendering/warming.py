@@ -1,30 +1,24 @@
-"""Compiling the renderer's loops ahead of the first picture."""
+"""Compilation of the renderer's kernels ahead of the first picture."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Iterator
 
 import numpy as np
 
+from daidalos.common.pose3 import Pose
 from daidalos.description.geometry import Box, Plane
 from daidalos.description.link import Light, Material, Visual
-from daidalos.description.pose import Pose
-from daidalos.simulation.rendering.film import add_noise, bend, pick, points_of
+from daidalos.simulation.rendering.film import add_noise, bend, mosaic, pick, points_of
 from daidalos.simulation.rendering.lighting import Lighting
 from daidalos.simulation.rendering.optics import Pinhole
 from daidalos.simulation.rendering.renderer import Renderer
 from daidalos.simulation.rendering.scene import Item, make_scene
 
 
-def warm_up(progress: Callable[[float, str], None] = lambda share, step: None) -> None:
-    """Draw a tiny picture of everything once.
-
-    Parameters
-    ----------
-    progress : callable
-        Takes the share done, from 0 to 1, and the next step.
-    """
-    progress(0.0, "triangles")
+def steps() -> Iterator[tuple[float, str]]:
+    """Draw a tiny picture of everything once; see `daidalos.common.kernels.warm_up`."""
+    yield 0.0, "triangles"
     pinhole = Pinhole.from_field_of_view(8, 6, 1.0)
     renderer = Renderer(pinhole, 0.1, 10.0)
     red = Material("red", (1.0, 0.0, 0.0, 1.0))
@@ -32,14 +26,14 @@ def warm_up(progress: Callable[[float, str], None] = lambda share, step: None) -
     scene = make_scene([Item(visual, 0, i, 0) for i, visual in enumerate(visuals)], lambda line: None)
     positions, rotations = np.zeros((1, 3)), np.eye(3).reshape(1, 9)
     view = renderer.render(scene, positions, rotations, Pose((0.0, 0.0, 1.0)))
-    progress(0.4, "light and shadow")
+    yield 0.4, "light and shadow"
     sun = Light("sun", "directional", cast_shadows=True, direction=(1.0, 0.0, -1.0))
     picture = renderer.paint(positions, rotations, Lighting([(sun, Pose())]))
-    progress(0.8, "lenses")
+    yield 0.8, "lenses"
     bent = np.zeros_like(picture)
     bend(picture, pinhole.lookup, bent)
     depth = view.depth()
     points_of(depth, pinhole.rays, np.zeros((6, 8, 3), dtype=np.float32))
     pick(depth, pinhole.lookup, np.zeros((6, 8), dtype=np.float32))
+    mosaic(bent, np.zeros((2, 2), dtype=np.int64), np.zeros((6, 8), dtype=np.uint8))
     add_noise(bent.reshape(-1), np.zeros(4, dtype=np.float32), 0)
-    progress(1.0, "ready")

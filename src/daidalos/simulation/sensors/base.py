@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, ClassVar
 
+from daidalos.common.pose3 import Pose
 from daidalos.description.link import Sensor as Description
 from daidalos.description.markup import Element
-from daidalos.description.pose import Pose
 from daidalos.simulation.component import Component, ComponentContext
 from daidalos.simulation.samples import Sample
 from daidalos.simulation.topics import absolute_topic

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from daidalos.common.pose3 import Pose
 from daidalos.description.markup import Element
-from daidalos.description.pose import Pose
 from daidalos.description.sdf.frames import read_pose
 from daidalos.simulation.noise import SILENT, Noise, read_noise
 from daidalos.simulation.rendering.optics import Pinhole

@@ -7,8 +7,8 @@ from collections.abc import Iterable, Mapping
 import mujoco
 import numpy as np
 
+from daidalos.common.pose3 import Pose, rotation_matrix
 from daidalos.description.markup import Element
-from daidalos.description.pose import Pose, rotation_matrix
 from daidalos.simulation.instance import Instance
 from daidalos.simulation.noise import Noise
 from daidalos.simulation.samples import Sample, WrenchSample

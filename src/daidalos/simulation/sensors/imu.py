@@ -7,8 +7,8 @@ from collections.abc import Iterable, Mapping
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.common.pose3 import Pose, Quaternion, multiply, rotation_matrix
 from daidalos.description.markup import Element
-from daidalos.description.pose import Pose, Quaternion, multiply, rotation_matrix
 from daidalos.simulation.noise import Noise, read_noise
 from daidalos.simulation.samples import ImuSample, Sample
 from daidalos.simulation.sensors.noisy import Biases, NoisySensor, noise_of_axes

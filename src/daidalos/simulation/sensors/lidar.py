@@ -10,9 +10,9 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.common.pose3 import rotation_matrix
 from daidalos.description.link import Sensor as Description
 from daidalos.description.markup import Element
-from daidalos.description.pose import rotation_matrix
 from daidalos.simulation.component import ComponentContext
 from daidalos.simulation.conversion.geometry import RAY_GROUPS
 from daidalos.simulation.instance import Instance

@@ -7,8 +7,8 @@ from collections.abc import Iterable, Mapping
 
 import numpy as np
 
+from daidalos.common.pose3 import Pose, rotation_matrix
 from daidalos.description.markup import Element
-from daidalos.description.pose import Pose, rotation_matrix
 from daidalos.simulation.instance import LinkView
 from daidalos.simulation.samples import LogicalImageSample, Sample
 from daidalos.simulation.sensors.base import Sensor

@@ -6,8 +6,8 @@ from collections.abc import Iterable, Mapping
 
 import numpy as np
 
+from daidalos.common.pose3 import rotate
 from daidalos.description.markup import Element
-from daidalos.description.pose import rotate
 from daidalos.simulation.noise import Noise
 from daidalos.simulation.samples import MagneticFieldSample, Sample
 from daidalos.simulation.sensors.noisy import NoisySensor, noise_of_axes

@@ -6,8 +6,8 @@ from collections.abc import Iterable, Mapping
 
 import numpy as np
 
+from daidalos.common.pose3 import rotate
 from daidalos.description.markup import Element
-from daidalos.description.pose import rotate
 from daidalos.description.world import SphericalCoordinates
 from daidalos.simulation.geodesy import to_east_north_up, to_geodetic
 from daidalos.simulation.noise import Noise

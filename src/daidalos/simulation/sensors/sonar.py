@@ -8,8 +8,8 @@ from collections.abc import Iterable, Mapping
 import mujoco
 import numpy as np
 
+from daidalos.common.pose3 import rotation_matrix
 from daidalos.description.markup import Element
-from daidalos.description.pose import rotation_matrix
 from daidalos.simulation.conversion.geometry import RAY_GROUPS
 from daidalos.simulation.noise import read_noise
 from daidalos.simulation.samples import RangeSample, Sample

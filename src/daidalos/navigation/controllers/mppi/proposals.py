@@ -5,7 +5,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from daidalos.mapping.compilation import compiled
+from daidalos.common.kernels import compiled
 from daidalos.navigation.controllers.mppi.rollouts import Limits, Samples
 
 Array = NDArray[np.float64]

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from daidalos.mapping.pose2 import wrap
+from daidalos.common.pose2 import wrap
 from daidalos.navigation.controllers.plugins.simple_progress_checker import (
     SimpleProgressChecker,
     SimpleProgressCheckerParameters,

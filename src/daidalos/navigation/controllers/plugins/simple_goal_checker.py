@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from daidalos.mapping.pose2 import wrap
+from daidalos.common.pose2 import wrap
 from daidalos.navigation.controllers.plugins.goal_checker import GoalChecker
 
 Array = NDArray[np.float64]

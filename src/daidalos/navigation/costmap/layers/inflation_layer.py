@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from daidalos.mapping.compilation import compiled
+from daidalos.common.kernels import compiled
 from daidalos.navigation.costmap.costmap import (
     FREE_SPACE,
     INSCRIBED_INFLATED_OBSTACLE,

@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from daidalos.mapping.compilation import compiled
-from daidalos.mapping.pose2 import compose
+from daidalos.common.kernels import compiled
+from daidalos.common.pose2 import compose
 from daidalos.mapping.scan import LaserScanData
 from daidalos.navigation.costmap.costmap import (
     FREE_SPACE,

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from daidalos.mapping.pose2 import wrap
+from daidalos.common.pose2 import wrap
 from daidalos.navigation.controllers.mppi.critics.critic import Critic, Scene
 from daidalos.navigation.controllers.mppi.rollouts import Rollouts
 

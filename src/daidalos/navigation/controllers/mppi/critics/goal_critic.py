@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from daidalos.mapping.compilation import compiled
+from daidalos.common.kernels import compiled
 from daidalos.navigation.controllers.mppi.critics.critic import Critic, Scene
 from daidalos.navigation.controllers.mppi.rollouts import Rollouts, Samples
 

@@ -4,7 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from daidalos.mapping import pose2
+from daidalos.common import pose2
 
 poses = arrays(np.float64, 3, elements=st.floats(-50.0, 50.0))
 

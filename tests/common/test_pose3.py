@@ -4,7 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from daidalos.description.pose import (
+from daidalos.common.pose3 import (
     Pose,
     quaternion_between,
     quaternion_from_matrix,
