@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -24,3 +25,12 @@ def test_a_tool_has_nothing_to_say(name: str) -> None:
     program, *arguments = TOOLS[name]
     done = subprocess.run([SCRIPTS / program, *arguments], cwd=REPOSITORY, capture_output=True, text=True)
     assert done.returncode == 0, done.stdout[-5000:] + done.stderr[-2000:]
+
+
+def test_the_layers_know_every_package_of_ours() -> None:
+    settings = tomllib.loads((REPOSITORY / "pyproject.toml").read_text(encoding="utf-8"))["tool"]
+    packages = {path.parent.name for path in (REPOSITORY / "src/ros").glob("*/__init__.py")}
+    linter = settings["importlinter"]
+    assert set(linter["root_packages"]) == {"daidalos", *packages}
+    layered = {name.strip() for layer in linter["contracts"][0]["layers"] for name in layer.split("|")}
+    assert packages <= layered

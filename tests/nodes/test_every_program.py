@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from daidalos.nodes.executables import executables
+from daidalos.workspaces.executables import executables
 from nodes.terminal import Terminal, until_shown
 
 pytestmark = pytest.mark.slow

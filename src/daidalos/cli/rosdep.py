@@ -9,7 +9,7 @@ import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from daidalos.cli.ros2.suggestions import hint_line
+from daidalos.common.suggestions import hint_line
 from daidalos.workspaces.errors import WorkspaceError
 from daidalos.workspaces.rosdep.keys import Answer, Resolution, resolve
 from daidalos.workspaces.rosdep.packages import TYPES, Needs, find

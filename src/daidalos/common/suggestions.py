@@ -30,6 +30,18 @@ def hint(name: str, known: Iterable[str]) -> str:
     return f"; there are: {', '.join(names) or 'none'}" if len(names) <= MAX_LISTED else ""
 
 
+def did_you_mean(name: str, known: Iterable[str]) -> str:
+    """Return a line, with the line break before it, that suggests near names; empty where there are none."""
+    names = near(name, known)
+    return f"\nDid you mean {' or '.join(repr(one) for one in names)}?" if names else ""
+
+
+def hint_line(name: str, known: Iterable[str]) -> str:
+    """Return a whole line that suggests near names; empty where there are none."""
+    text = did_you_mean(name, known).removeprefix("\n")
+    return f"{text}\n" if text else ""
+
+
 def _likeness(one: str, other: str) -> float:
     leaf = SequenceMatcher(None, _leaf(one), _leaf(other)).ratio()
     return LEAF_WEIGHT * leaf + (1.0 - LEAF_WEIGHT) * SequenceMatcher(None, one, other).ratio()

@@ -7,7 +7,7 @@ from importlib import import_module
 from importlib.metadata import entry_points
 from typing import Any
 
-from daidalos.nodes.executables import BUILT_IN
+from daidalos.workspaces.executables import BUILT_IN
 
 ENTRY_POINTS = "rclpy_components"
 """Group of entry points by which packages offer components: ``package::Class = module:Class``."""

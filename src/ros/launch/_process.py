@@ -17,7 +17,7 @@ from collections.abc import Callable, Coroutine, Generator
 from contextlib import AbstractContextManager
 from typing import Any
 
-from daidalos.nodes.executables import interrupts_blocked
+from daidalos.workspaces.executables import interrupts_blocked
 
 from ._programs import search_path, which
 

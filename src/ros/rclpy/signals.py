@@ -95,7 +95,7 @@ def _on_signal(number: int, frame: FrameType | None) -> None:
         guard.trigger()
     previous = _previous.get(number)
     if number == signal.SIGINT and previous == signal.SIG_DFL:
-        # Nobody had set a handler that stands in for Python's own, only kept it quiet (see daidalos.nodes.start).
+        # Nobody had set a handler that stands in for Python's own, only kept it quiet while modules were imported.
         previous = signal.default_int_handler
     if callable(previous):
         previous(number, frame)

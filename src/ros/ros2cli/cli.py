@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from importlib.metadata import entry_points
 
 
 def main(*, script_name: str = "ros2", argv: Sequence[str] | None = None) -> int:
-    """Run a command line; returns the exit status.
+    """Run the installed command `ros2` and return its exit status.
 
     Parameters
     ----------
@@ -15,6 +16,6 @@ def main(*, script_name: str = "ros2", argv: Sequence[str] | None = None) -> int
     argv
         The arguments; those of the process where None.
     """
-    from daidalos.cli.ros2 import main as run
-
-    return run(None if argv is None else list(argv))
+    (program,) = entry_points(group="console_scripts", name="ros2")
+    status: int = program.load()(None if argv is None else list(argv))
+    return status

@@ -6,8 +6,8 @@ from argparse import ArgumentParser, Namespace
 from collections.abc import Sequence
 from typing import Any, ClassVar, cast
 
-from daidalos.cli.ros2.extension import Extensions
-from daidalos.cli.ros2.parser import Parser
+from ros2cli.extensions import Extensions
+from ros2cli.parser import Parser
 from ros2cli.plugin_system import PLUGIN_SYSTEM_VERSION, satisfies_version
 
 

@@ -11,11 +11,22 @@ from ros2cli.node.strategy import NodeStrategy
 NamesAndTypes = list[tuple[str, list[str]]]
 
 
-def visible(found: NamesAndTypes, include_hidden: bool) -> NamesAndTypes:
-    """Return what has no part that begins with an underscore, or all."""
-    from rclpy.topic_or_service_is_hidden import topic_or_service_is_hidden
+def is_hidden(name: str) -> bool:
+    """Return whether a token of the name of a topic, a service or a node begins with an underscore."""
+    return any(token.startswith("_") for token in name.split("/"))
 
-    return [one for one in found if include_hidden or not topic_or_service_is_hidden(one[0])]
+
+def visible(found: NamesAndTypes, include_hidden: bool) -> NamesAndTypes:
+    """Return what is not hidden, or all.
+
+    Parameters
+    ----------
+    found
+        Topics or services with their types.
+    include_hidden
+        Whether to return all.
+    """
+    return found if include_hidden else [(name, types) for name, types in found if not is_hidden(name)]
 
 
 def class_of(

@@ -4,11 +4,12 @@ import pytest
 from geometry_msgs.msg import Twist
 from hypothesis import given
 from hypothesis import strategies as st
+from ros2cli.interfaces import prototype
 from std_msgs.msg import Header, Int8
 
 from daidalos.cli.ros2.errors import CliError
 from daidalos.cli.ros2.interface.show import Comments, definition_lines, nested_type
-from daidalos.cli.ros2.interfaces import fill, message_class, parse_values, prototype, service_class
+from daidalos.cli.ros2.interfaces import fill, message_class, parse_values, service_class
 
 
 def test_values_are_a_dictionary():

@@ -1,8 +1,9 @@
 import pytest
+from ros2cli.extensions import first_line
+from ros2cli.parser import Parser
 
 from daidalos.cli.ros2 import commands, main
-from daidalos.cli.ros2.extension import first_line
-from daidalos.cli.ros2.parser import Parser, make_command
+from daidalos.cli.ros2.extension import make_command
 from daidalos.cli.ros2.verbs import VerbCommand
 
 NAMES = sorted(commands.BUILT_IN)

@@ -21,7 +21,7 @@ from launch.descriptions import Executable
 from launch.event_handlers import OnProcessIO
 from launch.substitutions import EnvironmentVariable, LaunchConfiguration
 
-from daidalos.nodes.executables import find_executable
+from daidalos.workspaces.executables import find_executable
 from ros.launched_processes import posix
 
 # Running ----------------------------------------------------------------------------------------------

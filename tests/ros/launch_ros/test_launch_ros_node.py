@@ -40,7 +40,7 @@ def context():
 @pytest.fixture
 def show_arguments(monkeypatch):
     """Let every executable be a program that prints its arguments."""
-    module = types.ModuleType("daidalos.nodes.executables")
+    module = types.ModuleType("daidalos.workspaces.executables")
 
     def find_executable(package, executable):
         if package != "pkg":
@@ -48,7 +48,7 @@ def show_arguments(monkeypatch):
         return [sys.executable, "-u", "-c", SHOW]
 
     module.find_executable = find_executable
-    monkeypatch.setitem(sys.modules, "daidalos.nodes.executables", module)
+    monkeypatch.setitem(sys.modules, "daidalos.workspaces.executables", module)
 
 
 def command_line(context, node):

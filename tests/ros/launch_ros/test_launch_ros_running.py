@@ -72,10 +72,10 @@ except KeyboardInterrupt:
 def programs(monkeypatch):
     """Let executables be the programs above, in a ROS domain of their own."""
     monkeypatch.setenv("ROS_DOMAIN_ID", str(uuid.uuid4().int % 90 + 10))
-    module = types.ModuleType("daidalos.nodes.executables")
+    module = types.ModuleType("daidalos.workspaces.executables")
     texts = {"managed": MANAGED, "container": CONTAINER}
     module.find_executable = lambda package, executable: [sys.executable, "-u", "-c", texts[executable]]
-    monkeypatch.setitem(sys.modules, "daidalos.nodes.executables", module)
+    monkeypatch.setitem(sys.modules, "daidalos.workspaces.executables", module)
 
 
 def run(*entities, expected=0):

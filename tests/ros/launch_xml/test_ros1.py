@@ -34,9 +34,9 @@ print('RAN ' + json.dumps([sys.argv[1], arguments[:end], remaps, parameters]))
 @pytest.fixture
 def ran(monkeypatch, capsys, run_text):
     """Run the text of a launch file; return what each node was given: arguments, remappings, parameters."""
-    module = types.ModuleType("daidalos.nodes.executables")
+    module = types.ModuleType("daidalos.workspaces.executables")
     module.find_executable = lambda package, executable: [sys.executable, "-c", SHOW, f"{package}/{executable}"]
-    monkeypatch.setitem(sys.modules, "daidalos.nodes.executables", module)
+    monkeypatch.setitem(sys.modules, "daidalos.workspaces.executables", module)
     monkeypatch.setenv("OVERRIDE_LAUNCH_PROCESS_OUTPUT", "screen")
 
     def run(text, **configurations):

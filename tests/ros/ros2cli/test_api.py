@@ -179,7 +179,7 @@ def test_parameters(node, robot, tmp_path, capsys):
 
 
 def test_a_node_that_is_not_there(node, monkeypatch):
-    monkeypatch.setattr("daidalos.cli.ros2.services.call.__kwdefaults__", {"ready_s": 0.05, "answer_s": None})
+    monkeypatch.setattr("ros2cli.services.call.__kwdefaults__", {"ready_s": 0.05, "answer_s": None})
     with pytest.raises(RuntimeError, match="Wait for service '/nobody/list_parameters' timed out"):
         params.call_list_parameters(node=node, node_name="/nobody")
 

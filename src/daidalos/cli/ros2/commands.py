@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from importlib import import_module
 
-from daidalos.cli.ros2.extension import COMMAND_GROUP, Command, Extensions
+from ros2cli.extensions import Extensions
+
+from daidalos.cli.ros2.extension import COMMAND_GROUP, Command
 from daidalos.cli.ros2.verbs import class_name
 
 BUILT_IN = {

@@ -6,8 +6,10 @@ from argparse import Action, Namespace
 from collections.abc import Callable, Iterable
 from typing import Any
 
+from ros2cli.graph import NamesAndTypes
+
 from daidalos.cli.ros2 import graph as graphs
-from daidalos.cli.ros2.direct import graph_view
+from daidalos.cli.ros2.graph_view import graph_view
 from daidalos.transport.graph import Graph
 
 Completer = Callable[..., Iterable[str]]
@@ -51,7 +53,7 @@ def complete_types(action: Action, kind: str, name_key: str | None = None) -> Ac
     """Complete to types of a kind (``msg``, ``srv``, ``action``), to those of what an argument names if it is there."""
 
     def names(parsed_args: Namespace, **_: Any) -> list[str]:
-        from daidalos.cli.ros2.interfaces import interface_names
+        from ros2cli.interfaces import interface_names
 
         name = getattr(parsed_args, name_key, None) if name_key else None
         if name:
@@ -68,7 +70,7 @@ def complete_values(action: Action, type_key: str) -> Action:
     """Complete to the default values of the type that another argument names."""
 
     def values(parsed_args: Namespace, **_: Any) -> list[str]:
-        from daidalos.cli.ros2.interfaces import prototype
+        from ros2cli.interfaces import prototype
 
         return [prototype(getattr(parsed_args, type_key))]
 
@@ -90,20 +92,20 @@ def complete_executables(action: Action, package_key: str = "package_name") -> A
     """Complete to the executables of the package that another argument names."""
 
     def names(parsed_args: Namespace, **_: Any) -> list[str]:
-        from daidalos.nodes.executables import executables
+        from daidalos.workspaces.executables import executables
 
         return executables(getattr(parsed_args, package_key))
 
     return complete(action, names)
 
 
-_LISTS: dict[str, Callable[[Graph], graphs.NamesAndTypes]] = {
+_LISTS: dict[str, Callable[[Graph], NamesAndTypes]] = {
     "msg": graphs.topics,
     "srv": graphs.services,
     "action": graphs.all_actions,
 }
 
 
-def _names(parsed_args: Namespace, list_of: Callable[..., graphs.NamesAndTypes], hidden_key: str) -> list[str]:
+def _names(parsed_args: Namespace, list_of: Callable[..., NamesAndTypes], hidden_key: str) -> list[str]:
     with graph_view(parsed_args) as graph:
         return [name for name, _ in list_of(graph, getattr(parsed_args, hidden_key, False))]

@@ -5,11 +5,12 @@ from __future__ import annotations
 from argparse import ArgumentParser, Namespace
 from typing import TYPE_CHECKING, Any
 
+from ros2cli.services import call
+
 from daidalos.cli.ros2.completion import complete, complete_packages
 from daidalos.cli.ros2.errors import CliError
 from daidalos.cli.ros2.graph import absolute
-from daidalos.cli.ros2.services import call
-from daidalos.cli.ros2.suggestions import did_you_mean
+from daidalos.common.suggestions import did_you_mean
 from daidalos.transport.graph import EndpointKind, Graph
 
 if TYPE_CHECKING:
@@ -24,7 +25,7 @@ def add_container_argument(parser: ArgumentParser, **options: Any) -> None:
     """Declare which container is meant."""
 
     def names(parsed_args: Namespace, **_: Any) -> list[str]:
-        from daidalos.cli.ros2.direct import graph_view
+        from daidalos.cli.ros2.graph_view import graph_view
 
         with graph_view(parsed_args) as graph:
             return containers(graph)

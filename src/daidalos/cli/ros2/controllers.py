@@ -5,11 +5,12 @@ from __future__ import annotations
 from argparse import ArgumentParser, Namespace
 from typing import TYPE_CHECKING, Any
 
+from ros2cli.node.direct import direct_node
+from ros2cli.services import call
+
 from daidalos.cli.ros2.completion import complete
-from daidalos.cli.ros2.direct import direct_node
 from daidalos.cli.ros2.errors import CliError
-from daidalos.cli.ros2.services import call
-from daidalos.cli.ros2.suggestions import did_you_mean
+from daidalos.common.suggestions import did_you_mean
 from daidalos.transport.graph import EndpointKind
 
 if TYPE_CHECKING:

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from argparse import ArgumentParser, Namespace
 
-from daidalos.cli.ros2.extension import Command, Extensions, Status
+from ros2cli.extensions import Extensions
+
+from daidalos.cli.ros2.extension import Command, Status
 
 
 class ExtensionsCommand(Command):

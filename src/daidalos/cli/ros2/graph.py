@@ -5,24 +5,14 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable
 
-from daidalos.transport.graph import EndpointInfo, EndpointKind, Graph, NodeInfo, names_and_types
+from ros2cli.graph import NamesAndTypes, visible
 
-NamesAndTypes = list[tuple[str, list[str]]]
+from daidalos.transport.graph import EndpointInfo, EndpointKind, Graph, NodeInfo, names_and_types
 
 TOPIC_KINDS = (EndpointKind.PUBLISHER, EndpointKind.SUBSCRIPTION)
 SERVICE_KINDS = (EndpointKind.SERVICE, EndpointKind.CLIENT)
 _FEEDBACK = "/_action/feedback"
 _FEEDBACK_TYPE = "_FeedbackMessage"
-
-
-def is_hidden(name: str) -> bool:
-    """Tell whether a token of the name of a topic, a service or a node begins with an underscore."""
-    return any(token.startswith("_") for token in name.split("/"))
-
-
-def visible(found: NamesAndTypes, include_hidden: bool) -> NamesAndTypes:
-    """Return what is not hidden, or all."""
-    return found if include_hidden else [(name, types) for name, types in found if not is_hidden(name)]
 
 
 def topics(graph: Graph, include_hidden: bool = True) -> NamesAndTypes:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from ros2cli.extensions import Extensions
+
 from daidalos.cli.ros2.commands import commands
-from daidalos.cli.ros2.extension import Extensions
 from daidalos.cli.ros2.verbs import VerbCommand
 
 

@@ -52,7 +52,7 @@ def add_type_argument(parser: ArgumentParser, what: str) -> None:
     """Declare the argument that names an interface."""
 
     def names(**_: Any) -> list[str]:
-        from daidalos.cli.ros2.interfaces import interface_names
+        from ros2cli.interfaces import interface_names
 
         return [name for kind in KINDS for name in interface_names(kind)]
 

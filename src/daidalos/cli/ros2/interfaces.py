@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import functools
 from collections.abc import Callable
 from typing import Any
 
+from ros2cli.interfaces import interface_names
+
 from daidalos.cli.ros2.errors import CliError
-from daidalos.cli.ros2.suggestions import did_you_mean
-from daidalos.common.suggestions import near
+from daidalos.common.suggestions import did_you_mean, near
 
 
 def message_class(name: str, fault: str = "The passed message type is invalid") -> Any:
@@ -24,14 +24,6 @@ def service_class(name: str, fault: str = "The passed service type is invalid") 
 def action_class(name: str, fault: str = "The passed action type is invalid") -> Any:
     """Return the class of an action; see `message_class`."""
     return _class("action", name, fault)
-
-
-def interface_names(kind: str) -> list[str]:
-    """Return the full names of the interfaces of a kind: ``msg``, ``srv`` or ``action``."""
-    from rosidl_runtime_py.get_interfaces import get_interfaces
-
-    found = get_interfaces()
-    return [f"{package}/{name}" for package, names in found.items() for name in names if name.startswith(f"{kind}/")]
 
 
 def _class(kind: str, name: str, fault: str) -> Any:
@@ -126,21 +118,3 @@ def _near_fields(error: Exception) -> str:
     if colon and field in holder.get_fields_and_field_types():
         return f"\nDid you mean '{field}: {value}'? YAML wants a space after the colon"
     return did_you_mean(error.name, holder.get_fields_and_field_types())  # type: ignore[attr-defined]
-
-
-@functools.cache
-def prototype(name: str) -> str:
-    """Return a message, a service's request or an action's goal with default values, as one line of YAML."""
-    import yaml
-    from rosidl_runtime_py import message_to_ordereddict
-    from rosidl_runtime_py.utilities import get_interface
-
-    found = get_interface(name)
-    instance = getattr(found, "Request", None) or getattr(found, "Goal", None) or found
-    return yaml.safe_dump(_plain(message_to_ordereddict(instance())), default_flow_style=True, sort_keys=False).strip()
-
-
-def _plain(value: Any) -> Any:
-    if isinstance(value, dict):
-        return {key: _plain(item) for key, item in value.items()}
-    return [_plain(item) for item in value] if isinstance(value, list) else value

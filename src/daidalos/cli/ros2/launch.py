@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from daidalos.cli.ros2.completion import complete
 from daidalos.cli.ros2.errors import CliError
 from daidalos.cli.ros2.extension import Command, Status
-from daidalos.cli.ros2.suggestions import did_you_mean
+from daidalos.common.suggestions import did_you_mean
 
 if TYPE_CHECKING:
     from launch import LaunchDescription

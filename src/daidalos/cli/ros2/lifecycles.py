@@ -5,11 +5,12 @@ from __future__ import annotations
 from argparse import ArgumentParser, Namespace
 from typing import TYPE_CHECKING, Any
 
+from ros2cli.services import call
+
 from daidalos.cli.ros2.completion import complete
 from daidalos.cli.ros2.errors import CliError
 from daidalos.cli.ros2.graph import absolute, nodes
-from daidalos.cli.ros2.services import call
-from daidalos.cli.ros2.suggestions import did_you_mean
+from daidalos.common.suggestions import did_you_mean
 from daidalos.transport.graph import EndpointKind, Graph
 
 if TYPE_CHECKING:
@@ -23,7 +24,7 @@ def add_node_arguments(parser: ArgumentParser, **options: Any) -> None:
     """Declare which managed node is meant."""
 
     def names(parsed_args: Namespace, **_: Any) -> list[str]:
-        from daidalos.cli.ros2.direct import graph_view
+        from daidalos.cli.ros2.graph_view import graph_view
 
         with graph_view(parsed_args) as graph:
             return managed_nodes(graph, getattr(parsed_args, "include_hidden_nodes", False))

@@ -5,9 +5,11 @@ from __future__ import annotations
 import sys
 from collections.abc import Collection
 
+from ros2cli.graph import NamesAndTypes
+
 from daidalos.cli.ros2.extension import Status
-from daidalos.cli.ros2.graph import NamesAndTypes, types_of
-from daidalos.cli.ros2.suggestions import hint_line
+from daidalos.cli.ros2.graph import types_of
+from daidalos.common.suggestions import hint_line
 
 
 def print_names(names: Collection[str], *, count: bool) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from daidalos.cli.ros2.errors import CliError
-from daidalos.cli.ros2.suggestions import did_you_mean
+from daidalos.common.suggestions import did_you_mean
 
 
 def package_names() -> list[str]:

@@ -6,21 +6,16 @@ import sys
 from argparse import Action, ArgumentParser, Namespace
 from typing import TYPE_CHECKING, Any
 
+from ros2cli.node.direct import direct_node
+from ros2param.api import call_describe_parameters, call_get_parameters, call_list_parameters, call_set_parameters
+
 from daidalos.cli.ros2.completion import complete, complete_nodes
-from daidalos.cli.ros2.direct import direct_node
 from daidalos.cli.ros2.errors import CliError
 from daidalos.cli.ros2.graph import absolute, nodes
-from daidalos.cli.ros2.services import call
-from daidalos.cli.ros2.suggestions import did_you_mean, hint_line
+from daidalos.common.suggestions import did_you_mean, hint_line
 
 if TYPE_CHECKING:
     from rclpy.node import Node
-
-TYPE_NAMES = (
-    "not set", "boolean", "integer", "double", "string",
-    "byte array", "boolean array", "integer array", "double array", "string array",
-)  # fmt: skip
-"""Names of the types by their number in `rcl_interfaces/msg/ParameterType`."""
 
 
 def add_node_arguments(parser: ArgumentParser, **options: Any) -> None:
@@ -61,45 +56,22 @@ def find_node(node: Node, args: Namespace) -> str:
 
 def list_parameters(node: Node, node_name: str, prefixes: list[str] | None = None) -> list[str]:
     """Return the names of a node's parameters, sorted."""
-    from rcl_interfaces.srv import ListParameters
-
-    request = ListParameters.Request(prefixes=prefixes or [])
-    response = call(node, ListParameters, f"{node_name}/list_parameters", request)
-    return sorted(response.result.names)
+    return sorted(call_list_parameters(node=node, node_name=node_name, prefixes=prefixes).result.names)
 
 
 def get_parameters(node: Node, node_name: str, names: list[str]) -> list[Any]:
     """Return the values of parameters: `rcl_interfaces/msg/ParameterValue`."""
-    from rcl_interfaces.srv import GetParameters
-
-    request = GetParameters.Request(names=names)
-    return list(call(node, GetParameters, f"{node_name}/get_parameters", request).values)
+    return list(call_get_parameters(node=node, node_name=node_name, parameter_names=names).values)
 
 
 def set_parameters(node: Node, node_name: str, parameters: list[Any]) -> list[Any]:
     """Set parameters (`rcl_interfaces/msg/Parameter`); return what became of each (`SetParametersResult`)."""
-    from rcl_interfaces.srv import SetParameters
-
-    request = SetParameters.Request(parameters=parameters)
-    return list(call(node, SetParameters, f"{node_name}/set_parameters", request).results)
+    return list(call_set_parameters(node=node, node_name=node_name, parameters=parameters).results)
 
 
 def describe_parameters(node: Node, node_name: str, names: list[str]) -> list[Any]:
     """Return the descriptions of parameters: `rcl_interfaces/msg/ParameterDescriptor`."""
-    from rcl_interfaces.srv import DescribeParameters
-
-    request = DescribeParameters.Request(names=names)
-    return list(call(node, DescribeParameters, f"{node_name}/describe_parameters", request).descriptors)
-
-
-def report(result: Any, good: str, bad: str) -> bool:
-    """Print what became of a change, with the node's reason; tell whether it was made."""
-    reason = f": {result.reason}" if result.reason else ""
-    if result.successful:
-        print(good + reason)
-    else:
-        print(bad + reason, file=sys.stderr)
-    return bool(result.successful)
+    return list(call_describe_parameters(node=node, node_name=node_name, parameter_names=names).descriptors)
 
 
 def suggest(node: Node, node_name: str, parameter: str) -> None:

@@ -54,9 +54,11 @@ def run_interruptible(argv: list[str]) -> int:
 
 
 def _run(argv: list[str]) -> int:
+    from ros2cli.parser import Parser
+
     from daidalos.cli.ros2.commands import commands
     from daidalos.cli.ros2.errors import CliError
-    from daidalos.cli.ros2.parser import Parser, make_command
+    from daidalos.cli.ros2.extension import make_command
     from daidalos.distribution import complete_environment
 
     complete_environment()

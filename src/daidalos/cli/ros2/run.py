@@ -11,7 +11,7 @@ from argparse import REMAINDER, ArgumentParser, Namespace
 from daidalos.cli.ros2.completion import complete_executables, complete_packages
 from daidalos.cli.ros2.errors import CliError
 from daidalos.cli.ros2.extension import Command, Status
-from daidalos.cli.ros2.suggestions import did_you_mean
+from daidalos.common.suggestions import did_you_mean
 
 
 class RunCommand(Command):
@@ -30,7 +30,7 @@ class RunCommand(Command):
 
     def main(self, *, parser: ArgumentParser, args: Namespace) -> Status:
         """Become the executable, so that its signals, its terminal and its exit status are its own."""
-        from daidalos.nodes.executables import interrupts_blocked
+        from daidalos.workspaces.executables import interrupts_blocked
 
         command = [*shlex.split(args.prefix or ""), *_find(args.package_name, args.executable_name), *args.argv]
         sys.stdout.flush()
@@ -46,7 +46,7 @@ class RunCommand(Command):
 def _find(package: str, executable: str) -> list[str]:
     from daidalos.cli.ros2.packages import package_names
     from daidalos.cli.ros2.workspace_hints import unknown_executable, unknown_package
-    from daidalos.nodes.executables import ExecutableNotFound, executables, find_executable, is_known
+    from daidalos.workspaces.executables import ExecutableNotFound, executables, find_executable, is_known
 
     try:
         return find_executable(package, executable)

@@ -12,7 +12,7 @@ from daidalos.cli.ros2.errors import CliError
 from daidalos.cli.ros2.graph import topics, types_of
 from daidalos.cli.ros2.interfaces import message_class
 from daidalos.cli.ros2.qos import qos_for_publishers, requested_qos
-from daidalos.cli.ros2.suggestions import did_you_mean, hint_line
+from daidalos.common.suggestions import did_you_mean, hint_line
 from daidalos.transport.graph import EndpointKind
 
 if TYPE_CHECKING:

@@ -7,8 +7,10 @@ from collections.abc import Mapping
 from importlib import import_module
 from typing import ClassVar, cast
 
-from daidalos.cli.ros2.extension import Command, Extensions, Status, Verb
-from daidalos.cli.ros2.parser import Parser, make_verb
+from ros2cli.extensions import Extensions
+from ros2cli.parser import Parser
+
+from daidalos.cli.ros2.extension import Command, Status, Verb, make_verb
 
 
 class VerbCommand(Command):

@@ -297,7 +297,7 @@ class Node(ExecuteProcess):
     def __find_executable(self, context: LaunchContext) -> None:
         if self.__package is None:
             return
-        from daidalos.nodes.executables import find_executable
+        from daidalos.workspaces.executables import find_executable
 
         package = perform_substitutions(context, self.__package)
         executable = perform_substitutions(context, self.__node_executable)

@@ -218,7 +218,7 @@ def todays_program(package: str, name: str) -> str:
 
 
 def _is_there(package: str, program: str) -> bool:
-    from daidalos.nodes.executables import find_executable
+    from daidalos.workspaces.executables import find_executable
 
     try:
         find_executable(package, program)

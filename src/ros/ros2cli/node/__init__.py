@@ -1,3 +1,4 @@
 """Nodes that commands take part in the graph with."""
 
-from daidalos.cli.ros2.direct import NODE_NAME_PREFIX as NODE_NAME_PREFIX
+NODE_NAME_PREFIX = "_ros2cli"
+"""Beginning of the names of such nodes; a leading underscore hides them from listings."""

@@ -2,14 +2,21 @@
 
 from __future__ import annotations
 
-from argparse import ArgumentParser, Namespace
+import argparse
+import os
+import signal
+from collections.abc import Iterator
+from contextlib import contextmanager
 from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
-from daidalos.cli.ros2.direct import add_direct_arguments, direct_node
+from ros2cli.node import NODE_NAME_PREFIX
 
 if TYPE_CHECKING:
     from rclpy.node import Node
+
+_DISCOVERY_TIMEOUT_S = 2.0
+"""How long processes of this machine that are there may take to tell of themselves."""
 
 
 class DirectNode:
@@ -25,7 +32,7 @@ class DirectNode:
 
     node: Node
 
-    def __init__(self, args: Namespace, *, node_name: str | None = None) -> None:
+    def __init__(self, args: argparse.Namespace, *, node_name: str | None = None) -> None:
         self._context = direct_node(args, node_name)
 
     def __enter__(self) -> DirectNode:
@@ -43,6 +50,57 @@ class DirectNode:
         return getattr(self.node, name)
 
 
-def add_arguments(parser: ArgumentParser) -> None:
+def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options of verbs that need a node of their own."""
-    add_direct_arguments(parser)
+    parser.add_argument(
+        "--spin-time",
+        type=float,
+        default=None,
+        help="Spin time in seconds to wait for discovery (only applies when not using an already running daemon)",
+    )
+    parser.add_argument("-s", "--use-sim-time", action="store_true", help="Enable ROS simulation time")
+    parser.add_argument("--ros-args", nargs=argparse.REMAINDER, default=[], help=argparse.SUPPRESS)
+
+
+@contextmanager
+def direct_node(args: argparse.Namespace, name: str | None = None, **options: Any) -> Iterator[Node]:
+    """Give a node of our own, after everybody on this machine has told of itself.
+
+    Parameters
+    ----------
+    args
+        What `add_arguments` declared, as far as the verb did.
+    name
+        The node's name; a hidden one with our process's number where None.
+    options
+        For `rclpy.create_node`.
+    """
+    import rclpy
+    from rclpy.impl.signal_watch import watching
+    from rclpy.parameter import Parameter
+
+    ros_args = getattr(args, "ros_args", [])
+    # Ctrl-C raises KeyboardInterrupt, wherever we are.
+    rclpy.init(args=["--ros-args", *ros_args] if ros_args else [], signal_handler_options=rclpy.SignalHandlerOptions.NO)
+    try:
+        overrides: list[Parameter[Any]] = []
+        if getattr(args, "use_sim_time", False):
+            overrides.append(Parameter("use_sim_time", value=True))
+        options = {"start_parameter_services": False, "parameter_overrides": overrides, **options}
+        node = rclpy.create_node(name or f"{NODE_NAME_PREFIX}_{os.getpid()}", **options)
+        try:
+            with watching(signal.SIGINT):
+                _wait_for_discovery(node, getattr(args, "spin_time", None))
+                yield node
+        finally:
+            node.destroy_node()
+    finally:
+        rclpy.try_shutdown()
+
+
+def _wait_for_discovery(node: Node, spin_time: float | None) -> None:
+    """Wait until who is on this machine has told of itself, and `spin_time` seconds for who is elsewhere."""
+    session = node.handle.session
+    session.backend.settle(_DISCOVERY_TIMEOUT_S)
+    if spin_time:
+        session.graph.wait_for(lambda: False, spin_time)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from argparse import ArgumentParser
 
-from daidalos.cli.ros2.direct import add_graph_arguments
+from ros2cli.node import direct
 from ros2cli.node.direct import DirectNode
 
 
@@ -13,5 +13,12 @@ class NodeStrategy(DirectNode):
 
 
 def add_arguments(parser: ArgumentParser) -> None:
-    """Declare the options of verbs that ask about the graph."""
-    add_graph_arguments(parser)
+    """Declare the options of verbs that ask about the graph.
+
+    Parameters
+    ----------
+    parser
+        The verb's parser.
+    """
+    direct.add_arguments(parser)
+    parser.add_argument("--no-daemon", action="store_true", help="Do not spawn nor use an already running daemon")

@@ -8,9 +8,17 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from ros2cli.node.direct import DirectNode
+from ros2cli.services import call
 
 if TYPE_CHECKING:
     from rcl_interfaces.msg import Parameter, ParameterValue
+
+
+TYPE_NAMES = (
+    "not set", "boolean", "integer", "double", "string",
+    "byte array", "boolean array", "integer array", "double array", "string array",
+)  # fmt: skip
+"""Names of the types by their number in `rcl_interfaces/msg/ParameterType`."""
 
 
 def get_value(*, parameter_value: ParameterValue) -> Any:
@@ -22,8 +30,6 @@ def get_value(*, parameter_value: ParameterValue) -> Any:
 
 def get_parameter_type_string(parameter_type: int) -> str:
     """Return the name of a type of `rcl_interfaces/msg/ParameterType`, such as ``double array``."""
-    from daidalos.cli.ros2.parameters import TYPE_NAMES
-
     return TYPE_NAMES[parameter_type]
 
 
@@ -95,8 +101,6 @@ def load_parameter_file(*, node: Any, node_name: str, parameter_file: str, use_w
     """
     from rclpy.parameter import parameter_dict_from_yaml_file
 
-    from daidalos.cli.ros2.parameters import report
-
     try:
         parameters = parameter_dict_from_yaml_file(parameter_file, use_wildcard, target_nodes=[node_name])
     except OSError as error:
@@ -105,6 +109,22 @@ def load_parameter_file(*, node: Any, node_name: str, parameter_file: str, use_w
     for name, result in zip(parameters, response.results, strict=True):
         report(result, f"Set parameter {name} successful", f"Set parameter {name} failed")
     sys.stdout.flush()
+
+
+def report(result: Any, good: str, bad: str) -> bool:
+    """Print what became of a change, and return whether it was made.
+
+    Parameters
+    ----------
+    result
+        The node's answer: `rcl_interfaces/msg/SetParametersResult`; its reason is printed, too.
+    good, bad
+        What is printed of a change that was made, and of one that was not.
+    """
+    reason = f": {result.reason}" if result.reason else ""
+    done = bool(result.successful)
+    print((good if done else bad) + reason, file=sys.stdout if done else sys.stderr)
+    return done
 
 
 class ParameterNameCompleter:
@@ -122,10 +142,4 @@ class ParameterNameCompleter:
 
 
 def _call(node: Any, service_type: Any, node_name: str, service: str, request: Any) -> Any:
-    from daidalos.cli.ros2.errors import CliError
-    from daidalos.cli.ros2.services import call
-
-    try:
-        return call(node, service_type, f"{node_name}/{service}", request)
-    except CliError as error:
-        raise RuntimeError(str(error)) from None
+    return call(node, service_type, f"{node_name}/{service}", request)

@@ -9,7 +9,7 @@ from typing import Any
 
 from ros2pkg.api import PackageNotFound
 
-from daidalos.nodes.executables import (
+from daidalos.workspaces.executables import (
     ExecutableNotFound,
     executable_path,
     executables,
@@ -113,7 +113,7 @@ def _command(path: str) -> list[str]:
     """Return what starts a file; those of our own packages are modules."""
     from pathlib import Path
 
-    from daidalos.nodes.executables import BUILT_IN
+    from daidalos.workspaces.executables import BUILT_IN
 
     file = Path(path)
     if file.parent.parent == BUILT_IN:

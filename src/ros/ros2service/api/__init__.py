@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from ros2cli.graph import NameCompleter, NamesAndTypes, TypeCompleter, class_of, visible
+from ros2cli.interfaces import interface_names
 
 
 def get_service_names_and_types(*, node: Any, include_hidden_services: bool = False) -> NamesAndTypes:
@@ -55,8 +56,6 @@ def get_service_class(node: Any, service: str, blocking: bool = False, include_h
 
 def service_type_completer(**kwargs: Any) -> list[str]:
     """Return all service types."""
-    from daidalos.cli.ros2.interfaces import interface_names
-
     return interface_names("srv")
 
 

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import argparse
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ros2cli.graph import NameCompleter, NamesAndTypes, TypeCompleter, class_of, visible
-
-if TYPE_CHECKING:
-    from rclpy.qos import QoSProfile
+from ros2cli.interfaces import interface_names, prototype
+from ros2cli.qos import add_qos_arguments as add_qos_arguments
+from ros2cli.qos import profile_configure_short_keys as profile_configure_short_keys
+from ros2cli.qos import qos_profile_from_short_keys as qos_profile_from_short_keys
 
 
 def get_topic_names_and_types(*, node: Any, include_hidden_topics: bool = False) -> NamesAndTypes:
@@ -56,65 +57,6 @@ def get_msg_class(node: Any, topic: str, blocking: bool = False, include_hidden_
     return class_of(node, "topic", node.resolve_topic_name(topic), listing, get_message, blocking)
 
 
-def qos_profile_from_short_keys(
-    preset_profile: str,
-    reliability: str | None = None,
-    durability: str | None = None,
-    depth: int | None = None,
-    history: str | None = None,
-    liveliness: str | None = None,
-    liveliness_lease_duration_s: float | None = None,
-) -> QoSProfile:
-    """Return a preset profile, such as ``sensor_data``, with some policies replaced, such as ``reliable``."""
-    from daidalos.cli.ros2.qos import profile_of
-
-    profile = profile_of(preset_profile)
-    profile_configure_short_keys(
-        profile, reliability, durability, depth, history, liveliness, liveliness_lease_duration_s
-    )
-    return profile
-
-
-def profile_configure_short_keys(
-    profile: QoSProfile,
-    reliability: str | None = None,
-    durability: str | None = None,
-    depth: int | None = None,
-    history: str | None = None,
-    liveliness: str | None = None,
-    liveliness_lease_duration_s: float | None = None,
-) -> QoSProfile:
-    """Replace some policies of a profile, named as in `qos_profile_from_short_keys`, and return it."""
-    from daidalos.cli.ros2.qos import replace_policies
-
-    names = {
-        "reliability": reliability,
-        "durability": durability,
-        "depth": depth,
-        "history": history,
-        "liveliness": liveliness,
-    }
-    replace_policies(profile, names, liveliness_lease_duration_s)
-    return profile
-
-
-def add_qos_arguments(parser: argparse.ArgumentParser, subscribe_or_publish: str, default_profile_str: str) -> None:
-    """Declare the options for a quality of service.
-
-    Parameters
-    ----------
-    parser
-        What takes them.
-    subscribe_or_publish
-        What it is for: ``subscribe`` or ``publish``.
-    default_profile_str
-        The preset profile whose policies the options replace.
-    """
-    from daidalos.cli.ros2.qos import add_qos_arguments as add
-
-    add(parser, f"{subscribe_or_publish} with", default_profile_str)
-
-
 def unsigned_int(string: str) -> int:
     """Read a whole number that is not negative; for argparse."""
     return _number(string, int, lambda value: value >= 0, "a non-negative integer")
@@ -132,8 +74,6 @@ def positive_float(inval: str) -> float:
 
 def message_type_completer(**kwargs: Any) -> list[str]:
     """Return all message types."""
-    from daidalos.cli.ros2.interfaces import interface_names
-
     return interface_names("msg")
 
 
@@ -179,8 +119,6 @@ class TopicMessagePrototypeCompleter:
 
     def __call__(self, prefix: str, parsed_args: argparse.Namespace, **kwargs: Any) -> list[str]:
         """Return it."""
-        from daidalos.cli.ros2.interfaces import prototype
-
         return [prototype(getattr(parsed_args, self.topic_type_key))]
 
 

@@ -6,14 +6,16 @@ import sys
 from argparse import ArgumentParser, Namespace
 from typing import TYPE_CHECKING, Any
 
+from ros2cli.node.direct import add_arguments as add_direct_arguments
+from ros2cli.node.direct import direct_node
+
 from daidalos.cli.ros2.completion import complete_actions, complete_types, complete_values
-from daidalos.cli.ros2.direct import add_direct_arguments, direct_node
 from daidalos.cli.ros2.errors import CliError
 from daidalos.cli.ros2.extension import Status, Verb
 from daidalos.cli.ros2.graph import all_actions
 from daidalos.cli.ros2.interfaces import action_class, fill, parse_values
-from daidalos.cli.ros2.suggestions import hint_line
 from daidalos.cli.ros2.topics import spin
+from daidalos.common.suggestions import hint_line
 
 if TYPE_CHECKING:
     from rclpy.action import ActionClient

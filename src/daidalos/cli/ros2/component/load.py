@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from argparse import ArgumentParser, Namespace
 
+from ros2cli.node.direct import direct_node
+from ros2cli.node.strategy import add_arguments as add_graph_arguments
+
 from daidalos.cli.ros2.containers import add_component_arguments, add_container_argument, find_container, load
-from daidalos.cli.ros2.direct import add_graph_arguments, direct_node
 from daidalos.cli.ros2.extension import Status, Verb
 
 

@@ -5,8 +5,10 @@ from __future__ import annotations
 import subprocess
 from argparse import ArgumentParser, Namespace
 
+from ros2cli.node.direct import direct_node
+from ros2cli.node.strategy import add_arguments as add_graph_arguments
+
 from daidalos.cli.ros2.containers import add_component_arguments, containers, load
-from daidalos.cli.ros2.direct import add_graph_arguments, direct_node
 from daidalos.cli.ros2.errors import CliError
 from daidalos.cli.ros2.extension import Status, Verb
 
@@ -27,7 +29,7 @@ class StandaloneVerb(Verb):
 
     def main(self, *, args: Namespace) -> Status:
         """Run a container with the component in it until Ctrl-C."""
-        from daidalos.nodes.executables import find_executable
+        from daidalos.workspaces.executables import find_executable
 
         rename = ["--ros-args", "-r", f"__node:={args.container_node_name}"]
         command = [*find_executable("rclcpp_components", "component_container"), *rename]

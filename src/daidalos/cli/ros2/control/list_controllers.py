@@ -6,8 +6,10 @@ import sys
 from argparse import ArgumentParser, Namespace
 from typing import Any
 
+from ros2cli.node.direct import add_arguments as add_direct_arguments
+from ros2cli.node.direct import direct_node
+
 from daidalos.cli.ros2.controllers import add_manager_arguments, columns, list_controllers
-from daidalos.cli.ros2.direct import add_direct_arguments, direct_node
 from daidalos.cli.ros2.extension import Status, Verb
 
 _COLORS = {"active": "\x1b[92m", "inactive": "\x1b[96m", "unconfigured": "\x1b[93m", "finalized": "\x1b[91m"}

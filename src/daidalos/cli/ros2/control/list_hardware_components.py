@@ -6,8 +6,10 @@ from argparse import ArgumentParser, Namespace
 from collections.abc import Iterable, Iterator
 from typing import Any
 
+from ros2cli.node.direct import add_arguments as add_direct_arguments
+from ros2cli.node.direct import direct_node
+
 from daidalos.cli.ros2.controllers import add_manager_arguments, list_components
-from daidalos.cli.ros2.direct import add_direct_arguments, direct_node
 from daidalos.cli.ros2.extension import Status, Verb
 
 

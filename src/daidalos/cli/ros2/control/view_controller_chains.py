@@ -10,8 +10,10 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
+from ros2cli.node.direct import add_arguments as add_direct_arguments
+from ros2cli.node.direct import direct_node
+
 from daidalos.cli.ros2.controllers import add_manager_arguments, ask, list_controllers
-from daidalos.cli.ros2.direct import add_direct_arguments, direct_node
 from daidalos.cli.ros2.errors import CliError
 from daidalos.cli.ros2.extension import Status, Verb
 

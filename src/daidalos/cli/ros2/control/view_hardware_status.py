@@ -6,8 +6,10 @@ import functools
 from argparse import ArgumentParser, Namespace
 from typing import Any
 
+from ros2cli.node.direct import add_arguments as add_direct_arguments
+from ros2cli.node.direct import direct_node
+
 from daidalos.cli.ros2.controllers import add_manager_arguments
-from daidalos.cli.ros2.direct import add_direct_arguments, direct_node
 from daidalos.cli.ros2.errors import CliError
 from daidalos.cli.ros2.extension import Status, Verb
 from daidalos.cli.ros2.graph import topics

@@ -17,8 +17,10 @@ import sys
 import time
 from typing import Any
 
+from ros2cli.node import NODE_NAME_PREFIX
+from ros2cli.node.direct import direct_node
+
 from daidalos.cli.ros2.daemon.wire import MAX_QUESTION, Address, Station, ask, graph_to_json
-from daidalos.cli.ros2.direct import NODE_NAME_PREFIX, direct_node
 from daidalos.transport.graph import Graph
 
 _IDLE_S = 2 * 60 * 60.0

@@ -6,8 +6,9 @@ import sys
 from argparse import ArgumentParser, Namespace
 from typing import TYPE_CHECKING, ClassVar
 
+from ros2cli.node.direct import direct_node
+
 from daidalos.cli.ros2.completion import complete_packages
-from daidalos.cli.ros2.direct import direct_node
 from daidalos.cli.ros2.extension import Status
 from daidalos.cli.ros2.verbs import VerbCommand
 

@@ -11,8 +11,10 @@ from collections import Counter
 from dataclasses import dataclass, field
 from typing import Any
 
+from ros2cli.node.direct import add_arguments as add_direct_arguments
+from ros2cli.node.direct import direct_node
+
 from daidalos.cli.ros2 import datagrams
-from daidalos.cli.ros2.direct import add_direct_arguments, direct_node
 from daidalos.cli.ros2.errors import CliError
 from daidalos.cli.ros2.extension import Status, Verb
 from daidalos.cli.ros2.topic.echo import positive_float

@@ -8,7 +8,7 @@ from daidalos.cli.ros2.completion import complete_packages
 from daidalos.cli.ros2.errors import CliError
 from daidalos.cli.ros2.extension import Status, Verb
 from daidalos.cli.ros2.interface_arguments import add_kind_arguments, wanted
-from daidalos.cli.ros2.suggestions import did_you_mean
+from daidalos.common.suggestions import did_you_mean
 
 
 class PackageVerb(Verb):

@@ -97,11 +97,11 @@ def _without_comment(line: str) -> str:
 
 
 def _path(name: str) -> Path:
+    from ros2cli.interfaces import interface_names
     from rosidl_runtime_py import get_interface_path
 
     from daidalos.cli.ros2.interface_arguments import KINDS
-    from daidalos.cli.ros2.interfaces import interface_names
-    from daidalos.cli.ros2.suggestions import did_you_mean
+    from daidalos.common.suggestions import did_you_mean
 
     try:
         return Path(get_interface_path(name))

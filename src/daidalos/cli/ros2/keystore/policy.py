@@ -7,8 +7,9 @@ from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
+from ros2cli.graph import is_hidden
+
 from daidalos.cli.ros2.errors import CliError
-from daidalos.cli.ros2.graph import is_hidden
 from daidalos.transport.graph import EndpointKind, Graph, NodeInfo
 
 _VERSION = "0.2.0"

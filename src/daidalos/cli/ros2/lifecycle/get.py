@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from argparse import ArgumentParser, Namespace
 
-from daidalos.cli.ros2.direct import add_graph_arguments, direct_node
+from ros2cli.node.direct import direct_node
+from ros2cli.node.strategy import add_arguments as add_graph_arguments
+
 from daidalos.cli.ros2.extension import Status, Verb
 from daidalos.cli.ros2.lifecycles import add_node_arguments, find_managed, managed_nodes, state
 

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from argparse import ArgumentParser, Namespace
 
+from ros2cli.graph import NamesAndTypes, visible
+from ros2cli.node.strategy import add_arguments as add_graph_arguments
+
 from daidalos.cli.ros2.completion import complete_nodes
-from daidalos.cli.ros2.direct import add_graph_arguments, graph_view
 from daidalos.cli.ros2.extension import Status, Verb
-from daidalos.cli.ros2.graph import NamesAndTypes, absolute, actions, nodes, visible
-from daidalos.cli.ros2.suggestions import did_you_mean
+from daidalos.cli.ros2.graph import absolute, actions, nodes
+from daidalos.cli.ros2.graph_view import graph_view
+from daidalos.common.suggestions import did_you_mean
 from daidalos.transport.graph import EndpointKind, Graph, NodeInfo, names_and_types
 
 

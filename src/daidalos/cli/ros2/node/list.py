@@ -5,9 +5,11 @@ from __future__ import annotations
 import sys
 from argparse import ArgumentParser, Namespace
 
-from daidalos.cli.ros2.direct import add_graph_arguments, graph_view
+from ros2cli.node.strategy import add_arguments as add_graph_arguments
+
 from daidalos.cli.ros2.extension import Status, Verb
 from daidalos.cli.ros2.graph import duplicate_names, nodes
+from daidalos.cli.ros2.graph_view import graph_view
 
 
 class ListVerb(Verb):

@@ -5,10 +5,12 @@ from __future__ import annotations
 from argparse import ArgumentParser, Namespace
 from typing import Any
 
-from daidalos.cli.ros2.direct import add_graph_arguments, direct_node
+from ros2cli.node.direct import direct_node
+from ros2cli.node.strategy import add_arguments as add_graph_arguments
+from ros2param.api import TYPE_NAMES
+
 from daidalos.cli.ros2.extension import Status, Verb
 from daidalos.cli.ros2.parameters import (
-    TYPE_NAMES,
     add_node_arguments,
     add_timeout_argument,
     complete_parameters,

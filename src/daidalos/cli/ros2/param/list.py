@@ -6,11 +6,14 @@ import re
 from argparse import ArgumentParser, Namespace
 from typing import TYPE_CHECKING
 
-from daidalos.cli.ros2.direct import add_graph_arguments, direct_node
+from ros2cli.node.direct import direct_node
+from ros2cli.node.strategy import add_arguments as add_graph_arguments
+from ros2param.api import TYPE_NAMES
+
 from daidalos.cli.ros2.errors import CliError
 from daidalos.cli.ros2.extension import Status, Verb
 from daidalos.cli.ros2.graph import nodes
-from daidalos.cli.ros2.parameters import TYPE_NAMES, add_node_arguments, describe_parameters, find_node, list_parameters
+from daidalos.cli.ros2.parameters import add_node_arguments, describe_parameters, find_node, list_parameters
 from daidalos.transport.graph import EndpointKind
 
 if TYPE_CHECKING:

@@ -5,7 +5,10 @@ from __future__ import annotations
 import sys
 from argparse import ArgumentParser, Namespace
 
-from daidalos.cli.ros2.direct import add_graph_arguments, direct_node
+from ros2cli.node.direct import direct_node
+from ros2cli.node.strategy import add_arguments as add_graph_arguments
+from ros2param.api import report
+
 from daidalos.cli.ros2.errors import CliError
 from daidalos.cli.ros2.extension import Status, Verb
 from daidalos.cli.ros2.interfaces import parse_yaml
@@ -14,7 +17,6 @@ from daidalos.cli.ros2.parameters import (
     add_timeout_argument,
     complete_parameters,
     find_node,
-    report,
     set_parameters,
     suggest,
 )

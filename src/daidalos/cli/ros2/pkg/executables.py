@@ -19,7 +19,7 @@ class ExecutablesVerb(Verb):
 
     def main(self, *, args: Namespace) -> Status:
         """Print the executables of one package or of all."""
-        from daidalos.nodes.executables import executable_path, executables, is_known
+        from daidalos.workspaces.executables import executable_path, executables, is_known
 
         name = args.package_name
         if name and not is_known(name):

@@ -9,7 +9,7 @@ from daidalos.cli.ros2.completion import complete_packages
 from daidalos.cli.ros2.errors import CliError
 from daidalos.cli.ros2.extension import Status, Verb
 from daidalos.cli.ros2.packages import package_prefix
-from daidalos.cli.ros2.suggestions import did_you_mean
+from daidalos.common.suggestions import did_you_mean
 
 
 class XmlVerb(Verb):

@@ -8,7 +8,7 @@ from pathlib import Path
 from daidalos.cli.ros2.extension import Status, Verb
 from daidalos.cli.ros2.keystore import Keystore
 from daidalos.cli.ros2.keystore.policy import access_control
-from daidalos.cli.ros2.suggestions import did_you_mean
+from daidalos.common.suggestions import did_you_mean
 
 
 class CreatePermissionVerb(Verb):

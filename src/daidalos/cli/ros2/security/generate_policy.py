@@ -5,9 +5,11 @@ from __future__ import annotations
 from argparse import ArgumentParser, Namespace
 from pathlib import Path
 
-from daidalos.cli.ros2.direct import add_graph_arguments, graph_view
+from ros2cli.node.strategy import add_arguments as add_graph_arguments
+
 from daidalos.cli.ros2.errors import CliError
 from daidalos.cli.ros2.extension import Status, Verb
+from daidalos.cli.ros2.graph_view import graph_view
 from daidalos.cli.ros2.keystore.policy import policy_of
 
 

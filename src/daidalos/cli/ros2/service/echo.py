@@ -6,16 +6,18 @@ import sys
 from argparse import ArgumentParser, Namespace
 from typing import TYPE_CHECKING, Any
 
+from ros2cli.node.direct import direct_node
+from ros2cli.node.strategy import add_arguments as add_graph_arguments
+from ros2cli.qos import add_qos_arguments
+
 from daidalos.cli.ros2.completion import complete_services, complete_types
-from daidalos.cli.ros2.direct import add_graph_arguments, direct_node
 from daidalos.cli.ros2.errors import CliError
 from daidalos.cli.ros2.extension import Status, Verb
 from daidalos.cli.ros2.graph import services, types_of
 from daidalos.cli.ros2.interfaces import service_class
-from daidalos.cli.ros2.qos import add_qos_arguments
-from daidalos.cli.ros2.suggestions import did_you_mean
 from daidalos.cli.ros2.topic.echo import add_length_arguments, csv_text, yaml_text
 from daidalos.cli.ros2.topics import spin, subscribe
+from daidalos.common.suggestions import did_you_mean
 from daidalos.transport.graph import EndpointKind
 
 if TYPE_CHECKING:
@@ -41,7 +43,7 @@ class EchoVerb(Verb):
             "srv",
             "service_name",
         )
-        add_qos_arguments(parser, "subscribe with", "services_default")
+        add_qos_arguments(parser, "subscribe", "services_default")
         parser.add_argument(
             "--csv", action="store_true", help="Output all recursive fields separated by commas (e.g. for plotting)"
         )

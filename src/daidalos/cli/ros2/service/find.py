@@ -5,9 +5,9 @@ from __future__ import annotations
 from argparse import SUPPRESS, ArgumentParser, Namespace
 
 from daidalos.cli.ros2.completion import complete_types
-from daidalos.cli.ros2.direct import graph_view
 from daidalos.cli.ros2.extension import Status, Verb
 from daidalos.cli.ros2.graph import services
+from daidalos.cli.ros2.graph_view import graph_view
 from daidalos.cli.ros2.listings import print_names
 
 

@@ -6,10 +6,12 @@ import time
 from argparse import ArgumentParser, ArgumentTypeError, Namespace
 from collections import deque
 
+from ros2cli.node.direct import direct_node
+from ros2cli.node.strategy import add_arguments as add_graph_arguments
+from ros2cli.qos import add_qos_arguments
+
 from daidalos.cli.ros2.completion import complete_topics
-from daidalos.cli.ros2.direct import add_graph_arguments, direct_node
 from daidalos.cli.ros2.extension import Status, Verb
-from daidalos.cli.ros2.qos import add_qos_arguments
 from daidalos.cli.ros2.topics import spin, subscribe, topic_class
 
 DEFAULT_WINDOW_SIZE = 100
@@ -24,7 +26,7 @@ class BwVerb(Verb):
         complete_topics(
             parser.add_argument("topic", metavar="topic_name", help="Topic name to monitor for bandwidth utilization")
         )
-        add_qos_arguments(parser, "subscribe with", "sensor_data")
+        add_qos_arguments(parser, "subscribe", "sensor_data")
         parser.add_argument(
             "--window",
             "-w",

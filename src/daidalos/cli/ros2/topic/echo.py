@@ -7,10 +7,12 @@ from argparse import ArgumentParser, ArgumentTypeError, Namespace
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
+from ros2cli.node.direct import direct_node
+from ros2cli.node.strategy import add_arguments as add_graph_arguments
+from ros2cli.qos import add_qos_arguments
+
 from daidalos.cli.ros2.completion import complete_topics, complete_types
-from daidalos.cli.ros2.direct import add_graph_arguments, direct_node
 from daidalos.cli.ros2.extension import Status, Verb
-from daidalos.cli.ros2.qos import add_qos_arguments
 from daidalos.cli.ros2.topics import Field, filter_function, spin, subscribe, topic_class
 
 if TYPE_CHECKING:
@@ -38,7 +40,7 @@ class EchoVerb(Verb):
             "msg",
             "topic_name",
         )
-        add_qos_arguments(parser, "subscribe with", "sensor_data")
+        add_qos_arguments(parser, "subscribe", "sensor_data")
         add_format_arguments(parser)
         parser.add_argument("--no-lost-messages", action="store_true", help="Don't report when a message is lost")
         parser.add_argument("--raw", action="store_true", help="Echo the raw binary representation")

@@ -10,10 +10,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from ros2cli.node.direct import direct_node
+from ros2cli.node.strategy import add_arguments as add_graph_arguments
+from ros2cli.qos import add_qos_arguments
+
 from daidalos.cli.ros2.completion import complete_topics
-from daidalos.cli.ros2.direct import add_graph_arguments, direct_node
 from daidalos.cli.ros2.extension import Status, Verb
-from daidalos.cli.ros2.qos import add_qos_arguments
 from daidalos.cli.ros2.topic.echo import unsigned_int
 from daidalos.cli.ros2.topics import filter_function, spin, subscribe, topic_class
 
@@ -34,7 +36,7 @@ class HzVerb(Verb):
         complete_topics(
             parser.add_argument("topic_name", nargs="+", help="Names of the ROS topic to listen to (e.g. '/chatter')")
         )
-        add_qos_arguments(parser, "subscribe with", "sensor_data")
+        add_qos_arguments(parser, "subscribe", "sensor_data")
         parser.add_argument(
             "--window",
             "-w",

@@ -7,15 +7,18 @@ import time
 from argparse import ArgumentParser, ArgumentTypeError, Namespace
 from typing import TYPE_CHECKING, Any
 
+from ros2cli.node.direct import add_arguments as add_direct_arguments
+from ros2cli.node.direct import direct_node
+from ros2cli.qos import add_qos_arguments, qos_profile_from_short_keys
+
 from daidalos.cli.ros2.completion import complete_topics, complete_types, complete_values
-from daidalos.cli.ros2.direct import add_direct_arguments, direct_node
 from daidalos.cli.ros2.errors import CliError
 from daidalos.cli.ros2.extension import Status, Verb
 from daidalos.cli.ros2.interfaces import fill, message_class, parse_values
-from daidalos.cli.ros2.qos import add_qos_arguments, profile_of, requested_qos
-from daidalos.cli.ros2.suggestions import hint_line
+from daidalos.cli.ros2.qos import requested_qos
 from daidalos.cli.ros2.topic.echo import positive_float, unsigned_int
 from daidalos.cli.ros2.topics import spin
+from daidalos.common.suggestions import hint_line
 
 if TYPE_CHECKING:
     from rclpy.node import Node
@@ -85,7 +88,7 @@ class PubVerb(Verb):
             help="Keep publishing node alive for N seconds after the last msg (default: 0.1)",
         )
         parser.add_argument("-n", "--node-name", help="Name of the created publishing node")
-        add_qos_arguments(parser, "publish with", "default")
+        add_qos_arguments(parser, "publish", "default")
 
     def main(self, *, args: Namespace) -> Status:
         """Publish until Ctrl-C or as often as asked."""
@@ -97,7 +100,7 @@ class PubVerb(Verb):
         times = 1 if args.once else args.times
         with direct_node(args, args.node_name) as node:
             publisher = node.create_publisher(
-                message_type, args.topic_name, requested_qos(args) or profile_of("default")
+                message_type, args.topic_name, requested_qos(args) or qos_profile_from_short_keys("default")
             )
             wanted = args.wait_matching_subscriptions
             _wait_for_subscriptions(

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from argparse import ArgumentParser, Namespace
 
+from ros2cli.node.strategy import add_arguments as add_graph_arguments
+
 from daidalos.cli.ros2.completion import complete_topics
-from daidalos.cli.ros2.direct import add_graph_arguments, graph_view
 from daidalos.cli.ros2.extension import Status, Verb
 from daidalos.cli.ros2.graph import absolute, topics
+from daidalos.cli.ros2.graph_view import graph_view
 from daidalos.cli.ros2.listings import print_types
 
 

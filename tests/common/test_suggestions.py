@@ -1,4 +1,4 @@
-from daidalos.cli.ros2.suggestions import did_you_mean, hint_line, near
+from daidalos.common.suggestions import did_you_mean, hint_line, near
 
 TOPICS = ["/chatter", "/lab/enable", "/lab/add_two_ints", "/scan"]
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import contextlib
 import difflib
 import os
@@ -10,7 +11,9 @@ import sys
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-BUILT_IN = Path(__file__).resolve().parent
+BUILT_IN = Path(__file__).resolve().parents[1] / "nodes"
+"""The folder of the built-in packages: a subfolder of modules for each."""
+
 _START = str(BUILT_IN / "start.py")
 
 
@@ -72,7 +75,7 @@ def executable_path(package: str, executable: str) -> Path:
 
 
 def is_known(package: str) -> bool:
-    """Tell whether there is such a package."""
+    """Return whether a package of this name exists, in a workspace or built in."""
     from ament_index_python.packages import PackageNotFoundError, get_package_prefix
 
     try:
@@ -112,9 +115,12 @@ def _modules(package: str) -> dict[str, str]:
 
 
 def _renamed(folder: Path) -> dict[str, str]:
-    if "EXECUTABLES" not in (folder / "__init__.py").read_text(encoding="utf-8"):
+    """Return the literal ``EXECUTABLES`` of a package's ``__init__``, read without importing the package."""
+    text = (folder / "__init__.py").read_text(encoding="utf-8")
+    if "EXECUTABLES" not in text:
         return {}
-    from importlib import import_module
-
-    names: dict[str, str] = import_module(f"daidalos.nodes.{folder.name}").EXECUTABLES
-    return names
+    for statement in ast.parse(text).body:
+        if isinstance(statement, ast.Assign) and ast.unparse(statement.targets[0]) == "EXECUTABLES":
+            names: dict[str, str] = ast.literal_eval(statement.value)
+            return names
+    return {}

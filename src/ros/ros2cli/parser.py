@@ -7,7 +7,7 @@ import re
 from collections.abc import Callable, Collection, Iterator, Mapping
 from typing import Any, NoReturn
 
-from daidalos.cli.ros2.extension import Command, Extensions, Verb
+from ros2cli.extensions import Extensions
 
 
 class Parser(argparse.ArgumentParser):
@@ -60,7 +60,7 @@ class Parser(argparse.ArgumentParser):
         """Print the usage and what is wrong, with subcommands like an unknown one, and end with status 2."""
         unknown = re.search(r"invalid choice: '([^']*)'", message)
         if self.subcommands is not None and unknown is not None:
-            from daidalos.cli.ros2.suggestions import did_you_mean
+            from daidalos.common.suggestions import did_you_mean
 
             message += did_you_mean(unknown[1], self.subcommands)
         super().error(message)
@@ -101,15 +101,3 @@ class _Subparsers(Mapping[str, Parser]):
 
     def __len__(self) -> int:
         return len(self._extensions)
-
-
-def make_command(command: Command, parser: Parser, name: str) -> None:
-    """Complete the parser of a command."""
-    parser.set_defaults(_main=lambda args: command.main(parser=parser, args=args))
-    command.add_arguments(parser, name)
-
-
-def make_verb(verb: Verb, parser: Parser, name: str) -> None:
-    """Complete the parser of a verb."""
-    parser.set_defaults(_main=lambda args: verb.main(args=args))
-    verb.add_arguments(parser, name)

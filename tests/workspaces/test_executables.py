@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from daidalos.nodes.executables import (
+from daidalos.workspaces.executables import (
     ExecutableNotFound,
     executable_path,
     executables,
