@@ -31,11 +31,14 @@ def run_text():
     from launch import LaunchService
     from launch.frontend import Parser
 
+    descriptions = []  # temporary parameter files are deleted with the actions that wrote them
+
     def run(text, expected=0, **configurations):
         root, parser = Parser.load(io.StringIO(textwrap.dedent(text)))
+        descriptions.append(parser.parse_description(root))
         service = LaunchService()
         service.context.launch_configurations.update(configurations)
-        service.include_launch_description(parser.parse_description(root))
+        service.include_launch_description(descriptions[-1])
         assert service.run() == expected
         return service
 
