@@ -3,11 +3,12 @@
 from collections.abc import Callable
 from typing import Any
 
+from daidalos.common.extensions import find
 from daidalos.control.controllers.base import Controller, ControllerContext
+from daidalos.control.extensions import CONTROLLERS, hardware_class
 from daidalos.control.interfaces import Interfaces, Loan
 from daidalos.control.manager import ControllerManager
 from daidalos.control.parameters import parameters_from
-from daidalos.control.plugins import controller_class, hardware_class
 from daidalos.description import urdf
 from daidalos.description.robot import Robot
 from daidalos.description.ros2_control import read_hardware
@@ -33,7 +34,7 @@ def arm(hardware: str = "mock_components/GenericSystem", extra: str = "", parame
 
 def manager(robot: Robot, update_rate: float = 100.0, **options: Any) -> ControllerManager:
     """Return a manager of a robot's hardware."""
-    hardware = [hardware_class(info.plugin)(info) for info in read_hardware(robot)]
+    hardware = [hardware_class(info)(info) for info in read_hardware(robot)]
     return ControllerManager(hardware, update_rate, **options)
 
 
@@ -46,7 +47,7 @@ def alone(
     type_name: str, robot: Robot | None = None, context: dict[str, Any] | None = None, **values: Any
 ) -> tuple[Controller, Interfaces, Interfaces]:
     """Return an active controller with interfaces of its own, commands and states, at zero."""
-    cls = controller_class(type_name)
+    cls = find(CONTROLLERS, type_name)
     controller = cls(parameters_from(cls.parameters, values), ControllerContext("it", 100.0, robot, **(context or {})))
     commands, states = Interfaces(controller.command_names), Interfaces(controller.state_names)
     states.values[:] = 0.0

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from control_robots import arm, from_values, manager
 
+from daidalos.common.extensions import UnknownExtension
 from daidalos.control.controllers.base import Controller, ControllerContext
 from daidalos.control.errors import HardwareError, ParameterError, StateError, SwitchError, UnknownError
 from daidalos.control.hardware.base import Hardware
@@ -120,7 +121,7 @@ def test_a_controller_goes_through_its_states() -> None:
 def test_what_is_not_there_or_wrong_is_named() -> None:
     one = manager(arm())
     with pytest.raises(
-        UnknownError, match="no controller type 'forward_command_controller/ForwardComandController'; did"
+        UnknownExtension, match="no controller 'forward_command_controller/ForwardComandController'; did"
     ):
         one.load("it", "forward_command_controller/ForwardComandController", from_values())
     with pytest.raises(UnknownError, match="there is no controller 'it'; there are: none"):

@@ -296,6 +296,6 @@ def _names_of(definition: ast.ClassDef, attribute: str) -> tuple[str, ...]:
 
     for statement in definition.body:
         if isinstance(statement, ast.Assign) and attribute in (getattr(one, "id", "") for one in statement.targets):
-            nodes = ast.walk(statement.value)
-            return tuple(one.value for one in nodes if isinstance(one, ast.Constant) and isinstance(one.value, str))
+            texts = [one for one in ast.walk(statement.value) if isinstance(one, ast.Constant)]
+            return tuple(str(one.value) for one in sorted(texts, key=lambda one: (one.lineno, one.col_offset)))
     return ()

@@ -8,13 +8,14 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import TypeVar
 
+from daidalos.common.extensions import find
 from daidalos.control.component import ACTIVE, FINALIZED, INACTIVE, UNCONFIGURED, Component
 from daidalos.control.controllers.base import ControllerContext
 from daidalos.control.errors import ControlError, HardwareError, StateError, SwitchError, UnknownError
+from daidalos.control.extensions import CONTROLLERS
 from daidalos.control.hardware.base import Hardware
 from daidalos.control.interfaces import Interfaces
 from daidalos.control.loaded_controller import LoadedController, Reader, prefixed
-from daidalos.control.plugins import controller_class
 from daidalos.control.pulse import Pulse
 from daidalos.control.switcher import Switcher
 from daidalos.control.switching import Strictness, Switch
@@ -129,13 +130,13 @@ class ControllerManager:
         ------
         StateError
             When there is one of that name.
-        UnknownError
-            When there is no such type.
+        ExtensionError
+            When there is no such type, or its class cannot be used.
         """
         if name in self.controllers:
             raise StateError(f"a controller '{name}' is loaded already")
         context = context or ControllerContext(name)
-        loaded = LoadedController(name, type_name, controller_class(type_name), read_parameters, context)
+        loaded = LoadedController(name, type_name, find(CONTROLLERS, type_name), read_parameters, context)
         loaded.fallbacks = tuple(fallbacks)
         self.controllers[name] = loaded
         return loaded

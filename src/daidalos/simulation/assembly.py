@@ -6,20 +6,22 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
 
+from daidalos.common.errors import Location
+from daidalos.common.extensions import ExtensionError, find
 from daidalos.description.link import Plugin as PluginDescription
 from daidalos.description.link import Sensor as SensorDescription
 from daidalos.description.world import Model, World
 from daidalos.simulation.component import Component, ComponentContext
 from daidalos.simulation.directional_friction import DirectionalFriction, directed_surfaces
+from daidalos.simulation.extensions import PLUGINS, SENSORS, is_built_in, library_of
 from daidalos.simulation.plugins.base import (
     COMMON_PARAMETERS,
+    LibraryPlugin,
     Parameters,
     Plugin,
     ReadElement,
     SensorPlugin,
-    library_of,
 )
-from daidalos.simulation.registry import is_built_in, plugin_class, sensor_class
 from daidalos.simulation.sensors.base import Sensor
 from daidalos.simulation.standing_pushes import StandingPushes, check_standing_pushes, standing_pushes
 from daidalos.simulation.wind import LIBRARIES as WIND_LIBRARIES
@@ -69,10 +71,8 @@ def check_world_plugins(world: World, warn: Callable[[str], None]) -> None:
     for plugin in world.plugins:
         if is_built_in(plugin) or library_of(plugin) in WIND_LIBRARIES:
             continue
-        cls = plugin_class(plugin)
-        if cls is None:
-            warn(_unknown(plugin))
-        else:
+        cls = _plugin_class(plugin, warn)
+        if cls is not None:
             home = "sensor" if issubclass(cls, SensorPlugin) else "model"
             warn(f"{plugin.element.where}: plugin {plugin.name!r} belongs inside a <{home}>, left out")
 
@@ -80,10 +80,10 @@ def check_world_plugins(world: World, warn: Callable[[str], None]) -> None:
 def _plugin(plugin: PluginDescription, context: ComponentContext) -> Iterator[Component]:
     if is_built_in(plugin):
         return
-    cls = plugin_class(plugin)
+    cls = _plugin_class(plugin, context.warn)
     if cls is None:
-        context.warn(_unknown(plugin))
-    elif issubclass(cls, SensorPlugin):
+        return
+    if not issubclass(cls, Plugin):
         context.warn(f"{plugin.element.where}: plugin {plugin.name!r} belongs inside a <sensor>, left out")
     else:
         element = ReadElement(plugin.element)
@@ -102,12 +102,10 @@ def _sensors(model: Model) -> Iterator[tuple[str, str, SensorDescription]]:
 
 
 def _sensor(description: SensorDescription, link: str, joint: str, context: ComponentContext) -> Iterator[Component]:
-    cls = sensor_class(description.type)
-    if cls is None:
-        context.warn(
-            f"{description.element.where}: sensor {description.name!r} is of unknown type "
-            f"{description.type!r}, left out"
-        )
+    try:
+        cls = find(SENSORS, description.type, asked_by=_location(description))
+    except ExtensionError as error:
+        context.warn(f"{error} (left out)")
         return
     make = partial(cls, description, link, context, joint)
     spoken_for = [sensor for plugin in description.plugins for sensor in _spoken_for(make, plugin, context)]
@@ -118,10 +116,10 @@ def _spoken_for(make: Callable[[], Sensor], plugin: PluginDescription, context: 
     """Make a sensor that speaks as a plugin says: each of a sensor's plugins tells of the same measurement."""
     if is_built_in(plugin):
         return
-    cls = plugin_class(plugin)
+    cls = _plugin_class(plugin, context.warn)
     if cls is None:
-        context.warn(_unknown(plugin))
-    elif issubclass(cls, SensorPlugin):
+        return
+    if issubclass(cls, SensorPlugin):
         element = ReadElement(plugin.element)
         sensor = make()
         cls().configure(sensor, Parameters(replace(plugin, element=element), context))
@@ -132,7 +130,7 @@ def _spoken_for(make: Callable[[], Sensor], plugin: PluginDescription, context: 
 
 
 def _warn_of_unread(
-    plugin: PluginDescription, element: ReadElement, cls: type[Plugin] | type[SensorPlugin], context: ComponentContext
+    plugin: PluginDescription, element: ReadElement, cls: type[LibraryPlugin], context: ComponentContext
 ) -> None:
     """Name the parameters that nobody read; a plugin of the user's may read its own whenever it likes."""
     unread = element.unread((*COMMON_PARAMETERS, *cls.unused)) if cls.names else ()
@@ -141,5 +139,15 @@ def _warn_of_unread(
         context.warn(f"{where} does not use {', '.join(unread)}")
 
 
-def _unknown(plugin: PluginDescription) -> str:
-    return f"{plugin.element.where}: plugin {plugin.name!r} ({plugin.filename}) is not known, left out"
+def _plugin_class(plugin: PluginDescription, warn: Callable[[str], None]) -> type[LibraryPlugin] | None:
+    """Return the class for a plugin; None, with a warning, where there is none that can be used."""
+    try:
+        return find(PLUGINS, library_of(plugin), asked_by=_location(plugin))
+    except ExtensionError as error:
+        warn(f"{error} (left out)")
+        return None
+
+
+def _location(description: PluginDescription | SensorDescription) -> Location:
+    element = description.element
+    return Location(element.source or None, element.line or None, description.name)

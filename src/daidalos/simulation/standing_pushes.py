@@ -8,9 +8,9 @@ from daidalos.common.pose3 import Vector
 from daidalos.description.markup import Element
 from daidalos.description.world import Model, World
 from daidalos.simulation.component import Component, ComponentContext
+from daidalos.simulation.extensions import library_of
 from daidalos.simulation.forces import Push
 from daidalos.simulation.instance import Instance
-from daidalos.simulation.plugins.base import library_of
 from daidalos.simulation.samples import Sample
 
 LIBRARY = "gz-sim-apply-link-wrench-system"

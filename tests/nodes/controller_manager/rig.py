@@ -12,7 +12,7 @@ from controller_manager_msgs import srv
 from rclpy.executors import MultiThreadedExecutor
 from rclpy.parameter import Parameter
 
-from daidalos.control.plugins import hardware_class
+from daidalos.control.extensions import hardware_class
 from daidalos.description import urdf
 from daidalos.description.ros2_control import read_hardware
 from daidalos.nodes.controller_manager._manager_node import ControllerManagerNode
@@ -68,7 +68,7 @@ class Rig:
         overrides: list[Parameter[Any]] = [Parameter(name, value=value) for name, value in parameters.items()]
         self.node = ControllerManagerNode(parameter_overrides=overrides)
         robot = urdf.parse(URDF)
-        self.node.start(robot, [hardware_class(info.plugin)(info) for info in read_hardware(robot)])
+        self.node.start(robot, [hardware_class(info)(info) for info in read_hardware(robot)])
         self.user = rclpy.create_node("user")
         self.now = 0
 

@@ -18,7 +18,8 @@ from rosidl_runtime_py.utilities import get_message
 from std_msgs.msg import Float64MultiArray
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
-from daidalos.control.plugins import controllers
+from daidalos.common.extensions import listing
+from daidalos.control.extensions import CONTROLLERS
 from daidalos.nodes.controller_manager._manager_node import ControllerManagerNode
 from nodes.controller_manager.rig import FORWARD, TIMEOUT_S, WHEELS, Rig, parameter_file, rig
 from ros.graph import graph  # noqa: F401
@@ -121,7 +122,7 @@ def test_wrong_parameters_are_said_in_a_line(
     ("parameters", "message"),
     [
         ({}, "the type of controller 'it' is not known: the parameter 'it.type' of 'controller_manager' is not set"),
-        ({"it.type": "a/B"}, "there is no controller type 'a/B'"),
+        ({"it.type": "a/B"}, "there is no controller 'a/B'"),
         ({"it.type": FORWARD, "it.params_file": "/nowhere.yaml"}, "there is no parameter file '/nowhere.yaml'"),
     ],
 )
@@ -295,7 +296,7 @@ def test_every_type_is_tried_here_or_is_one_of_a_kind() -> None:
         "tricycle_steering_controller/TricycleSteeringController",
         "tricycle_controller/TricycleController",
     }
-    assert set(controllers()) == tried | same_interface
+    assert {one.name for one in listing(CONTROLLERS)} == tried | same_interface
 
 
 def test_commands_come_by_topic(graph: Context, tmp_path: Path) -> None:  # noqa: F811

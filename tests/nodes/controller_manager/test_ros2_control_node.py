@@ -126,7 +126,7 @@ def test_the_wall_clock_keeps_the_rate_as_far_as_the_machine_does(graph: Context
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        (URDF.format("my_robot/Missing"), "no hardware plugin 'my_robot/Missing'"),
+        (URDF.format("my_robot/Missing"), "no hardware 'my_robot/Missing'"),
         (URDF.format("gazebo_ros2_control/GazeboSystem"), "GazeboSystem' is the simulator's"),
         ("<robot name='r'><link name='a'/></robot>", "has no <ros2_control> element"),
         ("<robot", "robot_description"),

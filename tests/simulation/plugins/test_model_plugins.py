@@ -259,8 +259,8 @@ def test_an_unknown_plugin_is_named_and_the_rest_runs():
     simulation = Simulation(world(plugin, with_plugin(box("b"), "libnor_this.so")), warn=said.append)
     simulation.advance(SECOND // 10)
     assert [line.split(": ", 1)[1] for line in said] == [
-        "plugin 'odd' (libnobody_knows.so) is not known, left out",
-        "plugin 'p' (libnor_this.so) is not known, left out",
+        "'odd': there is no simulator plugin 'nobody_knows' (left out)",
+        "'p': there is no simulator plugin 'nor_this' (left out)",
     ]
 
 

@@ -472,7 +472,7 @@ def test_a_plugin_of_a_model_does_nothing_in_a_world():
     simulation = Simulation(world(plugin("libgazebo_ros_p3d.so", ""), plugin("libnothing.so", "")))
     first, second = simulation.warnings
     assert first.endswith("plugin 'p' belongs inside a <model>, left out")
-    assert second.endswith("plugin 'p' (libnothing.so) is not known, left out")
+    assert second.endswith("'p': there is no simulator plugin 'nothing' (left out)")
 
 
 TRANSMISSION = (

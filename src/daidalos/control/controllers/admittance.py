@@ -121,7 +121,7 @@ class AdmittanceParameters:
 class AdmittanceController(Controller):
     """Moves joints to references from ``~/joint_references`` or other controllers, less what forces push away."""
 
-    types = ("admittance_controller/AdmittanceController",)
+    names = ("admittance_controller/AdmittanceController",)
     parameters = AdmittanceParameters
     chainable = True
     p: AdmittanceParameters

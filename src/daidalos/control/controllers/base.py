@@ -115,7 +115,7 @@ class Controller(Endpoint):
 
     Names of topics, services and actions that begin with ``~/`` go below its own.
 
-    Adding a file with a subclass to this folder adds its types; a package of the user's does the same through
+    Adding a file with a subclass to this folder adds its names; a package of the user's does the same through
     the entry point group ``daidalos.controllers``, or is named by its place.
 
     Parameters
@@ -126,7 +126,7 @@ class Controller(Endpoint):
 
     Attributes
     ----------
-    types : tuple of str
+    names : tuple of str
         Class attribute: the names that it goes by in parameter files.
     parameters : type
         Class attribute: a dataclass; see `daidalos.control.parameters`.
@@ -149,7 +149,7 @@ class Controller(Endpoint):
         When parameters do not fit together.
     """
 
-    types: ClassVar[tuple[str, ...]] = ()
+    names: ClassVar[tuple[str, ...]] = ()
     parameters: ClassVar[type]
     chainable: ClassVar[bool] = False
 

@@ -105,7 +105,7 @@ class DiffDriveParameters:
 class DiffDriveController(Controller):
     """Drives a base on wheels that do not steer; all wheels of a side turn alike."""
 
-    types = ("diff_drive_controller/DiffDriveController",)
+    names = ("diff_drive_controller/DiffDriveController",)
     parameters = DiffDriveParameters
     chainable = True
     p: DiffDriveParameters

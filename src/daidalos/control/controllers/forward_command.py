@@ -93,7 +93,7 @@ class ForwardController(Controller):
 class ForwardCommandController(ForwardController):
     """One interface of several joints."""
 
-    types = ("forward_command_controller/ForwardCommandController",)
+    names = ("forward_command_controller/ForwardCommandController",)
     parameters = ForwardCommandParameters
     p: ForwardCommandParameters
 
@@ -105,7 +105,7 @@ class ForwardCommandController(ForwardController):
 class MultiInterfaceForwardCommandController(ForwardController):
     """Several interfaces of one joint."""
 
-    types = ("forward_command_controller/MultiInterfaceForwardCommandController",)
+    names = ("forward_command_controller/MultiInterfaceForwardCommandController",)
     parameters = MultiInterfaceParameters
     p: MultiInterfaceParameters
 
@@ -117,7 +117,7 @@ class MultiInterfaceForwardCommandController(ForwardController):
 class JointGroupPositionController(ForwardController):
     """Positions of joints."""
 
-    types = ("position_controllers/JointGroupPositionController",)
+    names = ("position_controllers/JointGroupPositionController",)
     parameters = GroupParameters
     kind = "position"
     p: GroupParameters
@@ -130,7 +130,7 @@ class JointGroupPositionController(ForwardController):
 class JointGroupVelocityController(JointGroupPositionController):
     """Velocities of joints; they stand when it stops."""
 
-    types = ("velocity_controllers/JointGroupVelocityController",)
+    names = ("velocity_controllers/JointGroupVelocityController",)
     kind = "velocity"
 
     def deactivate(self) -> None:
@@ -142,5 +142,5 @@ class JointGroupVelocityController(JointGroupPositionController):
 class JointGroupEffortController(JointGroupVelocityController):
     """Efforts of joints; none when it stops."""
 
-    types = ("effort_controllers/JointGroupEffortController",)
+    names = ("effort_controllers/JointGroupEffortController",)
     kind = "effort"

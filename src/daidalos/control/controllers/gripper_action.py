@@ -73,7 +73,7 @@ class ParallelGripperParameters(GripperParameters):
 class PositionGripperController(Controller):
     """Moves a finger by its position."""
 
-    types = ("position_controllers/GripperActionController",)
+    names = ("position_controllers/GripperActionController",)
     parameters = GripperParameters
     command_kind = "position"
     request: ClassVar[type[GripperRequest]] = GripperRequest
@@ -160,7 +160,7 @@ class PositionGripperController(Controller):
 class EffortGripperController(PositionGripperController):
     """Moves a finger by its effort, from its position error."""
 
-    types = ("effort_controllers/GripperActionController",)
+    names = ("effort_controllers/GripperActionController",)
     command_kind = "effort"
 
     def configure(self) -> None:
@@ -188,7 +188,7 @@ class EffortGripperController(PositionGripperController):
 class ParallelGripperController(PositionGripperController):
     """Moves a finger by its position, and tells the hardware how hard and fast at most."""
 
-    types = ("parallel_gripper_action_controller/GripperActionController",)
+    names = ("parallel_gripper_action_controller/GripperActionController",)
     parameters = ParallelGripperParameters
     request = ParallelGripperRequest
     p: ParallelGripperParameters

@@ -59,7 +59,7 @@ class JointStateBroadcasterParameters:
 class JointStateBroadcaster(Controller):
     """``joint_states`` of joints that have a position, velocity or effort; ``dynamic_joint_states`` of everything."""
 
-    types = ("joint_state_broadcaster/JointStateBroadcaster",)
+    names = ("joint_state_broadcaster/JointStateBroadcaster",)
     parameters = JointStateBroadcasterParameters
     p: JointStateBroadcasterParameters
 

@@ -47,7 +47,7 @@ class JointTrajectoryController(Controller):
     Waypoints that are past are left out. Joints that it does not mention stay, where partial goals are allowed.
     """
 
-    types = ("joint_trajectory_controller/JointTrajectoryController",)
+    names = ("joint_trajectory_controller/JointTrajectoryController",)
     parameters = JointTrajectoryParameters
     p: JointTrajectoryParameters
 

@@ -68,7 +68,7 @@ class MecanumParameters:
 class MecanumDriveController(BaseController):
     """Drives a base on four mecanum wheels."""
 
-    types = ("mecanum_drive_controller/MecanumDriveController",)
+    names = ("mecanum_drive_controller/MecanumDriveController",)
     parameters = MecanumParameters
     chainable = True
     state_sample = MecanumSample

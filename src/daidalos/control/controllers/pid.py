@@ -79,7 +79,7 @@ class PidParameters:
 class PidController(Controller):
     """Commands so that what is measured becomes what is wanted."""
 
-    types = ("pid_controller/PidController",)
+    names = ("pid_controller/PidController",)
     parameters = PidParameters
     chainable = True
     p: PidParameters

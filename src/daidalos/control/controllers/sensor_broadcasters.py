@@ -49,7 +49,7 @@ class ImuParameters:
 class ImuSensorBroadcaster(Controller):
     """Publishes ``~/imu``."""
 
-    types = ("imu_sensor_broadcaster/IMUSensorBroadcaster",)
+    names = ("imu_sensor_broadcaster/IMUSensorBroadcaster",)
     parameters = ImuParameters
     p: ImuParameters
 
@@ -157,7 +157,7 @@ class ForceTorqueParameters:
 class ForceTorqueSensorBroadcaster(Controller):
     """Publishes ``~/wrench``; other controllers may use what it exports."""
 
-    types = ("force_torque_sensor_broadcaster/ForceTorqueSensorBroadcaster",)
+    names = ("force_torque_sensor_broadcaster/ForceTorqueSensorBroadcaster",)
     parameters = ForceTorqueParameters
     p: ForceTorqueParameters
 
@@ -203,7 +203,7 @@ class RangeParameters:
 class RangeSensorBroadcaster(Controller):
     """Publishes ``~/range``."""
 
-    types = ("range_sensor_broadcaster/RangeSensorBroadcaster",)
+    names = ("range_sensor_broadcaster/RangeSensorBroadcaster",)
     parameters = RangeParameters
     p: RangeParameters
 
@@ -253,7 +253,7 @@ class PoseParameters:
 class PoseBroadcaster(Controller):
     """Publishes ``~/pose`` and its transform."""
 
-    types = ("pose_broadcaster/PoseBroadcaster",)
+    names = ("pose_broadcaster/PoseBroadcaster",)
     parameters = PoseParameters
     p: PoseParameters
 

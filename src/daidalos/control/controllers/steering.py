@@ -185,7 +185,7 @@ class AckermannParameters(SteeringParameters):
 class BicycleSteeringController(BaseController):
     """Drives a base with one driven wheel and a steered one."""
 
-    types = ("bicycle_steering_controller/BicycleSteeringController",)
+    names = ("bicycle_steering_controller/BicycleSteeringController",)
     parameters: ClassVar[type] = BicycleParameters
     chainable = True
     state_sample = SteeringSample
@@ -277,12 +277,12 @@ class BicycleSteeringController(BaseController):
 class TricycleSteeringController(BicycleSteeringController):
     """Drives a base with two driven wheels and a steered one."""
 
-    types = ("tricycle_steering_controller/TricycleSteeringController",)
+    names = ("tricycle_steering_controller/TricycleSteeringController",)
     parameters: ClassVar[type] = TricycleParameters
 
 
 class AckermannSteeringController(BicycleSteeringController):
     """Drives a base with two driven wheels and two steered ones."""
 
-    types = ("ackermann_steering_controller/AckermannSteeringController",)
+    names = ("ackermann_steering_controller/AckermannSteeringController",)
     parameters: ClassVar[type] = AckermannParameters

@@ -92,7 +92,7 @@ class TricycleDriveParameters:
 class TricycleController(Controller):
     """Drives a base whose front wheel does everything; it can turn on the spot."""
 
-    types = ("tricycle_controller/TricycleController",)
+    names = ("tricycle_controller/TricycleController",)
     parameters = TricycleDriveParameters
     p: TricycleDriveParameters
 

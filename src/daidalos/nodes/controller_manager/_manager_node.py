@@ -14,12 +14,13 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
+from daidalos.common.extensions import ExtensionError, listing, load
 from daidalos.control.component import INACTIVE, UNCONFIGURED
 from daidalos.control.controllers.base import ControllerContext
 from daidalos.control.errors import ControlError
+from daidalos.control.extensions import CONTROLLERS
 from daidalos.control.hardware.base import Hardware
 from daidalos.control.manager import ControllerManager
-from daidalos.control.plugins import controllers
 from daidalos.control.switching import Strictness
 from daidalos.description.robot import Robot
 from daidalos.description.world import Model
@@ -175,7 +176,7 @@ class ControllerManagerNode(Node):
                 with self.lock:
                     work(request, response)
             except Exception as error:  # classes of the user's may raise anything
-                if not isinstance(error, ControlError):
+                if not isinstance(error, ControlError | ExtensionError):
                     self.get_logger().error(traceback.format_exc())
                 response.ok = False
                 if hasattr(response, "message"):
@@ -204,9 +205,14 @@ class ControllerManagerNode(Node):
         return response
 
     def _list_types(self, request: Any, response: Any) -> Any:
-        known = sorted(controllers().items())
-        response.types = [name for name, _ in known]
-        response.base_classes = [_CHAINABLE if cls.chainable else _PLAIN for _, cls in known]
+        for extension in sorted(listing(CONTROLLERS)):
+            try:
+                cls = load(CONTROLLERS, extension)
+            except ExtensionError as error:
+                self.warn(str(error))
+                continue
+            response.types.append(extension.name)
+            response.base_classes.append(_CHAINABLE if cls.chainable else _PLAIN)
         return response
 
     def _list_components(self, request: Any, response: Any) -> Any:
@@ -244,7 +250,7 @@ class ControllerManagerNode(Node):
             )
             fallbacks = self._parameter(f"{name}.fallback_controllers", [])
             self._running.load(name, type_name, node.read_parameters, context, fallbacks)
-        except ControlError:
+        except (ControlError, ExtensionError):
             node.destroy_node()
             raise
         self._nodes[name] = node

@@ -5,9 +5,9 @@ from __future__ import annotations
 from rclpy.context import Context
 from rclpy.parameter import Parameter
 
+from daidalos.control.extensions import hardware_class
 from daidalos.control.hardware.base import Hardware, HardwareContext
 from daidalos.control.hardware.simulated import SimulatedSystem
-from daidalos.control.plugins import hardware_class
 from daidalos.description.ros2_control import HardwareInfo
 from daidalos.nodes.controller_manager._manager_node import ControllerManagerNode
 from daidalos.nodes.node_thread import NodeThread
@@ -27,7 +27,7 @@ class SimulatedManager:
 
     Raises
     ------
-    ControlError
+    ControlError, ExtensionError
         When the hardware can not be used.
     """
 
@@ -57,7 +57,7 @@ class SimulatedManager:
         plugin.cycle = self._cycle
 
     def _hardware(self, info: HardwareInfo, context: HardwareContext) -> Hardware:
-        cls = hardware_class(info.plugin)
+        cls = hardware_class(info)
         return cls(info, context, self._plugin) if issubclass(cls, SimulatedSystem) else cls(info, context)
 
     def _cycle(self, now_ns: int) -> None:

@@ -9,9 +9,10 @@ from typing import Any
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.qos import DurabilityPolicy, QoSProfile
 
+from daidalos.common.extensions import ExtensionError
 from daidalos.control.errors import ControlError
+from daidalos.control.extensions import hardware_class
 from daidalos.control.hardware.base import Hardware, HardwareContext
-from daidalos.control.plugins import hardware_class
 from daidalos.description import urdf
 from daidalos.description.errors import DescriptionError
 from daidalos.description.ros2_control import read_hardware
@@ -51,11 +52,11 @@ class Ros2ControlNode(ControllerManagerNode):
         try:
             robot = urdf.parse(text, "robot_description", package_share)
             context = HardwareContext(self.update_rate, self.warn)
-            hardware: list[Hardware] = [hardware_class(info.plugin)(info, context) for info in read_hardware(robot)]
+            hardware: list[Hardware] = [hardware_class(info)(info, context) for info in read_hardware(robot)]
             if not hardware:
                 raise ControlError("the robot description has no <ros2_control> element")
             self.start(robot, hardware)
-        except (DescriptionError, ControlError) as error:
+        except (DescriptionError, ControlError, ExtensionError) as error:
             raise UserError(str(error)) from None
         self._cycles = _Cycles(self.update_rate)
         self.create_timer(1.0 / self.update_rate, self._tick, callback_group=MutuallyExclusiveCallbackGroup())

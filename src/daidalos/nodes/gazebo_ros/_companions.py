@@ -66,11 +66,12 @@ class Companions:
             self._end(key)
 
     def _make(self, component: Component) -> Companion | None:
+        from daidalos.common.extensions import ExtensionError
         from daidalos.control.errors import ControlError
 
         try:
             return _MAKERS[type(component)](component, self._context)
-        except (ControlError, ValueError, RuntimeError) as error:  # a parameter file that is not valid
+        except (ControlError, ExtensionError, ValueError, RuntimeError) as error:  # a parameter file that is not valid
             self._warn(f"the controllers of '{component.context.model_name}' can not be started: {error}")
             return None
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from abc import ABC, abstractmethod
 from collections.abc import Iterable
 from difflib import get_close_matches
@@ -11,32 +10,12 @@ from typing import ClassVar
 from daidalos.description.link import Plugin as Description
 from daidalos.description.markup import Element
 from daidalos.simulation.component import Component, ComponentContext
+from daidalos.simulation.extensions import library_of
 from daidalos.simulation.sensors.base import Sensor
 from daidalos.simulation.topics import absolute_topic, join_namespaces
 
 COMMON_PARAMETERS = ("alwaysOn", "always_on", "rosDebugLevel", "debug", "robotParam", "latch")
 """Parameters of many libraries that mean nothing here."""
-
-
-def library_name(filename: str) -> str:
-    """Return the name of a library without what platforms and versions add to it.
-
-    ``libgazebo_ros_imu.so`` becomes ``gazebo_ros_imu``; ``libignition-gazebo6-imu-system.so``,
-    ``gz-sim8-imu-system`` and gz's class name ``gz::sim::systems::Imu`` become ``gz-sim-imu-system``.
-    """
-    name = filename.strip().replace("\\", "/").rpartition("/")[2]
-    system = re.fullmatch(r"(?:gz::sim|ignition::gazebo)(?:::v\d+)?::systems(?:::v\d+)?::(\w+)", name)
-    if system:
-        return f"gz-sim-{re.sub('(?<=[a-z])(?=[A-Z])', '-', system[1]).lower()}-system"
-    name = re.sub(r"\.(so|dll|dylib)$", "", name).removeprefix("lib")
-    return re.sub(r"^(ignition-gazebo|gz-sim)\d*-", "gz-sim-", name)
-
-
-def library_of(plugin: Description) -> str:
-    """Return the name of a plugin's library; gz's name of a class counts where the file is of no system of gz's."""
-    library = library_name(plugin.filename)
-    is_class = "::systems::" in plugin.name and not re.fullmatch("gz-sim-.*-system", library)
-    return library_name(plugin.name) if is_class else library
 
 
 class ReadElement(Element):
@@ -71,10 +50,25 @@ class ReadElement(Element):
         return [f"<{tag}>" + "".join(f" (did you mean <{one}>?)" for one in near[tag]) for tag in tags]
 
 
-class Plugin(Component):
+class LibraryPlugin:
+    """What stands in for a library of Gazebo's: a `Plugin` or a `SensorPlugin`.
+
+    Attributes
+    ----------
+    names : tuple of str
+        The libraries, without ``lib`` in front and ``.so`` behind.
+    unused : tuple of str
+        Parameters of those libraries that mean nothing here; any other that is not read is named in a warning.
+    """
+
+    names: ClassVar[tuple[str, ...]] = ()
+    unused: ClassVar[tuple[str, ...]] = ()
+
+
+class Plugin(LibraryPlugin, Component):
     """Code that runs beside a model.
 
-    A subclass names the libraries that it stands in for: without ``lib`` in front and ``.so`` behind.
+    A subclass names the libraries that it stands in for.
     Adding a file with such a class to this folder adds the plugin; a package of the user's does the
     same through the entry point group ``daidalos.plugins``.
 
@@ -82,15 +76,7 @@ class Plugin(Component):
     ----------
     description : daidalos.description.link.Plugin
     context : ComponentContext
-
-    Attributes
-    ----------
-    unused : tuple of str
-        Parameters of those libraries that mean nothing here; any other that is not read is named in a warning.
     """
-
-    names: ClassVar[tuple[str, ...]] = ()
-    unused: ClassVar[tuple[str, ...]] = ()
 
     def __init__(self, description: Description, context: ComponentContext) -> None:
         super().__init__(context)
@@ -103,11 +89,8 @@ class Plugin(Component):
         return (cls(description, context),)
 
 
-class SensorPlugin(ABC):
+class SensorPlugin(LibraryPlugin, ABC):
     """Code that decides how a sensor speaks to ROS: topic, frame, message."""
-
-    names: ClassVar[tuple[str, ...]] = ()
-    unused: ClassVar[tuple[str, ...]] = ()
 
     @abstractmethod
     def configure(self, sensor: Sensor, parameters: Parameters) -> None:

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 class Sensor(Component):
     """A sensor on a link.
 
-    A subclass names the SDF types that it serves, reads its part of the description in `read` and says
+    A subclass names the SDF types that it serves in `names`, reads its part of the description in `read` and says
     in `measure` what it sees. Adding a file with such a class to this folder adds the sensor; a package
     of the user's does the same through the entry point group ``daidalos.sensors``.
 
@@ -42,7 +42,7 @@ class Sensor(Component):
         In the link.
     """
 
-    types: ClassVar[tuple[str, ...]] = ()
+    names: ClassVar[tuple[str, ...]] = ()
     default_topic: ClassVar[str] = "data"
 
     def __init__(self, description: Description, link: str, context: ComponentContext, joint: str = "") -> None:

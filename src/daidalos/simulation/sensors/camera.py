@@ -90,7 +90,7 @@ class Camera(Sensor):
 
     state: Trigger
 
-    types = (
+    names = (
         *("camera", "depth", "depth_camera", "rgbd", "rgbd_camera", "multicamera"),
         *("segmentation", "segmentation_camera", "wideanglecamera"),
     )

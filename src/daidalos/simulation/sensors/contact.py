@@ -22,7 +22,7 @@ class ContactSensor(Sensor):
         Speak as Gazebo classic's bumper does.
     """
 
-    types = ("contact",)
+    names = ("contact",)
     default_topic = "contact"
 
     def read(self, element: Element) -> None:

@@ -28,7 +28,7 @@ class ForceTorque(NoisySensor):
         What the child does to its parent, rather than the other way round.
     """
 
-    types = ("force_torque",)
+    names = ("force_torque",)
     default_topic = "forcetorque"
 
     def read(self, element: Element) -> None:

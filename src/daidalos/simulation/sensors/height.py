@@ -20,7 +20,7 @@ _GAS_CONSTANT = 8.3144598
 class Altimeter(NoisySensor):
     """Height over where it started, and how fast it climbs."""
 
-    types = ("altimeter",)
+    names = ("altimeter",)
     default_topic = "altimeter"
 
     def read(self, element: Element) -> None:
@@ -58,7 +58,7 @@ class Altimeter(NoisySensor):
 class Barometer(NoisySensor):
     """Air pressure at its height, after the barometric formula with a constant temperature gradient."""
 
-    types = ("air_pressure",)
+    names = ("air_pressure",)
     default_topic = "air_pressure"
 
     def read(self, element: Element) -> None:

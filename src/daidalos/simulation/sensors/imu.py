@@ -25,7 +25,7 @@ class Imu(NoisySensor):
         Whether the orientation that it starts with is reported as none; a plugin may set it.
     """
 
-    types = ("imu",)
+    names = ("imu",)
     default_topic = "imu"
 
     def read(self, element: Element) -> None:

@@ -63,7 +63,7 @@ class Lidar(Sensor):
         Speak as gz's lidar does: the middle ring's ranges, and points on ``<topic>/points``.
     """
 
-    types = ("ray", "lidar", "gpu_ray", "gpu_lidar")
+    names = ("ray", "lidar", "gpu_ray", "gpu_lidar")
     default_topic = "scan"
 
     def __init__(self, description: Description, link: str, context: ComponentContext, joint: str = "") -> None:

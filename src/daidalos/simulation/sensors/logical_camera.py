@@ -17,7 +17,7 @@ from daidalos.simulation.sensors.base import Sensor
 class LogicalCamera(Sensor):
     """A camera that recognises everything it looks at, walls or not."""
 
-    types = ("logical_camera",)
+    names = ("logical_camera",)
     default_topic = "logical_camera"
 
     def read(self, element: Element) -> None:

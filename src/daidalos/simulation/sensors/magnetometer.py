@@ -22,7 +22,7 @@ class Magnetometer(NoisySensor):
         A plugin may set another.
     """
 
-    types = ("magnetometer",)
+    names = ("magnetometer",)
     default_topic = "magnetometer"
 
     def read(self, element: Element) -> None:

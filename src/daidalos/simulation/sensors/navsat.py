@@ -26,7 +26,7 @@ class NavSat(NoisySensor):
         In metres and metres a second: horizontally twice, vertically.
     """
 
-    types = ("gps", "navsat")
+    names = ("gps", "navsat")
     default_topic = "navsat"
 
     def read(self, element: Element) -> None:

@@ -21,7 +21,7 @@ _RINGS = 6
 class Sonar(Sensor):
     """Sends rays into a cone along x, as dense in its middle as at its rim."""
 
-    types = ("sonar",)
+    names = ("sonar",)
     default_topic = "sonar"
 
     def read(self, element: Element) -> None:

@@ -1,11 +1,15 @@
 import re
+from importlib import metadata
+from importlib.metadata import EntryPoint
 
 import pytest
 
+from daidalos.common.extensions import UnknownExtension, find
 from daidalos.description.link import Plugin as Description
 from daidalos.description.markup import Element
-from daidalos.simulation import Simulation, registry
-from daidalos.simulation.plugins.base import Plugin, library_name
+from daidalos.simulation import Simulation
+from daidalos.simulation.extensions import PLUGINS, SENSORS, is_built_in, library_name, library_of
+from daidalos.simulation.plugins.base import Plugin
 from daidalos.simulation.plugins.diff_drive import DiffDrive
 from daidalos.simulation.samples import TransformSample
 from daidalos.simulation.sensors.base import Sensor
@@ -36,13 +40,30 @@ def written(name, filename):
     return Description(name, filename, Element("plugin"))
 
 
+def plugin_class(name, filename):
+    return find(PLUGINS, library_of(written(name, filename)))
+
+
 def test_ours_are_found():
-    assert registry.sensor_class("gpu_lidar") is Lidar
-    assert registry.plugin_class(written("p", "libgazebo_ros_diff_drive.so")) is DiffDrive
-    assert registry.plugin_class(written("ignition::gazebo::v6::systems::DiffDrive", "gz-sim-systems")) is DiffDrive
-    assert registry.plugin_class(written("diff_drive", "libnothing.so")) is None
-    assert registry.is_built_in(written("ignition::gazebo::systems::v0::Physics", "libignition-gazebo-systems.so"))
-    assert registry.sensor_class("nose") is None
+    assert find(SENSORS, "gpu_lidar") is Lidar
+    assert plugin_class("p", "libgazebo_ros_diff_drive.so") is DiffDrive
+    assert plugin_class("ignition::gazebo::v6::systems::DiffDrive", "gz-sim-systems") is DiffDrive
+    assert is_built_in(written("ignition::gazebo::systems::v0::Physics", "libignition-gazebo-systems.so"))
+    with pytest.raises(UnknownExtension):
+        plugin_class("diff_drive", "libnothing.so")
+
+
+def test_unknown_names_are_warned_of_with_their_file_and_the_nearest():
+    text = box("b", extra="<sensor name='s' type='gpu_lidr'/>")
+    text = text.replace("</model>", "<plugin name='g' filename='libgazebo_ros_diff_drve.so'/></model>")
+    warnings = Simulation(world(text)).warnings
+    assert any(
+        re.search(r":\d+: 's': there is no sensor 'gpu_lidr'; did you mean 'gpu_lidar'", line) for line in warnings
+    ), warnings
+    assert any(
+        re.search(r":\d+: 'g': there is no simulator plugin 'gazebo_ros_diff_drve'; did you mean 'gazebo_ros_di", line)
+        for line in warnings
+    ), warnings
 
 
 class Greeter(Plugin):
@@ -54,16 +75,10 @@ class Greeter(Plugin):
 
 
 class Nose(Sensor):
-    types = ("nose",)
+    names = ("nose",)
 
     def measure(self, now_ns):
         yield TransformSample(now_ns, self.topic, self.frame_id, "smell", (0, 0, 0), (0, 0, 0, 1))
-
-
-class Entry:
-    def __init__(self, name, target):
-        self.name = name
-        self.load = lambda: target
 
 
 def documented_plugin():
@@ -76,14 +91,13 @@ def documented_plugin():
 
 @pytest.fixture
 def entries(monkeypatch):
-    plugins = [Entry("greeter", Greeter), Entry("my_wind", documented_plugin())]
-    groups = {"daidalos.plugins": plugins, "daidalos.sensors": [Entry("nose", Nose)]}
-    monkeypatch.setattr(registry, "entry_points", lambda group: groups[group])
-    registry._plugins.cache_clear()
-    registry._sensors.cache_clear()
-    yield
-    registry._plugins.cache_clear()
-    registry._sensors.cache_clear()
+    points = [
+        EntryPoint("greeter", f"{__name__}:Greeter", "daidalos.plugins"),
+        EntryPoint("my_wind", f"{__name__}:documented_plugin.found", "daidalos.plugins"),
+        EntryPoint("nose", f"{__name__}:Nose", "daidalos.sensors"),
+    ]
+    documented_plugin.found = documented_plugin()
+    monkeypatch.setattr(metadata, "entry_points", lambda group: [one for one in points if one.group == group])
 
 
 @pytest.mark.usefixtures("entries")
@@ -120,7 +134,7 @@ def test_the_documented_plugins_are_there():
     ]
     assert len(names) > 40
     for name in names:
-        assert registry.plugin_class(written("p", name)) or registry.is_built_in(written("p", name)), name
+        assert is_built_in(written("p", name)) or plugin_class("p", name)
 
 
 @pytest.mark.usefixtures("entries")
