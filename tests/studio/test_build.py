@@ -3,6 +3,7 @@
 import json
 import os
 import stat
+import subprocess
 import sys
 from pathlib import Path
 
@@ -11,6 +12,7 @@ import pytest
 from daidalos.studio import build as module
 from daidalos.studio.build import STAMP, build, is_fresh, needs_node, source_hash
 
+SOURCES = Path(module.__file__).parents[2]
 LOCK = {
     "packages": {
         "": {"name": "page"},
@@ -206,13 +208,15 @@ def test_the_committed_lock_names_no_registry() -> None:
         assert not name or "integrity" in entry, name
 
 
-def test_uses_only_the_standard_library() -> None:
-    """The hook runs it where nothing else is installed."""
-    import ast
+def test_runs_where_only_the_standard_library_is() -> None:
+    """As the hook does."""
+    program = f"import sys; sys.path.insert(0, {str(SOURCES)!r}); from daidalos.studio import build; build.is_fresh()"
+    done = subprocess.run([sys.executable, "-I", "-S", "-c", program], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
 
-    tree = ast.parse(Path(module.__file__).read_text())
-    imported = {
-        alias.name.split(".")[0] for node in ast.walk(tree) if isinstance(node, ast.Import) for alias in node.names
-    }
-    imported |= {(node.module or "").split(".")[0] for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)}
-    assert imported <= set(sys.stdlib_module_names)
+
+def test_an_interface_without_definition_is_named_and_stops_nothing(web: Path, static: Path, node: FakeNode) -> None:
+    (web / "src" / "main.ts").write_text('import type { LaserScam } from "./generated/sensor_msgs";\n')
+    words: list[str] = []
+    assert not build(words.append, web, static)
+    assert "main.ts: there is no interface LaserScam in the package sensor_msgs" in words[-1]

@@ -3,14 +3,16 @@
 import contextlib
 import json
 import math
+import re
 import struct
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from daidalos.studio import protocol
-from daidalos.studio.protocol import PlaybackControl, ProtocolError, Publish, ServiceRequest
+from daidalos.studio import frames, protocol
+from daidalos.studio.frames import PlaybackControl, Publish, ServiceRequest
+from daidalos.studio.protocol import ClientMessage, ProtocolError
 from daidalos.studio.source import Graph, Parameter, Service, Topic
 
 U32 = st.integers(0, 2**32 - 1)
@@ -21,41 +23,41 @@ TEXT = st.text(max_size=30)
 
 @given(U32, U64, PAYLOAD)
 def test_message_frames_follow_the_published_layout(subscription, stamp, payload):
-    assert protocol.message_frame(subscription, stamp, payload) == (
+    assert frames.message_frame(subscription, stamp, payload) == (
         b"\x01" + subscription.to_bytes(4, "little") + stamp.to_bytes(8, "little") + payload
     )
 
 
 @given(U64)
 def test_time_frames_follow_the_published_layout(stamp):
-    assert protocol.time_frame(stamp) == b"\x02" + stamp.to_bytes(8, "little")
+    assert frames.time_frame(stamp) == b"\x02" + stamp.to_bytes(8, "little")
 
 
 @given(U32, U32, PAYLOAD)
 def test_service_responses_follow_the_published_layout(service, call, payload):
-    frame = protocol.service_response_frame(service, call, payload)
+    frame = frames.service_response_frame(service, call, payload)
     assert frame == b"\x03" + struct.pack("<III", service, call, 3) + b"cdr" + payload
 
 
 @given(U32, PAYLOAD, TEXT)
 def test_assets_follow_the_published_layout(request, data, reason):
-    assert protocol.asset_frame(request, data) == b"\x04" + struct.pack("<IBI", request, 0, 0) + data
+    assert frames.asset_frame(request, data) == b"\x04" + struct.pack("<IBI", request, 0, 0) + data
     text = reason.encode()
-    frame = protocol.asset_error_frame(request, reason)
+    frame = frames.asset_error_frame(request, reason)
     assert frame == b"\x04" + struct.pack("<IBI", request, 1, len(text)) + text
 
 
 @given(U32, PAYLOAD)
 def test_reads_publish_frames(channel, payload):
     frame = b"\x01" + channel.to_bytes(4, "little") + payload
-    assert protocol.parse_binary(frame) == Publish(channel, payload)
+    assert frames.parse_binary(frame) == Publish(channel, payload)
 
 
 @given(U32, U32, TEXT, PAYLOAD)
 def test_reads_service_requests(service, call, encoding, payload):
     text = encoding.encode()
     frame = b"\x02" + struct.pack("<III", service, call, len(text)) + text + payload
-    assert protocol.parse_binary(frame) == ServiceRequest(service, call, encoding, payload)
+    assert frames.parse_binary(frame) == ServiceRequest(service, call, encoding, payload)
 
 
 @given(st.booleans(), st.floats(width=32, allow_nan=False), st.none() | U64, TEXT)
@@ -63,19 +65,42 @@ def test_reads_playback_control(playing, speed, seek, request):
     text = request.encode()
     layout = (0 if playing else 1, speed, 0 if seek is None else 1, seek or 0, len(text))
     frame = b"\x03" + struct.pack("<BfBQI", *layout) + text
-    assert protocol.parse_binary(frame) == PlaybackControl(playing, speed, seek, request)
+    assert frames.parse_binary(frame) == PlaybackControl(playing, speed, seek, request)
 
 
 @given(st.binary(max_size=64))
 def test_any_bytes_are_read_or_refused(frame):
     with contextlib.suppress(ProtocolError):
-        assert isinstance(protocol.parse_binary(frame), Publish | ServiceRequest | PlaybackControl)
+        assert isinstance(frames.parse_binary(frame), Publish | ServiceRequest | PlaybackControl)
 
 
 @given(st.text(max_size=60) | st.builds(json.dumps, st.dictionaries(TEXT, TEXT | st.integers())))
 def test_any_text_is_read_or_refused(frame):
     with contextlib.suppress(ProtocolError):
-        assert isinstance(protocol.parse_text(frame)["op"], str)
+        assert isinstance(protocol.parse_text(frame), ClientMessage)
+
+
+def test_reads_what_a_client_says():
+    frame = '{"op": "subscribe", "subscriptions": [{"id": 1, "channelId": 4294967295, "more": true}]}'
+    assert protocol.parse_text(frame) == protocol.Subscribe((protocol.ChannelSubscription(1, 4294967295),))
+
+
+@pytest.mark.parametrize(
+    ("frame", "error"),
+    [
+        ({"op": "subscribe"}, 'expected "subscriptions" to be a list of objects'),
+        ({"op": "subscribe", "subscriptions": [3]}, 'expected "subscriptions" to be a list of objects'),
+        ({"op": "subscribe", "subscriptions": [{"id": -1}]}, 'expected "id" to be a number of 32 bits'),
+        ({"op": "unsubscribe", "subscriptionIds": ["a"]}, 'expected "subscriptionIds" to be a list of numbers'),
+        ({"op": "getParameters", "parameterNames": [3]}, 'expected "parameterNames" to be a list of strings'),
+        ({"op": "getParameters", "parameterNames": [], "id": 3}, 'expected "id" to be a string'),
+        ({"op": "fetchAssets"}, "unknown op 'fetchAssets'"),
+        ({"op": 3}, 'expected a JSON object with a string "op"'),
+    ],
+)
+def test_says_which_field_is_not_what_it_must_be(frame, error):
+    with pytest.raises(ProtocolError, match=re.escape(error)):
+        protocol.parse_text(json.dumps(frame))
 
 
 def test_deeply_nested_text_is_refused():
@@ -112,9 +137,14 @@ VALUES = (
 @given(VALUES)
 def test_parameters_survive_the_way_to_a_client_and_back(value):
     frame = json.loads(protocol.parameter_values([Parameter("/node.p", value)]), parse_constant=_refuse)
-    again = protocol.parse_parameter(frame["parameters"][0]).value
+    again = _parse_parameter(frame["parameters"][0]).value
     assert again == value
     assert type(again) is type(value)
+
+
+def _parse_parameter(entry):
+    message = protocol.parse_text(json.dumps({"op": "setParameters", "parameters": [entry]}))
+    return protocol.parse_parameter(message.parameters[0])
 
 
 def _refuse(constant):
@@ -123,7 +153,7 @@ def _refuse(constant):
 
 def test_a_value_that_is_not_a_number_survives():
     frame = json.loads(protocol.parameter_values([Parameter("/n.p", math.nan)]))
-    assert math.isnan(protocol.parse_parameter(frame["parameters"][0]).value)
+    assert math.isnan(_parse_parameter(frame["parameters"][0]).value)
 
 
 @pytest.mark.parametrize(
@@ -141,8 +171,8 @@ def test_a_value_that_is_not_a_number_survives():
 )
 def test_bad_parameters_are_refused_by_name(entry):
     with pytest.raises(ProtocolError) as caught:
-        protocol.parse_parameter(entry)
-    assert "/n.p" in str(caught.value) or "name" in str(caught.value)
+        _parse_parameter(entry)
+    assert "/n.p" in str(caught.value) or '"name"' in str(caught.value) or '"parameters"' in str(caught.value)
 
 
 def test_time_is_claimed_only_where_there_is_time():

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from daidalos.studio import typescript
 from daidalos.studio.build import WEB
 
 pytestmark = pytest.mark.slow
@@ -24,5 +25,6 @@ def test_the_front_end_passes(node: str, tool: str, arguments: list[str]) -> Non
     path = WEB / "node_modules" / Path(tool)
     if not path.is_file():
         pytest.skip(f"{tool} is not installed: npm install in studio/web")
+    typescript.write()
     done = subprocess.run([node, str(path), *arguments], cwd=WEB, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Literal
+
+from daidalos.studio.records import to_json
 
 Value = str | float | bool
 
@@ -127,5 +129,6 @@ class Arrangement:
     left_out: tuple[str, ...] = ()
 
     def to_json(self) -> dict[str, Any]:
-        """Return what the page reads (``web/src/app/arrangement.ts``)."""
-        return asdict(self)
+        """Return what the page reads; its types are generated from the classes above."""
+        record: dict[str, Any] = to_json(self)
+        return record

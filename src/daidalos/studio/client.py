@@ -4,23 +4,22 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-from collections.abc import Callable, Coroutine, Sequence
+from collections.abc import Callable, Coroutine, Iterable, Sequence
 from concurrent.futures import Future
-from typing import Any, TypeVar
+from typing import Any
 
 from aiohttp import WSMsgType, web
 
-from daidalos.studio import protocol
+from daidalos.studio import frames, protocol
 from daidalos.studio.assets import AssetError, AssetResolver
+from daidalos.studio.frames import Publish, ServiceRequest
 from daidalos.studio.hub import Hub
 from daidalos.studio.outbox import Outbox
-from daidalos.studio.protocol import Level, ProtocolError, Publish, ServiceRequest
+from daidalos.studio.protocol import Level, ProtocolError
 from daidalos.studio.source import Graph, GraphSource, Handle, Parameter, Publication, SourceError
 
-REQUESTS_AT_ONCE = 256
-"""Service calls, parameter requests and assets that one client may have under way."""
-
-T = TypeVar("T")
+MAX_PENDING_REQUESTS = 256
+"""Service calls, parameter requests and assets of one client that have no answer yet."""
 
 
 class Client:
@@ -50,19 +49,6 @@ class Client:
         self._watches_all = False
         self._graph: Graph | None = None  # what the client was told of the graph; None: it does not ask
         self._requests: set[asyncio.Task[None]] = set()
-        self._operations: dict[str, Callable[[dict[str, Any]], None]] = {
-            "subscribe": self._subscribe,
-            "unsubscribe": self._unsubscribe,
-            "advertise": self._advertise,
-            "unadvertise": self._unadvertise,
-            "getParameters": self._get_parameters,
-            "setParameters": self._set_parameters,
-            "subscribeParameterUpdates": self._subscribe_parameters,
-            "unsubscribeParameterUpdates": self._unsubscribe_parameters,
-            "subscribeConnectionGraph": self._subscribe_graph,
-            "unsubscribeConnectionGraph": self._unsubscribe_graph,
-            "fetchAsset": self._fetch_asset,
-        }
 
     async def run(self) -> None:
         """Talk until the client leaves or the server stops."""
@@ -122,20 +108,40 @@ class Client:
         try:
             handle(data)
         except (ProtocolError, SourceError) as error:
-            self._complain(str(error))
+            self._send_error(str(error))
 
-    def _complain(self, text: str) -> None:
+    def _send_error(self, text: str) -> None:
         self.outbox.put_reply(protocol.status(Level.ERROR, text))
 
     def _receive_text(self, data: str) -> None:
-        message = protocol.parse_text(data)
-        operation = self._operations.get(message["op"])
-        if operation is None:
-            raise ProtocolError(f"unknown op {message['op']!r}")
-        operation(message)
+        match protocol.parse_text(data):
+            case protocol.Subscribe(subscriptions):
+                self._subscribe(subscriptions)
+            case protocol.Unsubscribe(numbers):
+                self._unsubscribe(numbers)
+            case protocol.ClientAdvertise(channels):
+                self._advertise(channels)
+            case protocol.ClientUnadvertise(numbers):
+                self._unadvertise(numbers)
+            case protocol.GetParameters(names, request):
+                self._start(self._answer_parameters(self._source.get_parameters(names), request))
+            case protocol.SetParameters(entries, request):
+                self._set_parameters(entries, request)
+            case protocol.SubscribeParameterUpdates(names):
+                self._watched.update(names)
+                self._watches_all = self._watches_all or not names
+            case protocol.UnsubscribeParameterUpdates(names):
+                self._unsubscribe_parameters(names)
+            case protocol.SubscribeConnectionGraph():
+                self._graph = Graph()
+                self.graph_changed(self._source.graph())
+            case protocol.UnsubscribeConnectionGraph():
+                self._graph = None
+            case protocol.FetchAsset(request_id, uri):
+                self._start(self._answer_asset(request_id, uri))
 
     def _receive_binary(self, data: bytes) -> None:
-        match protocol.parse_binary(data):
+        match frames.parse_binary(data):
             case Publish(channel, payload):
                 publication = self._publications.get(channel)
                 if publication is None:
@@ -144,18 +150,18 @@ class Client:
             case ServiceRequest() as request:
                 self._call(request)
             case _:
-                raise ProtocolError("this server plays no recording")
+                raise ProtocolError("this server does not play recordings")
 
     # Topics ----------------------------------------------------------------------------------------------
 
-    def _subscribe(self, message: dict[str, Any]) -> None:
-        for entry in _entries(message, "subscriptions"):
-            number, channel = _number(entry, "id"), _number(entry, "channelId")
+    def _subscribe(self, subscriptions: Iterable[protocol.ChannelSubscription]) -> None:
+        for wanted in subscriptions:
+            number, channel = wanted.id, wanted.channel_id
             topic = self._hub.topics.get(channel)
             if number in self._subscriptions:
-                self._complain(f"subscription {number} exists already")
+                self._send_error(f"subscription {number} exists already")
             elif topic is None:
-                # A topic may vanish while the client asks for it: worth a word, not an error.
+                # A topic may vanish while the client asks for it: a warning, not an error.
                 text = f"channel {channel} does not exist"
                 self.outbox.put_reply(protocol.status(Level.WARNING, text))
             else:
@@ -163,8 +169,8 @@ class Client:
                 handle = self._hub.listen(channel, _deliver_to(self.outbox, number))
                 self._subscriptions[number] = (channel, handle)
 
-    def _unsubscribe(self, message: dict[str, Any]) -> None:
-        for number in _numbers(message, "subscriptionIds"):
+    def _unsubscribe(self, numbers: Iterable[int]) -> None:
+        for number in numbers:
             if number in self._subscriptions:
                 self._close_subscription(number)
 
@@ -173,19 +179,20 @@ class Client:
         handle.close()
         self.outbox.close(number)
 
-    def _advertise(self, message: dict[str, Any]) -> None:
-        for entry in _entries(message, "channels"):
-            number, topic = _number(entry, "id"), _text(entry, "topic")
-            encoding, name = _text(entry, "encoding"), _text(entry, "schemaName")
-            if number in self._publications:
-                self._complain(f"channel {number} is advertised already")
-            elif encoding != protocol.ENCODING:
-                self._complain(f"{topic}: encoding {encoding!r}; this server speaks {protocol.ENCODING}")
+    def _advertise(self, channels: Iterable[protocol.ClientChannel]) -> None:
+        for channel in channels:
+            if channel.id in self._publications:
+                self._send_error(f"channel {channel.id} is advertised already")
+            elif channel.encoding != protocol.ENCODING:
+                self._send_error(
+                    f"{channel.topic}: encoding {channel.encoding!r}; this server only takes {protocol.ENCODING}"
+                )
             else:
-                self._publications[number] = self._source.advertise(topic, protocol.full_type_name(name))
+                type_name = protocol.full_type_name(channel.schema_name)
+                self._publications[channel.id] = self._source.advertise(channel.topic, type_name)
 
-    def _unadvertise(self, message: dict[str, Any]) -> None:
-        for number in _numbers(message, "channelIds"):
+    def _unadvertise(self, numbers: Iterable[int]) -> None:
+        for number in numbers:
             publication = self._publications.pop(number, None)
             if publication is not None:
                 publication.close()
@@ -197,7 +204,7 @@ class Client:
         if service is None:
             self._refuse_call(request, f"service {request.service} does not exist")
         elif request.encoding != protocol.ENCODING:
-            self._refuse_call(request, f"encoding {request.encoding!r}; this server speaks cdr")
+            self._refuse_call(request, f"encoding {request.encoding!r}; this server only takes {protocol.ENCODING}")
         else:
             self._start(self._answer_call(request, self._source.call(service.name, request.payload)))
 
@@ -207,41 +214,33 @@ class Client:
         except SourceError as error:
             self._refuse_call(request, str(error))
         else:
-            frame = protocol.service_response_frame(request.service, request.call, response)
+            frame = frames.service_response_frame(request.service, request.call, response)
             self.outbox.put_reply(frame)
 
     def _refuse_call(self, request: ServiceRequest, reason: str) -> None:
-        self.outbox.put_reply(protocol.service_call_failure(request.service, request.call, reason))
-
-    def _fetch_asset(self, message: dict[str, Any]) -> None:
-        self._start(self._answer_asset(_number(message, "requestId"), _text(message, "uri")))
+        self.outbox.put_reply(protocol.ServiceCallFailure(request.service, request.call, reason).encode())
 
     async def _answer_asset(self, request: int, uri: str) -> None:
         try:
             if self._assets is None:
                 raise AssetError("this server has no assets")
-            frame = protocol.asset_frame(request, await asyncio.to_thread(self._assets.read, uri))
+            frame = frames.asset_frame(request, await asyncio.to_thread(self._assets.read, uri))
         except AssetError as error:
-            frame = protocol.asset_error_frame(request, str(error))
+            frame = frames.asset_error_frame(request, str(error))
         self.outbox.put_reply(frame)
 
     def _start(self, request: Coroutine[Any, Any, None]) -> None:
-        if len(self._requests) >= REQUESTS_AT_ONCE or self.outbox.overflowed:
+        if len(self._requests) >= MAX_PENDING_REQUESTS or self.outbox.overflowed:
             request.close()
-            raise ProtocolError(f"more than {REQUESTS_AT_ONCE} requests under way")
+            raise ProtocolError(f"more than {MAX_PENDING_REQUESTS} requests under way")
         task = asyncio.create_task(request)
         self._requests.add(task)
         task.add_done_callback(self._requests.discard)
 
     # Parameters ------------------------------------------------------------------------------------------
 
-    def _get_parameters(self, message: dict[str, Any]) -> None:
-        names = _texts(message, "parameterNames")
-        self._start(self._answer_parameters(self._source.get_parameters(names), _request_id(message)))
-
-    def _set_parameters(self, message: dict[str, Any]) -> None:
-        wanted = [protocol.parse_parameter(entry) for entry in _entries(message, "parameters")]
-        request = _request_id(message)
+    def _set_parameters(self, entries: Iterable[protocol.ParameterEntry], request: str | None) -> None:
+        wanted = [protocol.parse_parameter(entry) for entry in entries]
         self._start(self._answer_parameters(self._source.set_parameters(wanted), request, silent=request is None))
 
     async def _answer_parameters(
@@ -250,32 +249,17 @@ class Client:
         try:
             parameters = await asyncio.wrap_future(future)
         except SourceError as error:
-            self._complain(str(error))
+            self._send_error(str(error))
         else:
             if not silent:
                 self.outbox.put_reply(protocol.parameter_values(parameters, request))
 
-    def _subscribe_parameters(self, message: dict[str, Any]) -> None:
-        names = _texts(message, "parameterNames")
-        self._watched.update(names)
-        self._watches_all = self._watches_all or not names
-
-    def _unsubscribe_parameters(self, message: dict[str, Any]) -> None:
-        names = _texts(message, "parameterNames")
+    def _unsubscribe_parameters(self, names: Sequence[str]) -> None:
         if names:
             self._watched.difference_update(names)
         else:
             self._watched.clear()
             self._watches_all = False
-
-    # Graph -----------------------------------------------------------------------------------------------
-
-    def _subscribe_graph(self, message: dict[str, Any]) -> None:
-        self._graph = Graph()
-        self.graph_changed(self._source.graph())
-
-    def _unsubscribe_graph(self, message: dict[str, Any]) -> None:
-        self._graph = None
 
 
 def _wake(loop: asyncio.AbstractEventLoop, awake: asyncio.Event) -> None:
@@ -285,46 +269,3 @@ def _wake(loop: asyncio.AbstractEventLoop, awake: asyncio.Event) -> None:
 
 def _deliver_to(outbox: Outbox, subscription: int) -> Callable[[int, bytes], None]:
     return lambda nanoseconds, payload: outbox.put_message(subscription, nanoseconds, payload)
-
-
-# Fields of a client's message; each raises ProtocolError where the field is not what it must be -----------
-
-
-def _entries(message: dict[str, Any], key: str) -> list[dict[str, Any]]:
-    return _list_of(dict, "objects", message, key)
-
-
-def _numbers(message: dict[str, Any], key: str) -> list[int]:
-    return _list_of(int, "numbers", message, key)
-
-
-def _texts(message: dict[str, Any], key: str) -> list[str]:
-    return _list_of(str, "strings", message, key)
-
-
-def _list_of(kind: type[T], word: str, message: dict[str, Any], key: str) -> list[T]:
-    value = message.get(key)
-    if not isinstance(value, list) or not all(isinstance(item, kind) for item in value):
-        raise ProtocolError(f'expected "{key}" to be a list of {word}')
-    return value
-
-
-def _number(message: dict[str, Any], key: str) -> int:
-    value = message.get(key)
-    if not isinstance(value, int) or not 0 <= value < 1 << 32:
-        raise ProtocolError(f'expected "{key}" to be a number of 32 bits')
-    return value
-
-
-def _text(message: dict[str, Any], key: str) -> str:
-    value = message.get(key)
-    if not isinstance(value, str):
-        raise ProtocolError(f'expected "{key}" to be a string')
-    return value
-
-
-def _request_id(message: dict[str, Any]) -> str | None:
-    value = message.get("id")
-    if value is not None and not isinstance(value, str):
-        raise ProtocolError('expected "id" to be a string')
-    return value

@@ -11,7 +11,7 @@ import threading
 from collections import deque
 from collections.abc import Callable
 
-from daidalos.studio.protocol import message_frame, time_frame
+from daidalos.studio.frames import message_frame, time_frame
 
 BACKLOG = 16
 """Messages that wait per subscription; more only adds latency to a client that is late already."""

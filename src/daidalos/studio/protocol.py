@@ -1,7 +1,7 @@
-"""The Foxglove WebSocket protocol's frames: building what a server says, reading what a client says.
+"""The JSON messages of the Foxglove WebSocket protocol, of both sides; the page's types are generated from them.
 
-Published at the Foxglove project as "Foxglove WebSocket Protocol v1"; all integers are little-endian.
-Text frames are JSON objects with an ``op``; binary frames start with an opcode.
+Published at the Foxglove project as "Foxglove WebSocket Protocol v1". Text frames are JSON objects with an
+``op``; the binary frames are in `daidalos.studio.frames`.
 """
 
 from __future__ import annotations
@@ -9,13 +9,13 @@ from __future__ import annotations
 import base64
 import json
 import math
-import struct
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from enum import IntEnum
-from typing import Any
+from typing import Any, ClassVar
 
-from daidalos.studio.source import Graph, Parameter, ParameterValue, Service, Topic
+from daidalos.studio.records import RecordError, Uint32, from_json, to_json
+from daidalos.studio.source import Graph, Parameter, Service, Topic
 
 SUBPROTOCOLS = ("foxglove.sdk.v1", "foxglove.websocket.v1")
 CAPABILITIES = (
@@ -28,13 +28,6 @@ CAPABILITIES = (
 )
 ENCODING = "cdr"
 SCHEMA_ENCODING = "ros2msg"
-
-_MESSAGE = struct.Struct("<BIQ")
-_TIME = struct.Struct("<BQ")
-_SERVICE = struct.Struct("<BIII")
-_ASSET = struct.Struct("<BIBI")
-_PUBLISH = struct.Struct("<BI")
-_PLAYBACK = struct.Struct("<BBfBQI")
 
 
 class ProtocolError(Exception):
@@ -49,114 +42,295 @@ class Level(IntEnum):
     ERROR = 2
 
 
+# What a server says --------------------------------------------------------------------------------------
+
+
+class ServerMessage:
+    """A message from the server to a client."""
+
+    op: ClassVar[str]
+    kinds: ClassVar[dict[str, type[ServerMessage]]] = {}
+
+    def __init_subclass__(cls, op: str) -> None:
+        cls.op = op
+        cls.kinds[op] = cls
+
+    def encode(self) -> str:
+        """Return the text frame."""
+        return json.dumps({"op": self.op, **to_json(self)}, separators=(",", ":"))
+
+
 @dataclass(frozen=True)
-class Publish:
-    """A client's message on a channel that it advertised."""
+class ServerInfo(ServerMessage, op="serverInfo"):
+    """The server's name and what it can do; clients keep what they have where the session is the same."""
 
-    channel: int
-    payload: bytes
+    name: str
+    capabilities: tuple[str, ...]
+    supported_encodings: tuple[str, ...] | None = None
+    metadata: Mapping[str, str] | None = None
+    session_id: str | None = None
 
 
 @dataclass(frozen=True)
-class ServiceRequest:
-    """A client's call of a service."""
+class Status(ServerMessage, op="status"):
+    """A text for the client's user; with an identifier it stays until `RemoveStatus`."""
 
-    service: int
-    call: int
+    level: Level
+    message: str
+    id: str | None = None
+
+
+@dataclass(frozen=True)
+class RemoveStatus(ServerMessage, op="removeStatus"):
+    """Statuses that no longer hold."""
+
+    status_ids: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Channel:
+    """A topic under a number; without a schema encoding, nobody knows the definition."""
+
+    id: int
+    topic: str
     encoding: str
-    payload: bytes
+    schema_name: str
+    schema: str
+    schema_encoding: str | None = None
 
 
 @dataclass(frozen=True)
-class PlaybackControl:
-    """A client's wish to play, pause or seek a recording."""
+class Advertise(ServerMessage, op="advertise"):
+    """Topics that can be subscribed to."""
 
-    playing: bool
-    speed: float
-    seek: int | None
-    request: str
+    channels: tuple[Channel, ...]
 
 
-# Binary frames -------------------------------------------------------------------------------------------
+@dataclass(frozen=True)
+class Unadvertise(ServerMessage, op="unadvertise"):
+    """Channels that are gone."""
+
+    channel_ids: tuple[int, ...]
 
 
-def message_frame(subscription: int, nanoseconds: int, payload: bytes) -> bytes:
-    """Build a message for one of the client's subscriptions."""
-    return _MESSAGE.pack(1, subscription, nanoseconds) + payload
+@dataclass(frozen=True)
+class ServiceSchema:
+    """The definition of a service's requests or responses."""
+
+    encoding: str
+    schema_name: str
+    schema_encoding: str
+    schema: str
 
 
-def time_frame(nanoseconds: int) -> bytes:
-    """Build the announcement of simulated time."""
-    return _TIME.pack(2, nanoseconds)
+@dataclass(frozen=True)
+class AdvertisedService:
+    """A service under a number; servers of the protocol's first version only give the last two fields."""
+
+    id: int
+    name: str
+    type: str
+    request: ServiceSchema | None = None
+    response: ServiceSchema | None = None
+    request_schema: str | None = None
+    response_schema: str | None = None
 
 
-def service_response_frame(service: int, call: int, payload: bytes, encoding: str = ENCODING) -> bytes:
-    """Build the answer to a `ServiceRequest`."""
-    name = encoding.encode()
-    return _SERVICE.pack(3, service, call, len(name)) + name + payload
+@dataclass(frozen=True)
+class AdvertiseServices(ServerMessage, op="advertiseServices"):
+    """Services that can be called."""
+
+    services: tuple[AdvertisedService, ...]
 
 
-def asset_frame(request: int, data: bytes) -> bytes:
-    """Build the answer to ``fetchAsset`` that carries the file."""
-    return _ASSET.pack(4, request, 0, 0) + data
+@dataclass(frozen=True)
+class UnadvertiseServices(ServerMessage, op="unadvertiseServices"):
+    """Services that are gone."""
+
+    service_ids: tuple[int, ...]
 
 
-def asset_error_frame(request: int, reason: str) -> bytes:
-    """Build the answer to ``fetchAsset`` that says why there is no file."""
-    text = reason.encode()
-    return _ASSET.pack(4, request, 1, len(text)) + text
+@dataclass(frozen=True)
+class ServiceCallFailure(ServerMessage, op="serviceCallFailure"):
+    """Why a call has no response."""
+
+    service_id: int
+    call_id: int
+    message: str
 
 
-def parse_binary(frame: bytes) -> Publish | ServiceRequest | PlaybackControl:
-    """Read a client's binary frame.
+@dataclass(frozen=True)
+class ParameterEntry:
+    """A parameter's name and value; without a value it is not set.
 
-    Raises
-    ------
-    ProtocolError
-        When the opcode is unknown or the frame is shorter than it says.
+    ``type`` is ``byte_array`` (base64), ``float64`` or ``float64_array`` where JSON alone would not tell.
     """
-    if not frame:
-        raise ProtocolError("empty binary frame")
-    match frame[0]:
-        case 1:
-            _, channel = _unpack(_PUBLISH, frame, "message")
-            return Publish(channel, frame[_PUBLISH.size :])
-        case 2:
-            _, service, call, length = _unpack(_SERVICE, frame, "service request")
-            encoding, payload = _text(frame, _SERVICE.size, length, "service request")
-            return ServiceRequest(service, call, encoding, payload)
-        case 3:
-            _, playing, speed, seeks, seek, length = _unpack(_PLAYBACK, frame, "playback control")
-            request, _ = _text(frame, _PLAYBACK.size, length, "playback control")
-            return PlaybackControl(playing == 0, speed, seek if seeks else None, request)
-    raise ProtocolError(f"unknown binary opcode {frame[0]}")
+
+    name: str
+    value: Any = None
+    type: str | None = None
 
 
-def _unpack(layout: struct.Struct, frame: bytes, what: str) -> tuple[Any, ...]:
-    if len(frame) < layout.size:
-        raise ProtocolError(f"{what} of {len(frame)} bytes is shorter than its header of {layout.size}")
-    return layout.unpack_from(frame)
+@dataclass(frozen=True)
+class ParameterValues(ServerMessage, op="parameterValues"):
+    """Values of parameters, as the answer to a request where that is named."""
+
+    parameters: tuple[ParameterEntry, ...]
+    id: str | None = None
 
 
-def _text(frame: bytes, start: int, length: int, what: str) -> tuple[str, bytes]:
-    if start + length > len(frame):
-        raise ProtocolError(f"{what} promises {length} bytes of text but holds {len(frame) - start}")
-    try:
-        return frame[start : start + length].decode(), frame[start + length :]
-    except UnicodeDecodeError:
-        raise ProtocolError(f"{what} holds text that is not UTF-8") from None
+@dataclass(frozen=True)
+class PublishedTopic:
+    """The nodes that publish a topic."""
+
+    name: str
+    publisher_ids: tuple[str, ...]
 
 
-# Text frames ---------------------------------------------------------------------------------------------
+@dataclass(frozen=True)
+class SubscribedTopic:
+    """The nodes that subscribe to a topic."""
+
+    name: str
+    subscriber_ids: tuple[str, ...]
 
 
-def parse_text(frame: str) -> dict[str, Any]:
+@dataclass(frozen=True)
+class ProvidedService:
+    """The nodes that provide a service."""
+
+    name: str
+    provider_ids: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class ConnectionGraphUpdate(ServerMessage, op="connectionGraphUpdate"):
+    """What changed of who publishes, subscribes and serves; a name without nodes has none any more."""
+
+    published_topics: tuple[PublishedTopic, ...]
+    subscribed_topics: tuple[SubscribedTopic, ...]
+    advertised_services: tuple[ProvidedService, ...]
+    removed_topics: tuple[str, ...]
+    removed_services: tuple[str, ...]
+
+
+# What a client says --------------------------------------------------------------------------------------
+
+
+class ClientMessage:
+    """A message from a client to the server."""
+
+    op: ClassVar[str]
+    kinds: ClassVar[dict[str, type[ClientMessage]]] = {}
+
+    def __init_subclass__(cls, op: str) -> None:
+        cls.op = op
+        cls.kinds[op] = cls
+
+
+@dataclass(frozen=True)
+class ChannelSubscription:
+    """A subscription, numbered by the client, to a channel."""
+
+    id: Uint32
+    channel_id: Uint32
+
+
+@dataclass(frozen=True)
+class Subscribe(ClientMessage, op="subscribe"):
+    """Subscriptions to open."""
+
+    subscriptions: tuple[ChannelSubscription, ...]
+
+
+@dataclass(frozen=True)
+class Unsubscribe(ClientMessage, op="unsubscribe"):
+    """Subscriptions to close."""
+
+    subscription_ids: tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class ClientChannel:
+    """A topic that the client publishes, under a number of its own."""
+
+    id: Uint32
+    topic: str
+    encoding: str
+    schema_name: str
+    schema: str | None = None
+    schema_encoding: str | None = None
+
+
+@dataclass(frozen=True)
+class ClientAdvertise(ClientMessage, op="advertise"):
+    """Topics that the client will publish."""
+
+    channels: tuple[ClientChannel, ...]
+
+
+@dataclass(frozen=True)
+class ClientUnadvertise(ClientMessage, op="unadvertise"):
+    """Topics that the client no longer publishes."""
+
+    channel_ids: tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class GetParameters(ClientMessage, op="getParameters"):
+    """A request for parameters' values, of all where none is named."""
+
+    parameter_names: tuple[str, ...]
+    id: str | None = None
+
+
+@dataclass(frozen=True)
+class SetParameters(ClientMessage, op="setParameters"):
+    """New values of parameters; answered where the request has an identifier."""
+
+    parameters: tuple[ParameterEntry, ...]
+    id: str | None = None
+
+
+@dataclass(frozen=True)
+class SubscribeParameterUpdates(ClientMessage, op="subscribeParameterUpdates"):
+    """Parameters whose new values the client wants to hear, all where none is named."""
+
+    parameter_names: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class UnsubscribeParameterUpdates(ClientMessage, op="unsubscribeParameterUpdates"):
+    """Parameters whose new values the client no longer wants to hear, all where none is named."""
+
+    parameter_names: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class SubscribeConnectionGraph(ClientMessage, op="subscribeConnectionGraph"):
+    """A request for the graph and all its changes."""
+
+
+@dataclass(frozen=True)
+class UnsubscribeConnectionGraph(ClientMessage, op="unsubscribeConnectionGraph"):
+    """The end of `SubscribeConnectionGraph`."""
+
+
+@dataclass(frozen=True)
+class FetchAsset(ClientMessage, op="fetchAsset"):
+    """A request for a mesh, a texture or the like."""
+
+    request_id: Uint32
+    uri: str
+
+
+def parse_text(frame: str) -> ClientMessage:
     """Read a client's text frame: a JSON object with a string ``op``.
 
     Raises
     ------
     ProtocolError
-        When it is anything else.
+        When it is anything else, or a field is not what it must be.
     """
     try:
         message = json.loads(frame)
@@ -164,152 +338,110 @@ def parse_text(frame: str) -> dict[str, Any]:
         raise ProtocolError(f"not JSON: {error}") from None
     if not isinstance(message, dict) or not isinstance(message.get("op"), str):
         raise ProtocolError('expected a JSON object with a string "op"')
-    return message
+    kind = ClientMessage.kinds.get(message["op"])
+    if kind is None:
+        raise ProtocolError(f"unknown op {message['op']!r}")
+    try:
+        return from_json(kind, message)
+    except RecordError as error:
+        raise ProtocolError(str(error)) from None
+
+
+# Messages from what the graph holds ----------------------------------------------------------------------
 
 
 def server_info(name: str, session: str, has_time: bool, metadata: Mapping[str, str]) -> str:
-    """Say who the server is and what it can do.
+    """Build the server's introduction.
 
     The ``time`` capability is claimed only once there is a time: clients that see it wait for time frames
     and stand still without them.
     """
-    return _dump(
-        "serverInfo",
-        name=name,
-        capabilities=[*CAPABILITIES, *(["time"] if has_time else [])],
-        supportedEncodings=[ENCODING],
-        metadata=dict(metadata),
-        sessionId=session,
-    )
+    capabilities = (*CAPABILITIES, *(["time"] if has_time else []))
+    return ServerInfo(name, capabilities, (ENCODING,), metadata, session).encode()
 
 
 def status(level: Level, text: str, identifier: str | None = None) -> str:
-    """Tell the client's user something; with an identifier it stays until `remove_status`."""
-    return _dump("status", level=int(level), message=text, **({"id": identifier} if identifier else {}))
-
-
-def remove_status(identifiers: Iterable[str]) -> str:
-    """Withdraw statuses."""
-    return _dump("removeStatus", statusIds=list(identifiers))
+    """Build a text for the client's user."""
+    return Status(level, text, identifier).encode()
 
 
 def advertise(channels: Mapping[int, Topic]) -> str:
     """Offer topics under channel numbers."""
-    return _dump(
-        "advertise",
-        channels=[
-            {
-                "id": number,
-                "topic": topic.name,
-                "encoding": ENCODING,
-                "schemaName": topic.type,
-                "schema": topic.schema or "",
+    return Advertise(
+        tuple(
+            Channel(
+                number,
+                topic.name,
+                ENCODING,
+                topic.type,
+                topic.schema or "",
                 # Left out where nobody knows the definition; an empty one is a message without fields.
-                **({} if topic.schema is None else {"schemaEncoding": SCHEMA_ENCODING}),
-            }
+                None if topic.schema is None else SCHEMA_ENCODING,
+            )
             for number, topic in channels.items()
-        ],
-    )
-
-
-def unadvertise(channels: Iterable[int]) -> str:
-    """Withdraw channels."""
-    return _dump("unadvertise", channelIds=list(channels))
+        )
+    ).encode()
 
 
 def advertise_services(services: Mapping[int, Service]) -> str:
     """Offer services under numbers."""
-    return _dump(
-        "advertiseServices",
-        services=[
-            {
-                "id": number,
-                "name": service.name,
-                "type": service.type,
-                "request": _service_schema(f"{service.type}_Request", service.request_schema),
-                "response": _service_schema(f"{service.type}_Response", service.response_schema),
-                # Clients of the protocol's first version read only these two.
-                "requestSchema": service.request_schema,
-                "responseSchema": service.response_schema,
-            }
+    return AdvertiseServices(
+        tuple(
+            AdvertisedService(
+                number,
+                service.name,
+                service.type,
+                ServiceSchema(ENCODING, f"{service.type}_Request", SCHEMA_ENCODING, service.request_schema),
+                ServiceSchema(ENCODING, f"{service.type}_Response", SCHEMA_ENCODING, service.response_schema),
+                service.request_schema,
+                service.response_schema,
+            )
             for number, service in services.items()
-        ],
-    )
-
-
-def _service_schema(name: str, schema: str) -> dict[str, str]:
-    return {
-        "encoding": ENCODING,
-        "schemaName": name,
-        "schemaEncoding": SCHEMA_ENCODING,
-        "schema": schema,
-    }
-
-
-def unadvertise_services(services: Iterable[int]) -> str:
-    """Withdraw services."""
-    return _dump("unadvertiseServices", serviceIds=list(services))
-
-
-def service_call_failure(service: int, call: int, reason: str) -> str:
-    """Answer a `ServiceRequest` that failed."""
-    return _dump("serviceCallFailure", serviceId=service, callId=call, message=reason)
+        )
+    ).encode()
 
 
 def parameter_values(parameters: Iterable[Parameter], request: str | None = None) -> str:
-    """Tell parameters' values, as an answer where a request is named."""
-    return _dump(
-        "parameterValues",
-        parameters=[_parameter(parameter) for parameter in parameters],
-        **({"id": request} if request is not None else {}),
-    )
+    """Build parameters' values, as an answer where a request is named."""
+    return ParameterValues(tuple(_entry(parameter) for parameter in parameters), request).encode()
 
 
-def _parameter(parameter: Parameter) -> dict[str, Any]:
-    value = parameter.value
+def _entry(parameter: Parameter) -> ParameterEntry:
+    name, value = parameter.name, parameter.value
     if isinstance(value, bytes):
-        return {
-            "name": parameter.name,
-            "value": base64.b64encode(value).decode(),
-            "type": "byte_array",
-        }
+        return ParameterEntry(name, base64.b64encode(value).decode(), "byte_array")
     if isinstance(value, float):
-        return {"name": parameter.name, "value": _number(value), "type": "float64"}
+        return ParameterEntry(name, _number(value), "float64")
     if isinstance(value, list) and any(isinstance(item, float) for item in value):
-        numbers = [_number(float(item)) for item in value]
-        return {"name": parameter.name, "value": numbers, "type": "float64_array"}
-    return {"name": parameter.name, "value": value} if value is not None else {"name": parameter.name}
+        return ParameterEntry(name, [_number(float(item)) for item in value], "float64_array")
+    return ParameterEntry(name, value)
 
 
 def _number(value: float) -> float | str:
-    """JSON has no words for what is not finite; Python and JavaScript read these back."""
+    """Return a number as JSON can hold it; Python and JavaScript read the texts of what is not finite."""
     if math.isfinite(value):
         return value
     return "NaN" if math.isnan(value) else "Infinity" if value > 0 else "-Infinity"
 
 
-def parse_parameter(entry: object) -> Parameter:
+def parse_parameter(entry: ParameterEntry) -> Parameter:
     """Read one entry of ``setParameters``; a missing value unsets the parameter.
 
     Raises
     ------
     ProtocolError
-        When it has no name, or a value that a ROS parameter can not hold.
+        When it has a value that a ROS parameter can not hold.
     """
-    if not isinstance(entry, dict) or not isinstance(entry.get("name"), str):
-        raise ProtocolError(f'a parameter needs a string "name": {entry!r}')
-    name: str = entry["name"]
-    value: Any = entry.get("value")
-    kind = entry.get("type")
+    name, value = entry.name, entry.value
     try:
-        if kind == "byte_array":
+        if entry.type == "byte_array":
             return Parameter(name, base64.b64decode(value, validate=True))
-        if kind == "float64":
+        if entry.type == "float64":
             return Parameter(name, float(value))
-        if kind == "float64_array":
+        if entry.type == "float64_array":
             return Parameter(name, [float(item) for item in value])
     except (TypeError, ValueError):
-        raise ProtocolError(f"parameter {name}: {value!r} is no {kind}") from None
+        raise ProtocolError(f"parameter {name}: {value!r} is not a {entry.type}") from None
     if not _is_parameter_value(value):
         raise ProtocolError(f"parameter {name}: ROS parameters can not hold {value!r}")
     return Parameter(name, value)
@@ -323,35 +455,31 @@ def _is_parameter_value(value: object) -> bool:
 
 
 def connection_graph_update(before: Graph, after: Graph) -> str | None:
-    """Tell what changed between two graphs; None where nothing did."""
+    """Build what changed between two graphs; None where nothing did."""
     topics = before.publishers.keys() | before.subscribers.keys()
     topics_now = after.publishers.keys() | after.subscribers.keys()
-    changes: dict[str, list[Any]] = {
-        "publishedTopics": _changed(before.publishers, after.publishers, "publisherIds"),
-        "subscribedTopics": _changed(before.subscribers, after.subscribers, "subscriberIds"),
-        "advertisedServices": _changed(before.services, after.services, "providerIds"),
-        "removedTopics": sorted(topics - topics_now),
-        "removedServices": sorted(before.services.keys() - after.services.keys()),
-    }
-    return _dump("connectionGraphUpdate", **changes) if any(changes.values()) else None
+    update = ConnectionGraphUpdate(
+        tuple(PublishedTopic(*change) for change in _changed(before.publishers, after.publishers)),
+        tuple(SubscribedTopic(*change) for change in _changed(before.subscribers, after.subscribers)),
+        tuple(ProvidedService(*change) for change in _changed(before.services, after.services)),
+        tuple(sorted(topics - topics_now)),
+        tuple(sorted(before.services.keys() - after.services.keys())),
+    )
+    return update.encode() if any(to_json(update).values()) else None
 
 
 def _changed(
-    before: Mapping[str, frozenset[str]], after: Mapping[str, frozenset[str]], key: str
-) -> list[dict[str, Any]]:
+    before: Mapping[str, frozenset[str]], after: Mapping[str, frozenset[str]]
+) -> list[tuple[str, tuple[str, ...]]]:
     gone = {name: frozenset[str]() for name in before.keys() - after.keys()}
     return [
-        {"name": name, key: sorted(nodes)}
+        (name, tuple(sorted(nodes)))
         for name, nodes in sorted({**after, **gone}.items())
         if before.get(name, frozenset()) != nodes
     ]
 
 
 def full_type_name(name: str) -> str:
-    """Spell a message type in full: clients leave ``/msg/`` out or put it in."""
+    """Return a message type's name in full: clients leave ``/msg/`` out or put it in."""
     parts = name.split("/")
     return f"{parts[0]}/msg/{parts[1]}" if len(parts) == 2 else name
-
-
-def _dump(op: str, **fields: Sequence[Any] | Mapping[str, Any] | ParameterValue) -> str:
-    return json.dumps({"op": op, **fields}, separators=(",", ":"))

@@ -300,12 +300,12 @@ class StudioServer:
 def _changes(changes: Changes) -> list[str]:
     frames = []
     if changes.topics_gone:
-        frames.append(protocol.unadvertise(changes.topics_gone))
+        frames.append(protocol.Unadvertise(tuple(changes.topics_gone)).encode())
         unknown = _without_definition(changes.topics_gone)
         if unknown:
-            frames.append(protocol.remove_status(map(_definition_status, unknown)))
+            frames.append(protocol.RemoveStatus(tuple(map(_definition_status, unknown))).encode())
     if changes.services_gone:
-        frames.append(protocol.unadvertise_services(changes.services_gone))
+        frames.append(protocol.UnadvertiseServices(tuple(changes.services_gone)).encode())
     if changes.topics:
         frames += _announce(changes.topics)
     if changes.services:

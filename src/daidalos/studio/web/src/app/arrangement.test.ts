@@ -1,14 +1,14 @@
 import { expect, it } from "vitest";
-import { type Arrangement, displaysOf, firstPlot } from "./arrangement";
+import type { Arrangement } from "../generated/arrangement";
+import { displaysOf, firstPlot } from "./arrangement";
 
 const NOTHING: Arrangement = {
-  fixed_frame: "",
-  displays: null,
+  fixedFrame: "",
   images: [],
-  view: null,
   followed: "",
   tabs: [],
   span: 0,
+  leftOut: [],
 };
 
 it("asks for displays, with what it leaves open as always", () => {

@@ -1,29 +1,7 @@
-// What the server says that the page shall show, as a file of RViz or PlotJuggler has it (studio/arrangement.py).
+// What the page shows when a file of RViz or PlotJuggler was opened (studio/arrangement.py).
 import { displayType } from "../displays/registry";
-import type { DisplayConfig, Settings } from "../displays/settings";
-import type { Curve } from "../panels/plot/curves";
-import type { ViewState } from "../scene/view";
-
-export interface Plot {
-  curves: readonly Omit<Curve, "hidden">[];
-}
-
-export interface Split {
-  across: boolean;
-  shares: readonly number[];
-  parts: readonly (Plot | Split)[];
-}
-
-export interface Arrangement {
-  fixed_frame: string;
-  displays: readonly { type: string; name: string; enabled: boolean; settings: Settings }[] | null;
-  images: readonly string[];
-  view: ViewState | null;
-  followed: string;
-  tabs: readonly (readonly [name: string, content: Plot | Split])[];
-  /** Seconds; 0: as the page has it. */
-  span: number;
-}
+import type { DisplayConfig } from "../displays/settings";
+import type { Arrangement, Plot, Split } from "../generated/arrangement";
 
 const ADDRESS = "arrangement.json";
 

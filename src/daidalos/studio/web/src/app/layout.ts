@@ -11,7 +11,8 @@ import {
 import { h, render } from "preact";
 import { PANELS } from "../panels/registry";
 import type { PanelType } from "../panels/panel";
-import { allPlots, type Arrangement, firstPlot, isSplit, type Plot, type Split } from "./arrangement";
+import type { Arrangement, Plot, Split } from "../generated/arrangement";
+import { allPlots, firstPlot, isSplit } from "./arrangement";
 import type { Opening } from "./opening";
 import { forget, isRecord, read, write } from "./stored";
 import type { Studio } from "./studio";

@@ -1,9 +1,10 @@
 // The application: one connection, one tree of frames, one clock, and the loop that drives all that moves.
 import { effect, signal } from "@preact/signals";
-import { type Arrangement, displaysOf } from "./arrangement";
+import type { Arrangement } from "../generated/arrangement";
+import { displaysOf } from "./arrangement";
 import { Session } from "../connection/session";
 import { DisplayList } from "../displays/list";
-import type { TFMessage } from "../ros/messages";
+import type { TFMessage } from "../generated/tf2_msgs";
 import { Assets } from "../scene/assets";
 import { TransformBuffer } from "../tf/buffer";
 import { RobotClock } from "../tf/clock";
@@ -44,7 +45,7 @@ export class Studio {
     worker: Worker,
     /** What a file asks for, where one was named. */
     readonly arrangement?: Arrangement,
-    fixedFrame = arrangement?.fixed_frame,
+    fixedFrame = arrangement?.fixedFrame,
   ) {
     this.fixedFrame = new FixedFrame(this.tf, fixedFrame);
     this.displays = new DisplayList(arrangement && displaysOf(arrangement));

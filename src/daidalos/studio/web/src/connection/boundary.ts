@@ -1,4 +1,5 @@
-// What the page and its worker say to each other: the one typed boundary between them.
+// The messages between the page and its worker.
+import type { ParameterEntry } from "../generated/protocol";
 
 export interface TopicInfo {
   name: string;
@@ -10,12 +11,6 @@ export interface TopicInfo {
 export interface ServiceInfo {
   name: string;
   type: string;
-}
-
-export interface ParameterInfo {
-  name: string;
-  value?: unknown;
-  type?: string;
 }
 
 /** Who talks to whom: names of nodes by topic or service. */
@@ -69,7 +64,7 @@ export type ToWorker =
   | { kind: "template"; id: number; of: "service" | "topic"; name: string }
   | { kind: "fetchAsset"; id: number; uri: string }
   | { kind: "getParameters"; names: string[] }
-  | { kind: "setParameters"; parameters: ParameterInfo[] }
+  | { kind: "setParameters"; parameters: readonly ParameterEntry[] }
   | { kind: "watchGraph"; on: boolean };
 
 export type FromWorker =
@@ -80,9 +75,9 @@ export type FromWorker =
   | { kind: "batch"; messages: Received[]; clock?: ClockReading }
   | { kind: "traffic"; traffic: Record<string, Traffic> }
   | { kind: "status"; status: StatusInfo }
-  | { kind: "removeStatus"; ids: string[] }
+  | { kind: "removeStatus"; ids: readonly string[] }
   | { kind: "published"; topic: string; error?: string }
   | { kind: "response"; id: number; message?: unknown; error?: string }
   | { kind: "asset"; id: number; data?: ArrayBuffer; error?: string }
-  | { kind: "parameters"; parameters: ParameterInfo[] }
+  | { kind: "parameters"; parameters: readonly ParameterEntry[] }
   | { kind: "graph"; graph: ConnectionGraph };

@@ -1,22 +1,12 @@
 // Services: which there are, and the calls that wait for an answer.
+import type { AdvertisedService } from "../generated/protocol";
 import { attempt, makeReader, makeWriter } from "./codecs";
 import { serviceRequestFrame } from "./frames";
 import type { Output } from "./output";
 
-export interface Service {
-  id: number;
-  name: string;
-  type: string;
-  request?: { schema: string };
-  response?: { schema: string };
-  /** The protocol's first version. */
-  requestSchema?: string;
-  responseSchema?: string;
-}
-
 export class Calls {
-  private readonly services = new Map<number, Service>();
-  private readonly waiting = new Map<number, Service>();
+  private readonly services = new Map<number, AdvertisedService>();
+  private readonly waiting = new Map<number, AdvertisedService>();
 
   constructor(private readonly out: Output) {}
 
@@ -28,14 +18,14 @@ export class Calls {
     }
   }
 
-  offer(services: Service[]): void {
+  offer(services: readonly AdvertisedService[]): void {
     for (const service of services) {
       this.services.set(service.id, service);
     }
     this.tell();
   }
 
-  withdraw(ids: number[]): void {
+  withdraw(ids: readonly number[]): void {
     for (const id of ids) {
       this.services.delete(id);
     }

@@ -1,4 +1,5 @@
 // The binary frames of the Foxglove WebSocket protocol, all integers little-endian.
+import { ASSET, ENCODING, MESSAGE, PUBLISH, SERVICE_REQUEST, SERVICE_RESPONSE, TIME } from "../generated/protocol";
 
 export type ServerFrame =
   | { op: "message"; subscription: number; time: number; payload: Uint8Array }
@@ -15,30 +16,30 @@ export function parseFrame(buffer: ArrayBuffer): ServerFrame {
   const view = new DataView(buffer);
   try {
     switch (view.getUint8(0)) {
-      case 1:
+      case MESSAGE.opcode:
         return {
           op: "message",
-          subscription: view.getUint32(1, true),
-          time: nanosecondsAt(view, 5),
-          payload: new Uint8Array(buffer, 13),
+          subscription: view.getUint32(MESSAGE.subscription, true),
+          time: nanosecondsAt(view, MESSAGE.time),
+          payload: new Uint8Array(buffer, MESSAGE.size),
         };
-      case 2:
-        return { op: "time", time: nanosecondsAt(view, 1) };
-      case 3: {
-        const encoding = view.getUint32(9, true);
+      case TIME.opcode:
+        return { op: "time", time: nanosecondsAt(view, TIME.time) };
+      case SERVICE_RESPONSE.opcode: {
+        const encoding = view.getUint32(SERVICE_RESPONSE.length, true);
         return {
           op: "serviceResponse",
-          service: view.getUint32(1, true),
-          call: view.getUint32(5, true),
-          payload: new Uint8Array(buffer, 13 + encoding),
+          service: view.getUint32(SERVICE_RESPONSE.service, true),
+          call: view.getUint32(SERVICE_RESPONSE.call, true),
+          payload: new Uint8Array(buffer, SERVICE_RESPONSE.size + encoding),
         };
       }
-      case 4: {
-        const request = view.getUint32(1, true);
-        const reason = view.getUint32(6, true);
-        return view.getUint8(5) === 0
-          ? { op: "asset", request, data: new Uint8Array(buffer, 10 + reason) }
-          : { op: "assetError", request, reason: TEXT.decode(new Uint8Array(buffer, 10, reason)) };
+      case ASSET.opcode: {
+        const request = view.getUint32(ASSET.request, true);
+        const reason = view.getUint32(ASSET.length, true);
+        return view.getUint8(ASSET.status) === 0
+          ? { op: "asset", request, data: new Uint8Array(buffer, ASSET.size + reason) }
+          : { op: "assetError", request, reason: TEXT.decode(new Uint8Array(buffer, ASSET.size, reason)) };
       }
     }
   } catch (error) {
@@ -51,24 +52,24 @@ export function parseFrame(buffer: ArrayBuffer): ServerFrame {
 }
 
 export function publishFrame(channel: number, payload: Uint8Array): Uint8Array<ArrayBuffer> {
-  const frame = new Uint8Array(5 + payload.byteLength);
+  const frame = new Uint8Array(PUBLISH.size + payload.byteLength);
   const view = new DataView(frame.buffer);
-  view.setUint8(0, 1);
-  view.setUint32(1, channel, true);
-  frame.set(payload, 5);
+  view.setUint8(0, PUBLISH.opcode);
+  view.setUint32(PUBLISH.channel, channel, true);
+  frame.set(payload, PUBLISH.size);
   return frame;
 }
 
 export function serviceRequestFrame(service: number, call: number, payload: Uint8Array): Uint8Array<ArrayBuffer> {
-  const encoding = new TextEncoder().encode("cdr");
-  const frame = new Uint8Array(13 + encoding.byteLength + payload.byteLength);
+  const encoding = new TextEncoder().encode(ENCODING);
+  const frame = new Uint8Array(SERVICE_REQUEST.size + encoding.byteLength + payload.byteLength);
   const view = new DataView(frame.buffer);
-  view.setUint8(0, 2);
-  view.setUint32(1, service, true);
-  view.setUint32(5, call, true);
-  view.setUint32(9, encoding.byteLength, true);
-  frame.set(encoding, 13);
-  frame.set(payload, 13 + encoding.byteLength);
+  view.setUint8(0, SERVICE_REQUEST.opcode);
+  view.setUint32(SERVICE_REQUEST.service, service, true);
+  view.setUint32(SERVICE_REQUEST.call, call, true);
+  view.setUint32(SERVICE_REQUEST.length, encoding.byteLength, true);
+  frame.set(encoding, SERVICE_REQUEST.size);
+  frame.set(payload, SERVICE_REQUEST.size + encoding.byteLength);
   return frame;
 }
 

@@ -1,14 +1,7 @@
 // Who talks to whom: asked of the server while somebody in the page looks at it.
+import type { ConnectionGraphUpdate } from "../generated/protocol";
 import type { ConnectionGraph } from "./boundary";
-import type { Output } from "./output";
-
-export interface GraphUpdate {
-  publishedTopics?: { name: string; publisherIds: string[] }[];
-  subscribedTopics?: { name: string; subscriberIds: string[] }[];
-  advertisedServices?: { name: string; providerIds: string[] }[];
-  removedTopics?: string[];
-  removedServices?: string[];
-}
+import { type Output, toServer } from "./output";
 
 export class GraphWatch {
   private wanted = false;
@@ -36,7 +29,7 @@ export class GraphWatch {
     this.forget();
   }
 
-  update(change: GraphUpdate): void {
+  update(change: Partial<Omit<ConnectionGraphUpdate, "op">>): void {
     for (const { name, publisherIds } of change.publishedTopics ?? []) {
       put(this.graph.publishers, name, publisherIds);
     }
@@ -61,7 +54,7 @@ export class GraphWatch {
       return;
     }
     this.asked = this.wanted;
-    this.out.toServer(JSON.stringify({ op: this.wanted ? "subscribeConnectionGraph" : "unsubscribeConnectionGraph" }));
+    toServer(this.out, { op: this.wanted ? "subscribeConnectionGraph" : "unsubscribeConnectionGraph" });
     if (!this.wanted) {
       this.forget(); // asked again, the server tells everything
     }

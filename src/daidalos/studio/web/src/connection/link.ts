@@ -1,36 +1,17 @@
 // The worker's conversation with the server: the protocol's state, independent of what carries it.
-import type { ClockReading, ParameterInfo, Received, ToWorker } from "./boundary";
+import { type Channel, type ClientMessage, Level, type ServerMessage } from "../generated/protocol";
+import type { ClockReading, Received, ToWorker } from "./boundary";
 import { Backlog } from "./backlog";
-import { Calls, type Service } from "./calls";
+import { Calls } from "./calls";
 import { attempt, emptyMessage, makeReader, type Reader } from "./codecs";
 import { parseFrame } from "./frames";
-import { GraphWatch, type GraphUpdate } from "./graph_watch";
-import type { Output } from "./output";
+import { GraphWatch } from "./graph_watch";
+import { type Output, toServer } from "./output";
 import { Publishers } from "./publishers";
 import { TrafficMeter } from "./traffic";
 
 /** Frames larger than this are handed to the page, not copied. */
 const TRANSFER_BYTES = 2048;
-
-export interface Channel {
-  id: number;
-  topic: string;
-  schemaName: string;
-  schema: string;
-  schemaEncoding?: string;
-}
-
-type ServerMessage =
-  | { op: "serverInfo"; name: string; sessionId?: string; capabilities: string[] }
-  | { op: "advertise"; channels: Channel[] }
-  | { op: "unadvertise"; channelIds: number[] }
-  | { op: "advertiseServices"; services: Service[] }
-  | { op: "unadvertiseServices"; serviceIds: number[] }
-  | { op: "serviceCallFailure"; serviceId: number; callId: number; message: string }
-  | { op: "status"; level: number; message: string; id?: string }
-  | { op: "removeStatus"; statusIds: string[] }
-  | { op: "parameterValues"; parameters: ParameterInfo[] }
-  | ({ op: "connectionGraphUpdate" } & GraphUpdate);
 
 interface Subscription {
   keep: number;
@@ -350,10 +331,10 @@ export class Link {
   }
 
   private reportError(text: string, id?: string): void {
-    this.out.toPage({ kind: "status", status: { level: 1, text, ...(id === undefined ? {} : { id }) } });
+    this.out.toPage({ kind: "status", status: { level: Level.WARNING, text, ...(id === undefined ? {} : { id }) } });
   }
 
-  private say(message: { op: string; [field: string]: unknown }): void {
-    this.out.toServer(JSON.stringify(message));
+  private say(message: ClientMessage): void {
+    toServer(this.out, message);
   }
 }

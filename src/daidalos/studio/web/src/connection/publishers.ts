@@ -1,8 +1,9 @@
 // What the page publishes: each topic is advertised once, then messages go out as CDR.
-import { DEFINITIONS } from "../ros/definitions";
+import { DEFINITIONS } from "../generated/definitions";
+import { ENCODING, SCHEMA_ENCODING } from "../generated/protocol";
 import { attempt, makeWriter, type Writer } from "./codecs";
 import { publishFrame } from "./frames";
-import type { Output } from "./output";
+import { type Output, toServer } from "./output";
 
 interface Publisher {
   number: number;
@@ -51,12 +52,12 @@ export class Publishers {
     const channel = {
       id: publisher.number,
       topic,
-      encoding: "cdr",
+      encoding: ENCODING,
       schemaName: type,
       schema,
-      schemaEncoding: "ros2msg",
+      schemaEncoding: SCHEMA_ENCODING,
     };
-    this.out.toServer(JSON.stringify({ op: "advertise", channels: [channel] }));
+    toServer(this.out, { op: "advertise", channels: [channel] });
     return publisher;
   }
 }

@@ -5,7 +5,6 @@ import type {
   ConnectionGraph,
   FromWorker,
   LinkState,
-  ParameterInfo,
   Received,
   ServiceInfo,
   StatusInfo,
@@ -13,6 +12,8 @@ import type {
   TopicInfo,
   Traffic,
 } from "./boundary";
+import type { ParameterEntry } from "../generated/protocol";
+import type { Outgoing, ServiceType } from "../ros/types";
 
 export type Listener<M> = (message: M, time: number) => void;
 
@@ -33,7 +34,7 @@ export class Session {
   readonly services = signal<ServiceInfo[]>([]);
   readonly traffic = signal<Record<string, Traffic>>({});
   readonly statuses = signal<(StatusInfo & { key: number })[]>([]);
-  readonly parameters = signal<ReadonlyMap<string, ParameterInfo>>(new Map());
+  readonly parameters = signal<ReadonlyMap<string, ParameterEntry>>(new Map());
   /** Who talks to whom, as long as somebody watches it. */
   readonly graph = signal<ConnectionGraph | undefined>(undefined);
   readonly lastPublished = signal<Publishing | undefined>(undefined);
@@ -96,7 +97,7 @@ export class Session {
     this.send({ kind: "publish", topic, type, message });
   }
 
-  call(service: string, request: unknown): Promise<unknown> {
+  call<S extends ServiceType>(service: string, request: Outgoing<S["Request"]>): Promise<S["Response"]> {
     return this.askFor((id) => ({ kind: "call", id, service, request }));
   }
 
@@ -125,7 +126,7 @@ export class Session {
     this.send({ kind: "getParameters", names });
   }
 
-  setParameters(parameters: ParameterInfo[]): void {
+  setParameters(parameters: readonly ParameterEntry[]): void {
     this.send({ kind: "setParameters", parameters });
   }
 

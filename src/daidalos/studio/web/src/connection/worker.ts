@@ -1,9 +1,9 @@
 // The worker: holds the WebSocket, decodes, and hands the page one batch whenever the page is ready for it.
 /// <reference lib="webworker" />
 import type { FromWorker, ToWorker } from "./boundary";
+import { SUBPROTOCOLS } from "../generated/protocol";
 import { Link } from "./link";
 
-const SUBPROTOCOLS = ["foxglove.sdk.v1", "foxglove.websocket.v1"];
 const RETRY_FIRST_MS = 300;
 const RETRY_LAST_MS = 4000;
 const MEASURE_MS = 1000;
@@ -49,7 +49,7 @@ self.onmessage = (event: MessageEvent<ToWorker>) => {
 
 function open(url: string): void {
   toPage({ kind: "link", state: "connecting" });
-  socket = new WebSocket(url, SUBPROTOCOLS);
+  socket = new WebSocket(url, [...SUBPROTOCOLS]);
   socket.binaryType = "arraybuffer";
   socket.onopen = () => {
     retryMs = RETRY_FIRST_MS;

@@ -1,5 +1,5 @@
 // LaserScan: where the beams ended.
-import type { LaserScan } from "../ros/messages";
+import type { LaserScan } from "../generated/sensor_msgs";
 import type { DisplayType } from "./display";
 import { paintByValue, paintFlat, POINT_PROPERTIES, PointsDisplay, type PointWriter } from "./points_display";
 import { text } from "./settings";

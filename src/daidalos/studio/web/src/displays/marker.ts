@@ -1,6 +1,6 @@
 // Marker and MarkerArray: shapes that programs put into the scene.
 import { Group } from "three";
-import type { Marker, MarkerArray } from "../ros/messages";
+import { Marker, type MarkerArray } from "../generated/visualization_msgs";
 import { toSeconds } from "../ros/time";
 import { disposeTree, place, type DisplayContext, type FrameInfo, type DisplayType } from "./display";
 import { markerObject } from "./marker_shapes";
@@ -8,7 +8,6 @@ import { frameOf, stampOf } from "./message_filter";
 import type { Settings } from "./settings";
 import { TopicDisplay } from "./topic_display";
 
-const Action = { ADD: 0, DELETE: 2, DELETE_ALL: 3 } as const;
 const KEEP = 256;
 const TIMEOUT_S = 2;
 
@@ -52,7 +51,7 @@ class MarkerDisplay extends TopicDisplay<Marker | MarkerArray> {
 
   private apply(marker: Marker): void {
     const key = `${marker.ns}\0${marker.id}`;
-    if (marker.action === Action.DELETE_ALL) {
+    if (marker.action === Marker.DELETEALL) {
       // Of one namespace where it is named, else of all.
       for (const [other, { marker: theirs }] of this.shown) {
         if (!marker.ns || theirs.ns === marker.ns) {
@@ -62,7 +61,7 @@ class MarkerDisplay extends TopicDisplay<Marker | MarkerArray> {
       return;
     }
     this.remove(key);
-    if (marker.action !== Action.ADD) {
+    if (marker.action !== Marker.ADD) {
       return;
     }
     const object = markerObject(marker, {

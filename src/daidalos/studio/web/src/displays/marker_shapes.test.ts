@@ -1,8 +1,9 @@
 import { Box3, Mesh, Vector3 } from "three";
 import { describe, expect, it } from "vitest";
-import type { Marker, Vector3 as Point } from "../ros/messages";
+import type { Vector3 as Point } from "../generated/geometry_msgs";
+import { Marker } from "../generated/visualization_msgs";
 import type { Assets } from "../scene/assets";
-import { markerObject, MarkerType } from "./marker_shapes";
+import { markerObject } from "./marker_shapes";
 
 const CONTEXT = {
   assets: {} as Assets,
@@ -28,10 +29,10 @@ const CORNERS = [
 
 describe("what is solid", () => {
   it.each([
-    ["a cube", marker(MarkerType.CUBE, SIZE)],
-    ["a sphere", marker(MarkerType.SPHERE, SIZE)],
-    ["a cylinder", marker(MarkerType.CYLINDER, SIZE)],
-    ["triangles", marker(MarkerType.TRIANGLE_LIST, { x: 1, y: 1, z: 1 }, CORNERS)],
+    ["a cube", marker(Marker.CUBE, SIZE)],
+    ["a sphere", marker(Marker.SPHERE, SIZE)],
+    ["a cylinder", marker(Marker.CYLINDER, SIZE)],
+    ["triangles", marker(Marker.TRIANGLE_LIST, { x: 1, y: 1, z: 1 }, CORNERS)],
   ])("is as large as it is told, and can be taken: %s", (_, told) => {
     const object = markerObject(told, CONTEXT) as Mesh;
     const size = new Box3().setFromObject(object).getSize(new Vector3());

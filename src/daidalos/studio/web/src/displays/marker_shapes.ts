@@ -22,26 +22,12 @@ import {
 import { LineMaterial } from "three/examples/jsm/lines/LineMaterial.js";
 import { LineSegments2 } from "three/examples/jsm/lines/LineSegments2.js";
 import { LineSegmentsGeometry } from "three/examples/jsm/lines/LineSegmentsGeometry.js";
-import type { ColorRGBA, Marker } from "../ros/messages";
+import type { ColorRGBA } from "../generated/std_msgs";
+import { Marker } from "../generated/visualization_msgs";
 import type { Assets } from "../scene/assets";
 import { wrapBox, wrapRound } from "../scene/wrapping";
 import { PointSprites } from "../scene/point_sprites";
 import { arrowGeometry, Label } from "../scene/shapes";
-
-export const MarkerType = {
-  ARROW: 0,
-  CUBE: 1,
-  SPHERE: 2,
-  CYLINDER: 3,
-  LINE_STRIP: 4,
-  LINE_LIST: 5,
-  CUBE_LIST: 6,
-  SPHERE_LIST: 7,
-  POINTS: 8,
-  TEXT_VIEW_FACING: 9,
-  MESH_RESOURCE: 10,
-  TRIANGLE_LIST: 11,
-} as const;
 
 export interface MarkerContext {
   assets: Assets;
@@ -66,28 +52,28 @@ export function markerObject(marker: Marker, context: MarkerContext): Object3D |
 function shapeOf(marker: Marker, context: MarkerContext): Object3D | undefined {
   const { scale } = marker;
   switch (marker.type) {
-    case MarkerType.ARROW:
+    case Marker.ARROW:
       return arrow(marker);
-    case MarkerType.CUBE:
+    case Marker.CUBE:
       return sized(new BoxGeometry(), marker, context);
-    case MarkerType.SPHERE:
+    case Marker.SPHERE:
       return sized(new SphereGeometry(0.5, 32, 20).rotateX(Math.PI / 2), marker, context);
-    case MarkerType.CYLINDER:
+    case Marker.CYLINDER:
       return sized(new CylinderGeometry(0.5, 0.5, 1, 32).rotateX(Math.PI / 2), marker, context);
-    case MarkerType.LINE_STRIP:
-    case MarkerType.LINE_LIST:
+    case Marker.LINE_STRIP:
+    case Marker.LINE_LIST:
       return lines(marker);
-    case MarkerType.CUBE_LIST:
+    case Marker.CUBE_LIST:
       return many(new BoxGeometry(scale.x, scale.y, scale.z), marker);
-    case MarkerType.SPHERE_LIST:
+    case Marker.SPHERE_LIST:
       return many(new SphereGeometry(0.5, 16, 10).scale(scale.x, scale.y, scale.z), marker);
-    case MarkerType.POINTS:
+    case Marker.POINTS:
       return points(marker);
-    case MarkerType.TEXT_VIEW_FACING:
+    case Marker.TEXT_VIEW_FACING:
       return label(marker, context.dark);
-    case MarkerType.MESH_RESOURCE:
+    case Marker.MESH_RESOURCE:
       return mesh(marker, context);
-    case MarkerType.TRIANGLE_LIST:
+    case Marker.TRIANGLE_LIST:
       return triangles(marker);
   }
   return undefined;
@@ -97,7 +83,7 @@ function shapeOf(marker: Marker, context: MarkerContext): Object3D | undefined {
 function sized(geometry: BufferGeometry, marker: Marker, { assets, changed, onError }: MarkerContext): Mesh {
   const { type, scale, texture_resource: image } = marker;
   if (image) {
-    (type === MarkerType.CUBE ? wrapBox : wrapRound)(geometry);
+    (type === Marker.CUBE ? wrapBox : wrapRound)(geometry);
   }
   const object = solid(geometry.scale(scale.x, scale.y, scale.z), marker);
   const { material: look } = object;
@@ -153,7 +139,7 @@ function arrow(marker: Marker): Object3D {
 }
 
 function lines(marker: Marker): Object3D {
-  const strip = marker.type === MarkerType.LINE_STRIP;
+  const strip = marker.type === Marker.LINE_STRIP;
   const { points: ends, colors } = marker;
   const positions: number[] = [];
   const tints: number[] = [];

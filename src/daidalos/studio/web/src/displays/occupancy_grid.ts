@@ -10,7 +10,8 @@ import {
   ShaderMaterial,
   UnsignedByteType,
 } from "three";
-import type { OccupancyGrid, OccupancyGridUpdate } from "../ros/messages";
+import type { OccupancyGridUpdate } from "../generated/map_msgs";
+import type { OccupancyGrid } from "../generated/nav_msgs";
 import { costmapPalette, glowPalette, mapPalette, planPalette, rawPalette, type Palette } from "../scene/colors";
 import { beginsFine } from "../scene/graphics";
 import { Layer } from "../scene/layers";

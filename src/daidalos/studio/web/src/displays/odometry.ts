@@ -1,6 +1,7 @@
 // Odometry: where the robot has been, as a trail of arrows.
 import { Quaternion, Vector3 } from "three";
-import type { Odometry, Pose } from "../ros/messages";
+import type { Pose } from "../generated/geometry_msgs";
+import type { Odometry } from "../generated/nav_msgs";
 import type { DisplayContext, DisplayType } from "./display";
 import { Arrows, ARROW_PROPERTIES } from "./poses";
 import { number, text, type Settings } from "./settings";

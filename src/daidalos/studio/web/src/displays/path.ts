@@ -1,5 +1,5 @@
 // Path: the way ahead, as a line over the ground.
-import type { Path } from "../ros/messages";
+import type { Path } from "../generated/nav_msgs";
 import { Layer } from "../scene/layers";
 import { setLinePoints, thickLine } from "../scene/shapes";
 import type { DisplayContext, DisplayType } from "./display";

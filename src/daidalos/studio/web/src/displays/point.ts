@@ -1,6 +1,6 @@
 // PointStamped: a ball, such as the point that was clicked.
 import { Mesh, MeshStandardMaterial, SphereGeometry } from "three";
-import type { PointStamped } from "../ros/messages";
+import type { PointStamped } from "../generated/geometry_msgs";
 import type { DisplayContext, DisplayType } from "./display";
 import { number, text, type Settings } from "./settings";
 import { StampedDisplay } from "./topic_display";

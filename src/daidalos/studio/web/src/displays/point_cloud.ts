@@ -1,5 +1,5 @@
 // PointCloud2: points of any layout, coloured by height, by a field, or by their own colours.
-import type { PointCloud2, PointField } from "../ros/messages";
+import { type PointCloud2, PointField } from "../generated/sensor_msgs";
 import type { DisplayType } from "./display";
 import { paintByValue, paintFlat, POINT_PROPERTIES, PointsDisplay, type PointWriter } from "./points_display";
 import { text } from "./settings";
@@ -64,24 +64,23 @@ function getter(view: DataView, cloud: PointCloud2, name: string): Getter | unde
   return field && readField(view, field, !cloud.is_bigendian);
 }
 
-/** The types of sensor_msgs/PointField. */
 function readField(view: DataView, { offset: at, datatype }: PointField, little: boolean): Getter | undefined {
   switch (datatype) {
-    case 1:
+    case PointField.INT8:
       return (offset) => view.getInt8(offset + at);
-    case 2:
+    case PointField.UINT8:
       return (offset) => view.getUint8(offset + at);
-    case 3:
+    case PointField.INT16:
       return (offset) => view.getInt16(offset + at, little);
-    case 4:
+    case PointField.UINT16:
       return (offset) => view.getUint16(offset + at, little);
-    case 5:
+    case PointField.INT32:
       return (offset) => view.getInt32(offset + at, little);
-    case 6:
+    case PointField.UINT32:
       return (offset) => view.getUint32(offset + at, little);
-    case 7:
+    case PointField.FLOAT32:
       return (offset) => view.getFloat32(offset + at, little);
-    case 8:
+    case PointField.FLOAT64:
       return (offset) => view.getFloat64(offset + at, little);
   }
   return undefined;

@@ -1,5 +1,5 @@
 // What laser scans and point clouds share: points that a sensor saw at one moment, kept for a while if wished.
-import type { Stamped } from "../ros/messages";
+import type { Stamped } from "../ros/types";
 import { parseColor, TURBO } from "../scene/colors";
 import { PointSprites } from "../scene/point_sprites";
 import { Display, place, type DisplayContext, type FrameInfo } from "./display";

@@ -1,5 +1,5 @@
 // Polygon: an outline, such as the robot's footprint.
-import type { PolygonStamped } from "../ros/messages";
+import type { PolygonStamped } from "../generated/geometry_msgs";
 import { Layer } from "../scene/layers";
 import { setLinePoints, thickLine } from "../scene/shapes";
 import type { DisplayContext, DisplayType } from "./display";

@@ -11,7 +11,7 @@ import {
   Vector3,
   type BufferGeometry,
 } from "three";
-import type { Pose, PoseArray, PoseStamped, PoseWithCovarianceStamped } from "../ros/messages";
+import type { Pose, PoseArray, PoseStamped, PoseWithCovarianceStamped } from "../generated/geometry_msgs";
 import { Layer } from "../scene/layers";
 import { arrowGeometry } from "../scene/shapes";
 import type { DisplayContext, DisplayType } from "./display";

@@ -13,7 +13,7 @@ import {
   type Object3D,
 } from "three";
 import URDFLoader, { type URDFCollider, type URDFLink, type URDFVisual } from "urdf-loader";
-import type { StringMessage } from "../ros/messages";
+import type { String as StringMessage } from "../generated/std_msgs";
 import { plainMaterial } from "../scene/assets";
 import { disposeTree, place, type DisplayContext, type FrameInfo, type DisplayType } from "./display";
 import { flag, number, type Settings } from "./settings";

@@ -1,5 +1,5 @@
 // Displays that show the messages of one topic.
-import type { Stamped } from "../ros/messages";
+import type { Stamped } from "../ros/types";
 import { Display, place, type DisplayContext, type FrameInfo } from "./display";
 import { frameOf, MessageFilter, stampOf } from "./message_filter";
 import { text, type Settings } from "./settings";

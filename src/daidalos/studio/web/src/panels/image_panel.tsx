@@ -2,7 +2,7 @@
 import { useSignal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 import { isRecord } from "../app/stored";
-import type { CompressedImage, Image } from "../ros/messages";
+import type { CompressedImage, Image } from "../generated/sensor_msgs";
 import { Choice } from "../ui/editors";
 import { Empty } from "../ui/empty";
 import type { PanelProps, PanelType } from "./panel";

@@ -1,7 +1,7 @@
 // Log: what nodes say on /rosout.
 import { useSignal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
-import type { Log } from "../ros/messages";
+import { Log } from "../generated/rcl_interfaces";
 import { formatTime, toSeconds } from "../ros/time";
 import { Choice } from "../ui/editors";
 import { Empty } from "../ui/empty";
@@ -16,11 +16,11 @@ const REFRESH_MS = 100;
 const TOGETHER_MS = 2000;
 
 const LEVELS = [
-  [10, "debug"],
-  [20, "info"],
-  [30, "warn"],
-  [40, "error"],
-  [50, "fatal"],
+  [Log.DEBUG, "debug"],
+  [Log.INFO, "info"],
+  [Log.WARN, "warn"],
+  [Log.ERROR, "error"],
+  [Log.FATAL, "fatal"],
 ] as const;
 
 interface Line {
@@ -32,7 +32,7 @@ interface Line {
 
 function LogPanel({ studio, visible }: PanelProps) {
   const lines = useSignal<readonly Line[]>([]);
-  const least = useSignal(20);
+  const least = useSignal<number>(Log.INFO);
   const filter = useSignal("");
   const list = useRef<HTMLDivElement>(null);
   const follows = useRef(true);

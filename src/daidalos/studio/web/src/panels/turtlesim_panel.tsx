@@ -6,7 +6,8 @@ import { Choice } from "../ui/editors";
 import { Empty } from "../ui/empty";
 import { Icon } from "../ui/icons";
 import type { PanelProps, PanelType } from "./panel";
-import { DrawingFollower, type TurtleDrawing, type TurtleWindow } from "./turtlesim/follower";
+import type { GetTurtleDrawing, TurtleWindow } from "../generated/daidalos_msgs";
+import { DrawingFollower } from "./turtlesim/follower";
 import { Tank } from "./turtlesim/tank";
 
 const TYPE = "daidalos_msgs/msg/TurtleWindow";
@@ -111,7 +112,7 @@ function Water({ studio, topic, isVisible, isLost, shown }: WaterProps) {
     const made = new Tank(drawing.current as HTMLCanvasElement, turtles.current as HTMLCanvasElement);
     tank.current = made;
     const service = topic.replace(/_window$/, "_drawing");
-    const follower = new DrawingFollower(made.paper, () => session.call(service, {}) as Promise<TurtleDrawing>);
+    const follower = new DrawingFollower(made.paper, () => session.call<GetTurtleDrawing>(service, {}));
     let settling = 0;
     const fit = () => {
       const size = Math.max(0, Math.min(box.clientWidth, box.clientHeight));

@@ -1,15 +1,11 @@
 // ROS stamps as seconds: a double holds today's stamps to a quarter of a microsecond.
+import type { Time } from "../generated/builtin_interfaces";
 
-export interface Stamp {
-  sec: number;
-  nanosec: number;
-}
-
-export function toSeconds(stamp: Stamp): number {
+export function toSeconds(stamp: Time): number {
   return stamp.sec + stamp.nanosec * 1e-9;
 }
 
-export function toStamp(seconds: number): Stamp {
+export function toStamp(seconds: number): Time {
   const sec = Math.floor(seconds);
   const nanosec = Math.round((seconds - sec) * 1e9);
   return nanosec === 1_000_000_000 ? { sec: sec + 1, nanosec: 0 } : { sec, nanosec };

@@ -1,17 +1,10 @@
 // The cameras and how the mouse moves them: RViz's orbit view and its top-down orthographic view.
 import { MOUSE, OrthographicCamera, PerspectiveCamera, TOUCH, Vector3, type Camera } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
+import type { View as ViewState } from "../generated/arrangement";
 
-export type ViewKind = "orbit" | "top";
-
-export interface ViewState {
-  kind: ViewKind;
-  focus: [number, number, number];
-  distance: number;
-  /** Rotation about the vertical and height above the horizon, in rad. */
-  yaw: number;
-  pitch: number;
-}
+export type { ViewState };
+export type ViewKind = ViewState["kind"];
 
 export const HOME: ViewState = { kind: "orbit", focus: [0, 0, 0], distance: 6.5, yaw: -2.3, pitch: 0.8 };
 

@@ -1,6 +1,6 @@
 import { Quaternion, Vector3 } from "three";
 import { beforeEach, describe, expect, it } from "vitest";
-import type { TransformStamped } from "../ros/messages";
+import type { TransformStamped } from "../generated/geometry_msgs";
 import { toStamp } from "../ros/time";
 import { Transform, TransformBuffer } from "./buffer";
 

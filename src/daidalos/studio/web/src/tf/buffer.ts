@@ -1,6 +1,6 @@
 // The tree of coordinate frames over time: tf2's buffer, on this page's clock (seconds).
 import { Quaternion, Vector3 } from "three";
-import type { TransformStamped } from "../ros/messages";
+import type { TransformStamped } from "../generated/geometry_msgs";
 import { toSeconds } from "../ros/time";
 
 /** How long transforms are kept, as tf2 does. */

@@ -2,7 +2,7 @@
 import { Group, Mesh, MeshBasicMaterial, RingGeometry, type Vector3 } from "three";
 import { poseArrow } from "../displays/poses";
 import { disposeTree } from "../displays/display";
-import type { Pose } from "../ros/messages";
+import type { Pose } from "../generated/geometry_msgs";
 import { toStamp } from "../ros/time";
 import { Layer } from "../scene/layers";
 import type { Pointer, Tool, ToolContext, ToolType } from "./tool";

@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import type { Image } from "../../ros/messages";
+import type { Image } from "../../generated/sensor_msgs";
 import { ImageError, toRgba } from "./decode";
 
 function image(encoding: string, step: number, data: number[], width = 2, height = 1): Image {

@@ -1,5 +1,5 @@
 // sensor_msgs' images as bitmaps: the encodings of cameras and of depth cameras.
-import type { CompressedImage, Image } from "../../ros/messages";
+import type { CompressedImage, Image } from "../../generated/sensor_msgs";
 import { TURBO } from "../../scene/colors";
 
 export class ImageError extends Error {}

@@ -1,9 +1,18 @@
 // The joints of a joint_state_publisher_gui: parameters with limits, which the node's own services tell and set.
 import { signal } from "@preact/signals";
 import type { Session } from "../../connection/session";
+import {
+  type DescribeParameters,
+  type GetParameters,
+  type ListParameters,
+  type ParameterEvent,
+  ParameterType,
+  type SetParameters,
+} from "../../generated/rcl_interfaces";
+import type { Empty } from "../../generated/std_srvs";
+import type { Outgoing, ServiceType } from "../../ros/types";
 
 const PREFIX = "joints.";
-const DOUBLE = 3;
 const KEEP = 32;
 /** Descriptions of parameters end with the unit. */
 const UNIT = /\[(\w+)\]$/;
@@ -15,24 +24,6 @@ export interface Joint {
   value: number;
   /** Empty where the node does not tell. */
   unit: string;
-}
-
-interface Value {
-  type: number;
-  double_value: number;
-}
-
-interface ParameterEvent {
-  node: string;
-  new_parameters: { name: string; value: Value }[];
-  changed_parameters: { name: string; value: Value }[];
-  deleted_parameters: { name: string }[];
-}
-
-interface Descriptor {
-  name: string;
-  description?: string;
-  floating_point_range: ArrayLike<{ from_value: number; to_value: number }>;
 }
 
 export class Joints {
@@ -61,23 +52,21 @@ export class Joints {
   }
 
   center(): void {
-    void this.try(() => this.call("center", {}));
+    void this.try(() => this.call<Empty>("center", {}));
   }
 
   randomize(): void {
-    void this.try(() => this.call("randomize", {}));
+    void this.try(() => this.call<Empty>("randomize", {}));
   }
 
   private async read(): Promise<void> {
     await this.try(async () => {
-      const listed = (await this.call("list_parameters", { prefixes: ["joints"], depth: 0n })) as {
-        result: { names: string[] };
-      };
+      const listed = await this.call<ListParameters>("list_parameters", { prefixes: ["joints"], depth: 0n });
       const names = listed.result.names.filter((name) => name.startsWith(PREFIX));
-      const [described, got] = (await Promise.all([
-        this.call("describe_parameters", { names }),
-        this.call("get_parameters", { names }),
-      ])) as [{ descriptors: Descriptor[] }, { values: Value[] }];
+      const [described, got] = await Promise.all([
+        this.call<DescribeParameters>("describe_parameters", { names }),
+        this.call<GetParameters>("get_parameters", { names }),
+      ]);
       this.joints.value = names.map((name, i) => {
         const range = described.descriptors[i]?.floating_point_range[0];
         return {
@@ -127,10 +116,10 @@ export class Joints {
     while (this.unsent.size) {
       const parameters = [...this.unsent].map(([name, double_value]) => ({
         name: PREFIX + name,
-        value: { type: DOUBLE, double_value },
+        value: { type: ParameterType.PARAMETER_DOUBLE, double_value },
       }));
       this.unsent.clear();
-      await this.try(() => this.call("set_parameters", { parameters }));
+      await this.try(() => this.call<SetParameters>("set_parameters", { parameters }));
     }
     this.isSending = false;
   }
@@ -144,7 +133,7 @@ export class Joints {
     }
   }
 
-  private call(service: string, request: object): Promise<unknown> {
-    return this.session.call(`${this.node}/${service}`, request);
+  private call<S extends ServiceType>(service: string, request: Outgoing<S["Request"]>): Promise<S["Response"]> {
+    return this.session.call<S>(`${this.node}/${service}`, request);
   }
 }

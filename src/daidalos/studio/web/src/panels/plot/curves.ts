@@ -1,12 +1,8 @@
 // Which curves a plot has, as it remembers them: fields over time, or fields over another one.
 import { isRecord } from "../../app/stored";
+import type { Curve as FileCurve } from "../../generated/arrangement";
 
-export interface Curve {
-  path: string;
-  /** Empty: the next that is free. */
-  color: string;
-  /** The path of what is to the right; empty: time. */
-  over: string;
+export interface Curve extends FileCurve {
   hidden: boolean;
 }
 

@@ -1,8 +1,9 @@
 // What the mouse and the keys do with the simulated world: look around, take hold of models, put new ones.
 import { signal } from "@preact/signals";
 import { Euler, Matrix4, Quaternion, Vector3 } from "three";
-import { MarkerType } from "../../displays/marker_shapes";
-import type { ColorRGBA, Marker, Pose } from "../../ros/messages";
+import type { Pose } from "../../generated/geometry_msgs";
+import type { ColorRGBA } from "../../generated/std_msgs";
+import { Marker } from "../../generated/visualization_msgs";
 import { Gizmo, type Motion, SNAP } from "./gizmo";
 import type { Resource, Simulator } from "./simulator";
 import { movedPose, type Stage } from "./stage";
@@ -20,9 +21,9 @@ const UNKNOWN_SIZE_M = 0.4;
 /** Colours of what is inserted, one after the other. */
 const PALETTE = ["#e2a355", "#4d8dff", "#5fc26b", "#f2555a", "#a78bfa", "#3fc1c9"];
 const MARKERS: Record<Shape, number> = {
-  box: MarkerType.CUBE,
-  sphere: MarkerType.SPHERE,
-  cylinder: MarkerType.CYLINDER,
+  box: Marker.CUBE,
+  sphere: Marker.SPHERE,
+  cylinder: Marker.CYLINDER,
 };
 /** Gazebo's keys, without Ctrl. */
 const KEYS: Readonly<Record<string, Mode>> = { t: "move", r: "turn", s: "scale" };
@@ -255,10 +256,10 @@ export class Editor {
   private allowed(name: string, { x, y, z }: Vector3): Vector3 {
     const { types, links } = this.stage.anatomy(name);
     const positive = (factor: number) => Math.max(MIN_FACTOR, factor);
-    if (links === 1 && types.every((type) => type === MarkerType.CUBE)) {
+    if (links === 1 && types.every((type) => type === Marker.CUBE)) {
       return new Vector3(positive(x), positive(y), positive(z));
     }
-    if (links === 1 && types.every((type) => type === MarkerType.CUBE || type === MarkerType.CYLINDER)) {
+    if (links === 1 && types.every((type) => type === Marker.CUBE || type === Marker.CYLINDER)) {
       const wide = positive(farthest(x, y));
       return new Vector3(wide, wide, positive(z));
     }
@@ -438,7 +439,7 @@ export class Editor {
     return {
       ns: "",
       id: 0,
-      type: typeof goods === "string" ? MARKERS[goods] : MarkerType.CUBE,
+      type: typeof goods === "string" ? MARKERS[goods] : Marker.CUBE,
       pose: { position: { x: 0, y: 0, z: size / 2 }, orientation: { x: 0, y: 0, z: 0, w: 1 } },
       scale: { x: size, y: size, z: size },
       color: this.color,

@@ -1,7 +1,7 @@
 // The handles around a model by which it is moved, turned and scaled.
 import { Matrix4, Object3D, Vector3 } from "three";
 import { TransformControls } from "three/examples/jsm/controls/TransformControls.js";
-import type { Pose } from "../../ros/messages";
+import type { Pose } from "../../generated/geometry_msgs";
 import { FIELD_OF_VIEW_DEG } from "../../scene/view";
 import type { Viewport } from "../../scene/viewport";
 

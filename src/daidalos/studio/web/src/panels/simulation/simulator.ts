@@ -1,26 +1,31 @@
 // A simulator in the graph: what the page asks of it, by simulation_interfaces and daidalos_msgs.
 import { signal } from "@preact/signals";
 import type { Session } from "../../connection/session";
-import type { ColorRGBA, Marker, Pose, Vector3 } from "../../ros/messages";
+import type { BringBack, GetShapes, GetShapes_Response, InsertShape, ScaleEntity } from "../../generated/daidalos_msgs";
+import type { ModelStates, PerformanceMetrics } from "../../generated/gazebo_msgs";
+import type { Pose, Vector3 } from "../../generated/geometry_msgs";
+import {
+  type DeleteEntity,
+  type GetSimulationState,
+  type GetSpawnables,
+  ResetSimulation_Request,
+  type ResetSimulation,
+  Result,
+  type SetEntityState,
+  type SetSimulationState,
+  SimulationState,
+  type SpawnEntity,
+  type StepSimulation,
+} from "../../generated/simulation_interfaces";
+import type { ColorRGBA } from "../../generated/std_msgs";
+import type { Outgoing, ServiceType } from "../../ros/types";
 
 /** The service by which a simulator is recognised. */
 export const SIMULATOR_TYPE = "simulation_interfaces/srv/SetSimulationState";
-const STATE = { stopped: 0, playing: 1, paused: 2 } as const;
-const RESULT_OK = 1;
 const KEEP = 1;
-/** Without the scope of what was spawned: what the user put, and the robot, stay. */
-const [SCOPE_TIME, SCOPE_STATE] = [1, 2] as const;
 
-export interface EntityStates {
-  name: string[];
-  pose: Pose[];
-}
-
-export interface Looks {
-  shapes: Marker[];
-  entities: string[];
-  poses: Pose[];
-}
+/** What Gazebo publishes of models and of links. */
+export type EntityStates = Pick<ModelStates, "name" | "pose">;
 
 export interface Resource {
   title: string;
@@ -50,7 +55,7 @@ export class Simulator {
     const stops = [
       this.session.subscribe<EntityStates>(`${this.name}/model_states`, KEEP, states),
       this.session.subscribe<EntityStates>(`${this.name}/link_states`, KEEP, states),
-      this.session.subscribe<{ real_time_factor: number }>("/performance_metrics", KEEP, (metrics) => {
+      this.session.subscribe<PerformanceMetrics>("/performance_metrics", KEEP, (metrics) => {
         this.factor.value = metrics.real_time_factor;
         void this.readState();
         beat();
@@ -70,23 +75,26 @@ export class Simulator {
   }
 
   async play(on: boolean): Promise<void> {
-    await this.call("set_simulation_state", { state: { state: on ? STATE.playing : STATE.paused } });
+    const state = on ? SimulationState.STATE_PLAYING : SimulationState.STATE_PAUSED;
+    await this.call<SetSimulationState>("set_simulation_state", { state: { state } });
     this.isPlaying.value = on;
   }
 
   async step(steps: number): Promise<void> {
-    await this.call("step_simulation", { steps: BigInt(steps) });
+    await this.call<StepSimulation>("step_simulation", { steps: BigInt(steps) });
   }
 
   /** Begin anew: time at zero, every model where it came in. */
   async reset(): Promise<void> {
-    await this.call("reset_simulation", { scope: SCOPE_TIME | SCOPE_STATE });
+    // Without the scope of what was spawned: what the user put, and the robot, stay.
+    const { SCOPE_TIME, SCOPE_STATE } = ResetSimulation_Request;
+    await this.call<ResetSimulation>("reset_simulation", { scope: SCOPE_TIME | SCOPE_STATE });
   }
 
   async insert(shape: string, at: Vector3, size: number, mass: number, color: ColorRGBA): Promise<string> {
     const pose = upright({ ...at, z: at.z + size / 2 });
     const request = { shape, name: "", pose, size: { x: size, y: size, z: size }, mass, color };
-    return ((await this.call("insert_shape", request)) as { name: string }).name;
+    return (await this.call<InsertShape>("insert_shape", request)).name;
   }
 
   async spawn({ uri, resource_string }: Resource, at: Vector3): Promise<string> {
@@ -97,7 +105,7 @@ export class Simulator {
       entity_namespace: "",
       initial_pose: { header: { stamp: { sec: 0, nanosec: 0 }, frame_id: "" }, pose: upright(at) },
     };
-    return ((await this.call("spawn_entity", request)) as { entity_name: string }).entity_name;
+    return (await this.call<SpawnEntity>("spawn_entity", request)).entity_name;
   }
 
   async move(entity: string, pose: Pose): Promise<void> {
@@ -111,24 +119,25 @@ export class Simulator {
       twist: { linear: zero, angular: zero },
       acceleration: { linear: zero, angular: zero },
     };
-    await this.call("set_entity_state", { entity, state, set_pose: true, set_twist: true, set_acceleration: false });
+    const request = { entity, state, set_pose: true, set_twist: true, set_acceleration: false };
+    await this.call<SetEntityState>("set_entity_state", request);
   }
 
   async scale(name: string, { x, y, z }: Vector3): Promise<void> {
-    await this.call("scale_entity", { name, factors: { x, y, z } });
+    await this.call<ScaleEntity>("scale_entity", { name, factors: { x, y, z } });
   }
 
   async remove(entity: string): Promise<void> {
-    await this.call("delete_entity", { entity });
+    await this.call<DeleteEntity>("delete_entity", { entity });
   }
 
   /** Put back what was deleted, as it was. */
   async bringBack(name: string): Promise<void> {
-    await this.call("bring_back", { name });
+    await this.call<BringBack>("bring_back", { name });
   }
 
-  async look(): Promise<Looks> {
-    return (await this.call("get_shapes", { names: [] })) as Looks;
+  look(): Promise<GetShapes_Response> {
+    return this.call<GetShapes>("get_shapes", { names: [] });
   }
 
   private get speedParameter(): string {
@@ -136,19 +145,17 @@ export class Simulator {
   }
 
   private async readState(): Promise<void> {
-    const answer = (await this.call("get_simulation_state", {}).catch(() => undefined)) as
-      { state: { state: number } } | undefined;
-    this.isPlaying.value = answer && answer.state.state === STATE.playing;
+    const answer = await this.call<GetSimulationState>("get_simulation_state", {}).catch(() => undefined);
+    this.isPlaying.value = answer && answer.state.state === SimulationState.STATE_PLAYING;
   }
 
   async readSpawnables(): Promise<void> {
-    const answer = (await this.call("get_spawnables", { sources: [] }).catch(() => undefined)) as
-      { spawnables: { entity_resource: { uri: string } }[] } | undefined;
+    const answer = await this.call<GetSpawnables>("get_spawnables", { sources: [] }).catch(() => undefined);
     this.spawnables.value = (answer?.spawnables ?? []).map(({ entity_resource: { uri } }) => resourceAt(uri));
   }
 
-  private async call(service: string, request: object): Promise<unknown> {
-    const answer = await this.session.call(`${this.name}/${service}`, request);
+  private async call<S extends ServiceType>(service: string, request: Outgoing<S["Request"]>): Promise<S["Response"]> {
+    const answer = await this.session.call<S>(`${this.name}/${service}`, request);
     const errorText = errorOf(answer as Answer);
     if (errorText !== undefined) {
       throw new Error(errorText);
@@ -173,7 +180,7 @@ interface Answer {
 
 /** Why a simulator did not do what it was asked; undefined where it did. */
 export function errorOf({ result, success, status_message }: Answer): string | undefined {
-  if (result && result.result !== RESULT_OK) {
+  if (result && result.result !== Result.RESULT_OK) {
     return result.error_message || `refused with code ${result.result}`;
   }
   return success === false ? status_message || "refused" : undefined;

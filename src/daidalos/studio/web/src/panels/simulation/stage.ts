@@ -16,10 +16,12 @@ import {
 import { disposeTree, type DisplayContext } from "../../displays/display";
 import { GRID } from "../../displays/grid";
 import { markerObject } from "../../displays/marker_shapes";
-import type { Marker, Pose } from "../../ros/messages";
+import type { Pose } from "../../generated/geometry_msgs";
+import type { Marker } from "../../generated/visualization_msgs";
 import { HOME } from "../../scene/view";
 import { Viewport } from "../../scene/viewport";
-import type { EntityStates, Looks } from "./simulator";
+import type { GetShapes_Response } from "../../generated/daidalos_msgs";
+import type { EntityStates } from "./simulator";
 
 /** Flatter and larger than these, a shape is ground: the grid stands for it. */
 const GROUND_M2 = 100;
@@ -71,7 +73,7 @@ export class Stage {
   }
 
   /** Show what the simulator says that there is. */
-  show({ shapes, entities, poses }: Looks): void {
+  show({ shapes, entities, poses }: GetShapes_Response): void {
     const models = new Map<string, Marker[]>();
     for (const name of entities.filter((each) => !each.includes("::"))) {
       models.set(name, []);

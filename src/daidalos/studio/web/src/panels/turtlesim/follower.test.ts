@@ -1,5 +1,6 @@
 import { describe, expect, it } from "vitest";
-import { DrawingFollower, type Lines, type Sheet, type TurtleDrawing, type TurtleWindow } from "./follower";
+import type { GetTurtleDrawing_Response, TurtleWindow } from "../../generated/daidalos_msgs";
+import { DrawingFollower, type Lines, type Sheet } from "./follower";
 
 /** A sheet that remembers the x of every line's start. */
 class MemorySheet implements Sheet {
@@ -13,7 +14,7 @@ class MemorySheet implements Sheet {
       this.marks.push(lines[i] as number);
     }
   }
-  async replace(drawing: TurtleDrawing) {
+  async replace(drawing: GetTurtleDrawing_Response) {
     this.wipe();
     this.pictures += drawing.picture.length;
     this.draw(drawing);
@@ -35,7 +36,7 @@ const received = (clearings: number, drawn: number, ...marks: number[]): TurtleW
   b: 0,
   turtles: [],
 });
-const answered = (clearings: number, drawn: number, ...marks: number[]): TurtleDrawing => ({
+const answered = (clearings: number, drawn: number, ...marks: number[]): GetTurtleDrawing_Response => ({
   ...lines(...marks),
   clearings,
   drawn,
@@ -59,7 +60,7 @@ describe("a follower", () => {
   it("asks for everything when it missed something", async () => {
     const sheet = new MemorySheet();
     const answers = [answered(0, 1, 1), answered(0, 6, 1, 2, 3, 4, 5, 6)];
-    const follower = new DrawingFollower(sheet, async () => answers.shift() as TurtleDrawing);
+    const follower = new DrawingFollower(sheet, async () => answers.shift() as GetTurtleDrawing_Response);
     follower.hear(received(0, 1));
     await settle();
     follower.hear(received(0, 5, 5));

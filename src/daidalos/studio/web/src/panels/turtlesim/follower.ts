@@ -1,45 +1,16 @@
 // Keeping a drawing in step with turtlesim's: new lines come with every message, all of them when some were missed.
 
-/** daidalos_msgs/msg/TurtleSprite */
-export interface TurtleSprite {
-  name: string;
-  kind: number;
-  x: number;
-  y: number;
-  theta: number;
-}
+import type { GetTurtleDrawing_Response, TurtleWindow } from "../../generated/daidalos_msgs";
 
 /** Lines by the four: both ends in units of turtlesim; red, green, blue and width of the pen. */
-export interface Lines {
-  lines: Float32Array;
-  pens: Uint8Array;
-}
-
-interface Progress {
-  clearings: number;
-  drawn: number;
-}
-
-/** daidalos_msgs/msg/TurtleWindow */
-export interface TurtleWindow extends Lines, Progress {
-  width: number;
-  height: number;
-  r: number;
-  g: number;
-  b: number;
-  turtles: TurtleSprite[];
-}
-
-/** The response of daidalos_msgs/srv/GetTurtleDrawing */
-export interface TurtleDrawing extends Lines, Progress {
-  picture: Uint8Array;
-}
+export type Lines = Pick<TurtleWindow, "lines" | "pens">;
+type Progress = Pick<TurtleWindow, "clearings" | "drawn">;
 
 export interface Sheet {
   wipe(): void;
   draw(lines: Lines): void;
   /** Show this drawing in place of what is there. */
-  replace(drawing: TurtleDrawing): Promise<void>;
+  replace(drawing: GetTurtleDrawing_Response): Promise<void>;
 }
 
 export class DrawingFollower {
@@ -48,7 +19,7 @@ export class DrawingFollower {
 
   constructor(
     private readonly sheet: Sheet,
-    private readonly ask: () => Promise<TurtleDrawing>,
+    private readonly ask: () => Promise<GetTurtleDrawing_Response>,
   ) {}
 
   hear(message: TurtleWindow): void {

@@ -1,5 +1,6 @@
 // The canvas that turtles draw on: as fine as the screen, whatever its size.
-import type { Lines, Sheet, TurtleDrawing } from "./follower";
+import type { GetTurtleDrawing_Response } from "../../generated/daidalos_msgs";
+import type { Lines, Sheet } from "./follower";
 
 /** Pixels of turtlesim's own window, in which widths of pens are told. */
 export const PIXELS = 500;
@@ -49,7 +50,7 @@ export class Paper implements Sheet {
     }
   }
 
-  async replace(drawing: TurtleDrawing): Promise<void> {
+  async replace(drawing: GetTurtleDrawing_Response): Promise<void> {
     const { picture } = drawing;
     const bitmap = picture.length
       ? await createImageBitmap(new Blob([picture.slice()], { type: "image/png" }))

@@ -1,7 +1,7 @@
 // The square that turtles live in: their drawing, and above it the turtles, swimming.
 import { Paper, pixelsPerUnit, PIXELS } from "./paper";
 import { drawShadow, drawTurtle, HALF_SHELL } from "./turtle_art";
-import type { TurtleSprite, TurtleWindow } from "./follower";
+import type { TurtleSprite, TurtleWindow } from "../../generated/daidalos_msgs";
 
 const LARGEST_PX = 2400;
 /** How far a turtle comes with one stroke of its flippers, in units, and how far it turns, in radians. */

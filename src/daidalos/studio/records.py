@@ -1,0 +1,112 @@
+"""Frozen dataclasses as JSON objects: a field ``channel_ids`` here is the key ``channelIds`` there."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import MISSING, fields, is_dataclass
+from functools import cache
+from types import NoneType
+from typing import Annotated, Any, TypeGuard, TypeVar, get_args, get_origin, get_type_hints
+
+T = TypeVar("T")
+
+Uint32 = Annotated[int, "uint32"]
+
+_KINDS: Mapping[object, tuple[type, str, str]] = {  # a field's type: Python's class, one of it, several of it
+    str: (str, "a string", "strings"),
+    int: (int, "a number", "numbers"),
+    Uint32: (int, "a number of 32 bits", "numbers of 32 bits"),
+}
+
+
+class RecordError(ValueError):
+    """A JSON value that is not the record that was expected; the text names the key and what it must be."""
+
+
+def key_of(name: str) -> str:
+    """Return the JSON key of a field."""
+    first, *others = name.split("_")
+    return first + "".join(part.capitalize() for part in others)
+
+
+def to_json(value: Any) -> Any:
+    """Return a record, and the records within it, as what `json.dumps` writes; fields that are None are left out."""
+    if is_dataclass(value):
+        found = ((field.name, getattr(value, field.name)) for field in fields(value))
+        return {key_of(name): to_json(inner) for name, inner in found if inner is not None}
+    if isinstance(value, Mapping):
+        return {key: to_json(inner) for key, inner in value.items()}
+    if isinstance(value, list | tuple):
+        return [to_json(inner) for inner in value]
+    return value
+
+
+def from_json(record: type[T], value: Mapping[str, Any]) -> T:
+    """Read a record from a JSON object; keys that it does not have are ignored.
+
+    Raises
+    ------
+    RecordError
+        When a required key is missing, or a value has another type.
+    """
+    hints = field_types(record)  # type: ignore[arg-type]
+    arguments = {}
+    for field in fields(record):  # type: ignore[arg-type]
+        key = key_of(field.name)
+        found = value.get(key)
+        if found is not None:
+            arguments[field.name] = _read(hints[field.name], found, key)
+        elif field.default is MISSING:
+            raise RecordError(f'expected "{key}" to be {_expected(hints[field.name])}')
+    return record(**arguments)
+
+
+@cache
+def field_types(record: type) -> dict[str, Any]:
+    """Return the types of a record's fields by name, without the None of those that may be left out."""
+    hints = get_type_hints(record, include_extras=True)
+    return {field.name: _without_none(hints[field.name]) for field in fields(record)}
+
+
+def _without_none(hint: Any) -> Any:
+    members = get_args(hint)
+    if NoneType not in members:
+        return hint
+    one, *others = (member for member in members if member is not NoneType)
+    for other in others:
+        one = one | other
+    return one
+
+
+def _read(hint: Any, value: Any, key: str) -> Any:
+    wrong = RecordError(f'expected "{key}" to be {_expected(hint)}')
+    if get_origin(hint) is tuple:
+        element = get_args(hint)[0]
+        if not isinstance(value, list) or not all(_fits(element, item) for item in value):
+            raise wrong
+        return tuple(from_json(element, item) if is_record(element) else item for item in value)
+    if not _fits(hint, value):
+        raise wrong
+    return from_json(hint, value) if is_record(hint) else value
+
+
+def is_record(hint: Any) -> TypeGuard[type[Any]]:
+    """Return whether a field's type is a record."""
+    return isinstance(hint, type) and is_dataclass(hint)
+
+
+def _fits(hint: Any, value: Any) -> bool:
+    if is_record(hint):
+        return isinstance(value, dict)
+    if hint not in _KINDS:
+        return True
+    if hint == Uint32:
+        return isinstance(value, int) and 0 <= value < 1 << 32
+    return isinstance(value, _KINDS[hint][0])
+
+
+def _expected(hint: Any) -> str:
+    if get_origin(hint) is tuple:
+        element = get_args(hint)[0]
+        return f"a list of {_KINDS[element][2] if element in _KINDS else 'objects'}"
+    return _KINDS[hint][1] if hint in _KINDS else "an object"
