@@ -6,6 +6,7 @@ goals, cancellations and sensor data are handled meanwhile, and a stepped clock 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from types import TracebackType
 from typing import Self
 
@@ -53,3 +54,29 @@ class Cycle:
             self._missed = True
         else:
             waiting.set_result(None)
+
+
+async def wait_until(condition: Callable[[], bool], node: Node, frequency: float, timeout_s: float) -> bool:
+    """Wait until a condition holds; return whether it did before the timeout.
+
+    Parameters
+    ----------
+    condition
+        Evaluated at once, then once a cycle.
+    node
+        Whose clock and executor are used.
+    frequency
+        Cycles per second of the node's clock.
+    timeout_s
+        How long [s] of the node's clock to wait. It counts from the first cycle at which the clock has a time: a
+        simulated one is at zero until the simulator's first message.
+    """
+    begun_ns = 0
+    with Cycle(node, frequency) as cycle:
+        while not condition():
+            now_ns = node.get_clock().now().nanoseconds
+            begun_ns = begun_ns or now_ns
+            if now_ns - begun_ns > 1e9 * timeout_s:
+                return False
+            await cycle.next()
+    return True

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import sys
-import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from rclpy.action import ActionServer, CancelResponse
-from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
+from rclpy.lifecycle import LifecycleState, TransitionCallbackReturn
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.time import Time
 from tf2_ros import Buffer, TransformException, TransformListener
@@ -22,11 +20,11 @@ from daidalos.navigation.behaviors.spin import SpinCommand
 from daidalos.navigation.behaviors.wait import WaitCommand
 from daidalos.navigation.costmap.costmap import Costmap
 from daidalos.navigation.costmap.footprint import Footprint
-from daidalos.navigation.errors import NavigationError
 from daidalos.navigation.plugins import find_plugin
-from daidalos.nodes.action_results import TransformFailed, set_error
+from daidalos.nodes.action_results import TransformFailed
 from daidalos.nodes.conversions import duration_message, pose2_of_transform, seconds, twist_message
-from daidalos.nodes.cycles import Cycle
+from daidalos.nodes.cycles import Cycle, wait_until
+from daidalos.nodes.managed import ManagedNode
 from daidalos.nodes.nav2_costmap_2d._costmap_messages import costmap_of
 from daidalos.nodes.parameters import declare_plugin
 from daidalos.nodes.runner import run
@@ -69,7 +67,7 @@ _DEFAULT_PLUGINS = {
 }
 
 
-class BehaviorServer(LifecycleNode):
+class BehaviorServer(ManagedNode):
     """Serves an action for every behaviour; parameters are Nav2's."""
 
     def __init__(self, node_name: str = "behavior_server", **kwargs: Any) -> None:
@@ -88,7 +86,7 @@ class BehaviorServer(LifecycleNode):
         self._buffer = Buffer()
         self._listener = TransformListener(self._buffer, self)
 
-    def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
+    def configure(self) -> None:
         """Make the behaviours and serve."""
         import nav2_msgs.action
         from geometry_msgs.msg import Twist, TwistStamped
@@ -100,22 +98,12 @@ class BehaviorServer(LifecycleNode):
             CostmapMessage, self.get_parameter("local_costmap_topic").value, self._on_costmap, _LATCHED
         )
         self.create_subscription(Odometry, "odom", self._on_odometry, 10)
-        self._servers = []
         for name in self.get_parameter("behavior_plugins").value:
             kind_name = self.declare_parameter(f"{name}.plugin", _DEFAULT_PLUGINS.get(name, "")).value
             kind = _KINDS[kind_name.replace("/", "::")]
             behavior = self._make(kind_name, name)
             action = getattr(nav2_msgs.action, kind.action)
-            self._servers.append(
-                ActionServer(
-                    self,
-                    action,
-                    name,
-                    self._executor_of(behavior, kind, action),
-                    cancel_callback=lambda goal: CancelResponse.ACCEPT,
-                )
-            )
-        return super().on_configure(state)
+            self.serve_action(action, name, self._executor_of(behavior, kind, action))
 
     def _make(self, kind: str, name: str) -> Behavior[Any]:
         plugin = find_plugin(kind)
@@ -123,6 +111,12 @@ class BehaviorServer(LifecycleNode):
         further = () if parameters is None else (parameters,)
         behavior: Behavior[Any] = plugin.made_by(self._footprint, *further, cycle_frequency=self._frequency)
         return behavior
+
+    def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Stop the robot where a behaviour moves it, and abort the goals."""
+        if self._goals:
+            self._publish_velocity(np.zeros(3))
+        return super().on_deactivate(state)
 
     def _on_costmap(self, message: Any) -> None:
         self._costmap = costmap_of(message)
@@ -135,41 +129,38 @@ class BehaviorServer(LifecycleNode):
         async def execute(goal_handle: Any) -> Any:
             result = action.Result()
             begun = self.get_clock().now()
-            await self._until_known(goal_handle)
-            if goal_handle.is_cancel_requested:
-                goal_handle.canceled()
+            await wait_until(lambda: self._is_over(goal_handle) or self._is_known(), self, self._frequency, _TIMEOUT_S)
+            if not self._is_over(goal_handle):
+                await self._behave(behavior, kind, action, goal_handle)
+            if not goal_handle.is_active:
                 return result
-            try:
-                behavior.start(kind.command(goal_handle.request), self._pose(), self._now())
-                with Cycle(self, self._frequency) as cycle:
-                    while await self._go_on(behavior, kind, action, goal_handle):
-                        await cycle.next()
-            except NavigationError as error:
-                self._publish_velocity(np.zeros(3))
-                self.get_logger().warning(f"{kind.action} failed: {error}")
-                goal_handle.abort()
-                return set_error(result, error)
-            self._publish_velocity(np.zeros(3))
             result.total_elapsed_time = (self.get_clock().now() - begun).to_msg()
             goal_handle.canceled() if goal_handle.is_cancel_requested else goal_handle.succeed()
             return result
 
         return execute
 
-    async def _until_known(self, goal_handle: Any) -> None:
-        """Wait for the robot's place and for what is around it: the first goal may come before they do."""
-        begun = time.monotonic()
-        with Cycle(self, self._frequency) as cycle:
-            while not goal_handle.is_cancel_requested and time.monotonic() - begun < _TIMEOUT_S:
-                known = self._buffer.can_transform(self._frame, self._base_frame, Time())
-                if self._costmap is not None and known:
-                    return
-                await cycle.next()
+    def _is_over(self, goal_handle: Any) -> bool:
+        """Return whether a goal is cancelled or aborted."""
+        return goal_handle.is_cancel_requested or not goal_handle.is_active
 
-    async def _go_on(self, behavior: Behavior[Any], kind: _Kind, action: Any, goal_handle: Any) -> bool:
-        """Make one cycle; False when the behaviour is done or cancelled."""
-        if goal_handle.is_cancel_requested:
-            return False
+    def _is_known(self) -> bool:
+        """Return whether the robot's pose and what is around it are known: the first goal may come before they are."""
+        return self._costmap is not None and bool(self._buffer.can_transform(self._frame, self._base_frame, Time()))
+
+    async def _behave(self, behavior: Behavior[Any], kind: _Kind, action: Any, goal_handle: Any) -> None:
+        """Carry out a behaviour until it is done or its goal is over, and stop the robot."""
+        try:
+            behavior.start(kind.command(goal_handle.request), self._pose(), self._now())
+            with Cycle(self, self._frequency) as cycle:
+                while not self._is_over(goal_handle) and self._go_on(behavior, kind, action, goal_handle):
+                    await cycle.next()
+        finally:
+            if self.is_active:
+                self._publish_velocity(np.zeros(3))
+
+    def _go_on(self, behavior: Behavior[Any], kind: _Kind, action: Any, goal_handle: Any) -> bool:
+        """Make one cycle; False when the behaviour is done."""
         if self._costmap is None:
             raise TransformFailed("no local costmap has come yet")
         step = behavior.step(self._pose(), self._velocity, self._costmap, self._now())

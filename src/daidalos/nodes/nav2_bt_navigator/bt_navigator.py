@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 from py_trees.common import Status
-from rclpy.action import ActionClient, ActionServer, CancelResponse, GoalResponse
-from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
+from rclpy.action import ActionClient
+from rclpy.lifecycle import LifecycleState, TransitionCallbackReturn
 from rclpy.time import Time
 from tf2_ros import Buffer, TransformException, TransformListener
 
@@ -17,14 +17,15 @@ from daidalos.navigation.paths import path_length
 from daidalos.navigation.trees.action.action_node import RECOVERIES
 from daidalos.navigation.trees.behavior_tree import DEFAULT_TREE, BehaviorTree
 from daidalos.navigation.trees.blackboard import Blackboard
-from daidalos.navigation.trees.errors import TreeError
 from daidalos.nodes.conversions import path_array, pose2_of_transform, pose_stamped
 from daidalos.nodes.cycles import Cycle
+from daidalos.nodes.managed import ManagedNode
+from daidalos.nodes.nav2_bt_navigator._navigation import Navigation
 from daidalos.nodes.nav2_bt_navigator._tasks import GraphServices
 from daidalos.nodes.runner import run
 
 
-class BtNavigator(LifecycleNode):
+class BtNavigator(ManagedNode):
     """Serves ``navigate_to_pose`` and listens to ``goal_pose``; parameters are Nav2's."""
 
     def __init__(self, node_name: str = "bt_navigator", **kwargs: Any) -> None:
@@ -35,58 +36,46 @@ class BtNavigator(LifecycleNode):
         self._tree_file = self.declare_parameter("default_nav_to_pose_bt_xml", "").value or str(DEFAULT_TREE)
         self._buffer = Buffer()
         self._listener = TransformListener(self._buffer, self)
-        self._services = GraphServices(self)
-        self._current: Any = None
-        self._blackboard: Blackboard | None = None
-        self._waiting: list[Any] = []
-        self._last_result: Any = None
+        self._navigation: Navigation | None = None
         self._early_pose: Any = None
 
-    def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
+    def configure(self) -> None:
         """Read the default tree and serve."""
         from geometry_msgs.msg import PoseStamped
         from nav2_msgs.action import NavigateToPose
 
+        self._services = GraphServices(self)
         BehaviorTree.load(Path(self._tree_file), self._services)  # so that a faulty one is known at once
-        self._server = ActionServer(
-            self,
-            NavigateToPose,
-            "navigate_to_pose",
-            self._navigate,
-            goal_callback=self._on_goal,
-            cancel_callback=lambda goal: CancelResponse.ACCEPT,
-        )
+        self.serve_action(NavigateToPose, "navigate_to_pose", self._navigate, self._refusal)
         self._self_client = ActionClient(self, NavigateToPose, "navigate_to_pose")
         self.create_subscription(PoseStamped, "goal_pose", self._on_goal_pose, 10)
-        return super().on_configure(state)
 
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Begin to navigate, first to where somebody clicked too early."""
-        answer = super().on_activate(state)
+        outcome = super().on_activate(state)
         pose, self._early_pose = self._early_pose, None
-        if pose is not None:
-            self._when_active = self.create_timer(0.01, lambda: self._send_early(pose))
-        return answer
-
-    def _send_early(self, pose: Any) -> None:
-        if self.current_state.label == "active":
-            self.destroy_timer(self._when_active)
+        if pose is not None and outcome == TransitionCallbackReturn.SUCCESS:
             self._on_goal_pose(pose)
+        return outcome
 
-    def _on_goal(self, request: Any) -> GoalResponse:
-        if self.current_state.label != "active":
-            self.get_logger().warning("a goal was rejected: the navigator is not active")
-            return GoalResponse.REJECT
+    def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Abort the goal and halt its tree."""
+        outcome = super().on_deactivate(state)
+        if self._navigation is not None:
+            self._navigation.tick()
+            self._navigation = None
+        return outcome
+
+    def _refusal(self, request: Any) -> str:
         frame = request.pose.header.frame_id
         if frame and frame != self._map_frame and not self._buffer.can_transform(self._map_frame, frame, Time()):
-            self.get_logger().warning(f"a goal was rejected: the frame '{frame}' is not known")
-            return GoalResponse.REJECT
-        return GoalResponse.ACCEPT
+            return f"the frame '{frame}' is not known"
+        return ""
 
     def _on_goal_pose(self, pose: Any) -> None:
         from nav2_msgs.action import NavigateToPose
 
-        if self.current_state.label != "active":
+        if not self.is_active:
             self.get_logger().info("a goal came before the navigator is active; it is driven to then")
             self._early_pose = pose
             return
@@ -100,89 +89,57 @@ class BtNavigator(LifecycleNode):
         self.get_logger().info(
             f"driving to ({goal.pose.position.x:.2f}, {goal.pose.position.y:.2f}) in {goal.header.frame_id}"
         )
-        if self._current is not None and self._blackboard is not None:
-            return await self._take_over(goal_handle, result)
-        blackboard = Blackboard()
-        blackboard.set("goal", goal)
+        if self._navigation is not None:
+            self._navigation.replace_goal(goal_handle, NavigateToPose.Result(error_msg="replaced by another goal"))
+            return await self._navigation.ended
+        file = Path(goal_handle.request.behavior_tree or self._tree_file)
+        navigation = Navigation(goal_handle, BehaviorTree.load(file, self._services), self.get_clock().now())
+        self._navigation = navigation
         try:
-            file = goal_handle.request.behavior_tree or self._tree_file
-            tree = BehaviorTree.load(Path(file), self._services, blackboard)
-        except TreeError as error:
-            self.get_logger().error(str(error))
-            goal_handle.abort()
-            result.error_msg = str(error)
-            return result
-        self._current, self._blackboard = goal_handle, blackboard
-        status = await self._run(tree, blackboard)
-        last, self._current, self._blackboard = self._current, None, None
-        self._finish(last, status, blackboard, result)
-        self._wake_waiting()
+            status = await self._run(navigation)
+            self._report(status, navigation, result)
+            navigation.end(status, result)
+        finally:
+            navigation.ended.cancel()  # unless it is done
+            if self._navigation is navigation:
+                self._navigation = None
         return result
 
-    async def _take_over(self, goal_handle: Any, result: Any) -> Any:
-        """Give the running tree another goal; this one ends with it."""
-        from rclpy.task import Future
-
-        previous, self._current = self._current, goal_handle
-        assert self._blackboard is not None
-        self._blackboard.set("goal", goal_handle.request.pose)
-        self._blackboard.set(RECOVERIES, 0)
-        if previous.is_active:
-            previous.abort(type(result)(error_msg="replaced by another goal"))
-        ended = Future()
-        self._waiting.append(ended)
-        await ended
-        return self._last_result
-
-    def _wake_waiting(self) -> None:
-        waiting, self._waiting = self._waiting, []
-        for future in waiting:
-            future.set_result(None)
-
-    async def _run(self, tree: BehaviorTree, blackboard: Blackboard) -> Status:
+    async def _run(self, navigation: Navigation) -> Status:
         """Tick the tree until it ends or the goal is cancelled."""
-        begun = self.get_clock().now()
         with Cycle(self, 1000.0 / self._loop_ms) as cycle:
-            while True:
-                if self._current.is_cancel_requested:
-                    tree.halt()
-                    return Status.INVALID
-                status = tree.tick()
-                if status != Status.RUNNING:
-                    return status
-                self._tell(begun, blackboard)
+            while (status := navigation.tick()) == Status.RUNNING:
+                self._publish_feedback(navigation)
                 await cycle.next()
+        return status
 
-    def _tell(self, begun: Any, blackboard: Blackboard) -> None:
+    def _publish_feedback(self, navigation: Navigation) -> None:
         from nav2_msgs.action import NavigateToPose
 
         try:
             found = self._buffer.lookup_transform(self._map_frame, self._base_frame, Time())
         except TransformException:
             return
-        path = blackboard.get("path")
+        path = navigation.blackboard.get("path")
         pose = pose2_of_transform(found.transform)
-        self._current.publish_feedback(
+        navigation.goal_handle.publish_feedback(
             NavigateToPose.Feedback(
                 current_pose=pose_stamped(pose, self._map_frame, found.header.stamp),
-                navigation_time=(self.get_clock().now() - begun).to_msg(),
-                number_of_recoveries=int(blackboard.get(RECOVERIES, 0)),
+                navigation_time=(self.get_clock().now() - navigation.begun).to_msg(),
+                number_of_recoveries=int(navigation.blackboard.get(RECOVERIES, 0)),
                 distance_remaining=0.0 if path is None else _remaining(path_array(path), pose),
             )
         )
 
-    def _finish(self, goal_handle: Any, status: Status, blackboard: Blackboard, result: Any) -> None:
-        self._last_result = result
-        if status == Status.INVALID:
-            goal_handle.canceled()
-            self.get_logger().info("the goal was cancelled")
-        elif status == Status.SUCCESS:
-            goal_handle.succeed()
+    def _report(self, status: Status, navigation: Navigation, result: Any) -> None:
+        """Log how a navigation ended, and set why it failed in its result."""
+        if status == Status.SUCCESS:
             self.get_logger().info("the goal is reached")
-        else:
-            result.error_code, result.error_msg = _reason(blackboard)
-            goal_handle.abort()
+        elif status == Status.FAILURE:
+            result.error_code, result.error_msg = _reason(navigation.blackboard)
             self.get_logger().error(f"the goal is given up: {result.error_msg}")
+        else:
+            self.get_logger().info("the goal was cancelled")
 
 
 def _reason(blackboard: Blackboard) -> tuple[int, str]:

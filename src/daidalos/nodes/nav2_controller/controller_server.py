@@ -3,22 +3,22 @@
 from __future__ import annotations
 
 import sys
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from rclpy.action import ActionServer, CancelResponse, GoalResponse
-from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
+from rclpy.lifecycle import LifecycleState, TransitionCallbackReturn
 from rclpy.time import Time
 from tf2_ros import TransformException
 
 from daidalos.navigation.controllers.follow_path import FollowPath
 from daidalos.navigation.errors import NavigationError
-from daidalos.nodes.action_results import TransformFailed, set_error
+from daidalos.nodes.action_results import TransformFailed
 from daidalos.nodes.conversions import path_array, path_message, pose2_of_transform, twist_message
 from daidalos.nodes.cycles import Cycle
+from daidalos.nodes.managed import ContainedNode, ManagedNode
 from daidalos.nodes.nav2_controller._plugins import PluginMaker
 from daidalos.nodes.nav2_costmap_2d._costmap_node import CostmapNode
-from daidalos.nodes.node_thread import NodeThread
 from daidalos.nodes.runner import run
 
 
@@ -28,7 +28,17 @@ class UnknownController(NavigationError):
     code = "INVALID_CONTROLLER"
 
 
-class ControllerServer(LifecycleNode):
+@dataclass
+class _Pursuit:
+    """The path that the robot follows, in which frame, to which goal (x, y, yaw), and by which plugins."""
+
+    task: FollowPath
+    plugins: tuple[str, str, str]
+    frame: str
+    goal: Any
+
+
+class ControllerServer(ManagedNode):
     """Serves ``follow_path`` and publishes ``cmd_vel``; parameters are Nav2's."""
 
     def __init__(self, node_name: str = "controller_server", **kwargs: Any) -> None:
@@ -42,18 +52,19 @@ class ControllerServer(LifecycleNode):
         self.declare_parameter("progress_checker_plugins", ["progress_checker"])
         self.declare_parameter("odom_topic", "odom")
         self._costmap = CostmapNode("local_costmap", self)
-        self._costmap_thread = NodeThread(self._costmap)
+        self._contained = ContainedNode(self._costmap)
+        self.add_managed_entity(self._contained)
         self._plugins: dict[str, dict[str, Any]] = {}
         self._velocity = np.zeros(3)
         self._current: Any = None
+        self._pursuit: _Pursuit | None = None
 
-    def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
+    def configure(self) -> None:
         """Make controllers and checkers and serve."""
         from geometry_msgs.msg import Twist, TwistStamped
         from nav2_msgs.action import FollowPath as FollowPathAction
         from nav_msgs.msg import Odometry, Path
 
-        self._costmap.trigger_configure()
         maker = PluginMaker(self, self._costmap.footprint, self._frequency)
         for group, default in (
             ("controller_plugins", "nav2_mppi_controller::MPPIController"),
@@ -65,82 +76,65 @@ class ControllerServer(LifecycleNode):
         self._command = self.create_publisher(TwistStamped if self._stamped else Twist, "cmd_vel", 1)
         self._local_plan = self.create_publisher(Path, "local_plan", 1)
         self.create_subscription(Odometry, self.get_parameter("odom_topic").value, self._on_odometry, 10)
-        self._server = ActionServer(
-            self,
-            FollowPathAction,
-            "follow_path",
-            self._follow,
-            goal_callback=self._on_goal,
-            cancel_callback=lambda goal: CancelResponse.ACCEPT,
-        )
-        return super().on_configure(state)
-
-    def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Let the costmap be updated."""
-        self._costmap.trigger_activate()
-        return super().on_activate(state)
+        self.serve_action(FollowPathAction, "follow_path", self._follow)
 
     def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Stand, and let the costmap rest."""
-        self._publish_velocity(np.zeros(3))
-        self._costmap.trigger_deactivate()
+        """Stop the robot and abort the goal."""
+        self._stop()
         return super().on_deactivate(state)
 
     def _on_odometry(self, message: Any) -> None:
         twist = message.twist.twist
         self._velocity = np.array([twist.linear.x, twist.linear.y, twist.angular.z])
 
-    def _on_goal(self, request: Any) -> GoalResponse:
-        return GoalResponse.ACCEPT if self.current_state.label == "active" else GoalResponse.REJECT
-
     async def _follow(self, goal_handle: Any) -> Any:
         from nav2_msgs.action import FollowPath as FollowPathAction
 
         result = FollowPathAction.Result()
-        previous, self._current = self._current, goal_handle
+        self._current = goal_handle
         try:
             await self._costmap.until_current(self, self.get_parameter("costmap_update_timeout").value)
-            task = self._task(goal_handle.request, previous)
+            if self._goes_on(goal_handle):
+                self._pursuit = self._take_up(goal_handle.request)
             with Cycle(self, self._frequency) as cycle:
-                while await self._drive(task, goal_handle):
+                while self._goes_on(goal_handle) and self._drive(goal_handle):
                     await cycle.next()
-        except NavigationError as error:
-            self._end(goal_handle)
-            self.get_logger().warning(f"following the path failed: {error}")
-            goal_handle.abort()
-            return set_error(result, error)
-        if self._current is not goal_handle:
-            goal_handle.abort()  # another path took over; the robot does not stop for that
-            result.error_msg = "preempted by another path"
+            replaced = self._current is not goal_handle
+        finally:
+            if self._current is goal_handle:
+                self._stop()
+        if not goal_handle.is_active:
             return result
-        self._end(goal_handle)
-        goal_handle.canceled() if goal_handle.is_cancel_requested else goal_handle.succeed()
+        if goal_handle.is_cancel_requested:
+            goal_handle.canceled()
+        elif replaced:
+            goal_handle.abort()  # the robot does not stop for that
+            result.error_msg = "preempted by another path"
+        else:
+            goal_handle.succeed()
         return result
 
-    def _task(self, request: Any, previous: Any) -> FollowPath:
-        """Return the task of a goal; it goes on where a running one with the same plugins is."""
-        chosen = (request.controller_id, request.goal_checker_id, request.progress_checker_id)
+    def _goes_on(self, goal_handle: Any) -> bool:
+        """Return whether a goal is neither cancelled nor aborted nor replaced."""
+        return self._current is goal_handle and not goal_handle.is_cancel_requested
+
+    def _take_up(self, request: Any) -> _Pursuit:
+        """Return the pursuit of a path; it goes on where a running one by the same plugins is."""
         path = path_array(request.path)
-        if previous is not None and self._chosen == chosen:
-            self._following.replan(path, new_goal=self._is_new_goal(path))
+        plugins = (request.controller_id, request.goal_checker_id, request.progress_checker_id)
+        running = self._pursuit
+        if running is not None and running.plugins == plugins:
+            task = running.task
+            task.replan(path, new_goal=not np.allclose(path[-1:], running.goal, atol=1e-3))
         else:
-            self._following = FollowPath(
-                self._named("controller_plugins", chosen[0]),
-                self._named("goal_checker_plugins", chosen[1]),
-                self._named("progress_checker_plugins", chosen[2]),
+            task = FollowPath(
+                self._named("controller_plugins", plugins[0]),
+                self._named("goal_checker_plugins", plugins[1]),
+                self._named("progress_checker_plugins", plugins[2]),
                 self._tolerance,
             )
-            self._following.start(path)
-        self._chosen = chosen
-        self._plan_frame = request.path.header.frame_id or self._costmap.global_frame
-        self._goal = path[-1]
-        return self._following
-
-    _chosen: tuple[str, str, str] | None = None
-    _following: FollowPath
-
-    def _is_new_goal(self, path: Any) -> bool:
-        return not np.allclose(path[-1], self._goal, atol=1e-3)
+            task.start(path)
+        return _Pursuit(task, plugins, request.path.header.frame_id or self._costmap.global_frame, path[-1])
 
     def _named(self, group: str, name: str) -> Any:
         plugins = self._plugins[group]
@@ -149,34 +143,33 @@ class ControllerServer(LifecycleNode):
             raise UnknownController(f"there is no '{name}' among {group}: {', '.join(plugins)}")
         return found
 
-    async def _drive(self, task: FollowPath, goal_handle: Any) -> bool:
-        """Make one cycle; False when the goal is reached, cancelled or replaced."""
-        if goal_handle.is_cancel_requested or self._current is not goal_handle:
-            return False
+    def _drive(self, goal_handle: Any) -> bool:
+        """Make one cycle; False when the goal is reached."""
+        assert self._pursuit is not None
         pose = self._costmap.robot_pose()
         if pose is None:
             raise TransformFailed("the robot's pose in the local costmap is not known")
         with self._costmap.lock:
             layered = self._costmap.layered
             assert layered is not None
-            step = task.step(
+            step = self._pursuit.task.step(
                 pose,
                 self._velocity,
                 layered.costmap,
                 self.get_clock().now().nanoseconds * 1e-9,
-                plan_frame=self._plan_frame_pose(),
+                plan_frame=self._pose_of_frame(self._pursuit.frame),
                 circumscribed_cost=layered.circumscribed_cost(self._costmap.footprint),
             )
         self._publish_velocity(step.velocity)
         self._tell(goal_handle, step)
         return not step.done
 
-    def _plan_frame_pose(self) -> Any:
-        """Return the pose of the path's frame in the costmap's."""
-        if self._plan_frame == self._costmap.global_frame:
+    def _pose_of_frame(self, frame: str) -> Any:
+        """Return the pose of a frame in the costmap's."""
+        if frame == self._costmap.global_frame:
             return np.zeros(3)
         try:
-            found = self._costmap.buffer.lookup_transform(self._costmap.global_frame, self._plan_frame, Time())
+            found = self._costmap.buffer.lookup_transform(self._costmap.global_frame, frame, Time())
         except TransformException as error:
             raise TransformFailed(str(error)) from None
         return pose2_of_transform(found.transform)
@@ -192,10 +185,10 @@ class ControllerServer(LifecycleNode):
             stamp = self.get_clock().now().to_msg()
             self._local_plan.publish(path_message(step.path, self._costmap.global_frame, stamp))
 
-    def _end(self, goal_handle: Any) -> None:
-        if self._current is goal_handle:
-            self._current = None
-            self._publish_velocity(np.zeros(3))
+    def _stop(self) -> None:
+        """Follow no path, and stop the robot."""
+        self._current = self._pursuit = None
+        self._publish_velocity(np.zeros(3))
 
     def _publish_velocity(self, velocity: Any) -> None:
         frame = self._costmap.base_frame if self._stamped else None
@@ -204,9 +197,8 @@ class ControllerServer(LifecycleNode):
     def destroy_node(self) -> None:
         """Stand, and leave the graph with the costmap."""
         if self._current is not None:
-            self._publish_velocity(np.zeros(3))
-        self._costmap_thread.stop()
-        self._costmap.destroy_node()
+            self._stop()
+        self._contained.destroy()
         super().destroy_node()
 
 

@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 import threading
-import time
 from dataclasses import fields
 from typing import Any
 
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
-from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
+from rclpy.lifecycle import LifecycleState, TransitionCallbackReturn
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, qos_profile_sensor_data
 from rclpy.time import Time
 from tf2_ros import TransformException, TransformListener
 
 from daidalos.mapping.grid import OccupancyGrid
-from daidalos.navigation.costmap.costmap import Costmap
+from daidalos.navigation.costmap.costmap import Costmap, CostmapError
 from daidalos.navigation.costmap.footprint import Footprint
 from daidalos.navigation.costmap.layered_costmap import CostmapParameters, LayeredCostmap
 from daidalos.navigation.costmap.layers.inflation_layer import InflationLayer
@@ -38,7 +37,8 @@ from daidalos.nodes.conversions import (
     scan_data,
     seconds,
 )
-from daidalos.nodes.cycles import Cycle
+from daidalos.nodes.cycles import wait_until
+from daidalos.nodes.managed import ManagedNode
 from daidalos.nodes.nav2_costmap_2d._costmap_messages import costmap_message, footprint_message
 from daidalos.nodes.parameters import declare_dataclass, declare_plugin
 from daidalos.nodes.transforms import PatientBuffer
@@ -58,7 +58,7 @@ class CostmapTimedOut(TransformFailed):
     """Sensors, maps and transforms were waited for in vain."""
 
 
-class CostmapNode(LifecycleNode):
+class CostmapNode(ManagedNode):
     """Keeps a costmap up to date and publishes it; Nav2's `Costmap2DROS`.
 
     Parameters of the node are Nav2's. They are taken from the process's arguments, such as a parameter file for
@@ -108,7 +108,6 @@ class CostmapNode(LifecycleNode):
         self._sensor_poses: dict[str, Any] = {}
         self._compiled = warm_up_in_background("daidalos.navigation", self.get_logger())
         self._timers: list[Any] = []
-        self._entities: list[Any] = []
 
     def _read_footprint(self) -> Footprint:
         return Footprint.from_parameters(
@@ -119,7 +118,7 @@ class CostmapNode(LifecycleNode):
 
     # Transitions.
 
-    def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
+    def configure(self) -> None:
         """Make the layers, the subscriptions that they need and the publishers."""
         from geometry_msgs.msg import PolygonStamped
         from nav2_msgs.msg import Costmap as CostmapMessage
@@ -132,7 +131,6 @@ class CostmapNode(LifecycleNode):
         self._raw_publisher = self.create_publisher(CostmapMessage, "costmap_raw", _LATCHED)
         self._footprint_publisher = self.create_publisher(PolygonStamped, "published_footprint", 1)
         self._create_services(name)
-        return super().on_configure(state)
 
     def _create_services(self, name: str) -> None:
         from nav2_msgs.srv import (
@@ -166,6 +164,12 @@ class CostmapNode(LifecycleNode):
         self._timers = []
         return super().on_deactivate(state)
 
+    def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Forget the costs."""
+        with self.lock:
+            self.layered, self._updates = None, 0
+        return super().on_cleanup(state)
+
     # Layers.
 
     def _make_layer(self, name: str) -> Layer:
@@ -195,7 +199,7 @@ class CostmapNode(LifecycleNode):
             with self.lock:
                 layer.set_map(grid)
 
-        self._entities.append(self.create_subscription(GridMessage, topic, take, _LATCHED))
+        self.create_subscription(GridMessage, topic, take, _LATCHED)
         return layer
 
     def _make_obstacle_layer(self, name: str, kind: type[ObstacleLayer]) -> ObstacleLayer:
@@ -219,7 +223,7 @@ class CostmapNode(LifecycleNode):
         topic = self.declare_parameter(f"{name}.{source}.topic", source).value
         kind = self.declare_parameter(f"{name}.{source}.data_type", "LaserScan").value
         if kind != "LaserScan":
-            raise ValueError(f"the data_type '{kind}' of {name}.{source} is not supported; expected LaserScan")
+            raise CostmapError(f"the data_type '{kind}' of {name}.{source} is not supported; expected LaserScan")
         if not topic.startswith("/"):
             topic = f"/{topic}"
 
@@ -238,9 +242,7 @@ class CostmapNode(LifecycleNode):
 
         # A scan waits for its transform; updates and services do not wait with it.
         group = MutuallyExclusiveCallbackGroup()
-        self._entities.append(
-            self.create_subscription(LaserScan, topic, take, qos_profile_sensor_data, callback_group=group)
-        )
+        self.create_subscription(LaserScan, topic, take, qos_profile_sensor_data, callback_group=group)
 
     async def _sensor_pose(self, frame: str) -> Any:
         if frame not in self._sensor_poses:
@@ -275,13 +277,9 @@ class CostmapNode(LifecycleNode):
             It took longer.
         """
         await self._compiled
-        begun = time.monotonic()
         limit_s = limit_s if self._updates else max(limit_s, _FIRST_UPDATE_S)
-        with Cycle(node, _ASKING_HZ) as cycle:
-            while not self._is_current():
-                if time.monotonic() - begun > limit_s:
-                    raise CostmapTimedOut(f"the {self.get_name()} is not known yet: {self._what_is_missing()}")
-                await cycle.next()
+        if not await wait_until(self._is_current, node, _ASKING_HZ, limit_s):
+            raise CostmapTimedOut(f"the {self.get_name()} is not known yet: {self._what_is_missing()}")
 
     def _is_current(self) -> bool:
         return self._updates > 0 and self._has_maps()

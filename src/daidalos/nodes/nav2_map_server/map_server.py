@@ -6,19 +6,20 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
+from rclpy.lifecycle import LifecycleState, TransitionCallbackReturn
 from rclpy.qos import DurabilityPolicy, QoSProfile
 
 from daidalos.mapping.errors import MapFileError
 from daidalos.mapping.map_file import load_map
 from daidalos.nodes.conversions import grid_message, pose_message
+from daidalos.nodes.managed import ManagedNode
 from daidalos.nodes.packages import package_share
 from daidalos.nodes.runner import run
 
 _LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
-class MapServer(LifecycleNode):
+class MapServer(ManagedNode):
     """Publishes a map, latched, and serves ``~/map`` and ``~/load_map``.
 
     Parameters of the node are Nav2's: ``yaml_filename``, ``topic_name``, ``frame_id``; with ``autostart_node`` it
@@ -30,7 +31,6 @@ class MapServer(LifecycleNode):
         self.declare_parameter("yaml_filename", "")
         self.declare_parameter("topic_name", "map")
         self.declare_parameter("frame_id", "map")
-        self._active = False
         self._map: Any = None
         if self.declare_parameter("autostart_node", False).value:
             self._start_timer = self.create_timer(0.0, self._autostart)
@@ -40,46 +40,24 @@ class MapServer(LifecycleNode):
         if self.trigger_configure() == TransitionCallbackReturn.SUCCESS:
             self.trigger_activate()
 
-    def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
+    def configure(self) -> None:
         """Read the map and serve."""
         from nav2_msgs.srv import LoadMap
         from nav_msgs.msg import OccupancyGrid
         from nav_msgs.srv import GetMap
 
         file = self.get_parameter("yaml_filename").value
-        if file:
-            try:
-                self._map = self._load(file)
-            except MapFileError as error:
-                self.get_logger().error(f"Failed to load map yaml file: {error}")
-                return TransitionCallbackReturn.FAILURE
-        else:
+        self._map = self._load(file) if file else None
+        if not file:
             self.get_logger().info("yaml_filename parameter is empty, set map through '~/load_map' service")
         self._publisher = self.create_publisher(OccupancyGrid, self.get_parameter("topic_name").value, _LATCHED)
-        self._services = [
-            self.create_service(GetMap, "~/map", self._on_get_map),
-            self.create_service(LoadMap, "~/load_map", self._on_load_map),
-        ]
-        return super().on_configure(state)
+        self.create_service(GetMap, "~/map", self._on_get_map)
+        self.create_service(LoadMap, "~/load_map", self._on_load_map)
 
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Publish the map."""
-        self._active = True
         self._publish()
         return super().on_activate(state)
-
-    def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Answer nobody any more."""
-        self._active = False
-        return super().on_deactivate(state)
-
-    def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Forget the map."""
-        self.destroy_publisher(self._publisher)
-        for service in self._services:
-            self.destroy_service(service)
-        self._map = None
-        return super().on_cleanup(state)
 
     def _load(self, url: str) -> Any:
         """Return the message of a map file.
@@ -103,14 +81,14 @@ class MapServer(LifecycleNode):
             self._publisher.publish(self._map)
 
     def _on_get_map(self, request: Any, response: Any) -> Any:
-        if not self._active:
+        if not self.is_active:
             self.get_logger().warning("Received GetMap request but not in ACTIVE state, ignoring!")
         elif self._map is not None:
             response.map = self._map
         return response
 
     def _on_load_map(self, request: Any, response: Any) -> Any:
-        if not self._active:
+        if not self.is_active:
             self.get_logger().warning("Received LoadMap request but not in ACTIVE state, ignoring!")
             response.result = response.RESULT_UNDEFINED_FAILURE
             return response

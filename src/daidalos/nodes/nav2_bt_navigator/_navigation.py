@@ -1,0 +1,81 @@
+"""A navigation: one run of a behaviour tree, and the goals that it has one after the other."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from py_trees.common import Status
+from rclpy.task import Future
+from rclpy.time import Time
+
+from daidalos.navigation.trees.action.action_node import RECOVERIES
+from daidalos.navigation.trees.behavior_tree import BehaviorTree
+from daidalos.navigation.trees.blackboard import Blackboard
+
+
+class Navigation:
+    """A behaviour tree that runs until it has ended for the latest of its goals.
+
+    It begins with a goal, `replace_goal` gives it another any number of times, and `end` ends it once.
+
+    Parameters
+    ----------
+    goal_handle
+        Handle of the first goal of ``navigate_to_pose``.
+    tree
+        Ticked for it; its blackboard gets the entry ``goal``.
+    begun
+        Time of the start.
+
+    Attributes
+    ----------
+    goal_handle
+        Handle of the latest goal.
+    ended : Future
+        Done when the navigation is; the result is that of the latest goal.
+    """
+
+    def __init__(self, goal_handle: Any, tree: BehaviorTree, begun: Time) -> None:
+        self.goal_handle = goal_handle
+        self.begun = begun
+        self.ended = Future()
+        self._tree = tree
+        self.blackboard.set("goal", goal_handle.request.pose)
+
+    @property
+    def blackboard(self) -> Blackboard:
+        """The blackboard of the tree."""
+        return self._tree.blackboard
+
+    def tick(self) -> Status:
+        """Tick the tree; return its status, INVALID once the goal was cancelled or aborted and the tree halted."""
+        if self.goal_handle.is_active and not self.goal_handle.is_cancel_requested:
+            return self._tree.tick()
+        self._tree.halt()
+        return Status.INVALID
+
+    def replace_goal(self, goal_handle: Any, result: Any) -> None:
+        """Let the tree go on with another goal.
+
+        Parameters
+        ----------
+        goal_handle
+            Handle of the goal from now on.
+        result
+            With which the previous goal is aborted.
+        """
+        previous, self.goal_handle = self.goal_handle, goal_handle
+        self.blackboard.set("goal", goal_handle.request.pose)
+        self.blackboard.set(RECOVERIES, 0)
+        if previous.is_active:
+            previous.abort(result)
+
+    def end(self, status: Status, result: Any) -> None:
+        """End the latest goal as the tree has ended; see `tick`."""
+        if status == Status.SUCCESS:
+            self.goal_handle.succeed()
+        elif status == Status.FAILURE:
+            self.goal_handle.abort()
+        elif self.goal_handle.is_active:
+            self.goal_handle.canceled()
+        self.ended.set_result(result)
