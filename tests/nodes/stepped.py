@@ -25,6 +25,7 @@ from rclpy.task import Future
 from rosgraph_msgs.msg import Clock
 from tf2_msgs.msg import TFMessage
 
+from daidalos.common.kernels import warm_up
 from daidalos.nodes.conversions import time_message, transform_stamped
 
 TIMEOUT_S = 100.0
@@ -182,6 +183,12 @@ class Stage:
     def publish(self, topic: str, message: Any, qos: Any = 10) -> None:
         """Publish one message."""
         self.node.create_publisher(type(message), topic, qos).publish(message)
+
+
+@pytest.fixture(scope="session")
+def compiled() -> None:
+    """Compile the kernels of navigation, so that no test waits for them; the first time on a machine takes minutes."""
+    warm_up("daidalos.navigation")
 
 
 @pytest.fixture

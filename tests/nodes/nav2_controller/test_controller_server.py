@@ -20,6 +20,8 @@ from daidalos.nodes.conversions import path_message
 from daidalos.nodes.nav2_controller.controller_server import ControllerServer
 from nodes.stepped import LATCHED, Stage
 
+pytestmark = [pytest.mark.usefixtures("compiled"), pytest.mark.timeout(300)]
+
 COSTMAP = "/local_costmap/local_costmap"
 PARAMETERS: dict[str, Any] = {
     "/controller_server": {

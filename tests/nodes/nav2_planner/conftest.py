@@ -1,5 +1,5 @@
 """The stage that these tests use."""
 
-from nodes.stepped import stage
+from nodes.stepped import compiled, stage
 
-__all__ = ["stage"]
+__all__ = ["compiled", "stage"]

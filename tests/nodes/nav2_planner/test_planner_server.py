@@ -19,6 +19,8 @@ from daidalos.nodes.conversions import grid_message, path_array, pose_stamped, t
 from daidalos.nodes.nav2_planner.planner_server import PlannerServer
 from nodes.stepped import LATCHED, Stage
 
+pytestmark = [pytest.mark.usefixtures("compiled"), pytest.mark.timeout(300)]
+
 Result = ComputePathToPose.Result
 COSTMAP = "/global_costmap/global_costmap"
 PARAMETERS: dict[str, Any] = {
