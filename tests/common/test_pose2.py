@@ -48,3 +48,16 @@ def test_interpolation_takes_the_shorter_arc() -> None:
     middle = pose2.interpolate([0.0, 0.0, 3.0], [2.0, 0.0, -3.0], 0.5)
     assert middle[:2] == pytest.approx([1.0, 0.0])
     assert abs(middle[2]) == pytest.approx(np.pi)
+
+
+@pytest.mark.parametrize("pieces", [1, 7, 1000])
+def test_arcs_close_whatever_the_step(pieces: int) -> None:
+    """A quarter of a circle of radius 2: the chord is exact, not a polygon."""
+    pose = np.array((1.0, 0.0, np.pi / 2))
+    for _ in range(pieces):
+        pose = pose2.move_along_arc(pose, 2 * np.pi / 2 / pieces, np.pi / 2 / pieces)
+    assert pose == pytest.approx((-1, 2, np.pi))
+
+
+def test_an_arc_without_a_turn_is_straight() -> None:
+    assert pose2.move_along_arc((0, 0, np.pi / 2), 3, 0, 1) == pytest.approx((-1, 3, np.pi / 2))

@@ -8,9 +8,14 @@ from daidalos.common.pose3 import (
     Pose,
     quaternion_between,
     quaternion_from_matrix,
+    quaternion_from_rotation_vector,
     quaternion_from_rpy,
+    quaternion_from_yaw,
     rotate,
     rotation_matrix,
+    rotation_vector,
+    slerp,
+    yaw_from_quaternion,
 )
 
 angle = st.floats(-3.1, 3.1)
@@ -55,3 +60,26 @@ def test_half_turns_convert_from_matrices(axis):
 @pytest.mark.parametrize("end", [(1, 0, 0), (-1, 0, 0), (0, 0, -1), (0.6, 0.8, 0.0)])
 def test_rotation_between_vectors(end):
     np.testing.assert_allclose(rotate(quaternion_between((1.0, 0, 0), end), (1.0, 0, 0)), end, atol=1e-9)
+
+
+@given(st.tuples(*[st.floats(-1.7, 1.7)] * 3))
+def test_rotation_vectors_are_scipys(vector):
+    quaternion = quaternion_from_rotation_vector(vector)
+    np.testing.assert_allclose(rotation_matrix(quaternion), Rotation.from_rotvec(vector).as_matrix(), atol=1e-12)
+    np.testing.assert_allclose(rotation_vector(quaternion), vector, atol=1e-12)
+    np.testing.assert_allclose(rotation_vector(tuple(-part for part in quaternion)), vector, atol=1e-12)
+
+
+@given(angle)
+def test_yaw_is_that_of_rpy(yaw):
+    assert quaternion_from_yaw(yaw) == quaternion_from_rpy(0.0, 0.0, yaw)
+    assert yaw_from_quaternion(quaternion_from_yaw(yaw)) == pytest.approx(yaw)
+
+
+@given(poses, poses, st.floats(0.0, 1.0))
+def test_slerp_turns_evenly_along_the_shorter_arc(start, end, share):
+    a, b = Rotation.from_quat(start.orientation), Rotation.from_quat(end.orientation)
+    expected = a * Rotation.from_rotvec(share * (a.inv() * b).as_rotvec())
+    actual = Rotation.from_quat(slerp(start.orientation, end.orientation, share))
+    half_turn = np.linalg.norm((a.inv() * b).as_rotvec()) > np.pi - 1e-6  # both ways round are as short
+    assert half_turn or (actual.inv() * expected).magnitude() < 1e-7

@@ -1,12 +1,15 @@
-"""A rigid pose as two small tuples, for descriptions; arrays of poses live in `kinematics`."""
+"""Poses in space: position and unit quaternion (x, y, z, w) as small tuples, which are fast for one pose at a time."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-import numpy as np
-from numpy.typing import NDArray
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
 
 Vector = tuple[float, float, float]
 Quaternion = tuple[float, float, float, float]
@@ -21,7 +24,7 @@ class Pose:
     position : tuple of 3 floats
         Origin of the frame [m].
     orientation : tuple of 4 floats
-        Unit quaternion x, y, z, w that turns vectors of the frame into the other one.
+        Unit quaternion x, y, z, w that rotates vectors of the frame into the other one.
     """
 
     position: Vector = (0.0, 0.0, 0.0)
@@ -53,6 +56,8 @@ class Pose:
     @property
     def matrix(self) -> NDArray[np.float64]:
         """The homogeneous (4, 4) matrix."""
+        import numpy as np
+
         matrix = np.eye(4)
         matrix[:3, :3] = rotation_matrix(self.orientation)
         matrix[:3, 3] = self.position
@@ -69,8 +74,7 @@ class Pose:
     @property
     def yaw(self) -> float:
         """Heading about the parent's z axis [rad]."""
-        x, y, z, w = self.orientation
-        return math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
+        return yaw_from_quaternion(self.orientation)
 
     def transform(self, point: tuple[float, ...]) -> Vector:
         """Return a point of this frame in the parent."""
@@ -91,6 +95,35 @@ def quaternion_from_rpy(roll: float, pitch: float, yaw: float) -> Quaternion:
     )
 
 
+def quaternion_from_yaw(yaw: float) -> Quaternion:
+    """Return the quaternion x, y, z, w of a rotation about z [rad]."""
+    return 0.0, 0.0, math.sin(yaw / 2), math.cos(yaw / 2)
+
+
+def yaw_from_quaternion(quaternion: Quaternion) -> float:
+    """Return the heading about z [rad] of a unit quaternion x, y, z, w."""
+    x, y, z, w = quaternion
+    return math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
+
+
+def quaternion_from_rotation_vector(vector: Sequence[float]) -> Quaternion:
+    """Return the quaternion x, y, z, w of a rotation about a vector by its length [rad]."""
+    x, y, z = vector
+    angle = math.sqrt(x * x + y * y + z * z)
+    scale = math.sin(angle / 2) / angle if angle > 0.0 else 0.5
+    return scale * x, scale * y, scale * z, math.cos(angle / 2)
+
+
+def rotation_vector(quaternion: Quaternion) -> Vector:
+    """Return axis times angle [rad] of a unit quaternion x, y, z, w; the angle is at most pi."""
+    x, y, z, w = quaternion
+    length = math.sqrt(x * x + y * y + z * z)
+    if length == 0.0:
+        return 0.0, 0.0, 0.0
+    scale = (2.0 if w >= 0.0 else -2.0) * math.atan2(length, abs(w)) / length
+    return x * scale, y * scale, z * scale
+
+
 def quaternion_from_matrix(rotation: NDArray[np.float64]) -> Quaternion:
     """Return the quaternion x, y, z, w of a (3, 3) rotation matrix (Shepperd's method)."""
     (a, b, c), (d, e, f), (g, h, i) = ((float(v) for v in row) for row in rotation)
@@ -107,7 +140,7 @@ def quaternion_from_matrix(rotation: NDArray[np.float64]) -> Quaternion:
 
 
 def quaternion_between(start: tuple[float, ...], end: tuple[float, ...]) -> Quaternion:
-    """Return the shortest rotation x, y, z, w that turns the unit vector `start` into `end`."""
+    """Return the quaternion x, y, z, w of the shortest rotation that takes the unit vector `start` to `end`."""
     dot = sum(s * e for s, e in zip(start, end, strict=True))
     if dot < -1 + 1e-12:
         axis = (1.0, 0.0, 0.0) if abs(start[0]) < 0.9 else (0.0, 1.0, 0.0)
@@ -125,7 +158,7 @@ def normalize(quaternion: Quaternion) -> Quaternion:
 
 
 def multiply(left: Quaternion, right: Quaternion) -> Quaternion:
-    """Return the quaternion that turns by `right` first and by `left` after."""
+    """Return the quaternion of the rotation `right` followed by `left`."""
     ax, ay, az, aw = left
     bx, by, bz, bw = right
     return (
@@ -136,8 +169,8 @@ def multiply(left: Quaternion, right: Quaternion) -> Quaternion:
     )
 
 
-def rotate(quaternion: Quaternion, vector: tuple[float, ...]) -> Vector:
-    """Return `vector` turned by a unit quaternion x, y, z, w."""
+def rotate(quaternion: Quaternion, vector: Sequence[float]) -> Vector:
+    """Return a vector of 3 numbers rotated by a unit quaternion x, y, z, w."""
     x, y, z, w = quaternion
     vx, vy, vz = vector
     tx, ty, tz = 2 * (y * vz - z * vy), 2 * (z * vx - x * vz), 2 * (x * vy - y * vx)
@@ -150,24 +183,31 @@ def rotate(quaternion: Quaternion, vector: tuple[float, ...]) -> Vector:
 
 def rotation_matrix(quaternion: Quaternion) -> NDArray[np.float64]:
     """Return the (3, 3) matrix of a unit quaternion x, y, z, w."""
+    import numpy as np
+
     columns = [rotate(quaternion, axis) for axis in ((1.0, 0, 0), (0, 1.0, 0), (0, 0, 1.0))]
     return np.array(columns, dtype=np.float64).T
 
 
 def interpolate(start: Pose, end: Pose, share: float) -> Pose:
-    """Return the pose a share of the way from one to another: straight, and turning evenly (slerp)."""
+    """Return the pose a share of the way from one to another: on the straight line, turning evenly."""
     x, y, z = (s + share * (e - s) for s, e in zip(start.position, end.position, strict=True))
-    a, b = start.orientation, end.orientation
-    dot = sum(p * q for p, q in zip(a, b, strict=True))
-    sign = -1.0 if dot < 0 else 1.0  # the shorter of the two ways round
-    angle = math.acos(min(1.0, abs(dot)))
-    if angle < 1e-6:
-        first, second = 1 - share, sign * share
-    else:
-        first = math.sin((1 - share) * angle) / math.sin(angle)
-        second = sign * math.sin(share * angle) / math.sin(angle)
-    qx, qy, qz, qw = (first * p + second * q for p, q in zip(a, b, strict=True))
-    return Pose((x, y, z), normalize((qx, qy, qz, qw)))
+    return Pose((x, y, z), normalize(slerp(start.orientation, end.orientation, share)))
+
+
+def slerp(start: Quaternion, end: Quaternion, share: float) -> Quaternion:
+    """Return the quaternion a share of the way along the shorter arc from one unit quaternion to another."""
+    a, b, c, d = start
+    e, f, g, h = end
+    if a * e + b * f + c * g + d * h < 0.0:
+        e, f, g, h = -e, -f, -g, -h
+    i, j, k, m = e - a, f - b, g - c, h - d
+    rest = 1.0 - share
+    # The chord gives the half angle exactly where the arc is short; the dot product's arc cosine does not.
+    angle = 2.0 * math.asin(min(0.5 * math.sqrt(i * i + j * j + k * k + m * m), 1.0))
+    whole = math.sin(angle)
+    u, v = (math.sin(rest * angle) / whole, math.sin(share * angle) / whole) if whole > 1e-12 else (rest, share)
+    return u * a + v * e, u * b + v * f, u * c + v * g, u * d + v * h
 
 
 def _cross(a: tuple[float, ...], b: tuple[float, ...]) -> Vector:

@@ -5,12 +5,12 @@ Hogan, *Impedance Control: An Approach to Manipulation*, Journal of Dynamic Syst
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.common.pose3 import quaternion_from_matrix, rotation_vector
 from daidalos.control.chain import Chain
 
 Array = NDArray[np.float64]
@@ -105,7 +105,7 @@ def advance(
     """
     wanted, turned = chain.pose(reference)
     position, rotation = chain.pose(reference + state.joints)
-    offset = np.concatenate((position - wanted, _rotation_vector(rotation @ turned.T)))
+    offset = np.concatenate((position - wanted, rotation_vector(quaternion_from_matrix(rotation @ turned.T))))
     jacobian = chain.jacobian(reference + state.joints)
     velocity = jacobian @ state.joint_velocities
 
@@ -147,13 +147,3 @@ def without_weight(wrench: Array, rotation: Array, weight: float, centre: Array,
     turned = np.concatenate((rotation @ wrench[:3], rotation @ wrench[3:]))
     pull = weight * down
     return turned - np.concatenate((pull, np.cross(centre, pull)))
-
-
-def _rotation_vector(rotation: Array) -> Array:
-    """Return the rotation vector [rad] of a rotation matrix."""
-    twice = np.array(
-        (rotation[2, 1] - rotation[1, 2], rotation[0, 2] - rotation[2, 0], rotation[1, 0] - rotation[0, 1])
-    )
-    sine, cosine = float(np.linalg.norm(twice)) / 2, (float(np.trace(rotation)) - 1.0) / 2
-    angle = math.atan2(sine, cosine)
-    return twice / 2 if sine < 1e-9 else twice * (angle / (2 * sine))

@@ -8,7 +8,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from daidalos.simulation.odometry import PlanarPose, transform_of, yaw_quaternion
+from daidalos.common.pose2 import move_along_arc
+from daidalos.common.pose3 import quaternion_from_yaw
+from daidalos.simulation.odometry import transform_of
 from daidalos.simulation.samples import OdometrySample, TransformSample
 
 Array = NDArray[np.float64]
@@ -27,7 +29,8 @@ class BaseOdometry:
 
     Attributes
     ----------
-    pose : PlanarPose
+    pose : array (3,)
+        x, y [m] and yaw [rad] in the odometry frame.
     """
 
     def __init__(
@@ -46,7 +49,7 @@ class BaseOdometry:
 
     def reset(self) -> None:
         """Be at the origin, at rest."""
-        self.pose = PlanarPose()
+        self.pose: Array = np.zeros(3)
         self._velocities: deque[tuple[float, float, float]] = deque(maxlen=self._window)
 
     def move(self, forward: float, turn: float, period: float, sideways: float = 0.0) -> None:
@@ -59,7 +62,7 @@ class BaseOdometry:
         period : float
             How long it took [s].
         """
-        self.pose = self.pose.moved(forward, turn, sideways)
+        self.pose = move_along_arc(self.pose, forward, turn, sideways)
         if period > 0.0:
             self._velocities.append((forward / period, sideways / period, turn / period))
 
@@ -80,8 +83,8 @@ class BaseOdometry:
             topic=topic,
             frame_id=self.odom_frame,
             child_frame_id=self.base_frame,
-            position=np.array((self.pose.x, self.pose.y, 0.0)),
-            orientation=yaw_quaternion(self.pose.yaw),
+            position=np.array((self.pose[0], self.pose[1], 0.0)),
+            orientation=np.array(quaternion_from_yaw(self.pose[2])),
             linear=np.array((ahead, sideways, 0.0)),
             angular=np.array((0.0, 0.0, turn)),
             pose_covariance=self._pose_covariance,

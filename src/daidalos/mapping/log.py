@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from daidalos.bags.errors import BagError
 from daidalos.bags.reader import BagReader
 from daidalos.common import pose2
+from daidalos.common.pose3 import yaw_from_quaternion
 from daidalos.interfaces.codec import CdrError, Codec, codec_of
 from daidalos.mapping.errors import LogError
 from daidalos.mapping.evaluation import poses_at
@@ -215,4 +216,4 @@ def _planar_transform(transform: Any) -> tuple[float, float, float]:
 
 
 def _yaw(q: Any) -> float:
-    return float(np.arctan2(2.0 * (q.w * q.z + q.x * q.y), 1.0 - 2.0 * (q.y * q.y + q.z * q.z)))
+    return yaw_from_quaternion((q.x, q.y, q.z, q.w))

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+from daidalos.common.pose3 import quaternion_from_yaw, yaw_from_quaternion
 
 if TYPE_CHECKING:
     from daidalos.mapping.scan import LaserScanData
@@ -52,15 +53,15 @@ def twist_message(velocity: Any, frame: str | None, stamp: Any) -> Any:
 
 def yaw_of(quaternion: Any) -> float:
     """Return the heading of a ``geometry_msgs/msg/Quaternion`` [rad]."""
-    q = quaternion
-    return math.atan2(2.0 * (q.w * q.z + q.x * q.y), 1.0 - 2.0 * (q.y * q.y + q.z * q.z))
+    return yaw_from_quaternion((quaternion.x, quaternion.y, quaternion.z, quaternion.w))
 
 
 def quaternion_message(yaw: float) -> Any:
     """Return a heading [rad] as a ``geometry_msgs/msg/Quaternion``."""
     from geometry_msgs.msg import Quaternion
 
-    return Quaternion(x=0.0, y=0.0, z=math.sin(0.5 * yaw), w=math.cos(0.5 * yaw))
+    x, y, z, w = quaternion_from_yaw(yaw)
+    return Quaternion(x=x, y=y, z=z, w=w)
 
 
 def pose2_of(pose: Any) -> Array:

@@ -1,44 +1,18 @@
-"""Odometry from wheels: what encoders measure, and the pose that follows from it."""
+"""Odometry from wheels: what encoders measure, and messages of the pose that follows from it."""
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.common.pose3 import quaternion_from_yaw
 from daidalos.simulation.samples import OdometrySample, TransformSample
 
 Array = NDArray[np.float64]
 
 _UNKNOWN = 1e12
-
-
-@dataclass(frozen=True)
-class PlanarPose:
-    """Position [m] and heading [rad] in the plane."""
-
-    x: float = 0.0
-    y: float = 0.0
-    yaw: float = 0.0
-
-    def moved(self, forward: float, turn: float, sideways: float = 0.0) -> PlanarPose:
-        """Return the pose after an arc.
-
-        Parameters
-        ----------
-        forward, sideways : float
-            Travel along the body's x and y axis over the arc [m].
-        turn : float
-            Change of heading over the arc [rad].
-        """
-        half = turn / 2
-        chord = math.sin(half) / half if abs(half) > 1e-9 else 1.0
-        middle = self.yaw + half
-        dx = chord * (forward * math.cos(middle) - sideways * math.sin(middle))
-        dy = chord * (forward * math.sin(middle) + sideways * math.cos(middle))
-        return PlanarPose(self.x + dx, self.y + dy, self.yaw + turn)
 
 
 @dataclass(frozen=True)
@@ -65,11 +39,6 @@ class EncoderError:
         return measured
 
 
-def yaw_quaternion(yaw: float) -> Array:
-    """Return the quaternion x, y, z, w of a turn about z."""
-    return np.array((0.0, 0.0, math.sin(yaw / 2), math.cos(yaw / 2)))
-
-
 def planar_covariance(x: float, y: float, yaw: float) -> Array:
     """Return a (36,) covariance of a pose or twist in the plane; what is out of the plane is unknown."""
     return np.diag((x, y, _UNKNOWN, _UNKNOWN, _UNKNOWN, yaw)).ravel()
@@ -79,7 +48,7 @@ def wheel_odometry(
     stamp_ns: int,
     topic: str,
     frames: tuple[str, str],
-    pose: PlanarPose,
+    pose: Array,
     velocity: tuple[float, float, float],
     covariance: tuple[float, float, float] = (1e-5, 1e-5, 1e-3),
 ) -> OdometrySample:
@@ -90,7 +59,8 @@ def wheel_odometry(
     stamp_ns, topic : int, str
     frames : tuple of 2 str
         Of the odometry and of the base.
-    pose : PlanarPose
+    pose : array (3,)
+        Of the base in the odometry frame: x, y [m] and yaw [rad].
     velocity : tuple of 3 floats
         Ahead and to the left in the base's frame [m/s], and of turning [rad/s].
     covariance : tuple of 3 floats
@@ -103,8 +73,8 @@ def wheel_odometry(
         topic=topic,
         frame_id=frames[0],
         child_frame_id=frames[1],
-        position=np.array((pose.x, pose.y, 0.0)),
-        orientation=yaw_quaternion(pose.yaw),
+        position=np.array((pose[0], pose[1], 0.0)),
+        orientation=np.array(quaternion_from_yaw(pose[2])),
         linear=np.array((ahead, left, 0.0)),
         angular=np.array((0.0, 0.0, turn)),
         pose_covariance=spread,

@@ -2,20 +2,15 @@
 
 from __future__ import annotations
 
-import math
-
 from geometry_msgs.msg import Quaternion
+
+from daidalos.common.pose3 import quaternion_from_rpy
 
 
 def euler_to_quaternion(roll: float = 0.0, pitch: float = 0.0, yaw: float = 0.0) -> Quaternion:
     """Return the rotation about x, then y, then z of the frame outside [rad]."""
-    (cr, sr), (cp, sp), (cy, sy) = ((math.cos(angle / 2), math.sin(angle / 2)) for angle in (roll, pitch, yaw))
-    return Quaternion(
-        x=sr * cp * cy - cr * sp * sy,
-        y=cr * sp * cy + sr * cp * sy,
-        z=cr * cp * sy - sr * sp * cy,
-        w=cr * cp * cy + sr * sp * sy,
-    )
+    x, y, z, w = quaternion_from_rpy(roll, pitch, yaw)
+    return Quaternion(x=x, y=y, z=z, w=w)
 
 
 def find_os_processes(name: str) -> list[tuple[int, str]]:

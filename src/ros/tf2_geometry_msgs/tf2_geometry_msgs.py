@@ -33,7 +33,9 @@ from geometry_msgs.msg import (
     WrenchStamped,
 )
 from std_msgs.msg import Header
-from tf2_py._rigid import Rigid, canonical, compose, rotate
+from tf2_py._rigid import Rigid, canonical, compose
+
+from daidalos.common.pose3 import rotate, rotation_matrix
 
 if TYPE_CHECKING:
     import numpy as np
@@ -145,7 +147,7 @@ def transform_covariance(cov_in: Sequence[float], transform: TransformStamped) -
     import numpy as np
 
     _, _, _, a, b, c, d = _motion(transform.transform)
-    rotation = np.array([rotate((a, b, c, d), *axis) for axis in ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))]).T
+    rotation = rotation_matrix((a, b, c, d))
     both = np.zeros((6, 6))
     both[:3, :3] = both[3:, 3:] = rotation
     return (both @ np.asarray(cov_in, dtype=np.float64).reshape(6, 6) @ both.T).ravel()
@@ -169,7 +171,7 @@ def _unit(q: Quaternion) -> tuple[float, float, float, float]:
 
 
 def _move(point: Any, motion: Rigid) -> tuple[float, float, float]:
-    x, y, z = rotate(motion[3:], point.x, point.y, point.z)
+    x, y, z = rotate(motion[3:], (point.x, point.y, point.z))
     return x + motion[0], y + motion[1], z + motion[2]
 
 
@@ -179,7 +181,7 @@ def _point(point: Point, motion: Rigid) -> Point:
 
 
 def _vector(vector: Vector3, motion: Rigid) -> Vector3:
-    x, y, z = rotate(motion[3:], vector.x, vector.y, vector.z)
+    x, y, z = rotate(motion[3:], (vector.x, vector.y, vector.z))
     return Vector3(x=x, y=y, z=z)
 
 

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from math import atan2, sqrt
 from typing import TYPE_CHECKING
 
-from ._rigid import compose, inverse, rotate
+from daidalos.common.pose3 import Vector, rotate, rotation_vector
+
+from ._rigid import compose, inverse
 
 if TYPE_CHECKING:
     from .buffer_core import BufferCore
-
-Vector = tuple[float, float, float]
 
 
 def velocity(
@@ -42,11 +41,11 @@ def velocity_of_point(
     _, origin = buffer._lookup(reference, tracking, middle_ns)
     _, place = buffer._lookup(reference, point_frame, middle_ns)
     moved = ((end[0] - start[0]) / seconds, (end[1] - start[1]) / seconds, (end[2] - start[2]) / seconds)
-    turned = _rotation_vector(compose(inverse(start), end)[3:])
-    turned = rotate(start[3:], *turned)
-    linear = rotate(axes[3:], *moved)
-    angular = rotate(axes[3:], turned[0] / seconds, turned[1] / seconds, turned[2] / seconds)
-    x, y, z = rotate(place[3:], *point)
+    turned = rotation_vector(compose(inverse(start), end)[3:])
+    turned = rotate(start[3:], turned)
+    linear = rotate(axes[3:], moved)
+    angular = rotate(axes[3:], (turned[0] / seconds, turned[1] / seconds, turned[2] / seconds))
+    x, y, z = rotate(place[3:], point)
     arm = (x + place[0] - origin[0], y + place[1] - origin[1], z + place[2] - origin[2])
     return (
         (
@@ -56,13 +55,3 @@ def velocity_of_point(
         ),
         angular,
     )
-
-
-def _rotation_vector(q: tuple[float, float, float, float]) -> Vector:
-    """Return axis times angle of a quaternion ``(x, y, z, w)``, the angle at most pi."""
-    x, y, z, w = q
-    length = sqrt(x * x + y * y + z * z)
-    if length == 0.0:
-        return 0.0, 0.0, 0.0
-    scale = 2.0 * atan2(length, w) / length if w >= 0.0 else -2.0 * atan2(length, -w) / length
-    return x * scale, y * scale, z * scale

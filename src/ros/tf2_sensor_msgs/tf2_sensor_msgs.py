@@ -12,7 +12,8 @@ from sensor_msgs.msg import PointCloud2
 from sensor_msgs_py.point_cloud2 import view_points
 from std_msgs.msg import Header
 from tf2_geometry_msgs.tf2_geometry_msgs import _motion
-from tf2_py._rigid import rotate
+
+from daidalos.common.pose3 import rotation_matrix
 
 
 def to_msg_msg(msg: Any) -> Any:
@@ -41,8 +42,7 @@ def transform_points(point_cloud: ArrayLike, transform: Transform | TransformSta
     if isinstance(transform, TransformStamped):
         transform = transform.transform
     motion = _motion(transform)
-    columns = [rotate(motion[3:], *axis) for axis in np.eye(3).tolist()]
-    moved: NDArray[Any] = np.asarray(point_cloud) @ np.array(columns) + np.array(motion[:3])
+    moved: NDArray[Any] = np.asarray(point_cloud) @ rotation_matrix(motion[3:]).T + np.array(motion[:3])
     return moved
 
 

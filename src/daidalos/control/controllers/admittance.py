@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from daidalos.common.pose3 import quaternion_from_matrix
 from daidalos.control.admittance import AdmittanceLaw, Yielding, advance, without_weight
 from daidalos.control.chain import Chain
 from daidalos.control.controllers.base import Controller, Subscription
@@ -265,10 +266,10 @@ class AdmittanceController(Controller):
             damping=self._law.damping,
             stiffness=self._law.stiffness,
             selected=self._law.selected,
-            control_orientation=_quaternion(rotation),
+            control_orientation=np.array(quaternion_from_matrix(rotation)),
             sensor_frame=self.p.ft_sensor.frame.id,
             sensor_position=position,
-            sensor_orientation=_quaternion(orientation),
+            sensor_orientation=np.array(quaternion_from_matrix(orientation)),
             offset=self._state.offset,
             velocity=self._state.velocity,
             acceleration=self._state.acceleration,
@@ -277,11 +278,3 @@ class AdmittanceController(Controller):
             joint_offset=self._state.joints,
             joint_velocity=self._state.joint_velocities,
         )
-
-
-def _quaternion(rotation: np.ndarray) -> np.ndarray:
-    """Return a rotation matrix as a quaternion x, y, z, w."""
-    from scipy.spatial.transform import Rotation
-
-    quaternion: np.ndarray = Rotation.from_matrix(rotation).as_quat()
-    return quaternion

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from daidalos.common.pose3 import quaternion_from_yaw
 from daidalos.control.base_odometry import BaseOdometry
 from daidalos.control.controllers.base import Controller, Service, Subscription
 from daidalos.control.errors import ParameterError
@@ -16,7 +17,6 @@ from daidalos.control.samples import Answer, Asked, VelocityCommand
 from daidalos.control.speed_limiter import SpeedLimiter, SpeedLimits
 from daidalos.control.steering import speed_share
 from daidalos.control.velocity_input import VelocityInput
-from daidalos.simulation.odometry import yaw_quaternion
 from daidalos.simulation.samples import OdometrySample, Sample, TransformSample, TwistCommand
 
 _NAN = math.nan
@@ -177,7 +177,7 @@ class TricycleController(Controller):
         self.commands.write(np.array((self._speed, self._angle)))
         odometry = self._odometry.sample(now_ns, "~/odom")
         if self.p.odom_only_twist:
-            odometry = replace(odometry, position=np.zeros(3), orientation=yaw_quaternion(0.0))
+            odometry = replace(odometry, position=np.zeros(3), orientation=np.array(quaternion_from_yaw(0.0)))
         yield odometry
         if self.p.enable_odom_tf:
             yield self._odometry.transform(now_ns)

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from daidalos.common.pose3 import quaternion_from_rotation_vector
 from daidalos.control import samples
 from daidalos.nodes.controller_manager import _gripper_messages, _trajectory_messages
 from daidalos.nodes.controller_manager._entries import ActionEntry, ServiceEntry
@@ -154,7 +155,9 @@ def _admittance(sample: samples.AdmittanceSample) -> Any:
         ref_trans_base_ft=transform(sample.sensor_position, sample.sensor_orientation),
         selected_axes=Int8MultiArray(data=sample.selected.astype(np.int8)),
         ft_sensor_frame=String(data=sample.sensor_frame),
-        admittance_position=transform(sample.offset[:3], _turned(sample.offset[3:])),
+        admittance_position=transform(
+            sample.offset[:3], np.array(quaternion_from_rotation_vector(sample.offset[3:].tolist()))
+        ),
         admittance_acceleration=twist(sample.acceleration),
         admittance_velocity=twist(sample.velocity),
         wrench_base=WrenchStamped(header=header(sample), wrench=wrench),
@@ -165,13 +168,6 @@ def _admittance(sample: samples.AdmittanceSample) -> Any:
             velocity=sample.joint_velocity,
         ),
     )
-
-
-def _turned(turn: Any) -> Any:
-    """Return a rotation vector [rad] as a quaternion."""
-    half = 0.5 * turn
-    angle = float(np.linalg.norm(half))
-    return np.append(half * np.sinc(angle / np.pi), np.cos(angle))
 
 
 def _wrench_command(message: Any) -> samples.WrenchCommand:

@@ -80,7 +80,8 @@ def motion_of(simulation: Simulation, entity: Entity, reference: str = "") -> Mo
     arm = np.array(pose.position) - np.array(base.position)
     back = base.inverse.orientation
     seen = linear - own_linear - np.cross(own_angular, arm)
-    return Motion(base.inverse @ pose, _turned(back, seen), _turned(back, angular - own_angular))
+    turning = angular - own_angular
+    return Motion(base.inverse @ pose, np.array(rotate(back, seen.tolist())), np.array(rotate(back, turning.tolist())))
 
 
 def set_motion(
@@ -101,10 +102,5 @@ def set_motion(
             goal = goal @ simulation.pose(entity.model, entity.link).inverse @ simulation.pose(entity.model)
         simulation.set_pose(entity.model, goal)
     if velocity is not None and not simulation.instance(entity.model).model.static:
-        linear, angular = (_turned(base.orientation, part) for part in velocity)
+        linear, angular = (np.array(rotate(base.orientation, part.tolist())) for part in velocity)
         simulation.set_velocity(entity.model, linear, angular)
-
-
-def _turned(orientation: tuple[float, float, float, float], vector: Array) -> Array:
-    x, y, z = (float(value) for value in vector)
-    return np.array(rotate(orientation, (x, y, z)))

@@ -9,13 +9,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.common.pose2 import move_along_arc
 from daidalos.description.geometry import Cylinder, Sphere
 from daidalos.description.link import Plugin as Description
 from daidalos.description.world import Model
 from daidalos.simulation.component import ComponentContext, Subscription
 from daidalos.simulation.conversion.model_build import ModelBuild
 from daidalos.simulation.instance import Instance
-from daidalos.simulation.odometry import PlanarPose, transform_of, wheel_odometry
+from daidalos.simulation.odometry import transform_of, wheel_odometry
 from daidalos.simulation.plugins.ackermann_settings import Settings, read_settings
 from daidalos.simulation.plugins.base import Plugin
 from daidalos.simulation.plugins.truth import link_transforms, true_odometry
@@ -38,7 +39,7 @@ class Motion:
     speed: float
     steering: float
     angles: Array
-    pose: PlanarPose
+    pose: Array
     place: Array
     distance: float = 0.0
     stamp_ns: int = -1
@@ -89,7 +90,7 @@ class AckermannDrive(Plugin):
 
     def start(self) -> Motion:
         """Stand still."""
-        return Motion(np.zeros(2), 0.0, 0.0, self._angles(), PlanarPose(), self._place())
+        return Motion(np.zeros(2), 0.0, 0.0, self._angles(), np.zeros(3), self._place())
 
     @property
     def publications(self) -> Mapping[str, type[Sample]]:
@@ -169,7 +170,7 @@ class AckermannDrive(Plugin):
         half = len(s.left)
         left, right = float(travel[:half].mean()), float(travel[half:].mean())
         forward, turn = (left + right) / 2, (right - left) / s.rear_track
-        motion.pose = motion.pose.moved(forward, turn)
+        motion.pose = move_along_arc(motion.pose, forward, turn)
         frames = s.odometry_frame, s.base_frame
         return wheel_odometry(now_ns, s.odometry_topic, frames, motion.pose, (forward / elapsed, 0.0, turn / elapsed))
 

@@ -8,12 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.common.pose2 import move_along_arc
 from daidalos.description.link import Plugin as Description
 from daidalos.simulation.component import ComponentContext, Subscription
 from daidalos.simulation.conversion.model_build import ModelBuild
 from daidalos.simulation.instance import Instance, JointView, LinkView
 from daidalos.simulation.odometry import (
-    PlanarPose,
     transform_of,
     wheel_odometry,
 )
@@ -48,7 +48,7 @@ class Motion:
         Speed of the left and right rims that the servos hold [m/s].
     angles : array (2 * pairs,)
         Wheel angles at the last update [rad].
-    pose : PlanarPose
+    pose : array (3,)
         By odometry.
     stamp_ns : int
         Of the last update.
@@ -58,7 +58,7 @@ class Motion:
     allowed: Array
     rims: Array
     angles: Array
-    pose: PlanarPose
+    pose: Array
     stamp_ns: int
 
 
@@ -106,7 +106,7 @@ class DiffDrive(Plugin):
             allowed=np.zeros(2),
             rims=np.zeros(2),
             angles=self._angles(),
-            pose=PlanarPose(),
+            pose=np.zeros(3),
             stamp_ns=-1,
         )
 
@@ -172,7 +172,7 @@ class DiffDrive(Plugin):
         travel = settings.encoder.measure(travel, self.random)
         left, right = travel[self._sides == 0].mean(), travel[self._sides == 1].mean()
         forward, turn = float((left + right) / 2), float((right - left) / settings.separation)
-        motion.pose = motion.pose.moved(forward, turn)
+        motion.pose = move_along_arc(motion.pose, forward, turn)
         frames, velocity = (settings.odometry_frame, settings.base_frame), (forward / elapsed, 0.0, turn / elapsed)
         return wheel_odometry(now_ns, settings.odometry_topic, frames, motion.pose, velocity, settings.covariance)
 

@@ -9,11 +9,12 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.common.pose2 import move_along_arc
 from daidalos.description.link import Plugin as Description
 from daidalos.simulation.component import ComponentContext, Subscription
 from daidalos.simulation.conversion.model_build import ModelBuild
 from daidalos.simulation.instance import Instance
-from daidalos.simulation.odometry import PlanarPose, transform_of, wheel_odometry
+from daidalos.simulation.odometry import transform_of, wheel_odometry
 from daidalos.simulation.plugins.base import Plugin
 from daidalos.simulation.plugins.diff_drive import SERVO_TIME
 from daidalos.simulation.plugins.diff_drive_settings import Limits
@@ -35,7 +36,7 @@ class Motion:
     angles: Array
     command: Array = field(default_factory=lambda: np.zeros(3))
     allowed: Array = field(default_factory=lambda: np.zeros(3))
-    pose: PlanarPose = field(default_factory=PlanarPose)
+    pose: Array = field(default_factory=lambda: np.zeros(3))
     stamp_ns: int = -1
 
 
@@ -123,7 +124,7 @@ class MecanumDrive(Plugin):
         angles = self._angles()
         ahead, left, turn = (self._unmix @ (angles - motion.angles) * self.radius).tolist()
         motion.angles = angles
-        motion.pose = motion.pose.moved(ahead, turn, left)
+        motion.pose = move_along_arc(motion.pose, ahead, turn, left)
         frames = self.odometry_frame, self.base_frame
         velocity = ahead / elapsed, left / elapsed, turn / elapsed
         return wheel_odometry(now_ns, self.odometry_topic, frames, motion.pose, velocity)

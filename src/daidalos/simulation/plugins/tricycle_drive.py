@@ -9,11 +9,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.common.pose2 import move_along_arc
 from daidalos.description.link import Plugin as Description
 from daidalos.simulation.component import ComponentContext, Subscription
 from daidalos.simulation.conversion.model_build import ModelBuild
 from daidalos.simulation.instance import Instance
-from daidalos.simulation.odometry import PlanarPose, transform_of, wheel_odometry
+from daidalos.simulation.odometry import transform_of, wheel_odometry
 from daidalos.simulation.plugins.base import Plugin
 from daidalos.simulation.plugins.truth import link_transforms
 from daidalos.simulation.samples import JointStateSample, OdometrySample, Sample, TransformSample, TwistCommand
@@ -36,7 +37,7 @@ class Motion:
     speed: float
     angle: float
     turns: Array
-    pose: PlanarPose
+    pose: Array
     stamp_ns: int = -1
 
 
@@ -109,7 +110,7 @@ class TricycleDrive(Plugin):
 
     def start(self) -> Motion:
         """Stand still."""
-        return Motion(np.zeros(2), 0.0, 0.0, self._turns(), PlanarPose())
+        return Motion(np.zeros(2), 0.0, 0.0, self._turns(), np.zeros(3))
 
     def update(self, now_ns: int) -> Iterable[Sample]:
         """Count the wheels' turns, then drive and steer."""
@@ -146,7 +147,7 @@ class TricycleDrive(Plugin):
         left, right = ((turns - motion.turns) * self.encoder_radius).tolist()
         motion.turns = turns
         forward, turn = (left + right) / 2, (right - left) / self.separation
-        motion.pose = motion.pose.moved(forward, turn)
+        motion.pose = move_along_arc(motion.pose, forward, turn)
         frames = self.odometry_frame, self.base_frame
         velocity = forward / elapsed, 0.0, turn / elapsed
         return wheel_odometry(now_ns, self.odometry_topic, frames, motion.pose, velocity)

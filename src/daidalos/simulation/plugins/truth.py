@@ -6,9 +6,9 @@ from collections.abc import Iterable, Iterator
 
 import numpy as np
 
-from daidalos.common.pose3 import Pose, Quaternion, rotate
+from daidalos.common.pose3 import Pose, rotate
 from daidalos.simulation.instance import Instance, LinkView
-from daidalos.simulation.odometry import Array, planar_covariance
+from daidalos.simulation.odometry import planar_covariance
 from daidalos.simulation.samples import OdometrySample, TransformSample
 
 
@@ -35,6 +35,7 @@ def true_odometry(
     """
     pose = link.pose if start is None else start.inverse @ link.pose
     linear, angular = link.velocity()
+    back = link.pose.inverse.orientation
     spread = planar_covariance(*covariance)
     return OdometrySample(
         stamp_ns=now_ns,
@@ -43,8 +44,8 @@ def true_odometry(
         child_frame_id=child_frame_id,
         position=np.array(pose.position),
         orientation=np.array(pose.orientation),
-        linear=_turned(link.pose.inverse.orientation, linear),
-        angular=_turned(link.pose.inverse.orientation, angular),
+        linear=np.array(rotate(back, linear.tolist())),
+        angular=np.array(rotate(back, angular.tolist())),
         pose_covariance=spread,
         twist_covariance=spread,
     )
@@ -59,8 +60,3 @@ def link_transforms(
         child = instance.model.joints[joint].child
         pose = back @ instance.link(child).pose
         yield TransformSample(now_ns, topic, frame_id, child, np.array(pose.position), np.array(pose.orientation))
-
-
-def _turned(orientation: Quaternion, vector: Array) -> Array:
-    x, y, z = (float(value) for value in vector)
-    return np.array(rotate(orientation, (x, y, z)))
