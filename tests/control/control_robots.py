@@ -6,7 +6,7 @@ from typing import Any
 from daidalos.common.extensions import find
 from daidalos.control.controllers.base import Controller, ControllerContext
 from daidalos.control.extensions import CONTROLLERS, hardware_class
-from daidalos.control.interfaces import Interfaces, Loan
+from daidalos.control.interfaces import Interfaces, LoanedInterfaces
 from daidalos.control.manager import ControllerManager
 from daidalos.control.parameters import parameters_from
 from daidalos.description import urdf
@@ -51,7 +51,7 @@ def alone(
     controller = cls(parameters_from(cls.parameters, values), ControllerContext("it", 100.0, robot, **(context or {})))
     commands, states = Interfaces(controller.command_names), Interfaces(controller.state_names)
     states.values[:] = 0.0
-    controller.assign(Loan(commands.names, [commands]), Loan(states.names, [states]))
+    controller.assign(LoanedInterfaces(commands.names, [commands]), LoanedInterfaces(states.names, [states]))
     controller.activate(0)
     return controller, commands, states
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from daidalos.control.errors import ControlError, UnknownError
-from daidalos.control.interfaces import Interfaces, Loan
+from daidalos.control.interfaces import Interfaces, LoanedInterfaces
 
 
 def test_names_are_places() -> None:
@@ -28,7 +28,7 @@ def test_a_loan_is_in_the_wanted_order(names: tuple[str, ...]) -> None:
     owners = (Interfaces("abc"), Interfaces("xyz"))
     for owner in owners:
         owner.values[:] = [ord(name) for name in owner.names]
-    loan = Loan(names, owners)
+    loan = LoanedInterfaces(names, owners)
     assert loan.read() == pytest.approx([ord(name) for name in names])
     loan.write(np.arange(len(names), dtype=float))
     assert loan.read() == pytest.approx(range(len(names)))
@@ -40,4 +40,4 @@ def test_a_loan_is_in_the_wanted_order(names: tuple[str, ...]) -> None:
 
 def test_a_loan_of_nothing_that_is_there_is_refused() -> None:
     with pytest.raises(UnknownError, match="no interface 'd'"):
-        Loan(["d"], [Interfaces("abc")])
+        LoanedInterfaces(["d"], [Interfaces("abc")])

@@ -4,7 +4,7 @@ import trimesh
 
 from daidalos.common.pose3 import Pose
 from daidalos.description.geometry import Box, Capsule, Cone, Cylinder, Ellipsoid, Mesh, Plane, Polyline, Sphere
-from daidalos.description.inertia import combine, doubts, link_properties, solid_properties
+from daidalos.description.inertia import combine, implausibilities, link_properties, solid_properties
 from daidalos.description.link import Collision, Inertial, Link
 from daidalos.description.meshes import triangles_of
 
@@ -81,5 +81,5 @@ def link(mass, *moments, at=(0, 0, 0), size=(0.2, 0.2, 0.2)):
     ],
 )
 def test_doubts(doubtful, words):
-    found = doubts(doubtful)
+    found = implausibilities(doubtful)
     assert (not found) if words is None else any(words in doubt for doubt in found)

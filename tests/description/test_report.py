@@ -19,8 +19,8 @@ def test_everything_worth_knowing():
     known = report(urdf.parse(ARM))
     assert known.mass == 2
     assert [link.mass for link in known.links] == [2, None, None, None, None]
-    assert known.links[0].doubts == ("2 kg in a box of 1, 2, 3 m is 0.333 kg/m^3",)
-    assert known.links[1].doubts == ()
+    assert known.links[0].implausibilities == ("2 kg in a box of 1, 2, 3 m is 0.333 kg/m^3",)
+    assert known.links[1].implausibilities == ()
     limits = {joint.name: joint.limits for joint in known.joints}
     assert limits == {
         "shoulder": "-1 .. 2 rad, 3 rad/s, 10 N m",

@@ -8,23 +8,23 @@ from geometry_msgs.msg import TransformStamped
 from rclpy.clock import ROSClock
 from rclpy.time import Time as RclpyTime
 
-from daidalos.nodes.transforms import PatientBuffer
+from daidalos.nodes.transforms import BlockingBuffer
 
 
 @pytest.fixture
-def buffer() -> PatientBuffer:
+def buffer() -> BlockingBuffer:
     """A buffer whose clock is the test's."""
-    buffer = PatientBuffer()
+    buffer = BlockingBuffer()
     buffer.clock = ROSClock()
     buffer.clock._set_ros_time_is_active(True)
     return buffer
 
 
-def set_clock(buffer: PatientBuffer, second: float) -> None:
+def set_clock(buffer: BlockingBuffer, second: float) -> None:
     buffer.clock.set_ros_time_override(RclpyTime(nanoseconds=int(second * 1e9), clock_type=buffer.clock.clock_type))
 
 
-def hear(buffer: PatientBuffer, second: int, x: float = 0.0) -> None:
+def hear(buffer: BlockingBuffer, second: int, x: float = 0.0) -> None:
     transform = TransformStamped(child_frame_id="base")
     transform.header.frame_id = "odom"
     transform.header.stamp = Time(sec=second)
@@ -33,7 +33,7 @@ def hear(buffer: PatientBuffer, second: int, x: float = 0.0) -> None:
     buffer.set_transform(transform, "test")
 
 
-def test_it_comes_with_the_transforms_around_it(buffer: PatientBuffer) -> None:
+def test_it_comes_with_the_transforms_around_it(buffer: BlockingBuffer) -> None:
     future = buffer.transform_at("odom", "base", Time(sec=3))
     hear(buffer, 2, x=2.0)
     assert not future.done()
@@ -42,7 +42,7 @@ def test_it_comes_with_the_transforms_around_it(buffer: PatientBuffer) -> None:
     assert future.result().transform.translation.x == pytest.approx(3.0)
 
 
-def test_what_was_before_the_first_transform_never_comes(buffer: PatientBuffer) -> None:
+def test_what_was_before_the_first_transform_never_comes(buffer: BlockingBuffer) -> None:
     future = buffer.transform_at("odom", "base", Time(sec=3))
     hear(buffer, 4)
     assert future.done()
@@ -50,7 +50,7 @@ def test_what_was_before_the_first_transform_never_comes(buffer: PatientBuffer) 
     assert buffer.transform_at("odom", "base", Time(sec=3)).done()
 
 
-def test_what_was_forgotten_never_comes(buffer: PatientBuffer) -> None:
+def test_what_was_forgotten_never_comes(buffer: BlockingBuffer) -> None:
     hear(buffer, 2)
     future = buffer.transform_at("odom", "base", Time(sec=3))
     buffer.clear()
@@ -60,7 +60,7 @@ def test_what_was_forgotten_never_comes(buffer: PatientBuffer) -> None:
     assert future.done()
 
 
-def test_what_belongs_to_a_time_that_was_taken_back_never_comes(buffer: PatientBuffer) -> None:
+def test_what_belongs_to_a_time_that_was_taken_back_never_comes(buffer: BlockingBuffer) -> None:
     set_clock(buffer, 120.0)
     hear(buffer, 119)
     future = buffer.transform_at("odom", "base", Time(sec=120))

@@ -41,15 +41,15 @@ def test_no_plugin_no_wind():
     assert not simulation.velocity("b")[0].any()
 
 
-def blowing(settings):
+def wind_velocity(settings):
     simulation = Simulation(world(CALM.replace("3 4 -2", "0 10 1"), plugin(settings), windy("b")))
-    return next(c for c in simulation.instance("b").components if type(c).__name__ == "Wind").blowing
+    return next(c for c in simulation.instance("b").components if type(c).__name__ == "Wind").wind_velocity
 
 
 def test_it_rises_swings_and_turns():
     sine = "<sin><amplitude_percent>0.1</amplitude_percent><period>4</period></sin>"
     turn = "<time_for_rise>2</time_for_rise><sin><amplitude>5</amplitude><period>4</period></sin>"
-    wind = blowing(
+    wind = wind_velocity(
         f"<horizontal><magnitude><time_for_rise>1</time_for_rise>{sine}</magnitude>"
         f"<direction>{turn}</direction></horizontal>"
     )
@@ -60,7 +60,7 @@ def test_it_rises_swings_and_turns():
 
 
 def test_it_trembles():
-    wind = blowing("<vertical><noise type='gaussian'><mean>0</mean><stddev>0.5</stddev></noise></vertical>")
+    wind = wind_velocity("<vertical><noise type='gaussian'><mean>0</mean><stddev>0.5</stddev></noise></vertical>")
     climbs = np.array([wind(5) for _ in range(2000)])
     assert climbs[:, 2].mean() == pytest.approx(1, abs=0.05)
     assert climbs[:, 2].std() == pytest.approx(0.5, rel=0.06)
@@ -69,4 +69,4 @@ def test_it_trembles():
 
 def test_a_wrong_period_is_an_error_with_its_place():
     with pytest.raises(DescriptionError, match=r"<sin>: expected a period above zero, got 0"):
-        blowing("<vertical><sin><period>0</period></sin></vertical>")
+        wind_velocity("<vertical><sin><period>0</period></sin></vertical>")

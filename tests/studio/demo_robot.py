@@ -155,13 +155,13 @@ class DemoRobot:
         self.x += self.speed * math.cos(self.yaw) * STEP_S
         self.y += self.speed * math.sin(self.yaw) * STEP_S
         steps = np.linspace(0, 1, 40)
-        bend = 0.25 * np.sin(steps * math.pi)
+        distort = 0.25 * np.sin(steps * math.pi)
         self._path = [
             (
                 self.x + s * (target[0] - self.x) - b * (target[1] - self.y),
                 self.y + s * (target[1] - self.y) + b * (target[0] - self.x),
             )
-            for s, b in zip(steps, bend, strict=True)
+            for s, b in zip(steps, distort, strict=True)
         ]
 
     def _take_goal(self, payload: bytes) -> None:

@@ -29,27 +29,27 @@ REFUSED = [
 
 @pytest.mark.parametrize(("host", "origin"), WELCOME)
 def test_loopback_is_welcome(host, origin):
-    assert AccessPolicy().refusal(host, origin) is None
+    assert AccessPolicy().refusal_reason(host, origin) is None
 
 
 @pytest.mark.parametrize(("host", "origin"), REFUSED)
 def test_everyone_else_is_refused_with_a_reason(host, origin):
-    assert AccessPolicy().refusal(host, origin)
+    assert AccessPolicy().refusal_reason(host, origin)
 
 
 def test_configured_hosts_and_origins_are_welcome():
     policy = AccessPolicy(["Robot.local"], ["https://app.example/"])
-    assert policy.refusal("robot.local:8765", "http://robot.local:8765") is None
-    assert policy.refusal("localhost", "https://app.example") is None
-    assert policy.refusal("localhost", "https://other.example")
+    assert policy.refusal_reason("robot.local:8765", "http://robot.local:8765") is None
+    assert policy.refusal_reason("localhost", "https://app.example") is None
+    assert policy.refusal_reason("localhost", "https://other.example")
 
 
 def test_an_exposed_server_is_reached_by_address_but_not_by_unknown_name():
     policy = AccessPolicy(exposed=True)
-    assert policy.refusal("192.168.1.7:8765", "http://192.168.1.7:8765") is None
-    assert policy.refusal("evil.example:8765", None)
-    assert policy.refusal("192.168.1.7:8765", "http://evil.example")
+    assert policy.refusal_reason("192.168.1.7:8765", "http://192.168.1.7:8765") is None
+    assert policy.refusal_reason("evil.example:8765", None)
+    assert policy.refusal_reason("192.168.1.7:8765", "http://evil.example")
 
 
 def test_all_origins_can_be_admitted():
-    assert AccessPolicy(origins=["*"]).refusal("localhost", "http://anywhere.example") is None
+    assert AccessPolicy(origins=["*"]).refusal_reason("localhost", "http://anywhere.example") is None

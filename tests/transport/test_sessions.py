@@ -190,7 +190,7 @@ def test_best_effort_does_not_serve_who_asks_for_reliable(two):
     publisher.publish(Int32(data=1))
     assert [message.data for message, _ in lax.wait(1)] == [1]
     assert strict.wait(1, 0.2) == []
-    assert [one.qos for one in here.counterparts(publisher.endpoint)] == [BEST_EFFORT]
+    assert [one.qos for one in here.matching_endpoints(publisher.endpoint)] == [BEST_EFFORT]
 
 
 def test_topics_of_one_name_and_two_types_do_not_mix(two):

@@ -11,7 +11,7 @@ from std_msgs.msg import Int32
 
 from daidalos.interfaces.codec import codec_of
 from daidalos.transport import subscription as module
-from daidalos.transport.backend import SampleInfo, WireSubscription
+from daidalos.transport.backend import BackendSubscription, SampleInfo
 from daidalos.transport.graph import EndpointInfo, EndpointKind, NodeInfo
 from daidalos.transport.qos import Qos, Reliability
 from daidalos.transport.subscription import Subscription
@@ -21,7 +21,7 @@ BURST = 60
 CODEC = codec_of(Int32)
 
 
-class Wire(WireSubscription):
+class Wire(BackendSubscription):
     """Samples are their bytes."""
 
     def data(self, sample: Any) -> bytes:

@@ -113,9 +113,9 @@ class WriterThread:
                     self._urgent.set()
             if ending:
                 return
-            self._work_off(batch)
+            self._write_pending(batch)
 
-    def _work_off(self, batch: deque[BagMessage | Callable[[], None]]) -> None:
+    def _write_pending(self, batch: deque[BagMessage | Callable[[], None]]) -> None:
         for item in batch:
             if isinstance(item, BagMessage):
                 self._write(item)

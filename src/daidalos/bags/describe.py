@@ -119,9 +119,9 @@ def complete(path: Path, storage_id: str) -> None:
     if path.name.endswith(ZSTD_SUFFIX):
         return
     if storage_id == SQLITE3:
-        from daidalos.bags.sqlite_writer import fold_journal
+        from daidalos.bags.sqlite_writer import checkpoint_journal
 
-        fold_journal(path)
+        checkpoint_journal(path)
         return
     with opened(path, storage_id) as reader:
         if not reader.damage:

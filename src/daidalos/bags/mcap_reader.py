@@ -34,7 +34,7 @@ _FOOTER_LENGTH = 29
 _RECORD = struct.Struct("<BQ")
 _CHUNK = struct.Struct("<QQQII")
 _TIMES = struct.Struct("<QQ")
-_LOOSE_SIZE = 1024 * 1024
+_UNCHUNKED_SIZE = 1024 * 1024
 """Messages that stand in no chunk are read in pieces of about so many bytes."""
 _FAULTS = (McapError, struct.error, ValueError, LookupError, EOFError, OverflowError, MemoryError)
 
@@ -189,7 +189,7 @@ class McapReader(StorageReader):
     def _walk(self) -> None:
         """Learn from the records themselves what the file holds, up to the first that is not whole."""
         data, position, size = self._data, len(MAGIC), len(self._data)
-        loose: _Loose | None = None
+        loose: _UnchunkedMessages | None = None
         ended = False
         try:
             while position + _RECORD.size <= size:
@@ -201,7 +201,7 @@ class McapReader(StorageReader):
                 if not 0 < opcode <= Opcode.DATA_END or begin + length > size:
                     break
                 if opcode == Opcode.MESSAGE:
-                    loose = self._take_loose(loose, begin, length, position)
+                    loose = self._add_unchunked(loose, begin, length, position)
                 elif opcode == Opcode.CHUNK:
                     self._take_chunk(self._chunk_at(begin))
                 elif opcode in (Opcode.SCHEMA, Opcode.CHANNEL):
@@ -240,15 +240,17 @@ class McapReader(StorageReader):
             channel = records.Channel.read(stream)
             self._channels[channel.id] = channel
 
-    def _take_loose(self, loose: _Loose | None, begin: int, length: int, position: int) -> _Loose:
+    def _add_unchunked(
+        self, loose: _UnchunkedMessages | None, begin: int, length: int, position: int
+    ) -> _UnchunkedMessages:
         """Note a message that stands in no chunk."""
         channel, _, log, _ = struct.unpack_from("<HIQQ", self._data, begin)
         self._counts[channel] = self._counts.get(channel, 0) + 1
-        if loose and (loose.end - loose.offset > _LOOSE_SIZE):
+        if loose and (loose.end - loose.offset > _UNCHUNKED_SIZE):
             self._chunks.append(loose.chunk())
             loose = None
         if loose is None:
-            loose = _Loose(position, log, log)
+            loose = _UnchunkedMessages(position, log, log)
         loose.add(log, begin + length)
         return loose
 
@@ -335,7 +337,7 @@ class McapReader(StorageReader):
 
 
 @dataclass
-class _Loose:
+class _UnchunkedMessages:
     """Messages one after the other that stand in no chunk."""
 
     offset: int

@@ -10,7 +10,7 @@ from queue import Full, Queue
 from daidalos.bags.message import BagMessage
 
 _BATCH = 50
-_LOOK_S = 0.2
+_POLL_S = 0.2
 
 
 class ReadAhead:
@@ -69,7 +69,7 @@ class ReadAhead:
     def _put(self, item: list[BagMessage] | BaseException) -> None:
         while not self._closed.is_set():
             try:
-                self._queue.put(item, timeout=_LOOK_S)
+                self._queue.put(item, timeout=_POLL_S)
                 return
             except Full:
                 continue

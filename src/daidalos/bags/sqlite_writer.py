@@ -51,7 +51,7 @@ def pragmas(options: StorageOptions) -> list[str]:
     return [*found, *(f"PRAGMA {one.rstrip(';')}" for one in extra)]
 
 
-def fold_journal(path: Path) -> None:
+def checkpoint_journal(path: Path) -> None:
     """Take what a killed writer left in a file's journal into the file itself.
 
     Raises

@@ -12,7 +12,7 @@ from pathlib import Path
 from daidalos.common.suggestions import hint_line
 from daidalos.workspaces.errors import WorkspaceError
 from daidalos.workspaces.rosdep.keys import Answer, Resolution, resolve
-from daidalos.workspaces.rosdep.packages import TYPES, Needs, find
+from daidalos.workspaces.rosdep.packages import TYPES, PackageDependencies, find
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -150,7 +150,7 @@ def _nothing(args: argparse.Namespace) -> int:
     return 0
 
 
-def _needs(args: argparse.Namespace) -> list[Needs]:
+def _needs(args: argparse.Namespace) -> list[PackageDependencies]:
     """Return the packages that were asked for, with the dependencies that count."""
     folders = args.paths or [Path()]
     for folder in folders:
@@ -165,22 +165,22 @@ def _needs(args: argparse.Namespace) -> list[Needs]:
             raise WorkspaceError(f"no package '{package}' below {', '.join(map(str, folders))}")
     skipped = {key for text in args.skip_keys for key in text.split()} | (names if args.ignore_source else set())
     return [
-        Needs(needs.package, tuple(key for key in needs.keys if key not in skipped))
+        PackageDependencies(needs.package, tuple(key for key in needs.keys if key not in skipped))
         for needs in found
         if not args.packages or needs.package in args.packages
     ]
 
 
-def _all_keys(needs: Sequence[Needs]) -> list[str]:
+def _all_keys(needs: Sequence[PackageDependencies]) -> list[str]:
     return sorted({key for one in needs for key in one.keys})
 
 
-def _unknown(needs: Sequence[Needs]) -> dict[str, list[str]]:
+def _unknown(needs: Sequence[PackageDependencies]) -> dict[str, list[str]]:
     found = {one.package: [key for key in one.keys if resolve(key).answer is Answer.UNKNOWN] for one in needs}
     return {package: keys for package, keys in found.items() if keys}
 
 
-def _missing(needs: Sequence[Needs]) -> list[str]:
+def _missing(needs: Sequence[PackageDependencies]) -> list[str]:
     resolutions = (resolve(key) for key in _all_keys(needs))
     return list(dict.fromkeys(one.distribution for one in resolutions if one.answer is Answer.PYTHON))
 

@@ -55,7 +55,7 @@ class AdmittanceLaw:
 
 
 @dataclass
-class Yielding:
+class AdmittanceState:
     """How far the tip yields now.
 
     Parameters
@@ -73,7 +73,7 @@ class Yielding:
     acceleration: Array
 
     @classmethod
-    def none(cls, count: int) -> Yielding:
+    def none(cls, count: int) -> AdmittanceState:
         """Return the state of a tip that does not yield."""
         return cls(np.zeros(count), np.zeros(count), np.zeros(6), np.zeros(6), np.zeros(6))
 
@@ -81,12 +81,12 @@ class Yielding:
 def advance(
     law: AdmittanceLaw,
     chain: Chain,
-    state: Yielding,
+    state: AdmittanceState,
     reference: Array,
     control_rotation: Array,
     wrench: Array,
     period: float,
-) -> Yielding:
+) -> AdmittanceState:
     """Return how far the tip yields one period later.
 
     Parameters
@@ -120,7 +120,7 @@ def advance(
     joint_accelerations = np.linalg.solve(damped, jacobian.T @ acceleration)
     joint_accelerations = joint_accelerations - law.joint_damping * state.joint_velocities
     joint_velocities = state.joint_velocities + joint_accelerations * period
-    return Yielding(state.joints + joint_velocities * period, joint_velocities, offset, velocity, acceleration)
+    return AdmittanceState(state.joints + joint_velocities * period, joint_velocities, offset, velocity, acceleration)
 
 
 def without_weight(wrench: Array, rotation: Array, weight: float, centre: Array, down: Array) -> Array:

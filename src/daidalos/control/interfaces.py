@@ -51,7 +51,7 @@ class Interfaces:
             raise UnknownError("interface", name, self.names) from None
 
 
-class Loan:
+class LoanedInterfaces:
     """Interfaces of one or several owners in the order in which a controller wants them.
 
     Parameters

@@ -283,7 +283,7 @@ class ControllerManager:
 
     def _fail(self, loaded: LoadedController, reason: str) -> None:
         self._log(reason)
-        self._switcher.stop(self._switcher.with_those_above(loaded.name), self.time_ns)
+        self._switcher.stop(self._switcher.with_dependents(loaded.name), self.time_ns)
         if loaded.fallbacks:
             try:
                 self.switch(start=loaded.fallbacks)

@@ -88,8 +88,8 @@ class Pid:
         table = np.array([[getattr(one, name) for one in gains] for name in names]).reshape(len(names), -1)
         self._p, self._i, self._d, self._i_min, self._i_max, self._u_min, self._u_max, self._deadband = table
         self._conditional = np.array([one.antiwindup_strategy == "conditional_integration" for one in gains])
-        self._bleed = np.array([_bleed(one) for one in gains])
-        self._simple = not (self._conditional.any() or self._bleed.any() or self._deadband.any())
+        self._back_calculation_rate = np.array([_back_calculation_rate(one) for one in gains])
+        self._simple = not (self._conditional.any() or self._back_calculation_rate.any() or self._deadband.any())
 
     def reset(self, keep_integral: bool = False) -> None:
         """Forget the past."""
@@ -134,11 +134,11 @@ class Pid:
         further = (wanted != saturated) & (wanted * error > 0.0)
         change = np.where(self._conditional & further, 0.0, change)
         change = np.where(np.abs(error) < self._deadband, 0.0, change)
-        allowed: Array = change + self._bleed * (saturated - wanted) * period
+        allowed: Array = change + self._back_calculation_rate * (saturated - wanted) * period
         return allowed
 
 
-def _bleed(gains: Gains) -> float:
+def _back_calculation_rate(gains: Gains) -> float:
     """Return the rate [1/s] at which back calculation empties the integral."""
     if gains.antiwindup_strategy != "back_calculation" or gains.i == 0.0:
         return 0.0

@@ -141,14 +141,14 @@ class SpeedCommand:
 
 
 @dataclass(frozen=True)
-class StateQuestion:
+class TrajectoryStateRequest:
     """What a trajectory wants at a time [ns]."""
 
     time_ns: int
 
 
 @dataclass(frozen=True, eq=False)
-class StateAnswer:
+class TrajectoryStateResponse:
     """The wanted state, or that there is none."""
 
     known: bool

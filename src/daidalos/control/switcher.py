@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from daidalos.control.component import ACTIVE, INACTIVE, Component
 from daidalos.control.errors import ControlError, HardwareError, SwitchError, UnknownError
-from daidalos.control.interfaces import Loan
+from daidalos.control.interfaces import LoanedInterfaces
 from daidalos.control.loaded_controller import LoadedController
 from daidalos.control.switching import Candidate, Strictness, Switch, plan_switch, update_order
 
@@ -63,12 +63,12 @@ class Switcher:
             if set(lost["command"]) & set(one.running.command_names)
             or set(lost["state"]) & set(one.running.state_names)
         ]
-        stop = [name for user in users for name in self.with_those_above(user)]
+        stop = [name for user in users for name in self.with_dependents(user)]
         if stop:
             self._log(f"{reason}; stopped are {', '.join(dict.fromkeys(stop))}")
             self.stop(dict.fromkeys(stop), now_ns)
 
-    def with_those_above(self, name: str) -> tuple[str, ...]:
+    def with_dependents(self, name: str) -> tuple[str, ...]:
         """Return a controller after all active ones that need it."""
         stop = [name]
         for one in stop:  # grows on the way
@@ -128,7 +128,9 @@ class Switcher:
         states = [one.hardware.states for one in self._components.values()]
         commands += [other.references for other in self._controllers.values() if other is not loaded]
         states += [other.exported for other in self._controllers.values() if other is not loaded]
-        controller.assign(Loan(controller.command_names, commands), Loan(controller.state_names, states))
+        controller.assign(
+            LoanedInterfaces(controller.command_names, commands), LoanedInterfaces(controller.state_names, states)
+        )
         loaded.updated_ns = -1
         if loaded.pulse is not None:
             loaded.pulse.restart()

@@ -129,7 +129,7 @@ class _Planner:
     def run(self) -> Switch:
         self._check_states()
         if self._strictness >= Strictness.AUTO:
-            self._bring_along()
+            self._add_dependencies()
         while self._drop_one():
             pass
         if self._left_out and self._strictness != Strictness.BEST_EFFORT:
@@ -152,7 +152,7 @@ class _Planner:
                 if state != wanted and not restarts:
                     self._leave_out(names, name, f"controller '{name}' is {state} and can not be {doing}")
 
-    def _bring_along(self) -> None:
+    def _add_dependencies(self) -> None:
         """Add the controllers whose references are needed, and stop those in the way where that is wanted."""
         for name in self._start:  # grows on the way
             for interface in self._all[name].commands:

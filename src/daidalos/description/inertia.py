@@ -94,7 +94,7 @@ def link_properties(link: Link, density: float = WATER, densities: Sequence[floa
     return Inertial(whole.mass, Pose((x, y, z)), (xx, xy, xz, yy, yz, zz))
 
 
-def doubts(link: Link) -> list[str]:
+def implausibilities(link: Link) -> list[str]:
     """Return what speaks against a link's mass properties, in plain words; nothing when they are plausible."""
     inertial = link.inertial
     if inertial is None:
@@ -108,10 +108,10 @@ def doubts(link: Link) -> list[str]:
         found.append(f"moments of inertia {_words(moments)} should be positive")
     elif moments[2] > (moments[0] + moments[1]) * (1 + 1e-3):
         found.append(f"moments of inertia {_words(moments)}: the largest is more than the others together")
-    return found + _doubts_by_size(link, inertial, moments)
+    return found + _compare_with_size(link, inertial, moments)
 
 
-def _doubts_by_size(link: Link, inertial: Inertial, moments: Array) -> list[str]:
+def _compare_with_size(link: Link, inertial: Inertial, moments: Array) -> list[str]:
     """Compare with what the link looks like and touches with."""
     corners = _corners(link)
     if corners is None:

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 from daidalos.common.pose3 import Pose
-from daidalos.description.inertia import doubts
+from daidalos.description.inertia import implausibilities
 from daidalos.description.joint import Joint, JointType
 from daidalos.description.robot import Robot
 from daidalos.description.tree import link_tree
@@ -19,7 +19,7 @@ class LinkReport:
 
     name: str
     mass: float | None
-    doubts: tuple[str, ...]
+    implausibilities: tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -111,7 +111,7 @@ def report_world(world: World) -> WorldReport:
 def report(robot: Robot | Model) -> RobotReport:
     """Return what there is to say about a robot or a model."""
     links = tuple(
-        LinkReport(link.name, None if link.inertial is None else link.inertial.mass, tuple(doubts(link)))
+        LinkReport(link.name, None if link.inertial is None else link.inertial.mass, tuple(implausibilities(link)))
         for link in robot.links.values()
     )
     joints = tuple(

@@ -191,7 +191,7 @@ def _read_one(element: Element, joints: Mapping[str, Joint]) -> HardwareInfo:
     if not plugin:
         raise hardware.error("<plugin> is missing or empty")
     components = [_read_component(child, joints) for child in element.all("joint", "sensor", "gpio")]
-    _refuse_twice(element, components)
+    _reject_duplicates(element, components)
     info = HardwareInfo(
         name=element.name(),
         type=kind,
@@ -208,7 +208,7 @@ def _read_one(element: Element, joints: Mapping[str, Joint]) -> HardwareInfo:
     return info
 
 
-def _refuse_twice(element: Element, components: Iterable[ComponentInfo]) -> None:
+def _reject_duplicates(element: Element, components: Iterable[ComponentInfo]) -> None:
     seen: set[tuple[str, str]] = set()
     for component in components:
         for sort, names in (("command", component.command_names), ("state", component.state_names)):

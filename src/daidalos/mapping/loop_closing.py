@@ -37,7 +37,7 @@ RETRY_INTERVAL = 3
 RESOLUTION = 0.1
 """Step [m] of the search, and standard deviation [m] of a point in it."""
 
-LARGEST_TURN = 0.5
+MAX_SEARCH_ANGLE = 0.5
 """Largest half width [rad] of the search."""
 
 MIN_LIKELIHOOD = 0.6
@@ -109,7 +109,7 @@ class LoopCloser:
         points, normals = merge([clouds[j] for j in latest], pose2.between(poses[newest], poses[latest]))
         window = Window(
             distance=min(0.5 * self._config.loop_search_space_dimension, 0.2 + drift),
-            angle=min(LARGEST_TURN, 0.05 + 0.15 * drift),
+            angle=min(MAX_SEARCH_ANGLE, 0.05 + 0.15 * drift),
             resolution=RESOLUTION,
             deviation=RESOLUTION,
             distance_penalty=0.005,

@@ -31,7 +31,7 @@ TOLERATED_TURN = 0.01
 BENT_GAP = 2.0
 """Disagreement [m] from which the poses are too bent to start an optimisation from them alone."""
 
-LONGEST_STEP_NS = 500_000_000
+MAX_STEP_NS = 500_000_000
 """Time [ns] since the last scan after which odometry no longer tells how fast the robot moves now."""
 
 DRAWN_GAP = 0.2
@@ -222,7 +222,7 @@ class Slam:
     def _twist(self, step: Array, stamp_ns: int) -> tuple[float, float, float]:
         """Velocity of the base since the last scan, by odometry; zero where that was too long ago to tell."""
         elapsed_ns = stamp_ns - self._last_stamp_ns
-        if not 0 < elapsed_ns < LONGEST_STEP_NS:
+        if not 0 < elapsed_ns < MAX_STEP_NS:
             return (0.0, 0.0, 0.0)
         x, y, yaw = (float(value) * 1e9 / elapsed_ns for value in step)
         return (x, y, yaw)

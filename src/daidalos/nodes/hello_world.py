@@ -90,7 +90,7 @@ class Adder(Node):
         return response
 
 
-def ask_for_sum(name: str, a: int, b: int, report: Callable[[Node, int], object]) -> None:
+def request_sum(name: str, a: int, b: int, report: Callable[[Node, int], object]) -> None:
     """Call ``add_two_ints`` from a node of that name, once somebody serves it, and report the sum."""
     import rclpy
     from example_interfaces.srv import AddTwoInts

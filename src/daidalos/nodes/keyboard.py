@@ -16,7 +16,7 @@ _ARROWS = {"A": "up", "B": "down", "C": "right", "D": "left"}
 _WINDOWS_ARROWS = {"H": "up", "P": "down", "M": "right", "K": "left"}
 _INTERRUPT = "\x03"
 _SEQUENCE_S = 0.05  # within which the rest of an escape sequence comes
-_LOOK_S = 0.02  # on Windows, where a console can not be waited for together with anything else
+_POLL_S = 0.02  # on Windows, where a console can not be waited for together with anything else
 
 
 class Keyboard:
@@ -141,7 +141,7 @@ class Keyboard:
         console: Any = msvcrt  # whose functions exist on Windows alone
         until = None if timeout_s is None else time.monotonic() + timeout_s
         while not console.kbhit():
-            if self._woken.wait(_LOOK_S):
+            if self._woken.wait(_POLL_S):
                 return None
             if until is not None and time.monotonic() > until:
                 return ""

@@ -18,7 +18,7 @@ _AHEAD_NS = 1_000_000_000
 """So far ahead of the clock no message is stamped, unless the clock was set back after it was sent."""
 
 
-class PatientBuffer(Buffer):
+class BlockingBuffer(Buffer):
     """A buffer whose users may wait for the transform at a message's time without an end of their own."""
 
     def transform_at(self, target_frame: str, source_frame: str, stamp: Any) -> Future:

@@ -10,7 +10,7 @@ from rclpy.task import Future
 
 from daidalos.common.kernels import warm_up
 
-_SILENT_S = 3.0
+_NOTICE_AFTER_S = 3.0
 """Time after which progress is logged [s]; kernels from the cache on disk are ready sooner."""
 
 _lock = threading.Lock()
@@ -25,7 +25,7 @@ def warm_up_in_background(package: str, logger: RcutilsLogger) -> Future:
     package : str
         As for `daidalos.common.kernels.warm_up`.
     logger
-        Logs the progress when compilation takes longer than `_SILENT_S`.
+        Logs the progress when compilation takes longer than `_NOTICE_AFTER_S`.
     """
     with _lock:
         if package not in _compiled:
@@ -40,7 +40,7 @@ def _compile(package: str, logger: RcutilsLogger, compiled: Future) -> None:
 
     def progress(share: float, step: str) -> None:
         nonlocal logged_tenth
-        if time.monotonic() - start < _SILENT_S or int(10 * share) == logged_tenth:
+        if time.monotonic() - start < _NOTICE_AFTER_S or int(10 * share) == logged_tenth:
             return
         if logged_tenth < 0:
             logger.info("preparing the algorithms; the first start on a machine compiles them")

@@ -14,6 +14,7 @@ from daidalos.description.world import Model, World
 from daidalos.simulation.component import Component, ComponentContext
 from daidalos.simulation.directional_friction import DirectionalFriction, directed_surfaces
 from daidalos.simulation.extensions import PLUGINS, SENSORS, is_built_in, library_of
+from daidalos.simulation.persistent_forces import PersistentForces, check_persistent_forces, persistent_forces
 from daidalos.simulation.plugins.base import (
     COMMON_PARAMETERS,
     LibraryPlugin,
@@ -23,7 +24,6 @@ from daidalos.simulation.plugins.base import (
     SensorPlugin,
 )
 from daidalos.simulation.sensors.base import Sensor
-from daidalos.simulation.standing_pushes import StandingPushes, check_standing_pushes, standing_pushes
 from daidalos.simulation.wind import LIBRARIES as WIND_LIBRARIES
 from daidalos.simulation.wind import Wind, windy_links
 
@@ -51,8 +51,8 @@ def make_components(model: Model, context: Callable[[str], ComponentContext]) ->
     if directed_surfaces(model):
         components.append(DirectionalFriction(context("friction")))
     first = context("pushes")
-    if standing_pushes(model, first.world):
-        components.append(StandingPushes(first))
+    if persistent_forces(model, first.world):
+        components.append(PersistentForces(first))
     if windy_links(model, first.world):
         components.append(Wind(context("wind")))
     for plugin in model.plugins:
@@ -67,7 +67,7 @@ def make_components(model: Model, context: Callable[[str], ComponentContext]) ->
 
 def check_world_plugins(world: World, warn: Callable[[str], None]) -> None:
     """Warn of a world's plugins that do nothing there; those that do something are built in."""
-    check_standing_pushes(world, warn)
+    check_persistent_forces(world, warn)
     for plugin in world.plugins:
         if is_built_in(plugin) or library_of(plugin) in WIND_LIBRARIES:
             continue

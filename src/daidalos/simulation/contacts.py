@@ -86,7 +86,7 @@ def read_contacts(physics: Physics, wanted: NDArray[np.bool_] | None = None) -> 
     wanted : array (geoms,) of bool or None
         Leave out contacts between two geoms that are not wanted.
     """
-    data = _all_awake(physics)
+    data = _wake_all(physics)
     grouped: dict[tuple[int, int], list[int]] = {}
     pairs = data.contact.geom.reshape(-1, 2)
     rows = range(data.ncon) if wanted is None else np.flatnonzero(wanted[pairs].any(axis=1)).tolist()
@@ -126,8 +126,8 @@ class ContactMonitor:
             self._mine[geom] = name == self.instance.name
             self._counts[geom] = name != self.instance.name and name not in self._ignore
 
-    def look(self, data: Any, now_ns: int) -> None:
-        """Note the contacts of the step that was just made."""
+    def record(self, data: Any, now_ns: int) -> None:
+        """Record the contacts of the step that was just made."""
         first, second = data.contact.geom.T
         here = (self._mine[first] & self._counts[second]) | (self._mine[second] & self._counts[first])
         for index in np.flatnonzero(here & (data.contact.dist < 0)):
@@ -140,7 +140,7 @@ class ContactMonitor:
             self._touches[key] = Touch(*key, begun, now_ns)
 
 
-def _all_awake(physics: Physics) -> Any:
+def _wake_all(physics: Physics) -> Any:
     """Return up to date data with the contacts of sleeping models as well, without waking them."""
     model, data = physics.model, physics.data
     if data.ntree_awake == model.ntree:

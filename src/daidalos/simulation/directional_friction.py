@@ -74,7 +74,7 @@ class DirectionalFriction(Component):
         """Push each link that touches something against its slip."""
         physics = self._instance.physics
         points, normals, loads = self._touching()
-        grips = self._grips(points, normals, loads)
+        grips = self._friction_forces(points, normals, loads)
         arms = points - physics.data.xipos[self._bodies]
         torques = cross(arms, grips)
         for row, key in enumerate(self._keys):
@@ -99,7 +99,7 @@ class DirectionalFriction(Component):
         sums /= np.where(loads > 0, loads, 1.0)[:, None]
         return sums[:, :3], sums[:, 3:], loads
 
-    def _grips(self, points: Array, normals: Array, loads: Array) -> Array:
+    def _friction_forces(self, points: Array, normals: Array, loads: Array) -> Array:
         """Return the forces (n, 3) against the slip at contacts."""
         model, data = self._instance.physics.model, self._instance.physics.data
         directions = np.einsum("nij,nj->ni", data.xmat[self._frames].reshape(-1, 3, 3), self._directions)

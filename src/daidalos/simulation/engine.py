@@ -318,7 +318,7 @@ class Engine:
             self.physics.step(count)
             self.time_ns += count * substep_ns
             for monitor in self._monitors:
-                monitor.look(self.physics.data, self.time_ns)
+                monitor.record(self.physics.data, self.time_ns)
             for component in self._schedule.due(self.time_ns):
                 samples.extend(component.update(self.time_ns))
         self._goal_ns = max(goal_ns, self._goal_ns)

@@ -15,12 +15,12 @@ from daidalos.description.link import Inertial
 from daidalos.description.robot import Robot
 from daidalos.description.scaling import scaled
 from daidalos.description.world import Model
-from daidalos.simulation.courses import Course, CourseFollower
 from daidalos.simulation.engine import Engine
 from daidalos.simulation.errors import SimulationError
 from daidalos.simulation.forces import JointPush, Push
 from daidalos.simulation.instance import JointView
 from daidalos.simulation.samples import TrajectoryCommand
+from daidalos.simulation.trajectory_follower import ActiveTrajectory, TrajectoryFollower
 
 Array = NDArray[np.float64]
 
@@ -168,11 +168,11 @@ class Simulation(Engine):
             instance.joint(name)
         if not len(course.times) or (np.diff(course.times) <= 0).any():
             raise ValueError("the trajectory should have points at times that rise")
-        follower = next((c for c in instance.components if isinstance(c, CourseFollower)), None)
+        follower = next((c for c in instance.components if isinstance(c, TrajectoryFollower)), None)
         if follower is None:
-            follower = CourseFollower(self._setting(instance.model, instance.namespace, "course"))
+            follower = TrajectoryFollower(self._setting(instance.model, instance.namespace, "course"))
             self._attach(follower, instance)
-        follower.state = Course(course, self.time_ns)
+        follower.state = ActiveTrajectory(course, self.time_ns)
 
     def set_joint_properties(
         self, model: str, joint: str, damping: float | None, limits: tuple[float, float] | None

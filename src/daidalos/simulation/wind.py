@@ -18,7 +18,7 @@ from daidalos.simulation.instance import Instance
 from daidalos.simulation.last_step import velocities
 from daidalos.simulation.noise import SILENT, Noise
 from daidalos.simulation.samples import Sample
-from daidalos.simulation.sensors.noisy import noise_below
+from daidalos.simulation.sensors.noisy import nested_noise
 
 Array = NDArray[np.float64]
 
@@ -82,7 +82,7 @@ class Wind(Component):
         self._bodies = [instance.link(link).body for link in self._links]
         self._masses = instance.physics.model.body_mass[self._bodies]
 
-    def blowing(self, time: float) -> Array:
+    def wind_velocity(self, time: float) -> Array:
         """Return the wind's velocity (3,) [m/s] at a simulated time [s]."""
         x, y, z = self.context.world.wind
         speed = self.speed.at(math.hypot(x, y), time, self.random)
@@ -92,7 +92,7 @@ class Wind(Component):
     def update(self, now_ns: int) -> Iterable[Sample]:
         """Blow for the step to come."""
         linear, _ = velocities(self._physics, self._bodies)
-        forces = self.factor * self._masses[:, None] * (self.blowing(now_ns * 1e-9) - linear)
+        forces = self.factor * self._masses[:, None] * (self.wind_velocity(now_ns * 1e-9) - linear)
         for key, body, force in zip(self._keys, self._bodies, forces, strict=True):
             self._physics.forces.hold(key, body, force, np.zeros(3))
         return ()
@@ -124,5 +124,5 @@ def _gust(element: Element, tag: str = "") -> Gust:
         share=sine.number_of("amplitude_percent", default=0.0),
         swing=math.radians(swing) if tag == "direction" else swing,
         period=period,
-        noise=noise_below(own),
+        noise=nested_noise(own),
     )

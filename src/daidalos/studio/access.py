@@ -32,7 +32,7 @@ class AccessPolicy:
         self._origins = frozenset(origin.rstrip("/").lower() for origin in origins)
         self._exposed = exposed
 
-    def refusal(self, host: str | None, origin: str | None) -> str | None:
+    def refusal_reason(self, host: str | None, origin: str | None) -> str | None:
         """Say why a request is refused, or None when it is welcome."""
         name = _host_name(f"//{host}") if host else None
         if name is None or not self._knows(name):

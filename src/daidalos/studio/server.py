@@ -28,7 +28,7 @@ from daidalos.studio.source import GraphSource, Parameter, Topic
 
 DEFAULT_PORT = 8765
 LOOPBACK = ("127.0.0.1", "::1")
-LARGEST_FRAME = 64 << 20  # what a client may send at once; a published image or cloud fits
+MAX_FRAME_BYTES = 64 << 20  # what a client may send at once; a published image or cloud fits
 SETTLE_S = 0.05  # a graph changes in bursts when nodes start
 TIME_PERIOD_S = 1 / 60  # a screen shows no more
 GOODBYE_S = 0.3
@@ -156,7 +156,7 @@ class StudioServer:
 
     def parameters_changed(self, parameters: Sequence[Parameter]) -> None:
         """See `Observer`."""
-        self._soon(lambda: self._tell_parameters(parameters))
+        self._soon(lambda: self._send_parameters(parameters))
 
     def _soon(self, call: Callable[[], object]) -> None:
         loop = self._loop
@@ -214,9 +214,9 @@ class StudioServer:
 
     @web.middleware
     async def _guard(self, request: web.Request, handler: Handler) -> web.StreamResponse:
-        refusal = self._access.refusal(request.headers.get("Host"), request.headers.get("Origin"))
-        if refusal is not None:
-            return web.Response(status=403, text=refusal + "\n", headers=HEADERS)
+        refusal_reason = self._access.refusal_reason(request.headers.get("Host"), request.headers.get("Origin"))
+        if refusal_reason is not None:
+            return web.Response(status=403, text=refusal_reason + "\n", headers=HEADERS)
         return await handler(request)
 
     async def _root(self, request: web.Request) -> web.StreamResponse:
@@ -233,7 +233,7 @@ class StudioServer:
             protocols=protocol.SUBPROTOCOLS,
             compress=False,  # costs more than loopback and local networks give back
             heartbeat=30,
-            max_msg_size=LARGEST_FRAME,
+            max_msg_size=MAX_FRAME_BYTES,
             timeout=GOODBYE_S,
         )
         await connection.prepare(request)
@@ -265,9 +265,9 @@ class StudioServer:
     def _settle(self) -> None:
         if not self._settling:
             self._settling = True
-            asyncio.get_running_loop().call_later(SETTLE_S, self._look_again)
+            asyncio.get_running_loop().call_later(SETTLE_S, self._poll_graph)
 
-    def _look_again(self) -> None:
+    def _poll_graph(self) -> None:
         self._settling = False
         changes = self._hub.refresh()
         graph = self._source.graph()
@@ -278,7 +278,7 @@ class StudioServer:
                 client.outbox.put_reply(frame)
             client.graph_changed(graph)
 
-    def _tell_parameters(self, parameters: Sequence[Parameter]) -> None:
+    def _send_parameters(self, parameters: Sequence[Parameter]) -> None:
         for client in self._clients:
             client.parameters_changed(parameters)
 

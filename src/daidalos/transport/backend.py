@@ -30,7 +30,7 @@ class RequestId(NamedTuple):
     sequence: int
 
 
-class WirePublisher(ABC):
+class BackendPublisher(ABC):
     """Sends a topic's samples to other processes."""
 
     @abstractmethod
@@ -49,7 +49,7 @@ class WirePublisher(ABC):
         """Stop publishing."""
 
 
-class WireSubscription(ABC):
+class BackendSubscription(ABC):
     """Receives a topic's samples from other processes.
 
     Samples are handed on as the backend's own objects, so that the receiving thread does next to nothing; the
@@ -69,7 +69,7 @@ class WireSubscription(ABC):
         """Stop receiving."""
 
 
-class WireService(ABC):
+class BackendService(ABC):
     """Receives a service's requests from other processes and answers them."""
 
     @abstractmethod
@@ -85,7 +85,7 @@ class WireService(ABC):
         """Stop serving."""
 
 
-class WireClient(ABC):
+class BackendClient(ABC):
     """Sends a service's requests to another process."""
 
     @abstractmethod
@@ -136,19 +136,19 @@ class Backend(ABC):
         """Tell others of a node of ours; the result undoes it."""
 
     @abstractmethod
-    def declare_publisher(self, key: str, endpoint: EndpointInfo) -> WirePublisher:
+    def declare_publisher(self, key: str, endpoint: EndpointInfo) -> BackendPublisher:
         """Declare a publisher."""
 
     @abstractmethod
     def declare_subscription(
         self, key: str, endpoint: EndpointInfo, on_sample: Callable[[Any], None]
-    ) -> WireSubscription:
+    ) -> BackendSubscription:
         """Declare a subscription; `on_sample` is called on the receiving thread."""
 
     @abstractmethod
-    def declare_service(self, key: str, endpoint: EndpointInfo, on_request: Callable[[Any], None]) -> WireService:
+    def declare_service(self, key: str, endpoint: EndpointInfo, on_request: Callable[[Any], None]) -> BackendService:
         """Declare a service; `on_request` is called on the receiving thread."""
 
     @abstractmethod
-    def declare_client(self, key: str, endpoint: EndpointInfo, on_response: Callable[[Any], None]) -> WireClient:
+    def declare_client(self, key: str, endpoint: EndpointInfo, on_response: Callable[[Any], None]) -> BackendClient:
         """Declare a client; `on_response` is called on the receiving thread."""

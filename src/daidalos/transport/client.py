@@ -8,13 +8,13 @@ from collections.abc import Callable
 from typing import Any
 
 from daidalos.interfaces.codec import Codec
-from daidalos.transport.backend import RequestId, WireClient
+from daidalos.transport.backend import BackendClient, RequestId
 from daidalos.transport.graph import EndpointInfo
 from daidalos.transport.service import Service
 from daidalos.transport.service_end import ServiceEnd
 
 
-class Client(ServiceEnd[WireClient, int]):
+class Client(ServiceEnd[BackendClient, int]):
     """One client of a node; made by `Session.create_client`. Responses are known by their requests' numbers."""
 
     incoming = "response of"
@@ -51,7 +51,7 @@ class Client(ServiceEnd[WireClient, int]):
             self._wire.send(self._request.encode(request), sequence, time.time_ns())
         return sequence
 
-    def _open(self, wire: WireClient, item: Any) -> tuple[Any, int, int]:
+    def _open(self, wire: BackendClient, item: Any) -> tuple[Any, int, int]:
         data, sequence, stamp = wire.response(item)
         return self._response.decode(data), sequence, stamp
 

@@ -9,18 +9,18 @@ from typing import Any
 
 from daidalos.transport.backend import (
     Backend,
+    BackendClient,
+    BackendPublisher,
+    BackendService,
+    BackendSubscription,
     RequestId,
     SampleInfo,
-    WireClient,
-    WirePublisher,
-    WireService,
-    WireSubscription,
 )
 from daidalos.transport.graph import EndpointInfo, EndpointKind, Graph, NodeInfo
 from daidalos.transport.qos import Qos
 
 
-class _Nowhere(WirePublisher, WireSubscription, WireService, WireClient):
+class _NullEndpoint(BackendPublisher, BackendSubscription, BackendService, BackendClient):
     """Every kind of wire at once: nothing goes out and nothing comes in."""
 
     def put(self, parts: list[Any], sequence: int, stamp_ns: int) -> None:
@@ -87,20 +87,20 @@ class InProcessBackend(Backend):
         """Tell nobody."""
         return lambda: None
 
-    def declare_publisher(self, key: str, endpoint: EndpointInfo) -> WirePublisher:
+    def declare_publisher(self, key: str, endpoint: EndpointInfo) -> BackendPublisher:
         """Return a wire to nowhere."""
-        return _Nowhere()
+        return _NullEndpoint()
 
     def declare_subscription(
         self, key: str, endpoint: EndpointInfo, on_sample: Callable[[Any], None]
-    ) -> WireSubscription:
+    ) -> BackendSubscription:
         """Return a wire from nowhere."""
-        return _Nowhere()
+        return _NullEndpoint()
 
-    def declare_service(self, key: str, endpoint: EndpointInfo, on_request: Callable[[Any], None]) -> WireService:
+    def declare_service(self, key: str, endpoint: EndpointInfo, on_request: Callable[[Any], None]) -> BackendService:
         """Return a wire from nowhere."""
-        return _Nowhere()
+        return _NullEndpoint()
 
-    def declare_client(self, key: str, endpoint: EndpointInfo, on_response: Callable[[Any], None]) -> WireClient:
+    def declare_client(self, key: str, endpoint: EndpointInfo, on_response: Callable[[Any], None]) -> BackendClient:
         """Return a wire to nowhere."""
-        return _Nowhere()
+        return _NullEndpoint()

@@ -9,7 +9,7 @@ import sys
 _TRIM_THRESHOLD, _MMAP_THRESHOLD = -1, -3
 """Parameters of the GNU C library's ``mallopt``."""
 _KEPT = 64 * 2**20
-_LARGEST_KEPT = 32 * 2**20
+_MAX_KEPT = 32 * 2**20
 """The most that the library takes."""
 
 
@@ -26,4 +26,4 @@ def keep_memory() -> None:
     mallopt = getattr(ctypes.CDLL(None), "mallopt", None)
     if mallopt is not None:
         mallopt(_TRIM_THRESHOLD, _KEPT)
-        mallopt(_MMAP_THRESHOLD, _LARGEST_KEPT)
+        mallopt(_MMAP_THRESHOLD, _MAX_KEPT)

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from daidalos.interfaces.codec import Codec
-from daidalos.transport.backend import WirePublisher
+from daidalos.transport.backend import BackendPublisher
 from daidalos.transport.graph import EndpointInfo
 
 if TYPE_CHECKING:
@@ -32,7 +32,7 @@ class Publisher:
         self._gid = endpoint.gid
         self._next_sequence = itertools.count(1).__next__
         self._targets: tuple[Subscription, ...] = ()
-        self._wire: WirePublisher | None = None
+        self._wire: BackendPublisher | None = None
         self._has_remote_subscribers = False
         qos = endpoint.qos
         self._latched = qos.transient_local
@@ -115,7 +115,7 @@ class Publisher:
 
     # The session's side.
 
-    def attach(self, wire: WirePublisher, undo: Callable[[], None]) -> None:
+    def attach(self, wire: BackendPublisher, undo: Callable[[], None]) -> None:
         """Connect to the middleware; `undo` ends that."""
         self._wire, self._undo = wire, undo
         if self._latched:

@@ -6,14 +6,14 @@ from collections.abc import Callable
 from typing import Any
 
 from daidalos.interfaces.codec import Codec
-from daidalos.transport.backend import RequestId, WireService
+from daidalos.transport.backend import BackendService, RequestId
 from daidalos.transport.graph import EndpointInfo
 from daidalos.transport.service_end import ServiceEnd
 
 Reply = Callable[[Any], None]
 
 
-class Service(ServiceEnd[WireService, RequestId]):
+class Service(ServiceEnd[BackendService, RequestId]):
     """One service of a node; made by `Session.create_service`."""
 
     incoming = "request to"
@@ -41,7 +41,7 @@ class Service(ServiceEnd[WireService, RequestId]):
         self._local[identity] = answer
         self._accept_local(self._request.snapshot(request), identity)
 
-    def _open(self, wire: WireService, item: Any) -> tuple[Any, RequestId, int]:
+    def _open(self, wire: BackendService, item: Any) -> tuple[Any, RequestId, int]:
         data, identity, stamp = wire.request(item)
         return self._request.decode(data), identity, stamp
 

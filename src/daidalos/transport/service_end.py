@@ -9,12 +9,12 @@ from collections.abc import Callable
 from typing import Any, ClassVar, Generic, TypeVar
 
 from daidalos.interfaces.codec import CdrError, Codec
-from daidalos.transport.backend import WireClient, WireService
+from daidalos.transport.backend import BackendClient, BackendService
 from daidalos.transport.graph import EndpointInfo
 
 _LOGGER = logging.getLogger(__name__)
 
-Wire = TypeVar("Wire", bound=WireClient | WireService)
+Wire = TypeVar("Wire", bound=BackendClient | BackendService)
 Identity = TypeVar("Identity")
 
 

@@ -183,7 +183,7 @@ class Session:
         mine = client.endpoint
         return any(_same_type(mine, other) for other in self.graph.endpoints(EndpointKind.SERVICE, name=mine.name))
 
-    def counterparts(self, endpoint: EndpointInfo) -> list[EndpointInfo]:
+    def matching_endpoints(self, endpoint: EndpointInfo) -> list[EndpointInfo]:
         """Return the endpoints that an endpoint of a topic exchanges samples with."""
         if endpoint.kind is EndpointKind.PUBLISHER:
             others = self.graph.endpoints(EndpointKind.SUBSCRIPTION, name=endpoint.name)

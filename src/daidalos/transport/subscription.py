@@ -10,7 +10,7 @@ from collections.abc import Callable
 from typing import Any
 
 from daidalos.interfaces.codec import CdrError, Codec
-from daidalos.transport.backend import SampleInfo, WireSubscription
+from daidalos.transport.backend import BackendSubscription, SampleInfo
 from daidalos.transport.graph import EndpointInfo
 
 _LOGGER = logging.getLogger(__name__)
@@ -44,7 +44,7 @@ class Subscription:
         self._codec = codec
         self._queue: deque[tuple[Any, ...]] = deque(maxlen=endpoint.qos.limit)
         self._limit = endpoint.qos.limit if endpoint.qos.reliable else None
-        self._wire: WireSubscription | None = None
+        self._wire: BackendSubscription | None = None
         self._undo: Callable[[], None] | None = None
         self._refused: frozenset[bytes] = frozenset()
         self._observers: tuple[Callable[[SampleInfo], None], ...] = ()
@@ -165,7 +165,7 @@ class Subscription:
 
     # The session's side.
 
-    def attach(self, wire: WireSubscription, undo: Callable[[], None]) -> None:
+    def attach(self, wire: BackendSubscription, undo: Callable[[], None]) -> None:
         """Connect to the middleware; `undo` ends that."""
         self._wire, self._undo = wire, undo
 

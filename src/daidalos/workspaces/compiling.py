@@ -27,7 +27,7 @@ class Compilation:
 
 
 @dataclass(frozen=True)
-class LeftOut:
+class SkippedTarget:
     """A target that is not built, why, and what it would need."""
 
     name: str
@@ -35,7 +35,7 @@ class LeftOut:
     needs: tuple[str, ...] = ()
 
 
-def plan(targets: Mapping[str, Target], build: Path) -> tuple[list[Compilation], list[LeftOut]]:
+def plan(targets: Mapping[str, Target], build: Path) -> tuple[list[Compilation], list[SkippedTarget]]:
     """Tell how the executables of a package are built, and which of its targets can not be.
 
     Libraries are compiled into the executables that use them; nobody else can load them here.
@@ -48,32 +48,32 @@ def plan(targets: Mapping[str, Target], build: Path) -> tuple[list[Compilation],
         Where executables are put before they are installed.
     """
     compilations: list[Compilation] = []
-    left_out: list[LeftOut] = []
+    left_out: list[SkippedTarget] = []
     for target in targets.values():
         foreign = _foreign(target, targets)
         if target.kind == "executable":
             compiler = _compiler(target, targets)
             if foreign:
-                left_out.append(LeftOut(target.name, "C++", tuple(foreign)))
+                left_out.append(SkippedTarget(target.name, "C++", tuple(foreign)))
             elif compiler is None:
-                left_out.append(LeftOut(target.name, "this machine has no C++ compiler"))
+                left_out.append(SkippedTarget(target.name, "this machine has no C++ compiler"))
             else:
                 compilations.append(_compilation(target, targets, compiler, build))
         elif target.sources and target.destination and foreign:
-            left_out.append(LeftOut(target.name, "C++", tuple(foreign)))
+            left_out.append(SkippedTarget(target.name, "C++", tuple(foreign)))
     return compilations, left_out
 
 
-def summary(left_out: Iterable[LeftOut]) -> str:
+def summary(left_out: Iterable[SkippedTarget]) -> str:
     """Return one line about the targets that are left out; empty when there are none."""
-    by_reason: dict[str, list[LeftOut]] = {}
+    by_reason: dict[str, list[SkippedTarget]] = {}
     for target in left_out:
         by_reason.setdefault(target.why, []).append(target)
     parts = [f"{', '.join(one.name for one in group)} ({_reason(why, group)})" for why, group in by_reason.items()]
     return f"left out: {'; '.join(parts)}" if parts else ""
 
 
-def _reason(why: str, group: Iterable[LeftOut]) -> str:
+def _reason(why: str, group: Iterable[SkippedTarget]) -> str:
     needs = list(dict.fromkeys(name for target in group for name in target.needs))
     if not needs:
         return why

@@ -46,7 +46,7 @@ class Installation:
         target.write_text(text, encoding="utf-8", newline="\n")
         target.chmod(_EXECUTABLE if executable else _PLAIN)
 
-    def adopt(self, path: Path) -> None:
+    def register_installed(self, path: Path) -> None:
         """Count a file that something else has put under the prefix as installed."""
         self._placed[path.relative_to(self.prefix).as_posix()] = None
 

@@ -59,7 +59,7 @@ def install_interfaces(
         _check_references(path, interface, library.get, known)
     interfaces = [interface for _, interface in own.values()]
     for path in write_package(package, interfaces, library.get, installation.prefix / python_folder):
-        installation.adopt(path)
+        installation.register_installed(path)
     for name, (path, interface) in own.items():
         text = json.dumps(_described(describe(interface, library.get)), indent=2) + "\n"
         installation.write(f"share/{package}/{name.split('/')[1]}/{path.stem}.json", text)

@@ -8,10 +8,10 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from daidalos.workspaces.cmake.catkin import share_everything
+from daidalos.workspaces.cmake.catkin import install_remaining
 from daidalos.workspaces.cmake.contents import Contents
 from daidalos.workspaces.cmake.reader import read_package
-from daidalos.workspaces.compiling import Compilation, LeftOut, plan
+from daidalos.workspaces.compiling import Compilation, SkippedTarget, plan
 from daidalos.workspaces.installation import Installation
 from daidalos.workspaces.interface_package import install_interfaces
 from daidalos.workspaces.package_tests import write_tests
@@ -38,7 +38,7 @@ class Build:
 
     contents: Contents
     compilations: list[Compilation]
-    left_out: list[LeftOut]
+    left_out: list[SkippedTarget]
     installation: Installation
 
 
@@ -53,7 +53,7 @@ def begin(place: Place, cmake_arguments: Iterable[str] = ()) -> Build:
     place.build.mkdir(parents=True, exist_ok=True)
     contents = read_package(place.source, place.build, place.prefix, place.python_folder, definitions(cmake_arguments))
     if place.catkin:
-        share_everything(place.source, contents)
+        install_remaining(place.source, contents)
     compilations, left_out = plan(contents.targets, place.build)
     installation = Installation(place.prefix, place.build / _RECORD, place.symlink)
     return Build(contents, compilations, left_out, installation)
@@ -112,4 +112,4 @@ def _make_script(installation: Installation, destination: str, name: str, functi
     maker.variants = {""}
     maker.clobber = maker.set_mode = True
     for path in maker.make(f"{name} = {function}"):
-        installation.adopt(Path(path))
+        installation.register_installed(Path(path))

@@ -45,7 +45,9 @@ def cvtColor2(image: Image, encoding_in: str, encoding_out: str) -> Image:
         return image.copy()
     target = encoding(encoding_out)
     _check(source, target, encoding_in, encoding_out)
-    result = _recolour(image, source, target, encoding_in, encoding_out) if source.order and target.order else image
+    result = (
+        _convert_channels(image, source, target, encoding_in, encoding_out) if source.order and target.order else image
+    )
     return _change_depth(result, source, target)
 
 
@@ -64,7 +66,7 @@ def _check(source: Encoding, target: Encoding, name_in: str, name_out: str) -> N
         raise RuntimeError(f"[{name_in}] and [{name_out}] do not have the same number of channel")
 
 
-def _recolour(image: Image, source: Encoding, target: Encoding, name_in: str, name_out: str) -> Image:
+def _convert_channels(image: Image, source: Encoding, target: Encoding, name_in: str, name_out: str) -> Image:
     """Return the image with the target's channels, in the source's depth."""
     if source.order == target.order:
         return image

@@ -38,11 +38,11 @@ def distortion(model: str, coefficients: Array) -> Callable[[Array], Array] | No
     if not np.any(coefficients):
         return None
     if model in _FISHEYE and len(coefficients) >= 4:
-        return lambda rays: _bend_fisheye(rays, coefficients)
+        return lambda rays: _distort_fisheye(rays, coefficients)
     if model in _BROWN and len(coefficients) in (4, 5, 8, 12, 14) and not np.any(coefficients[12:]):
         padded = np.zeros(12)
         padded[: min(len(coefficients), 12)] = coefficients[:12]
-        return lambda rays: _bend_brown(rays, padded)
+        return lambda rays: _distort_brown(rays, padded)
     known = ", ".join(f"'{name}'" for name in (*_BROWN, *_FISHEYE) if name)
     raise ValueError(
         f"the distortion model '{model}' with {len(coefficients)} coefficients is none of {known}, "
@@ -50,7 +50,7 @@ def distortion(model: str, coefficients: Array) -> Callable[[Array], Array] | No
     )
 
 
-def undistort(bend: Callable[[Array], Array], bent: Array) -> Array:
+def undistort(distort: Callable[[Array], Array], bent: Array) -> Array:
     """Return the ideal rays of bent ones, of shape (..., 2), by Newton's method.
 
     Parameters
@@ -64,11 +64,11 @@ def undistort(bend: Callable[[Array], Array], bent: Array) -> Array:
     offsets = np.array(((step, 0.0), (0.0, step)))
     rays = bent.copy()
     for _ in range(_STEPS):
-        error = bent - bend(rays)
+        error = bent - distort(rays)
         if not np.any(np.abs(error) > 1e-12):
             break
         # Columns of the Jacobian, (..., 2, 2), by central differences.
-        columns = [(bend(rays + offset) - bend(rays - offset)) / (2 * step) for offset in offsets]
+        columns = [(distort(rays + offset) - distort(rays - offset)) / (2 * step) for offset in offsets]
         (a, c), (b, d) = (np.moveaxis(column, -1, 0) for column in columns)
         determinant = a * d - b * c
         change = np.stack((d * error[..., 0] - b * error[..., 1], a * error[..., 1] - c * error[..., 0]), axis=-1)
@@ -78,7 +78,7 @@ def undistort(bend: Callable[[Array], Array], bent: Array) -> Array:
     return rays
 
 
-def _bend_brown(rays: Array, coefficients: Array) -> Array:
+def _distort_brown(rays: Array, coefficients: Array) -> Array:
     k1, k2, p1, p2, k3, k4, k5, k6, s1, s2, s3, s4 = coefficients
     x, y = np.moveaxis(rays, -1, 0)
     r2 = x * x + y * y
@@ -92,7 +92,7 @@ def _bend_brown(rays: Array, coefficients: Array) -> Array:
     )
 
 
-def _bend_fisheye(rays: Array, coefficients: Array) -> Array:
+def _distort_fisheye(rays: Array, coefficients: Array) -> Array:
     k1, k2, k3, k4 = coefficients[:4]
     r = np.hypot(rays[..., 0], rays[..., 1])
     theta = np.arctan(r)

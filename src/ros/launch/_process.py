@@ -114,7 +114,7 @@ class ChildProcess(asyncio.SubprocessProtocol):
                 with contextlib.suppress(ProcessLookupError, PermissionError):
                     os.killpg(self.pid, signum)
             deadline = asyncio.get_running_loop().time() + seconds
-            while _live_members(self.pid):
+            while _running_members(self.pid):
                 if asyncio.get_running_loop().time() >= deadline:
                     break
                 await asyncio.sleep(_POLL_INTERVAL)
@@ -122,9 +122,9 @@ class ChildProcess(asyncio.SubprocessProtocol):
                 return
 
     @property
-    def left_something(self) -> bool:
+    def has_leftovers(self) -> bool:
         """Whether the child has ended and something in its group goes on."""
-        return _POSIX and not self.running and _group_exists(self.pid) and bool(_live_members(self.pid))
+        return _POSIX and not self.running and _group_exists(self.pid) and bool(_running_members(self.pid))
 
     def close(self) -> None:
         """Let go of the pipes."""
@@ -319,7 +319,7 @@ def _group_exists(group: int) -> bool:
     return True
 
 
-def _live_members(group: int) -> list[Any]:
+def _running_members(group: int) -> list[Any]:
     """Return the processes of a group that are not just waiting to be forgotten."""
     import psutil
 

@@ -167,7 +167,7 @@ class ProcessRunner:
             self._logger.error(f"process has died [pid {child.pid}, exit code {code}, cmd '{command}'].")
         if self._stopping.done():
             await child.end_group(timeouts=self._options.timeouts, interrupted=True)
-        if child.left_something:
+        if child.has_leftovers:
             # What the process left running is stopped with the launch.
             self._context.register_event_handler(_LeftoverHandler(child, self._options.timeouts))
         else:

@@ -126,7 +126,7 @@ def get_ros_node(context: LaunchContext) -> Any:
     return get_ros_adapter(context).ros_node
 
 
-def run_beside(context: LaunchContext, function: Callable[..., None], *args: Any) -> asyncio.Future[None]:
+def run_with_ros_node(context: LaunchContext, function: Callable[..., None], *args: Any) -> asyncio.Future[None]:
     """Run a function that uses the launch's own node in a thread; the node is there until it has returned.
 
     Parameters

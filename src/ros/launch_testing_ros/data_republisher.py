@@ -37,9 +37,9 @@ class DataRepublisher:
         self._received = 0
         self._republished: list[Any] = []
         self._publisher = node.create_publisher(msg_type, publish_topic, 10)
-        self._subscription = node.create_subscription(msg_type, listen_topic, self._pass_on, 10)
+        self._subscription = node.create_subscription(msg_type, listen_topic, self._forward_message, 10)
 
-    def _pass_on(self, message: Any) -> None:
+    def _forward_message(self, message: Any) -> None:
         self._received += 1
         changed = self._transform(message)
         if changed:

@@ -38,7 +38,7 @@ from rclpy.impl.handle import Destroyable
 from rclpy.impl.log_output import OUTPUT
 from rclpy.impl.logging_severity import LoggingSeverity
 from rclpy.impl.node_graph import checked_name
-from rclpy.impl.ready import Announcer
+from rclpy.impl.ready import ReadyNotifier
 from rclpy.impl.timer import TimerHandle
 from rclpy.impl.wait_set import WaitSet
 from rclpy.qos import QoSCheckCompatibleResult, QoSCompatibility, QoSProfile, qos_check_compatible
@@ -213,7 +213,7 @@ class EventHandle(Destroyable):
 
     def listen(self, listener: Callable[[], None]) -> Callable[[], None]:
         """Call a listener when something happens; the result ends that."""
-        source: Announcer = self._source
+        source: ReadyNotifier = self._source
         return source.listen(listener)
 
     def take_event(self) -> Any:

@@ -14,7 +14,7 @@ def expand_topic_name(topic_name: str, node_name: str, node_namespace: str) -> s
     InvalidTopicNameException, InvalidNodeNameException, InvalidNamespaceException
         When a name breaks the rules.
     """
-    fault = names.topic_name_fault(topic_name)
+    fault = names.topic_name_error(topic_name)
     if fault:
         raise InvalidTopicNameException(topic_name, *fault)
     validate_node_name(node_name)

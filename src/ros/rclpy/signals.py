@@ -78,7 +78,7 @@ def watch_context(context: Context) -> None:
     _contexts.add(context)
 
 
-_SAME_WISH_S = 0.5
+_REPEAT_INTERVAL_S = 0.5
 _last_signal_s = -math.inf
 
 
@@ -86,7 +86,7 @@ _last_signal_s = -math.inf
 def _on_signal(number: int, frame: FrameType | None) -> None:
     global _last_signal_s
     now = time.monotonic()
-    if is_uninterrupted() or now - _last_signal_s < _SAME_WISH_S:
+    if is_uninterrupted() or now - _last_signal_s < _REPEAT_INTERVAL_S:
         return  # the terminal and the launcher pass on the same Ctrl-C
     _last_signal_s = now
     for context in list(_contexts):

@@ -238,7 +238,7 @@ class Task(Future):
             self._task_lock.release()
         # Not before the release: who wakes the task may be another thread, and has to find it free.
         if waits_for is not None:
-            self._be_woken_by(waits_for)
+            self._requeue_on(waits_for)
 
     def _run(self) -> Any:
         """Call the function; return what the coroutine that it returned waits for, or None."""
@@ -272,7 +272,7 @@ class Task(Future):
         self._complete_task()
         return None
 
-    def _be_woken_by(self, waits_for: Any) -> None:
+    def _requeue_on(self, waits_for: Any) -> None:
         """Have the task queued again when it can go on."""
         requeue = self._requeue
         if requeue is None:

@@ -3,7 +3,7 @@
 from typing import Literal
 
 from rclpy.exceptions import InvalidNamespaceException
-from rclpy.impl.names import namespace_fault
+from rclpy.impl.names import namespace_error
 
 
 def validate_namespace(namespace: str) -> Literal[True]:
@@ -14,7 +14,7 @@ def validate_namespace(namespace: str) -> Literal[True]:
     InvalidNamespaceException
         Saying what is wrong, and where.
     """
-    fault = namespace_fault(namespace)
+    fault = namespace_error(namespace)
     if fault:
         raise InvalidNamespaceException(namespace, *fault)
     return True

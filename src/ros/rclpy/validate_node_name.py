@@ -3,7 +3,7 @@
 from typing import Literal
 
 from rclpy.exceptions import InvalidNodeNameException
-from rclpy.impl.names import node_name_fault
+from rclpy.impl.names import node_name_error
 
 
 def validate_node_name(node_name: str) -> Literal[True]:
@@ -14,7 +14,7 @@ def validate_node_name(node_name: str) -> Literal[True]:
     InvalidNodeNameException
         Saying what is wrong, and where.
     """
-    fault = node_name_fault(node_name)
+    fault = node_name_error(node_name)
     if fault:
         raise InvalidNodeNameException(node_name, *fault)
     return True

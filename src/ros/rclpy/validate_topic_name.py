@@ -3,7 +3,7 @@
 from typing import Literal
 
 from rclpy.exceptions import InvalidServiceNameException, InvalidTopicNameException
-from rclpy.impl.names import topic_name_fault
+from rclpy.impl.names import topic_name_error
 
 TOPIC_SEPARATOR_STRING = "/"
 
@@ -16,7 +16,7 @@ def validate_topic_name(name: str, *, is_service: bool = False) -> Literal[True]
     InvalidTopicNameException, InvalidServiceNameException
         Saying what is wrong, and where.
     """
-    fault = topic_name_fault(name)
+    fault = topic_name_error(name)
     if fault:
         raise (InvalidServiceNameException if is_service else InvalidTopicNameException)(name, *fault)
     return True

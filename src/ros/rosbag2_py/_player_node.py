@@ -21,8 +21,8 @@ from daidalos.bags.message import BagMessage
 from daidalos.bags.read_ahead import ReadAhead
 from daidalos.bags.storage import FOREVER_NS
 from rosbag2_py._options import PlayOptions
-from rosbag2_py._outlets import Outlets
 from rosbag2_py._storage import StorageOptions
+from rosbag2_py._topic_publishers import TopicPublishers
 
 NODE_NAME = "rosbag2_player"
 _SECOND = 1_000_000_000
@@ -104,7 +104,7 @@ class PlayerNode(Node):
 
         options = self._options
         wanted = [topic for name, topic in self._bags.topics.items() if self._selection.wants(name, topic.type)]
-        self._outlets = Outlets(self, wanted, options)
+        self._publishers = TopicPublishers(self, wanted, options)
         self._split_publisher = self.create_publisher(ReadSplitEvent, "events/read_split", 1)
         self._clock_publisher = None
         self._clock_topics: frozenset[str] | None = frozenset(
@@ -213,7 +213,7 @@ class PlayerNode(Node):
                 if self._stopping or not self._options.loop or not played:
                     break
             if not self._stopping:
-                self._outlets.wait_for_all_acked(self._options.wait_acked_timeout)
+                self._publishers.wait_for_all_acked(self._options.wait_acked_timeout)
         except BagError as error:
             self.error = error
             self.get_logger().error(f"Failed to play: {error}")
@@ -253,7 +253,7 @@ class PlayerNode(Node):
     def _go_to(self, time_ns: int) -> None:
         """Go on from a time of the bag."""
         self._end_stream()
-        wanted = [name for name in self._outlets.names if name in self._bags.topics]
+        wanted = [name for name in self._publishers.names if name in self._bags.topics]
         messages = self._bags.messages(wanted, start_ns=max(time_ns, 0), stop_ns=self._stop)
         self._stream = ReadAhead(messages, self._options.read_ahead_queue_size)
         self._clock_of_bag.jump(time_ns, _steady())
@@ -269,7 +269,7 @@ class PlayerNode(Node):
         message, stream = self._message, self._stream
         if message is None or stream is None:
             return False
-        self._outlets.publish(message)
+        self._publishers.publish(message)
         if self._clock_publisher is not None and (self._clock_topics is None or message.topic in self._clock_topics):
             self._publish_clock(message.received_ns)
         self._message = stream.next()

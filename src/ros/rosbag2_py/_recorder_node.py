@@ -130,7 +130,7 @@ class RecorderNode(Node):
                 return
             self.get_logger().info("Pausing recording.")
             self.stop_discovery()
-            self._take_what_waits()
+            self._take_pending()
             for subscription in self._subscribed.values():
                 self.destroy_subscription(subscription)
             self._subscribed.clear()
@@ -140,11 +140,11 @@ class RecorderNode(Node):
                 bag.close()
             except BagError as error:
                 self._fail(error)
-            self._tell_losses(sink)
+            self._report_losses(sink)
             self._bag = self._sink = None
             self.get_logger().info("Recording stopped")
 
-    def _take_what_waits(self) -> None:
+    def _take_pending(self) -> None:
         """Take the messages that have come but were not taken yet."""
         for subscription in self._subscribed.values():
             for _ in range(len(subscription.handle.impl)):
@@ -153,7 +153,7 @@ class RecorderNode(Node):
                     callback, arguments = waiting
                     callback(*arguments)
 
-    def _tell_losses(self, sink: WriterThread | SnapshotBuffer) -> None:
+    def _report_losses(self, sink: WriterThread | SnapshotBuffer) -> None:
         if sink.lost:
             topics = ", ".join(f"{topic}: {count}" for topic, count in sorted(sink.lost.items()))
             get_logger("rosbag2_cpp").warning(
@@ -201,7 +201,7 @@ class RecorderNode(Node):
 
     def take_snapshot(self) -> bool:
         """Write what was kept in snapshot mode."""
-        self._take_what_waits()
+        self._take_pending()
         sink = self._sink
         return isinstance(sink, SnapshotBuffer) and sink.take()
 

@@ -10,7 +10,7 @@ from ._history import display_time
 from ._rigid import Rigid
 
 _LOGGER_NAME = "tf2_buffer"
-_SHORTEST_S = 1e-4
+_MIN_DURATION_S = 1e-4
 
 
 def problem_with(parent: str, child: str, motion: Rigid, authority: str, tolerance: float) -> str:
@@ -78,7 +78,7 @@ def _rows(frames: Mapping[str, Any], authorities: Mapping[str, str]) -> Iterator
             continue
         stamps = history.stamps
         oldest = stamps[0] if stamps else 0
-        rate = max(len(stamps), 1) / max((latest - oldest) / 1e9, _SHORTEST_S)
+        rate = max(len(stamps), 1) / max((latest - oldest) / 1e9, _MIN_DURATION_S)
         yield _Row(frame, parent, authorities.get(frame, "no recorded authority"), rate, oldest, latest)
 
 

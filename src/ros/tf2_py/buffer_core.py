@@ -94,7 +94,7 @@ class BufferCore:
         if not accepted:
             _report.old_data(child, stamp, authority)
         elif self._watchers:
-            self._tell_watchers()
+            self._notify_listeners()
 
     def clear(self) -> None:
         """Forget all transforms, except those that hold at all times."""
@@ -102,7 +102,7 @@ class BufferCore:
             for history in self._frames.values():
                 if history is not None:
                     history.clear()
-        self._tell_watchers()
+        self._notify_listeners()
 
     def _watch(self, watcher: Callable[[], None]) -> None:
         """Call `watcher` after every change, on the thread that makes it."""
@@ -116,7 +116,7 @@ class BufferCore:
             self._watchers = tuple(other for other in self._watchers if other != watcher)
             return len(self._watchers) < before
 
-    def _tell_watchers(self) -> None:
+    def _notify_listeners(self) -> None:
         for watcher in self._watchers:
             watcher()
 

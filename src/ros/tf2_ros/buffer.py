@@ -56,7 +56,7 @@ class Buffer(BufferCore, BufferInterface):
             return
         from tf2_msgs.srv import FrameGraph
 
-        self.srv = node.create_service(FrameGraph, "tf2_frames", self._tell_frames)
+        self.srv = node.create_service(FrameGraph, "tf2_frames", self._notify_frames)
         self.follow(node)
 
     def follow(self, node: Node) -> None:
@@ -83,7 +83,7 @@ class Buffer(BufferCore, BufferInterface):
         self.jump_handle = clock.create_jump_callback(threshold, post_callback=on_jump)
         weakref.finalize(self, _ORPHANS.append, self.jump_handle).atexit = False
 
-    def _tell_frames(self, request: Any, response: Any) -> Any:
+    def _notify_frames(self, request: Any, response: Any) -> Any:
         response.frame_yaml = self.all_frames_as_yaml()
         return response
 

@@ -15,11 +15,11 @@ from daidalos.control.interfaces import Interfaces
 from daidalos.control.samples import (
     JointTolerance,
     SpeedCommand,
-    StateQuestion,
     TrajectoryCommand,
     TrajectoryPoint,
     TrajectoryRequest,
     TrajectoryResult,
+    TrajectoryStateRequest,
 )
 
 TYPE = "joint_trajectory_controller/JointTrajectoryController"
@@ -322,7 +322,7 @@ def test_it_says_its_state_and_answers_what_it_will_want() -> None:
     assert state.desired.positions[0] == pytest.approx(0.5)
     assert state.error.positions[0] == pytest.approx(0.01)
     assert state.output.positions[0] == pytest.approx(0.5)
-    answer = rig.controller.services["~/query_state"].answer(StateQuestion(750_000_000))
+    answer = rig.controller.services["~/query_state"].answer(TrajectoryStateRequest(750_000_000))
     assert answer.point.positions[0] == pytest.approx(0.75)
 
 

@@ -11,7 +11,7 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import dijkstra
 
 from daidalos.navigation.planners.navfn_planner import COST_FACTOR
-from daidalos.navigation.planners.navigation_function import descend, nearest_reached, nearest_way_out, propagate
+from daidalos.navigation.planners.navigation_function import descend, nearest_passable_cell, nearest_reached, propagate
 
 from .worlds import cluttered
 
@@ -169,13 +169,13 @@ def test_ways_out_of_inflation_do_not_lead_through_walls():
     costs[:, 8] = 0
     costs[8, 0] = 0
     # Column 8 is as near as the corner, but behind the wall.
-    assert nearest_way_out(costs, STEP, 3, 8, 10.0) == (0, 8)
+    assert nearest_passable_cell(costs, STEP, 3, 8, 10.0) == (0, 8)
     costs[8, 0] = 253
-    assert nearest_way_out(costs, STEP, 3, 8, 10.0) == (-1, -1)
+    assert nearest_passable_cell(costs, STEP, 3, 8, 10.0) == (-1, -1)
 
 
 def test_a_way_out_of_an_obstacle_is_short_or_none():
     costs = np.full((9, 9), 254, dtype=np.uint8)
     costs[4, 7] = 0
-    assert nearest_way_out(costs, STEP, 4, 4, 3.0) == (7, 4)
-    assert nearest_way_out(costs, STEP, 4, 4, 2.0) == (-1, -1)
+    assert nearest_passable_cell(costs, STEP, 4, 4, 3.0) == (7, 4)
+    assert nearest_passable_cell(costs, STEP, 4, 4, 2.0) == (-1, -1)

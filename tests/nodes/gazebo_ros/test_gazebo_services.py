@@ -304,8 +304,8 @@ def test_what_was_deleted_comes_back_as_it_was(shop):
         return shop.call(BringBack, "/gazebo/bring_back", name=name)
 
     assert spawn(shop, "arm", ARM, at(1.0, 2.0, 0.0), robot_namespace="left").success
-    bend = {"model_name": "arm", "joint_names": ["j"], "joint_positions": [0.7]}
-    assert shop.call(srv.SetModelConfiguration, "/set_model_configuration", **bend).success
+    distort = {"model_name": "arm", "joint_names": ["j"], "joint_positions": [0.7]}
+    assert shop.call(srv.SetModelConfiguration, "/set_model_configuration", **distort).success
     moved = EntityState(name="shelf", pose=at(-3.0))
     assert shop.call(srv.SetEntityState, "/set_entity_state", state=moved).success
     for name in ("arm", "shelf"):

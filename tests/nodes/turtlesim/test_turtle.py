@@ -91,7 +91,7 @@ def test_headings_stay_the_same_when_normalized(angle: float) -> None:
 
 def test_teleports() -> None:
     turtle = Turtle("turtle1", 5.0, 5.0, 0.0)
-    turtle.teleport_by(2.0, math.pi / 2)
+    turtle.teleport_relative(2.0, math.pi / 2)
     assert (turtle.x, turtle.y) == pytest.approx((5.0, 7.0), abs=1e-6)
     turtle.teleport(-3.0, 4.0, 7.0)
     assert turtle.theta == pytest.approx(7.0 - math.tau, abs=1e-6)

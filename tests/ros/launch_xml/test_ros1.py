@@ -423,4 +423,4 @@ def test_table_is_sound():
     ],
 )
 def test_scripts_may_have_lost_their_ending(package, name, expected):
-    assert packages.todays_program(package, name) == expected
+    assert packages.ros2_program(package, name) == expected

@@ -5,7 +5,7 @@ import shlex
 import sys
 
 import pytest
-from launch_xml.ros1.rosbag import todays_command
+from launch_xml.ros1.rosbag import ros2_command
 
 SHOW = """#!{python}
 import signal, sys, time
@@ -42,25 +42,25 @@ if 'forever' in sys.argv:
 )  # fmt: skip
 def test_todays_command(old, new):
     verb, *words = shlex.split(old)
-    command = todays_command(verb, words)
+    command = ros2_command(verb, words)
     assert command.arguments == shlex.split(new)
     assert command.notes == []
     assert command.duration_s is None
 
 
 def test_names_are_those_of_the_scope():
-    command = todays_command("record", ["scan", "odom", "/tf"], "/robot", [("odom", "/odometry"), ("/tf", "tf")])
+    command = ros2_command("record", ["scan", "odom", "/tf"], "/robot", [("odom", "/odometry"), ("/tf", "tf")])
     assert command.arguments == ["record", "--topics", "/robot/scan", "/odometry", "/robot/tf"]
 
 
 def test_a_bag_of_the_old_name_is_played(tmp_path):
     old = tmp_path / "walk.bag"
     old.touch()
-    assert todays_command("play", [str(old)]).arguments == ["play", str(old)]
+    assert ros2_command("play", [str(old)]).arguments == ["play", str(old)]
 
 
 def test_output_has_the_time_in_its_name():
-    _, option, name, _ = todays_command("record", ["-o", "walk", "-a"]).arguments
+    _, option, name, _ = ros2_command("record", ["-o", "walk", "-a"]).arguments
     assert option == "--output"
     assert re.fullmatch(r"walk_\d{4}(_\d\d){2}-(\d\d_){2}\d\d", name)
 
@@ -71,7 +71,7 @@ def test_output_has_the_time_in_its_name():
 )
 def test_what_is_not_done_is_said(old, option):
     verb, *words = old.split()
-    (note,) = todays_command(verb, words).notes
+    (note,) = ros2_command(verb, words).notes
     assert note.startswith(option)
 
 
@@ -86,7 +86,7 @@ def test_what_is_not_done_is_said(old, option):
 def test_bad_words(old, reason):
     verb, *words = old.split()
     with pytest.raises(ValueError, match=re.escape(reason)):
-        todays_command(verb, words)
+        ros2_command(verb, words)
 
 
 @pytest.fixture

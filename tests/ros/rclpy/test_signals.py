@@ -29,7 +29,7 @@ def raised(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[int]]:
 
     monkeypatch.setenv("RMW_IMPLEMENTATION", "rmw_daidalos_inprocess")
     monkeypatch.setattr(signals, "_last_signal_s", -1e9)
-    monkeypatch.setattr(signals, "_SAME_WISH_S", 60.0)  # a busy machine must not make two of one
+    monkeypatch.setattr(signals, "_REPEAT_INTERVAL_S", 60.0)  # a busy machine must not make two of one
     signals.uninstall_signal_handlers()  # those of tests before
     before = signal.signal(signal.SIGINT, note)
     yield reached

@@ -14,7 +14,7 @@ import psutil
 import pytest
 import zenoh
 
-from daidalos.transport.zenoh.links import keep_from_lingering, stop_lingering
+from daidalos.transport.zenoh.links import clear_linger, disable_linger
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="sockets cannot be listed there")
 
@@ -47,7 +47,7 @@ def test_links_of_a_session_close_at_once():
     with socket.create_server(("127.0.0.1", 0)) as probe:
         endpoint = f"tcp/127.0.0.1:{probe.getsockname()[1]}"
     with opened(listen=endpoint) as first:
-        kept = keep_from_lingering(first)
+        kept = disable_linger(first)
         with opened(connect=endpoint):
             deadline = time.monotonic() + 30
             while len(links := lingering_of_links()) < 2 or (1, 10) in links:
@@ -60,7 +60,7 @@ def test_only_zenohs_lingering_is_taken_and_nothing_is_left_open():
         server.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 5))
         link.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 10))
         before = os.listdir("/dev/fd")
-        stop_lingering()
+        clear_linger()
         assert os.listdir("/dev/fd") == before
         assert lingering(server) == (1, 5)
         assert lingering(link)[0] == 0

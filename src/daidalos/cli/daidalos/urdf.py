@@ -159,7 +159,9 @@ def _text(found: "RobotReport") -> str:
     if found.joints:
         rows = [(j.name, j.type, f"{j.parent} -> {j.child}", j.limits) for j in found.joints]
         lines += ["", *_table(("joint", "type", "between", "limits"), rows)]
-    return "\n".join(lines + _doubts(f"  {link.name}: {doubt}" for link in found.links for doubt in link.doubts))
+    return "\n".join(
+        lines + _implausibilities(f"  {link.name}: {doubt}" for link in found.links for doubt in link.implausibilities)
+    )
 
 
 def _world_text(found: "WorldReport") -> str:
@@ -171,12 +173,12 @@ def _world_text(found: "WorldReport") -> str:
         lines += ["", *_table(("model", "position", "mass [kg]", "links", "joints"), map(_model_row, found.models))]
     return "\n".join(
         lines
-        + _doubts(
+        + _implausibilities(
             f"  {placed.model.name}::{link.name}: {doubt}"
             for placed in found.models
             if not placed.static
             for link in placed.model.links
-            for doubt in link.doubts
+            for doubt in link.implausibilities
         )
     )
 
@@ -188,7 +190,7 @@ def _model_row(placed: "PlacedReport") -> tuple[str, ...]:
     return model.name, position, mass, str(len(model.links)), str(len(model.joints))
 
 
-def _doubts(lines: Iterable[str]) -> list[str]:
+def _implausibilities(lines: Iterable[str]) -> list[str]:
     found = list(lines)
     return ["", "doubtful inertias:", *found] if found else []
 

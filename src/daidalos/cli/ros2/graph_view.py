@@ -37,4 +37,4 @@ def graph_view(args: argparse.Namespace) -> Iterator[Graph]:
         graph = node.handle.graph
         yield graph
         if any(not other.name.startswith(NODE_NAME_PREFIX) for other in graph.nodes()):
-            client.spawn_quietly()
+            client.start_in_background()

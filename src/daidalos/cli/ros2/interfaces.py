@@ -68,10 +68,10 @@ def parse_yaml(text: str) -> Any:
     try:
         return yaml.load(text, getattr(yaml, "CSafeLoader", yaml.SafeLoader))
     except yaml.YAMLError as error:
-        raise CliError(f"The passed value is no YAML: {_yaml_fault(error)}") from None
+        raise CliError(f"The passed value is no YAML: {_yaml_error(error)}") from None
 
 
-def _yaml_fault(error: Exception) -> str:
+def _yaml_error(error: Exception) -> str:
     mark = getattr(error, "problem_mark", None)
     problem = getattr(error, "problem", None) or str(error)
     context = getattr(error, "context", None)

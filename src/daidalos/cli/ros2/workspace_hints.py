@@ -9,7 +9,7 @@ from pathlib import Path
 _DEEPEST = 3
 """Folders between ``src`` and a package at most."""
 
-_PASSED_OVER = {"build", "install", "log", "node_modules"}
+_SKIPPED_FOLDERS = {"build", "install", "log", "node_modules"}
 
 
 def unknown_package(name: str) -> str:
@@ -60,6 +60,6 @@ def _source(workspace: Path, package: str) -> Path | None:
         if manifest.is_file():
             if name.search(manifest.read_text(encoding="utf-8", errors="replace")):
                 return folder
-        elif folder.is_dir() and depth < _DEEPEST and folder.name not in _PASSED_OVER:
+        elif folder.is_dir() and depth < _DEEPEST and folder.name not in _SKIPPED_FOLDERS:
             pending += [(child, depth + 1) for child in folder.iterdir() if child.name[:1] != "."]
     return None

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from daidalos.common.pose3 import quaternion_from_matrix
-from daidalos.control.admittance import AdmittanceLaw, Yielding, advance, without_weight
+from daidalos.control.admittance import AdmittanceLaw, AdmittanceState, advance, without_weight
 from daidalos.control.chain import Chain
 from daidalos.control.controllers.base import Controller, Subscription
 from daidalos.control.errors import ControlError, ParameterError
@@ -191,7 +191,7 @@ class AdmittanceController(Controller):
             raise ControlError("positions of joints are not known yet")
         self._reference_rate = np.zeros(self._count)
         self._received = None
-        self._state = Yielding.none(self._count)
+        self._state = AdmittanceState.none(self._count)
         self._wrench: np.ndarray | None = None
         self.references.values[:] = np.nan
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
-from daidalos.control.interfaces import Interfaces, Loan
+from daidalos.control.interfaces import Interfaces, LoanedInterfaces
 from daidalos.description.robot import Robot
 from daidalos.description.world import Model
 from daidalos.simulation.component import Endpoint
@@ -162,8 +162,8 @@ class Controller(Endpoint):
         self.exported = Interfaces()
         self.chained = False
         self.now_ns = 0
-        self.commands = Loan()
-        self.states = Loan()
+        self.commands = LoanedInterfaces()
+        self.states = LoanedInterfaces()
         self.configure()
 
     def configure(self) -> None:
@@ -173,7 +173,7 @@ class Controller(Endpoint):
         """Take changed parameters while running; those that are read only stay as they are."""
         self.p = parameters
 
-    def assign(self, commands: Loan, states: Loan) -> None:
+    def assign(self, commands: LoanedInterfaces, states: LoanedInterfaces) -> None:
         """Take the interfaces, in the order of their names."""
         self.commands, self.states = commands, states
 

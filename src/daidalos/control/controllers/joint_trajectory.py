@@ -17,14 +17,14 @@ from daidalos.control.pid import Pid
 from daidalos.control.pulse import Pulse
 from daidalos.control.samples import (
     SpeedCommand,
-    StateAnswer,
-    StateQuestion,
     TrajectoryCommand,
     TrajectoryFeedback,
     TrajectoryPoint,
     TrajectoryRequest,
     TrajectoryResult,
     TrajectorySample,
+    TrajectoryStateRequest,
+    TrajectoryStateResponse,
 )
 from daidalos.control.tolerances import Tolerances
 from daidalos.control.trajectory import Trajectory, integrated, waypoints
@@ -108,7 +108,7 @@ class JointTrajectoryController(Controller):
     @property
     def services(self) -> Mapping[str, Service]:
         """What is wanted at a time."""
-        return {"~/query_state": Service(StateQuestion, self._answer)}
+        return {"~/query_state": Service(TrajectoryStateRequest, self._answer)}
 
     @property
     def actions(self) -> Mapping[str, Action]:
@@ -145,11 +145,11 @@ class JointTrajectoryController(Controller):
             self._hold(self._actual()[0])
         goal.finish("canceled", TrajectoryResult(TrajectoryResult.SUCCESSFUL, "canceled"))
 
-    def _answer(self, question: StateQuestion) -> StateAnswer:
+    def _answer(self, question: TrajectoryStateRequest) -> TrajectoryStateResponse:
         if question.time_ns < self._begun_ns:
-            return StateAnswer(known=False)
+            return TrajectoryStateResponse(known=False)
         elapsed = (question.time_ns - self._start_ns) * 1e-9
-        return StateAnswer(True, self._joints, _point(self._trajectory.sample(elapsed), elapsed))
+        return TrajectoryStateResponse(True, self._joints, _point(self._trajectory.sample(elapsed), elapsed))
 
     # Life
 

@@ -71,7 +71,7 @@ def read_include(element: Element, context: Context, read_model: Callable[[Eleme
     return Included(model, pose)
 
 
-def settle_missing(
+def resolve_missing(
     missing: Mapping[str, tuple[RelativePose, Element]], graph: FrameGraph, joints: list[Element], context: Context
 ) -> list[Element]:
     """Keep the places of models that were not found, and return the joints that are not tied to one.

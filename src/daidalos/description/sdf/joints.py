@@ -27,11 +27,13 @@ _AXES = {
 FramePose = Callable[[str, Element], Pose]
 """Takes a frame's name and the element that asks, returns its pose in the model."""
 
-LinkOf = Callable[[str, Element], str]
+LinkResolver = Callable[[str, Element], str]
 """Takes the name of a link, frame or joint, returns the link that it is attached to."""
 
 
-def read_joint(element: Element, context: Context, own: str, frame: FramePose, link_of: LinkOf, root: str) -> Joint:
+def read_joint(
+    element: Element, context: Context, own: str, frame: FramePose, link_of: LinkResolver, root: str
+) -> Joint:
     """Read a joint.
 
     Parameters
@@ -86,7 +88,7 @@ def _type(element: Element) -> JointType:
         raise element.error(f"unknown joint type {word!r}; known are {known}") from None
 
 
-def _end(element: Element, end: str, link_of: LinkOf) -> str:
+def _end(element: Element, end: str, link_of: LinkResolver) -> str:
     child = element.require(end)
     name = child.text.strip() or child.text_of("link_name")
     if not name:

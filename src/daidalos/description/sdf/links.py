@@ -22,13 +22,13 @@ from daidalos.description.sdf.context import Context
 from daidalos.description.sdf.geometry import read_geometry
 from daidalos.description.sdf.materials import read_color, read_material
 
-Placer = Callable[[Element], Pose]
+PoseResolver = Callable[[Element], Pose]
 """Takes an element with a ``<pose>``, returns that pose in the frame of the link that carries it."""
 
 _UNUSED = ("projector", "particle_emitter", "audio_source", "audio_sink")
 
 
-def read_link(element: Element, context: Context, pose: Pose, place: Placer) -> Link:
+def read_link(element: Element, context: Context, pose: Pose, place: PoseResolver) -> Link:
     """Read a link.
 
     Parameters
@@ -65,7 +65,7 @@ def read_link(element: Element, context: Context, pose: Pose, place: Placer) -> 
     return _with_automatic_inertia(link, element) if automatic else link
 
 
-def read_sensor(element: Element, place: Placer) -> Sensor:
+def read_sensor(element: Element, place: PoseResolver) -> Sensor:
     """Read what all sensors share; the rest stays in `Sensor.element`."""
     rate = element.number_of("update_rate", default=0.0)
     if rate < 0:
@@ -129,7 +129,7 @@ def read_light(element: Element, pose: Pose) -> Light:
     )
 
 
-def _inertial(element: Element, place: Placer) -> Inertial:
+def _inertial(element: Element, place: PoseResolver) -> Inertial:
     """Read mass properties; what is missing is one, as SDF says."""
     mass = element.number_of("mass", default=1.0)
     if mass < 0:
@@ -155,7 +155,7 @@ def _with_automatic_inertia(link: Link, element: Element) -> Link:
     return replace(link, inertial=Inertial(mass, computed.pose, (xx, xy, xz, yy, yz, zz)))
 
 
-def _visual(element: Element, context: Context, place: Placer) -> Visual:
+def _visual(element: Element, context: Context, place: PoseResolver) -> Visual:
     flags = element.number_of("visibility_flags", default=float(0xFFFFFFFF))
     return Visual(
         geometry=read_geometry(element, context),
@@ -184,7 +184,7 @@ def _is_label(plugin: Element) -> bool:
     return "label" in plugin.attribute("filename", "").lower() or plugin.attribute("name", "").endswith("::Label")
 
 
-def _collision(element: Element, context: Context, place: Placer) -> Collision:
+def _collision(element: Element, context: Context, place: PoseResolver) -> Collision:
     surface = element.first("surface")
     return Collision(
         geometry=read_geometry(element, context),

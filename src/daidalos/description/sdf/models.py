@@ -10,7 +10,7 @@ from daidalos.description.link import Link, Plugin
 from daidalos.description.markup import Element
 from daidalos.description.sdf.context import Context
 from daidalos.description.sdf.frames import FrameGraph, RelativePose, read_pose
-from daidalos.description.sdf.includes import read_include, settle_missing
+from daidalos.description.sdf.includes import read_include, resolve_missing
 from daidalos.description.sdf.joints import read_joint
 from daidalos.description.sdf.links import labelled, read_label, read_link, read_plugin
 from daidalos.description.world import Model
@@ -41,7 +41,7 @@ def place_nested(graph: FrameGraph, model: Model, pose: RelativePose, element: E
         graph.add(f"{model.name}::{name}", RelativePose(frame), model.name, element)
 
 
-def carried_by(model: Model, prefix: str) -> dict[str, str]:
+def link_names(model: Model, prefix: str) -> dict[str, str]:
     """Return what a scope can call the links of a model in it, its frames and the model itself, with the link of each.
 
     Parameters
@@ -112,7 +112,7 @@ class _ModelReader:
                 model, pose = read_model(child, self._context), read_pose(child)
             self._nested.append((model, merged))
             place_nested(self._graph, model, pose, child)
-            self._attached |= carried_by(model, "" if merged else f"{model.name}::")
+            self._attached |= link_names(model, "" if merged else f"{model.name}::")
             if merged:
                 for name in model.frames:
                     self._graph.add(name, RelativePose(), f"{model.name}::{name}", child)
@@ -126,7 +126,7 @@ class _ModelReader:
             self._graph.add(child.name(), read_pose(child), attached_to or ROOT, child)
             self._attached[child.name()] = attached_to or ROOT
         joints = self._element.all("joint")
-        self._joints = settle_missing(self._missing, self._graph, joints, self._context)
+        self._joints = resolve_missing(self._missing, self._graph, joints, self._context)
         for child in self._joints:
             end = child.require("child")
             name = end.text.strip() or end.text_of("link_name")

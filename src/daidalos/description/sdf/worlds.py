@@ -12,11 +12,11 @@ from daidalos.description.markup import Element
 from daidalos.description.sdf.actors import read_actor
 from daidalos.description.sdf.context import Context
 from daidalos.description.sdf.frames import FrameGraph, RelativePose, read_pose
-from daidalos.description.sdf.includes import read_include, settle_missing
+from daidalos.description.sdf.includes import read_include, resolve_missing
 from daidalos.description.sdf.joints import read_joint
 from daidalos.description.sdf.links import read_light, read_plugin
 from daidalos.description.sdf.materials import read_color
-from daidalos.description.sdf.models import carried_by, place_nested, read_model
+from daidalos.description.sdf.models import link_names, place_nested, read_model
 from daidalos.description.sdf.population import population_poses
 from daidalos.description.world import (
     Actor,
@@ -29,7 +29,7 @@ from daidalos.description.world import (
 )
 
 ROOT = "world"
-FARTHEST = 1e6
+MAX_DISTANCE = 1e6
 """What stands farther off [m] fell through its floor before it was saved; forces would grow beyond all numbers."""
 
 
@@ -107,7 +107,7 @@ class _WorldReader:
                 self._graph.add(child.name(), read_pose(child), default, child)
                 self._attached[child.name()] = default
         joints = self._element.all("joint")
-        self._joints = settle_missing(self._missing, self._graph, joints, self._context)
+        self._joints = resolve_missing(self._missing, self._graph, joints, self._context)
         for child in self._joints:
             self._graph.add(child.name(), read_pose(child), child.text_of("child"), child)
             self._attached[child.name()] = child.text_of("child")
@@ -152,7 +152,7 @@ class _WorldReader:
         for model, element in self._models:
             pose = self._graph.pose(model.name, element)
             farthest = max(map(abs, pose.position))
-            if farthest > FARTHEST:
+            if farthest > MAX_DISTANCE:
                 self._context.warn(element, f"{model.name!r} is {farthest:.3g} m away, left out")
             else:
                 yield replace(model, pose=pose)
@@ -169,7 +169,7 @@ class _WorldReader:
             seen.append(name)
             name = self._attached[name]
         for model, _ in self._models:
-            carried = carried_by(model, f"{model.name}::")
+            carried = link_names(model, f"{model.name}::")
             if name in carried:
                 return carried[name]
         if name == ROOT:

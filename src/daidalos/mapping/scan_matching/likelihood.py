@@ -41,7 +41,7 @@ def build_likelihood(points: Array, resolution: float, deviation: float, depth: 
     corner = points.min(axis=0) - margin - (1 << depth) * resolution
     columns, rows = np.ceil((points.max(axis=0) + margin - corner) / resolution).astype(int)
     levels = np.zeros((depth + 1, int(rows), int(columns)), np.uint8)
-    _smear(points, levels[0], corner, float(resolution), _kernel(resolution, deviation))
+    _blur(points, levels[0], corner, float(resolution), _kernel(resolution, deviation))
     for level in range(1, depth + 1):
         _widen(levels[level - 1], levels[level], 1 << (level - 1))
     return Likelihood(levels, corner, float(resolution))
@@ -56,7 +56,7 @@ def _kernel(resolution: float, deviation: float) -> Cells:
 
 
 @compiled
-def _smear(points: Array, cells: Cells, corner: Array, resolution: float, kernel: Cells) -> None:
+def _blur(points: Array, cells: Cells, corner: Array, resolution: float, kernel: Cells) -> None:
     rows, columns = cells.shape
     half = kernel.shape[0] // 2
     for i in range(points.shape[0]):

@@ -157,7 +157,7 @@ class RegulatedPurePursuitController(Controller):
         if p.use_regulated_linear_velocity_scaling and radius < p.regulated_linear_scaling_min_radius:
             speed *= radius / p.regulated_linear_scaling_min_radius
         if p.use_cost_regulated_linear_velocity_scaling:
-            speed *= self._narrowness(control)
+            speed *= self._proximity_scale(control)
         speed = max(speed, min(p.regulated_linear_scaling_min_speed, self._speed_limit))
         speed = min(speed, p.rotate_to_heading_angular_vel * radius)
         remaining = control.distance_to_goal
@@ -168,7 +168,7 @@ class RegulatedPurePursuitController(Controller):
         present = float(control.velocity[0])
         return min(max(speed, present - step), present + step)
 
-    def _narrowness(self, control: ControlInput) -> float:
+    def _proximity_scale(self, control: ControlInput) -> float:
         """Share of the speed that the nearest obstacle allows; the inflated cost tells its distance."""
         p = self.parameters
         cost = control.costmap.cost_at(float(control.pose[0]), float(control.pose[1]))

@@ -117,9 +117,9 @@ class RotationShimController(Controller):
         """Whether the robot looks away from the path, and has room to turn; once begun, until it does not."""
         p = self.parameters
         enough = p.angular_disengage_threshold if self._turning else p.angular_dist_threshold
-        return abs(angle) > enough and self._has_room(control, angle)
+        return abs(angle) > enough and self._can_turn(control, angle)
 
-    def _has_room(self, control: ControlInput, angle: float) -> bool:
+    def _can_turn(self, control: ControlInput, angle: float) -> bool:
         """Whether the turn, as far as it is simulated, touches nothing that the robot does not touch now."""
         if self.footprint.circular:
             return True

@@ -16,8 +16,8 @@ from daidalos.navigation.costmap.costmap import (
 from daidalos.navigation.paths import with_headings
 from daidalos.navigation.planners.navigation_function import (
     descend,
+    nearest_passable_cell,
     nearest_reached,
-    nearest_way_out,
     propagate,
 )
 from daidalos.navigation.planners.planner import (
@@ -158,7 +158,7 @@ def _way_out(costmap: Costmap, first: Cell, step: NDArray[np.float32], start: Ar
     if np.isfinite(step[costmap.costs[first[1], first[0]]]):
         return first
     reach = ESCAPE_RADIUS / costmap.resolution
-    column, row = nearest_way_out(costmap.costs, step, first[0], first[1], reach)
+    column, row = nearest_passable_cell(costmap.costs, step, first[0], first[1], reach)
     if column < 0:
         raise StartOccupied(f"the robot at {_words(start)} is enclosed by obstacles and no free cell is near")
     return column, row

@@ -11,7 +11,7 @@ from daidalos.navigation.costmap.costmap import INSCRIBED_INFLATED_OBSTACLE, Cos
 Array = NDArray[np.float64]
 Field = NDArray[np.float32]
 
-DETOUR_SHARE = 0.1
+MAX_DETOUR_RATIO = 0.1
 """How much nearer to the goal, in cells, a cell must be for each step that the way to it is longer."""
 
 BUCKETS = 64
@@ -201,7 +201,7 @@ def descend(value: Field, goal_x: float, goal_y: float, start_x: float, start_y:
             larger = np.empty((2 * points.shape[0], 2))
             larger[:count] = points[:count]
             points = larger
-        dx, dy = _downhill(value, x, y)
+        dx, dy = _steepest_descent(value, x, y)
         norm = math.hypot(dx, dy)
         if norm > 1e-3:
             nx, ny = x + 0.5 * dx / norm, y + 0.5 * dy / norm
@@ -232,7 +232,7 @@ def _interpolated(value: Field, x: float, y: float) -> np.float32:
 
 
 @compiled
-def _downhill(value: Field, x: float, y: float) -> tuple[float, float]:
+def _steepest_descent(value: Field, x: float, y: float) -> tuple[float, float]:
     """Direction of steepest descent at a point, from the cells around it."""
     column = math.floor(x)
     row = math.floor(y)
@@ -299,7 +299,7 @@ def nearest_reached(value: Field, column: int, row: int, reach: float) -> tuple[
             d = math.hypot(x - column, y - row)
             if d > reach + 1e-6 or value[y, x] == np.inf:
                 continue
-            price = d + DETOUR_SHARE * value[y, x]
+            price = d + MAX_DETOUR_RATIO * value[y, x]
             if price < best:
                 best = price
                 found_column, found_row = x, y
@@ -307,7 +307,7 @@ def nearest_reached(value: Field, column: int, row: int, reach: float) -> tuple[
 
 
 @compiled
-def nearest_way_out(costs: Costs, step: Field, column: int, row: int, reach: float) -> tuple[int, int]:
+def nearest_passable_cell(costs: Costs, step: Field, column: int, row: int, reach: float) -> tuple[int, int]:
     """Nearest passable cell that a blocked cell is connected to; (-1, -1) if there is none.
 
     From inside of the inscribed radius the way leads over inscribed cells only, at any distance; from inside

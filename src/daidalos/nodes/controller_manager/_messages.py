@@ -221,7 +221,7 @@ INCOMING: dict[type, Incoming] = {
     samples.TrajectoryPoint: Incoming(named("trajectory_msgs", "JointTrajectoryPoint"), trajectory_point_command),
 }
 SERVICES: dict[type, ServiceEntry] = {
-    samples.StateQuestion: _trajectory_messages.SERVICE,
+    samples.TrajectoryStateRequest: _trajectory_messages.SERVICE,
     samples.Switched: ServiceEntry(_set_bool, lambda request: samples.Switched(request.data), _fill_answer),
     samples.Asked: ServiceEntry(_trigger, lambda request: samples.Asked(), _fill_answer),
 }

@@ -96,7 +96,7 @@ def _service_type() -> Any:
     return QueryTrajectoryState
 
 
-def _fill(response: Any, answer: samples.StateAnswer) -> Any:
+def _fill(response: Any, answer: samples.TrajectoryStateResponse) -> Any:
     response.success = answer.known
     response.message = "" if answer.known else "the trajectory had not begun at that time"
     response.name = list(answer.joints)
@@ -108,4 +108,4 @@ def _fill(response: Any, answer: samples.StateAnswer) -> Any:
 
 
 ACTION = ActionEntry(_action_type, _request, _feedback, _result)
-SERVICE = ServiceEntry(_service_type, lambda request: samples.StateQuestion(nanoseconds(request.time)), _fill)
+SERVICE = ServiceEntry(_service_type, lambda request: samples.TrajectoryStateRequest(nanoseconds(request.time)), _fill)

@@ -21,7 +21,7 @@ from daidalos.nodes.packages import package_share
 from daidalos.nodes.runner import UserError, run
 
 _LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-_LONGEST_LAG_NS = 1_000_000_000
+_MAX_LAG_NS = 1_000_000_000
 """Delay after which cycles that were missed are left out."""
 
 
@@ -86,7 +86,7 @@ class _Cycles:
     def until(self, now_ns: int) -> Iterator[int]:
         """Yield the instants up to now [ns] that were not yielded before; a clock that jumps starts anew."""
         last = self._at(self._count - 1)
-        if self._start_ns < 0 or not last <= now_ns < last + _LONGEST_LAG_NS:
+        if self._start_ns < 0 or not last <= now_ns < last + _MAX_LAG_NS:
             self._start_ns, self._count = now_ns, 0
         while self._at(self._count) <= now_ns:
             yield self._at(self._count)

@@ -2,14 +2,14 @@
 
 import sys
 
-from daidalos.nodes.hello_world import ask_for_sum
+from daidalos.nodes.hello_world import request_sum
 from daidalos.nodes.runner import run_program
 
 
 def main() -> int:
     """Ask, and log the answer."""
     return run_program(
-        lambda: ask_for_sum(
+        lambda: request_sum(
             "add_two_ints_client", 2, 3, lambda node, total: node.get_logger().info(f"Result of add_two_ints: {total}")
         )
     )

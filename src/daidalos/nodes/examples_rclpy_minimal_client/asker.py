@@ -2,7 +2,7 @@
 
 import sys
 
-from daidalos.nodes.hello_world import ask_for_sum
+from daidalos.nodes.hello_world import request_sum
 from daidalos.nodes.runner import run_program
 
 _A, _B = 41, 1
@@ -11,7 +11,7 @@ _A, _B = 41, 1
 def main() -> int:
     """Ask, and log the answer."""
     return run_program(
-        lambda: ask_for_sum(
+        lambda: request_sum(
             "minimal_client",
             _A,
             _B,

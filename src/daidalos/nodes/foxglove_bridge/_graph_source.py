@@ -144,7 +144,7 @@ class RosGraphSource:
         impl = handle.impl
         closed = threading.Event()
 
-        def hand_on() -> None:
+        def forward() -> None:
             taken = impl.take_raw()
             while taken is not None and not closed.is_set():
                 # Where time is simulated, that is when a message came.
@@ -152,7 +152,7 @@ class RosGraphSource:
                 received(stamp, taken[0])
                 taken = impl.take_raw()
 
-        handle.set_on_ready(hand_on)
+        handle.set_on_ready(forward)
 
         def close() -> None:
             closed.set()

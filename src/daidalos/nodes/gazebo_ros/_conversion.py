@@ -77,7 +77,7 @@ def floats(values: Any) -> array[float]:
     return result
 
 
-def octets(values: Any) -> array[int]:
+def array_bytes(values: Any) -> array[int]:
     """Return the memory of an array as a message's field of bytes."""
     result = array("B")
     result.frombytes(np.ascontiguousarray(values).data.cast("B"))

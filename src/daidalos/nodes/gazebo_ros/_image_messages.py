@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from daidalos.nodes.gazebo_ros._conversion import Outgoing, header, named, octets
+from daidalos.nodes.gazebo_ros._conversion import Outgoing, array_bytes, header, named
 from daidalos.nodes.gazebo_ros._states import pose_message
 from daidalos.simulation import samples
 
@@ -25,7 +25,7 @@ def _image(sample: samples.ImageSample) -> Any:
         encoding=sample.encoding,
         is_bigendian=0,
         step=pixels.strides[0],
-        data=octets(pixels),
+        data=array_bytes(pixels),
     )
 
 
@@ -65,7 +65,7 @@ def _points(sample: samples.PointCloudSample) -> Any:
         is_bigendian=False,
         point_step=4 * len(bands),
         row_step=4 * len(bands) * columns,
-        data=octets(buffer),
+        data=array_bytes(buffer),
         is_dense=bool(np.isfinite(sample.points).all()),
     )
 

@@ -12,7 +12,7 @@ from daidalos.simulation import Simulation
 from daidalos.simulation.samples import Sample
 
 T = TypeVar("T")
-_LONGEST_LAG_NS = 200_000_000
+_MAX_LAG_NS = 200_000_000
 """Delay after which lost time is not made up for."""
 
 
@@ -182,7 +182,7 @@ class PacedSimulation:
         if self.real_time_factor <= 0.0:
             return now
         due += int(self._period_ns / self.real_time_factor)
-        return now if due < now - _LONGEST_LAG_NS else due
+        return now if due < now - _MAX_LAG_NS else due
 
     def _measure(self, mark: tuple[int, int]) -> tuple[int, int]:
         """Update the measured speed once a second."""

@@ -11,7 +11,7 @@ from daidalos.nodes.keyboard import Keyboard
 from daidalos.nodes.teleoperation import run_with_keyboard
 
 _HELP = "Use arrow keys to move, q to exit."
-_HELD_S = 0.4  # a key that is held comes again within this time
+_KEY_REPEAT_S = 0.4  # a key that is held comes again within this time
 
 # Forward and to the left.
 _MOVES = {"up": (1, 0), "down": (-1, 0), "left": (0, 1), "right": (0, -1)}
@@ -56,7 +56,7 @@ class KeyTeleop(Node):
     def _held(self) -> tuple[int, int]:
         """Return what the keys that are held mean together."""
         now_ns = self.get_clock().now().nanoseconds
-        held = [key for key, pressed_ns in self._pressed_ns.items() if now_ns - pressed_ns < _HELD_S * 1e9]
+        held = [key for key, pressed_ns in self._pressed_ns.items() if now_ns - pressed_ns < _KEY_REPEAT_S * 1e9]
         return sum(_MOVES[key][0] for key in held), sum(_MOVES[key][1] for key in held)
 
     def _publish(self, linear: float, angular: float) -> None:

@@ -41,11 +41,11 @@ from daidalos.nodes.cycles import wait_until
 from daidalos.nodes.managed import ManagedNode
 from daidalos.nodes.nav2_costmap_2d._costmap_messages import costmap_message, footprint_message
 from daidalos.nodes.parameters import declare_dataclass, declare_plugin
-from daidalos.nodes.transforms import PatientBuffer
+from daidalos.nodes.transforms import BlockingBuffer
 from daidalos.nodes.warming import warm_up_in_background
 
 _LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-_ASKING_HZ = 20.0
+_POLL_HZ = 20.0
 _FIRST_UPDATE_S = 15.0
 _DEFAULT_PLUGINS = {
     "static_layer": "nav2_costmap_2d::StaticLayer",
@@ -103,7 +103,7 @@ class CostmapNode(ManagedNode):
         self.declare_parameter("map_topic", "/map")
         self._parameters_of_grid = declare_dataclass(self, CostmapParameters)
         self.footprint = self._read_footprint()
-        self.buffer = PatientBuffer(node=self)
+        self.buffer = BlockingBuffer(node=self)
         self._listener = TransformListener(self.buffer, self)
         self._sensor_poses: dict[str, Any] = {}
         self._compiled = warm_up_in_background("daidalos.navigation", self.get_logger())
@@ -278,8 +278,8 @@ class CostmapNode(ManagedNode):
         """
         await self._compiled
         limit_s = limit_s if self._updates else max(limit_s, _FIRST_UPDATE_S)
-        if not await wait_until(self._is_current, node, _ASKING_HZ, limit_s):
-            raise CostmapTimedOut(f"the {self.get_name()} is not known yet: {self._what_is_missing()}")
+        if not await wait_until(self._is_current, node, _POLL_HZ, limit_s):
+            raise CostmapTimedOut(f"the {self.get_name()} is not known yet: {self._missing_inputs()}")
 
     def _is_current(self) -> bool:
         return self._updates > 0 and self._has_maps()
@@ -288,7 +288,7 @@ class CostmapNode(ManagedNode):
         layers = self.layered.layers if self.layered is not None else []
         return all(layer.extent is not None for layer in layers if isinstance(layer, StaticLayer))
 
-    def _what_is_missing(self) -> str:
+    def _missing_inputs(self) -> str:
         if self.robot_pose() is None:
             return f"there is no transform from {self.base_frame} to {self.global_frame}"
         return "there is no map" if not self._has_maps() else "it was not yet updated"

@@ -23,7 +23,7 @@ _TIMEOUT_S = 5.0
 
 
 @dataclass(frozen=True)
-class Wish:
+class SaveRequest:
     """What is to be saved, and how.
 
     Attributes
@@ -54,7 +54,7 @@ def declare_parameters(node: Node) -> None:
     node.declare_parameter("map_subscribe_transient_local", True)
 
 
-async def save(node: Node, wish: Wish) -> bool:
+async def save(node: Node, wish: SaveRequest) -> bool:
     """Wait for a map and write it; False, after a word in the log, when that failed."""
     log = node.get_logger()
     log.info(f"Saving map from '{wish.topic}' topic to '{wish.stem}' file")
@@ -98,7 +98,7 @@ async def _next_map(node: Node, topic: str) -> Any:
         node.destroy_subscription(subscription)
 
 
-def _write(node: Node, message: Any, wish: Wish) -> tuple[Any, Any]:
+def _write(node: Node, message: Any, wish: SaveRequest) -> tuple[Any, Any]:
     # The message's resolution has 32 bits; the file says what its writer meant, such as 0.05.
     resolution = float(str(np.float32(message.info.resolution)))
     x, y, yaw = pose2_of(message.info.origin).tolist()

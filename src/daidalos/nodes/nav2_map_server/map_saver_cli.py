@@ -8,7 +8,7 @@ import sys
 from rclpy.node import Node
 from rclpy.utilities import remove_ros_args
 
-from daidalos.nodes.nav2_map_server._saving import FORMATS, MODES, Wish, declare_parameters, save
+from daidalos.nodes.nav2_map_server._saving import FORMATS, MODES, SaveRequest, declare_parameters, save
 from daidalos.nodes.runner import run_program
 
 
@@ -33,7 +33,7 @@ def _save(arguments: argparse.Namespace) -> bool:
     try:
         declare_parameters(node)
         stem = arguments.stem or f"map_{node.get_clock().now().nanoseconds // 1_000_000_000}"
-        wish = Wish(arguments.topic, stem, arguments.mode, arguments.fmt, arguments.occ, arguments.free)
+        wish = SaveRequest(arguments.topic, stem, arguments.mode, arguments.fmt, arguments.occ, arguments.free)
         executor = SingleThreadedExecutor()
         executor.add_node(node)
         task = executor.create_task(save, node, wish)

@@ -6,7 +6,7 @@ import sys
 from typing import Any
 
 from daidalos.nodes.managed import ManagedNode
-from daidalos.nodes.nav2_map_server._saving import Wish, declare_parameters, save
+from daidalos.nodes.nav2_map_server._saving import SaveRequest, declare_parameters, save
 from daidalos.nodes.runner import run
 
 
@@ -27,7 +27,7 @@ class MapSaver(ManagedNode):
         if not self.is_active:
             self.get_logger().error("Received save_map request but not in ACTIVE state, ignoring!")
             return response
-        wish = Wish(
+        wish = SaveRequest(
             request.map_topic or "map",
             request.map_url,
             request.map_mode,

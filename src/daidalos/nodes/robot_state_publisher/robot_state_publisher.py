@@ -30,7 +30,7 @@ _LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
 @dataclass(frozen=True)
-class _Told:
+class _JointUpdate:
     """What a message about certain joints means.
 
     Parameters
@@ -96,7 +96,7 @@ class RobotStatePublisher(Node):
         self._tree = KinematicTree(parse_description(text, source))
         self._positions = np.zeros(len(self._tree.joint_names))
         self._last_ns = np.zeros(len(self._tree.joint_names), dtype=np.int64)
-        self._told: dict[tuple[str, ...], _Told] = {}
+        self._told: dict[tuple[str, ...], _JointUpdate] = {}
         self._prefix = self.get_parameter("frame_prefix").value
         self._static_broadcaster.sendTransform(
             self._transforms(np.flatnonzero(~self._tree.moving & ~self._tree.floating), self.get_clock().now().to_msg())
@@ -142,7 +142,7 @@ class RobotStatePublisher(Node):
                 told.bytes.write(stamp.sec, stamp.nanosec, translations[told.moved], rotations[told.moved])
             )
 
-    def _meaning(self, names: tuple[str, ...]) -> _Told:
+    def _meaning(self, names: tuple[str, ...]) -> _JointUpdate:
         """Return what a message about these joints means; it is worked out once for those that are told of together."""
         if names not in self._told:
             if len(self._told) >= _KEPT:
@@ -151,7 +151,7 @@ class RobotStatePublisher(Node):
             places = [(column, index[name]) for column, name in enumerate(names) if name in index]
             columns, rows = np.array(places, dtype=np.intp).reshape(-1, 2).T
             moved = np.flatnonzero(np.isin(self._tree.drivers, rows))
-            self._told[names] = _Told(
+            self._told[names] = _JointUpdate(
                 columns,
                 rows,
                 moved,

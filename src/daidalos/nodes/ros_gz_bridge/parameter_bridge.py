@@ -78,11 +78,11 @@ class ParameterBridge(Node):
         if bridge.direction != "ROS_TO_GZ":
             outward = self.create_publisher(kind, bridge.ros_topic, 10, qos_overriding_options=overrides)
             own.add(outward.handle.impl.endpoint.gid)
-            self._gz_side.create_subscription(kind, gz, _passing_on(outward, own), 10)
+            self._gz_side.create_subscription(kind, gz, _forwarding_callback(outward, own), 10)
         if bridge.direction != "GZ_TO_ROS":
             inward = self._gz_side.create_publisher(kind, gz, 10)
             own.add(inward.handle.impl.endpoint.gid)
-            take = _passing_on(inward, own)
+            take = _forwarding_callback(inward, own)
             self.create_subscription(kind, bridge.ros_topic, take, 10, qos_overriding_options=overrides)
         self.get_logger().info(f"{gz} is {ros} ({bridge.ros_type}, {bridge.direction})")
 
@@ -93,7 +93,7 @@ class ParameterBridge(Node):
         super().destroy_node()
 
 
-def _passing_on(publisher: Any, own: set[bytes]) -> Callable[[Any, Any], None]:
+def _forwarding_callback(publisher: Any, own: set[bytes]) -> Callable[[Any, Any], None]:
     """Return a callback that says on one side what it heard on the other, but for what this bridge said itself."""
 
     def take(message: Any, info: Any) -> None:

@@ -46,7 +46,7 @@ class SlamToolbox(Node):
         from slam_toolbox.srv import Reset, SaveMap
         from tf2_ros import TransformBroadcaster, TransformListener
 
-        from daidalos.nodes.transforms import PatientBuffer
+        from daidalos.nodes.transforms import BlockingBuffer
 
         self._config = declare_dataclass(self, SlamConfig, match_every_scan=True)
         self._map_frame = self.declare_parameter("map_frame", "map").value
@@ -64,7 +64,7 @@ class SlamToolbox(Node):
         self._scans = 0
         self._drawn_keys = -1
         self._map_to_odom: Any = None
-        self._buffer = PatientBuffer()
+        self._buffer = BlockingBuffer()
         self._listener = TransformListener(self._buffer, self)
         self._broadcaster = TransformBroadcaster(self)
         self._map_publisher = self.create_publisher(OccupancyGrid, "map", _LATCHED)

@@ -60,18 +60,18 @@ class TransformMonitor(Node):
         self._all = _Delays()
         self._net = _Delays()
         latched = QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-        self.create_subscription(TFMessage, "/tf", self._hear, 100)
-        self.create_subscription(TFMessage, "/tf_static", self._hear_fixed, latched)
+        self.create_subscription(TFMessage, "/tf", self._receive, 100)
+        self.create_subscription(TFMessage, "/tf_static", self._receive_static, latched)
         self.create_timer(_GATHER_S, self._report)
         if chain is None:
             print("Gathering data on all frames for 10 seconds...", flush=True)
         else:
             print(f"Waiting for transform chain to become available between {chain[0]} and {chain[1]} ", flush=True)
 
-    def _hear(self, message: Any) -> None:
+    def _receive(self, message: Any) -> None:
         self._note(message.transforms, fixed=False)
 
-    def _hear_fixed(self, message: Any) -> None:
+    def _receive_static(self, message: Any) -> None:
         self._note(message.transforms, fixed=True)
 
     def _note(self, transforms: list[Any], *, fixed: bool) -> None:

@@ -11,7 +11,7 @@ from rclpy.parameter import Parameter
 from rclpy.utilities import remove_ros_args
 
 from daidalos.nodes.runner import run
-from daidalos.nodes.topic_tools._passing import Passage
+from daidalos.nodes.topic_tools._forwarding import TopicForwarder
 
 
 class Tool(Node):
@@ -30,7 +30,7 @@ class Tool(Node):
             raise RuntimeError(f"{name} needs the parameter 'input_topic'")
         output = str(self.declare_parameter("output_topic", f"{source}_{name}").value)
         lazy = bool(self.declare_parameter("lazy", False).value)
-        self.passage = Passage(self, self.receive, [output], lazy=lazy)
+        self.passage = TopicForwarder(self, self.receive, [output], lazy=lazy)
         self.passage.take_from(source)
 
     def receive(self, content: bytes) -> None:

@@ -6,7 +6,7 @@ import sys
 from collections.abc import Sequence
 from typing import Any
 
-from daidalos.nodes.topic_tools._passing import Passage
+from daidalos.nodes.topic_tools._forwarding import TopicForwarder
 from daidalos.nodes.topic_tools._switch import NONE, Switch
 from daidalos.nodes.topic_tools._tool import run_tool
 
@@ -20,7 +20,7 @@ class DemuxNode(Switch):
         super().__init__("demux", "output_topics", (DemuxAdd, DemuxDelete, DemuxList, DemuxSelect), **kwargs)
         source = str(self.declare_parameter("input_topic", "~/input").value)
         lazy = bool(self.declare_parameter("lazy", False).value)
-        self._passage = Passage(self, self._hand_on, self.topics, lazy=lazy)
+        self._passage = TopicForwarder(self, self._forward_message, self.topics, lazy=lazy)
         self._passage.take_from(source)
         self.choose(self.chosen)
 
@@ -32,7 +32,7 @@ class DemuxNode(Switch):
         """Publish on it no more."""
         self._passage.remove_output(topic)
 
-    def _hand_on(self, content: bytes) -> None:
+    def _forward_message(self, content: bytes) -> None:
         if self.chosen != NONE:
             self._passage.publish(content, self.chosen)
 

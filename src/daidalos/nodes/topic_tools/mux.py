@@ -6,7 +6,7 @@ import sys
 from collections.abc import Sequence
 from typing import Any
 
-from daidalos.nodes.topic_tools._passing import Passage
+from daidalos.nodes.topic_tools._forwarding import TopicForwarder
 from daidalos.nodes.topic_tools._switch import NONE, Switch
 from daidalos.nodes.topic_tools._tool import run_tool
 
@@ -23,7 +23,7 @@ class MuxNode(Switch):
         super().__init__("mux", "input_topics", (MuxAdd, MuxDelete, MuxList, MuxSelect), **kwargs)
         output = str(self.declare_parameter("output_topic", "~/selected_topic").value)
         lazy = bool(self.declare_parameter("lazy", False).value)
-        self._passage = Passage(self, lambda content: self._passage.publish(content), [output], lazy=lazy)
+        self._passage = TopicForwarder(self, lambda content: self._passage.publish(content), [output], lazy=lazy)
         self.choose(self.chosen)
 
     def choose(self, topic: str) -> None:

@@ -50,7 +50,7 @@ class Drawing:
         self._pens.append((pen.r, pen.g, pen.b, max(pen.width, 1)))
         if len(self._lines) > 2 * _MAX_LINES:
             del self._lines[:_MAX_LINES], self._pens[:_MAX_LINES]
-        self._spread_ink(_pixel(start), _pixel(end), pen)
+        self._draw_round_tip(_pixel(start), _pixel(end), pen)
 
     def colour_at(self, x: float, y: float) -> tuple[int, int, int] | None:
         """Return the colour of the ink at a point, None where the paper is blank."""
@@ -87,7 +87,7 @@ class Drawing:
             np.array(self._pens[first:], np.uint8).reshape(-1),
         )
 
-    def _spread_ink(self, start: tuple[float, float], end: tuple[float, float], pen: Pen) -> None:
+    def _draw_round_tip(self, start: tuple[float, float], end: tuple[float, float], pen: Pen) -> None:
         """Colour the pixels that a round tip passes over."""
         radius = max(pen.width, 1) / 2
         columns, rows = (

@@ -103,7 +103,7 @@ class Turtle:
         """Be somewhere else at once; the next step brings it back within the walls."""
         self.x, self.y, self.theta = x, y, normalized(theta)
 
-    def teleport_by(self, linear: float, angular: float) -> None:
+    def teleport_relative(self, linear: float, angular: float) -> None:
         """Turn by an angle, then be somewhere ahead, at once."""
         theta = normalized(_single(self.theta + angular))
         self.teleport(self.x + linear * math.cos(theta), self.y + linear * math.sin(theta), theta)

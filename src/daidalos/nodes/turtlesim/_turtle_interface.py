@@ -116,7 +116,7 @@ class TurtleInterface:
     def _on_teleport_relative(self, request: Any, response: Any) -> Any:
         if self._can_be(request.linear, request.angular):
             before = (self.turtle.x, self.turtle.y)
-            self.turtle.teleport_by(request.linear, request.angular)
+            self.turtle.teleport_relative(request.linear, request.angular)
             self._moved(self.turtle, before)
         return response
 

@@ -39,7 +39,7 @@ class TwistMux(Node):
             raise RuntimeError("twist_mux needs sources: parameters such as 'topics.navigation.topic'")
         self._commands: Publisher = self.create_publisher(kind, "cmd_vel_out", 10)
         for source in self._sources:
-            self.create_subscription(kind, source.topic, partial(self._pass_on, source), 10)
+            self.create_subscription(kind, source.topic, partial(self._forward_message, source), 10)
         for lock in self._locks:
             self.create_subscription(Bool, lock.topic, partial(self._set_lock, lock), 10)
         self._diagnostics = Updater(self)
@@ -70,7 +70,7 @@ class TwistMux(Node):
     def _now(self) -> float:
         return self.get_clock().now().nanoseconds * 1e-9
 
-    def _pass_on(self, source: Source, message: Any) -> None:
+    def _forward_message(self, source: Source, message: Any) -> None:
         source.received_at = self._now()
         if active(self._sources, self._locks, source.received_at) is source:
             self._commands.publish(message)

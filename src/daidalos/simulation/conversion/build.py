@@ -17,7 +17,7 @@ from daidalos.simulation.conversion.assets import Assets
 from daidalos.simulation.conversion.contact import set_surface
 from daidalos.simulation.conversion.couplings import close_loop, couple
 from daidalos.simulation.conversion.geometry import add_geoms, add_rolling, only_seen
-from daidalos.simulation.conversion.inertia import principal_inertia, smallest_inertia
+from daidalos.simulation.conversion.inertia import min_inertia, principal_inertia
 from daidalos.simulation.conversion.joints import add_joints, mimicked_start, start_position
 from daidalos.simulation.conversion.model_build import GeomInfo, ModelBuild, apply_inertia
 from daidalos.simulation.conversion.wheels import is_caster, wheel_disc
@@ -171,7 +171,7 @@ class _Builder:
             self._add_collision(body, link, collision, index)
         self._warn_of_unseen(link)
         if link.name in self._solid_without_mass and not body.geoms:
-            apply_inertia(body, smallest_inertia())
+            apply_inertia(body, min_inertia())
         return body
 
     def _warn_of_unseen(self, link: Link) -> None:
@@ -190,7 +190,7 @@ class _Builder:
 
     def _set_inertia(self, body: Any, link: Link) -> None:
         if link.name in self._empty_without_mass:
-            inertia = smallest_inertia()
+            inertia = min_inertia()
         elif link.inertial is not None and link.inertial.mass > 0 and not self._model.static:
             inertia = principal_inertia(link.inertial)
         else:

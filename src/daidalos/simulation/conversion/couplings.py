@@ -11,7 +11,7 @@ from daidalos.description.joint import Joint
 from daidalos.simulation.conversion.joints import add_joints
 
 SOLREF = (0.004, 1.0)
-_GHOST_SHARE = 0.01
+_GHOST_MASS_RATIO = 0.01
 _MIN_MASS = 1e-4
 
 
@@ -58,11 +58,11 @@ def close_loop(spec: Any, parent: Any, child: Any, joint: Joint, name: str) -> l
         Names of MuJoCo's joints.
     """
     ghost = _add_body(parent, f"{name}::ghost", joint.origin @ joint.anchor.inverse)
-    mass = max(_GHOST_SHARE * float(child.mass), _MIN_MASS)
+    mass = max(_GHOST_MASS_RATIO * float(child.mass), _MIN_MASS)
     ghost.explicitinertial = True
     ghost.mass = mass
     ghost.ipos = child.ipos
-    moments = [_GHOST_SHARE * float(moment) for moment in child.inertia]
+    moments = [_GHOST_MASS_RATIO * float(moment) for moment in child.inertia]
     ghost.inertia = moments if child.mass else [1e-2 * mass] * 3
     ghost.iquat = child.iquat
     ghost.gravcomp = 1.0

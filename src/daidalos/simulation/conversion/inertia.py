@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from daidalos.common.pose3 import Pose, Quaternion, multiply, quaternion_from_matrix
 from daidalos.description.link import Inertial
 
-SMALLEST_MASS = 1e-3
-SMALLEST_INERTIA = 1e-9
+MIN_MASS = 1e-3
+MIN_INERTIA = 1e-9
 
 
 @dataclass(frozen=True)
@@ -50,10 +50,10 @@ def principal_inertia(inertial: Inertial) -> PrincipalInertia:
         axes[:, 0] = -axes[:, 0]
     orientation = multiply(inertial.pose.orientation, quaternion_from_matrix(axes))
     changed = ""
-    if moments[0] < SMALLEST_INERTIA:
-        if moments[0] < -1e-12 or moments[2] < SMALLEST_INERTIA:
-            changed = f"the inertia has moments {_words(moments)}, raised to at least {SMALLEST_INERTIA:g}"
-        moments = np.maximum(moments, SMALLEST_INERTIA)
+    if moments[0] < MIN_INERTIA:
+        if moments[0] < -1e-12 or moments[2] < MIN_INERTIA:
+            changed = f"the inertia has moments {_words(moments)}, raised to at least {MIN_INERTIA:g}"
+        moments = np.maximum(moments, MIN_INERTIA)
     excess = (1 + 1e-6) * moments[2] - moments[0] - moments[1]
     if excess > 0:
         if excess > 1e-3 * moments[2]:
@@ -62,10 +62,10 @@ def principal_inertia(inertial: Inertial) -> PrincipalInertia:
     return PrincipalInertia(inertial.mass, inertial.pose.position, orientation, moments, changed)
 
 
-def smallest_inertia() -> PrincipalInertia:
+def min_inertia() -> PrincipalInertia:
     """Return what a moving part without mass gets."""
     pose = Pose()
-    return PrincipalInertia(SMALLEST_MASS, pose.position, pose.orientation, np.full(3, 1e-6))
+    return PrincipalInertia(MIN_MASS, pose.position, pose.orientation, np.full(3, 1e-6))
 
 
 def _words(moments: NDArray[np.float64]) -> str:

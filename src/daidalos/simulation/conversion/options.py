@@ -12,14 +12,14 @@ from daidalos.description.world import Physics, World
 SLEEP_SPEED = 1e-5
 """What moves slower than this for ten steps is at rest [m/s]."""
 
-LARGEST_STEP_NS = 1_000_000
+MAX_STEP_NS = 1_000_000
 """Longer steps are cut into parts: contacts this stiff need 1 ms."""
 
 
 def physics_step(physics: Physics) -> tuple[int, int]:
     """Return the world's step in nanoseconds and how many parts of it are simulated one by one."""
     step_ns = max(1000, round(physics.max_step_size * 1e9))
-    parts = math.ceil(step_ns / LARGEST_STEP_NS)
+    parts = math.ceil(step_ns / MAX_STEP_NS)
     return step_ns // parts * parts, parts
 
 

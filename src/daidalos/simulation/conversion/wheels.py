@@ -18,7 +18,7 @@ _ALONG = 0.999
 _OFF_CENTRE = 0.02
 """Of the radius: how far a disc's axis may be from the joint's."""
 
-_OUT_OF_ROUND = 0.05
+_MAX_ECCENTRICITY = 0.05
 """Of the radius: by how much a mesh may reach further in one direction than in another. A dodecagon passes."""
 
 _DIRECTIONS = 48
@@ -99,7 +99,7 @@ def _of_points(
     reaches = (placed @ directions.T).max(axis=0)
     flat = placed - np.outer(placed @ axle, axle)
     radius = float(np.linalg.norm(flat, axis=1).max())
-    if radius <= 0 or reaches.min() < (1 - _OUT_OF_ROUND) * radius:
+    if radius <= 0 or reaches.min() < (1 - _MAX_ECCENTRICITY) * radius:
         return None
     sideways = placed @ axle
     middle = centre + axle * (sideways.max() + sideways.min()) / 2

@@ -9,7 +9,7 @@ from daidalos.description.markup import Element
 from daidalos.simulation.plugins.base import Parameters, SensorPlugin
 from daidalos.simulation.samples import SignalCommand
 from daidalos.simulation.sensors.base import Sensor
-from daidalos.simulation.sensors.camera import Camera, Lens
+from daidalos.simulation.sensors.camera import Camera, CameraOutput
 from daidalos.simulation.topics import frame
 
 
@@ -38,14 +38,14 @@ class CameraOfSensor(SensorPlugin):
         ros1 = any(child.tag in _ROS1 for child in element)
         name = element.text_of("cameraName", "camera_name", default="" if ros1 else sensor.name)
         frame_id = frame(element.text_of("frameName", "frame_name", default=sensor.frame_id))
-        for lens in sensor.lenses:
-            prefixes = [name, lens.settings.name] if len(sensor.lenses) > 1 else [name]
-            lens.frame_id, lens.points_ahead_x = frame_id, False
-            _set_topics(lens, prefixes, parameters, deep=sensor.kind in ("depth", "rgbd"))
-            _set_optics(lens, element)
+        for output in sensor.outputs:
+            prefixes = [name, output.settings.name] if len(sensor.outputs) > 1 else [name]
+            output.frame_id, output.points_ahead_x = frame_id, False
+            _set_topics(output, prefixes, parameters, deep=sensor.kind in ("depth", "rgbd"))
+            _set_optics(output, element)
             # Of several eyes the first is the one that the others' distances are told from.
-            if lens is not sensor.lenses[0] or len(sensor.lenses) == 1:
-                lens.baseline = element.number_of("hackBaseline", "hack_baseline", default=0.0) or lens.baseline
+            if output is not sensor.outputs[0] or len(sensor.outputs) == 1:
+                output.baseline = element.number_of("hackBaseline", "hack_baseline", default=0.0) or output.baseline
         if element.flag_of("triggered", default="triggered" in parameters.library):
             topic = element.text_of("triggerTopicName", default="image_trigger")
             sensor.trigger = parameters.topic(_remapped(parameters, [name], topic)), SignalCommand
@@ -54,20 +54,20 @@ class CameraOfSensor(SensorPlugin):
 _ROS1 = ("imageTopicName", "cameraInfoTopicName", "cameraName", "frameName", "depthImageTopicName")
 
 
-def _set_topics(lens: Lens, prefixes: Sequence[str], parameters: Parameters, deep: bool) -> None:
+def _set_topics(output: CameraOutput, prefixes: Sequence[str], parameters: Parameters, deep: bool) -> None:
     element = parameters.element
 
     def topic(default: str, *tags: str) -> str:
         name = element.text_of(*tags, default=default) if tags else default
         return parameters.topic(_remapped(parameters, prefixes, name))
 
-    lens.image = topic("image_raw", "imageTopicName")
+    output.image = topic("image_raw", "imageTopicName")
     infos = [topic("camera_info", "cameraInfoTopicName")]
     if deep:
-        lens.depth = topic("depth/image_raw", "depthImageTopicName")
-        lens.points = topic("points", "pointCloudTopicName")
+        output.depth = topic("depth/image_raw", "depthImageTopicName")
+        output.points = topic("points", "pointCloudTopicName")
         infos.append(topic("depth/camera_info", "depthImageCameraInfoTopicName", "depthImageInfoTopicName"))
-    lens.infos = tuple(dict.fromkeys(infos))
+    output.infos = tuple(dict.fromkeys(infos))
 
 
 def _remapped(parameters: Parameters, prefixes: Sequence[str], name: str) -> str:
@@ -76,8 +76,8 @@ def _remapped(parameters: Parameters, prefixes: Sequence[str], name: str) -> str
     return full if parameters.is_remapped(full) or not parameters.is_remapped(name) else name
 
 
-def _set_optics(lens: Lens, element: Element) -> None:
-    settings = lens.settings
+def _set_optics(output: CameraOutput, element: Element) -> None:
+    settings = output.settings
     bent = tuple(
         element.number_of(f"distortion{key.upper()}", f"distortion_{key}", default=value)
         for key, value in zip(("k1", "k2", "t1", "t2", "k3"), settings.pinhole.distortion, strict=True)
@@ -87,7 +87,7 @@ def _set_optics(lens: Lens, element: Element) -> None:
     if not 0 <= near < far:
         raise element.error(f"expected 0 <= min_depth < max_depth, got {near:g} and {far:g}")
     k1, k2, p1, p2, k3 = bent
-    lens.settings = replace(
+    output.settings = replace(
         settings,
         pinhole=replace(settings.pinhole, distortion=(k1, k2, p1, p2, k3)),
         depth_near=near,

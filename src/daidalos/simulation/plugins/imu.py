@@ -45,7 +45,7 @@ class ImuOfModel(Plugin):
         )
         sensor.topic = parameters.topic(element.text_of("topicName", "topic_name", default="imu"))
         sensor.frame_id = frame(element.text_of("frameName", "frame_name", default=sensor.frame_id))
-        _disturb(sensor, element)
+        _apply_noise(sensor, element)
         return (sensor,)
 
 
@@ -68,7 +68,7 @@ class ImuOfSensor(SensorPlugin):
             sensor.starts_level = element.flag_of(
                 "initialOrientationAsReference", "initial_orientation_as_reference", default=False
             )
-            _disturb(sensor, element)
+            _apply_noise(sensor, element)
 
 
 def _offset(element: Element) -> Pose:
@@ -76,7 +76,7 @@ def _offset(element: Element) -> Pose:
     return Pose.from_xyz_rpy(xyz, element.vector_of("rpyOffset", "rpyOffsets", size=3, default=(0.0, 0.0, 0.0)))
 
 
-def _disturb(sensor: Imu, element: Element) -> None:
+def _apply_noise(sensor: Imu, element: Element) -> None:
     stddev = element.number_of("gaussianNoise", "gaussian_noise", default=0.0)
     if stddev > 0:
         sensor.rate_noise = _at_least(sensor.rate_noise, stddev)

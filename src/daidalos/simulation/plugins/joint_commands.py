@@ -12,11 +12,11 @@ from daidalos.description.link import Plugin as Description
 from daidalos.description.markup import Element
 from daidalos.simulation.component import ComponentContext, Subscription
 from daidalos.simulation.conversion.model_build import ModelBuild
-from daidalos.simulation.courses import Course, place_joints
 from daidalos.simulation.instance import Instance
 from daidalos.simulation.plugins.base import Plugin
 from daidalos.simulation.samples import NumberCommand, Sample, TrajectoryCommand
 from daidalos.simulation.topics import absolute_topic
+from daidalos.simulation.trajectory_follower import ActiveTrajectory, place_joints
 
 _GAINS = ("p_gain", "i_gain", "d_gain", "i_min", "i_max", "cmd_min", "cmd_max", "cmd_offset")
 
@@ -33,15 +33,15 @@ class JointPoseTrajectory(Plugin):
         *("serviceName", "use_header_start_time"),
         *(f"{kind}_{what}" for kind in ("position", "velocity") for what in _GAINS),
     )
-    state: Course | None
+    state: ActiveTrajectory | None
 
     def __init__(self, description: Description, context: ComponentContext) -> None:
         super().__init__(description, context)
         element = description.element
         self._holds = self.parameters.library.startswith("gz-")
-        self._initial: Course | None = None
+        self._initial: ActiveTrajectory | None = None
         if self._holds:
-            self._initial = self._initial_course(element)
+            self._initial = self._initial_trajectory(element)
             topic = element.text_of("topic", default=f"/model/{context.model_name}/joint_trajectory")
             self.topic = absolute_topic(topic, context.namespace)
         else:
@@ -56,7 +56,7 @@ class JointPoseTrajectory(Plugin):
         """The trajectory."""
         return {self.topic: Subscription(TrajectoryCommand, self._command)}
 
-    def start(self) -> Course | None:
+    def start(self) -> ActiveTrajectory | None:
         """Hold the joints where the description has them, if it says so."""
         return self._initial
 
@@ -81,9 +81,9 @@ class JointPoseTrajectory(Plugin):
             words = f"there is no movable joint {unknown[0]!r}" if unknown else "it has no points"
             self.context.warn(f"{self.topic}: the trajectory is ignored, {words}")
             return
-        self.state = Course(command, self._now_ns)
+        self.state = ActiveTrajectory(command, self._now_ns)
 
-    def _initial_course(self, element: Element) -> Course | None:
+    def _initial_trajectory(self, element: Element) -> ActiveTrajectory | None:
         """Return a course that stands still at the initial positions, which are in the order of the joints."""
         scope = f"{self.parameters.scope}::" if self.parameters.scope else ""
         joints = self.context.model.joints.values()
@@ -98,7 +98,9 @@ class JointPoseTrajectory(Plugin):
             raise element.error(f"expected at most {len(names)} <initial_position>, got {len(positions)}")
         if not positions:
             return None
-        return Course(TrajectoryCommand(tuple(names[: len(positions)]), np.zeros(1), np.array([positions])), 0)
+        return ActiveTrajectory(
+            TrajectoryCommand(tuple(names[: len(positions)]), np.zeros(1), np.array([positions])), 0
+        )
 
 
 @dataclass

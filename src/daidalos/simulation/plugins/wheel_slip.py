@@ -109,7 +109,7 @@ class WheelSlip(Plugin):
         linear, angular = velocities(physics, self._bodies)
         slips, ahead = self._slips(linear, angular)
         rims = physics.data.qvel[self._dofs] * self._radii
-        grips = self._grips(slips, rims)
+        grips = self._friction_forces(slips, rims)
         forces = grips[:, :1] * _left_of(ahead) + grips[:, 1:] * ahead
         arms = physics.data.xpos[self._bodies] + self._below - physics.data.xipos[self._bodies]
         torques = cross(arms, forces)
@@ -139,7 +139,7 @@ class WheelSlip(Plugin):
         patches = linear + cross(angular, self._below)
         return np.stack([np.sum(patches * way, axis=1) for way in (_left_of(ahead), ahead)], axis=1), ahead
 
-    def _grips(self, slips: Array, rims: Array) -> Array:
+    def _friction_forces(self, slips: Array, rims: Array) -> Array:
         """Return the forces (n, 2) to the left and ahead that hold the contacts."""
         compliances = self._compliances * np.maximum(np.abs(rims), 1e-3)[:, None]
         grips = -slips * np.minimum(1 / np.maximum(compliances, 1e-9), self._limits[:, None])

@@ -16,7 +16,14 @@ from daidalos.simulation.rendering.lighting import Lighting
 from daidalos.simulation.rendering.optics import OPTICAL, Pinhole
 from daidalos.simulation.rendering.pool import Pool
 from daidalos.simulation.rendering.raster import NOTHING, place_parts
-from daidalos.simulation.rendering.renderer import View, background_of, light_table, shines, sort_lights, strength
+from daidalos.simulation.rendering.renderer import (
+    View,
+    background_of,
+    light_color,
+    light_direction,
+    light_table,
+    sort_lights,
+)
 from daidalos.simulation.rendering.scene import Scene
 from daidalos.simulation.rendering.shadows import ShadowMap
 
@@ -64,8 +71,8 @@ class GlRenderer:
         """Find what each pixel sees."""
         if scene is not self._scene:
             self._take(scene)
-        self._eye = pose @ OPTICAL
-        self._view = self._eye.inverse.matrix[:3]
+        self._camera_pose = pose @ OPTICAL
+        self._view = self._camera_pose.inverse.matrix[:3]
         placed = np.empty((len(scene.body), 3, 4))
         place_parts(scene.body, scene.pose, positions, rotations, self._view, placed)
         seen = scene.visible & ((scene.flags & self._mask) != 0)
@@ -158,7 +165,7 @@ class GlRenderer:
         sun: tuple[Light, Pose] | None,
         lights: list[tuple[Light, Pose]],
     ) -> None:
-        direction = np.array((0.0, 0.0, -1.0)) if sun is None else shines(*sun)
+        direction = np.array((0.0, 0.0, -1.0)) if sun is None else light_direction(*sun)
         shadowed = sun is not None and sun[0].cast_shadows and lighting.shadows
         program = self._painter
         program["shadowed"].value = shadowed
@@ -166,7 +173,7 @@ class GlRenderer:
             self._set_shadow(scene, positions, rotations, direction)
         program["ambient"].value = tuple(map(float, lighting.ambient[:3]))
         program["sun"].value = tuple((-(self._view[:, :3] @ direction)).tolist())
-        program["sun_color"].value = (0.0, 0.0, 0.0) if sun is None else tuple(strength(sun[0]).tolist())
+        program["sun_color"].value = (0.0, 0.0, 0.0) if sun is None else tuple(light_color(sun[0]).tolist())
         table = np.zeros((max(len(lights), 1), shaders.LIGHT_TEXELS * 4), dtype=np.float32)
         numbers = light_table(lights, self._view)
         table[: len(lights), : numbers.shape[1]] = numbers
@@ -175,17 +182,17 @@ class GlRenderer:
         low, high = background_of(lighting)
         self._sky["low"].value, self._sky["high"].value = low[:3], high[:3]
         self._sky["lens"].value = tuple(self.pinhole.lens.tolist())
-        self._sky["horizon"].value = tuple(self._eye.matrix[2, :3].tolist())
+        self._sky["horizon"].value = tuple(self._camera_pose.matrix[2, :3].tolist())
 
     def _set_shadow(self, scene: Scene, positions: Array, rotations: Array, direction: Array) -> None:
         if self._shadow_map is None:
             self._shadow_map = ShadowMap()
         shadow = self._shadow_map
-        ahead = np.array(rotate(self._eye.orientation, (0.0, 0.0, 1.0)))
-        shadow.update(scene, positions, rotations, direction, np.array(self._eye.position), ahead, self.far)
+        ahead = np.array(rotate(self._camera_pose.orientation, (0.0, 0.0, 1.0)))
+        shadow.update(scene, positions, rotations, direction, np.array(self._camera_pose.position), ahead, self.far)
         self._fill("shadow", shadow.depths[..., None], 1)
         to_shadow = np.eye(4)
-        to_shadow[:3] = shadow.to_map @ self._eye.matrix
+        to_shadow[:3] = shadow.to_map @ self._camera_pose.matrix
         self._painter["to_shadow"].write(to_shadow.T.astype("f4").tobytes())
         self._painter["offset"].value = (1.5 * shadow.texel, 1.0 * shadow.texel)
 

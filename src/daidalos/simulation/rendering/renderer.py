@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from daidalos.common.pose3 import Pose, rotate
 from daidalos.description.link import Light, Rgba
-from daidalos.simulation.rendering.film import depths_of
+from daidalos.simulation.rendering.image_effects import depths_of
 from daidalos.simulation.rendering.lighting import Lighting
 from daidalos.simulation.rendering.lights import DIRECTIONAL, LIGHT_SIZE, POINT, SPOT
 from daidalos.simulation.rendering.optics import OPTICAL, Pinhole
@@ -114,8 +114,8 @@ class Renderer:
         """
         if self._buffers is None or self._buffers.scene is not scene:
             self._buffers = _Buffers(scene)
-        self._eye = pose @ OPTICAL
-        self._view = self._eye.inverse.matrix[:3]
+        self._camera_pose = pose @ OPTICAL
+        self._view = self._camera_pose.inverse.matrix[:3]
         place_parts(scene.body, scene.pose, positions, rotations, self._view, self._buffers.placed)
         self._inverse.fill(1.0 / self.far)
         self._triangles.fill(NOTHING)
@@ -129,7 +129,7 @@ class Renderer:
         assert self._buffers is not None
         scene = self._buffers.scene
         sun, lights = sort_lights(lighting)
-        direction = np.array((0.0, 0.0, -1.0)) if sun is None else shines(*sun)
+        direction = np.array((0.0, 0.0, -1.0)) if sun is None else light_direction(*sun)
         shadow = self._shadow(scene, positions, rotations, direction, lighting, sun)
         picture = self._pool.take((*self._triangles.shape, 3), np.uint8)
         self._shade(self._triangles, self._inverse, lighting, sun, direction, lights, shadow, picture, blend=False)
@@ -165,8 +165,8 @@ class Renderer:
             return None
         if self._shadow_map is None:
             self._shadow_map = ShadowMap()
-        ahead = np.array(rotate(self._eye.orientation, (0.0, 0.0, 1.0)))
-        eye = np.array(self._eye.position)
+        ahead = np.array(rotate(self._camera_pose.orientation, (0.0, 0.0, 1.0)))
+        eye = np.array(self._camera_pose.position)
         self._shadow_map.update(scene, positions, rotations, direction, eye, ahead, self.far)
         return self._shadow_map
 
@@ -184,7 +184,7 @@ class Renderer:
     ) -> None:
         assert self._buffers is not None
         scene, buffers, view = self._buffers.scene, self._buffers, self._view
-        eye = self._eye.matrix
+        eye = self._camera_pose.matrix
         to_shadow = np.zeros((3, 4)) if shadow is None else shadow.to_map @ eye
         offset = np.zeros(2) if shadow is None else np.array((1.5, 1.0)) * shadow.texel
         colors = background_of(lighting)
@@ -194,7 +194,7 @@ class Renderer:
             scene.atlas.textures, scene.atlas.levels, self.pinhole.lens,
             np.array([color[:3] for color in colors], dtype=np.float32), np.ascontiguousarray(eye[2, :3]),
             np.array(lighting.ambient[:3], dtype=np.float32), -(view[:, :3] @ direction),
-            np.zeros(3, dtype=np.float32) if sun is None else strength(sun[0]), light_table(lights, view),
+            np.zeros(3, dtype=np.float32) if sun is None else light_color(sun[0]), light_table(lights, view),
             _NO_SHADOW if shadow is None else shadow.depths, _NO_SHADOW if shadow is None else shadow.coarse,
             to_shadow, offset, picture, blend,
         )  # fmt: skip
@@ -213,14 +213,14 @@ def sort_lights(lighting: Lighting) -> tuple[tuple[Light, Pose] | None, list[tup
     return sun, [pair for pair in shining if pair is not sun]
 
 
-def shines(light: Light, pose: Pose) -> Array:
+def light_direction(light: Light, pose: Pose) -> Array:
     """Return the unit vector in which a light shines, in the world."""
     direction = np.array(rotate(pose.orientation, light.direction))
     length = float(np.linalg.norm(direction))
     return direction / length if length > 0 else np.array((0.0, 0.0, -1.0))
 
 
-def strength(light: Light) -> NDArray[np.float32]:
+def light_color(light: Light) -> NDArray[np.float32]:
     """Return a light's colour (3,), times how bright it is."""
     return np.array(light.diffuse[:3], dtype=np.float32) * np.float32(light.intensity)
 
@@ -231,8 +231,8 @@ def light_table(lights: list[tuple[Light, Pose]], view: Array) -> Array:
     for row, (light, pose) in zip(table, lights, strict=True):
         row[0] = _KINDS.get(light.type, POINT)
         row[1:4] = view[:, :3] @ pose.position + view[:, 3]
-        row[4:7] = view[:, :3] @ shines(light, pose)
-        row[7:10] = strength(light)
+        row[4:7] = view[:, :3] @ light_direction(light, pose)
+        row[7:10] = light_color(light)
         row[10:14] = (
             light.attenuation_range,
             light.attenuation_constant,

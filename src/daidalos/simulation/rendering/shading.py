@@ -13,7 +13,7 @@ import numpy as np
 
 from daidalos.common.kernels import compiled
 from daidalos.simulation.rendering.lights import light_intensity
-from daidalos.simulation.rendering.sunlight import aim_at_shadow, clear, sunshine
+from daidalos.simulation.rendering.sunlight import aim_at_shadow, clear, sun_visibility
 from daidalos.simulation.rendering.textures import mip_level, sample
 
 _RUN = 32
@@ -167,7 +167,7 @@ def shade(
                     put(line, first, last, sr, sg, sb, alpha)
                 elif flat:
                     for x in range(first, last, 2):
-                        shine = sunshine(shadow, aim, x, depths[x])
+                        shine = sun_visibility(shadow, aim, x, depths[x])
                         put(line, x, min(x + 2, last), ar + shine * (sr - ar), ag + shine * (sg - ag),
                             ab + shine * (sb - ab), alpha)  # fmt: skip
                 elif not plain:
@@ -181,7 +181,7 @@ def shade(
                     for x in range(first, last):
                         # Every other pixel is asked, and its neighbour's answer taken.
                         if (x - first) & 1 == 0:
-                            shine = sunshine(shadow, aim, x, depths[x])
+                            shine = sun_visibility(shadow, aim, x, depths[x])
                         g = (base + slope * np.float32(x)) / depths[x] * shine
                         put_one(line, x, ar + g * sr + gr, ag + g * sg + gg, ab + g * sb + gb, alpha)
                 else:
@@ -248,7 +248,7 @@ def paint_rich(
         z = 1.0 / depths[x]
         g = (base + slope * np.float32(x)) * z
         if dark:
-            g *= sunshine(shadow, aim, x, depths[x])
+            g *= sun_visibility(shadow, aim, x, depths[x])
         red, green, blue = ambient[0] + g * sun_color[0], ambient[1] + g * sun_color[1], ambient[2] + g * sun_color[2]
         if len(lights) > 0:
             w0, w1, w2 = turn * (a0 * x + r0) * z, turn * (a1 * x + r1) * z, turn * (a2 * x + r2) * z

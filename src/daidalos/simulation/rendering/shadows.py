@@ -15,7 +15,7 @@ from daidalos.simulation.rendering.sunlight import BLOCK_BITS, coarsen
 
 Array = NDArray[np.float64]
 
-_LARGEST_REACH = 16.0
+_MAX_REACH = 16.0
 _LINGER = 30
 """Pictures after which what came to rest counts as standing."""
 
@@ -81,7 +81,7 @@ class ShadowMap:
         far : float
             How far it sees [m].
         """
-        reach = min(_LARGEST_REACH, max(far, 0.5)) / 2
+        reach = min(_MAX_REACH, max(far, 0.5)) / 2
         moved = self._aim(light, eye + ahead * 0.8 * reach, 1.2 * reach)
         if scene is not self._scene:
             self._scene, moved = scene, True

@@ -65,7 +65,7 @@ def clear(shadow: Any, coarse: Any, aim: Any, first: Any, inverse_first: Any, la
 
 
 @compiled(fastmath=True, inline=True)
-def sunshine(shadow: Any, aim: Any, x: Any, inverse: Any) -> Any:
+def sun_visibility(shadow: Any, aim: Any, x: Any, inverse: Any) -> Any:
     """Return how much of the sun reaches what a pixel sees."""
     z = 1.0 / inverse
     return visibility(

@@ -9,7 +9,7 @@ import numpy as np
 from daidalos.common.pose3 import Pose
 from daidalos.description.geometry import Box, Plane
 from daidalos.description.link import Light, Material, Visual
-from daidalos.simulation.rendering.film import add_noise, bend, mosaic, pick, points_of
+from daidalos.simulation.rendering.image_effects import add_noise, distort, mosaic, pick, points_of
 from daidalos.simulation.rendering.lighting import Lighting
 from daidalos.simulation.rendering.optics import Pinhole
 from daidalos.simulation.rendering.renderer import Renderer
@@ -31,7 +31,7 @@ def steps() -> Iterator[tuple[float, str]]:
     picture = renderer.paint(positions, rotations, Lighting([(sun, Pose())]))
     yield 0.8, "lenses"
     bent = np.zeros_like(picture)
-    bend(picture, pinhole.lookup, bent)
+    distort(picture, pinhole.lookup, bent)
     depth = view.depth()
     points_of(depth, pinhole.rays, np.zeros((6, 8, 3), dtype=np.float32))
     pick(depth, pinhole.lookup, np.zeros((6, 8), dtype=np.float32))

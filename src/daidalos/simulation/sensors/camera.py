@@ -26,12 +26,12 @@ from daidalos.simulation.sensors.camera_settings import CameraSettings, read_cam
 from daidalos.simulation.topics import absolute_topic
 
 if TYPE_CHECKING:
-    from daidalos.simulation.rendering.eye import Eye
+    from daidalos.simulation.rendering.camera_renderer import CameraRenderer
 
 
 @dataclass
-class Lens:
-    """One eye of a camera sensor and where it publishes; a plugin may change it before it is used.
+class CameraOutput:
+    """One optical system of a camera sensor with its topics; a plugin may change it before it is used.
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ class Lens:
     points_ahead_x : bool
         Points in a frame with x ahead and z up rather than in an optical one.
     baseline : float
-        Distance to the left eye of a stereo pair [m]; goes into the projection matrix.
+        Distance to the left camera of a stereo pair [m]; goes into the projection matrix.
     """
 
     settings: CameraSettings
@@ -79,11 +79,11 @@ class Trigger:
 
 
 class Camera(Sensor):
-    """A camera of one or several eyes, drawn by the software renderer.
+    """Camera sensor with one or several optical systems.
 
     Attributes
     ----------
-    lenses : list of Lens
+    outputs : list of CameraOutput
     trigger : tuple of (str, type) or None
         The topic, and the class of its commands, that makes it look; None where it looks by itself.
     """
@@ -102,19 +102,19 @@ class Camera(Sensor):
         if self.kind == "wideanglecamera":
             context.warn(f"{description.element.where}: sensor {self.name!r}: its lens is drawn as a pinhole")
         elements = description.element.all("camera") or [Element("camera")]
-        self.lenses = [self._lens(element, several=len(elements) > 1) for element in elements]
-        for lens in self.lenses[1:]:
-            # To the right of the first eye, as a stereo pair's projection matrices tell it.
-            lens.baseline = -(self.lenses[0].settings.pose.inverse @ lens.settings.pose).position[1]
-        self._eyes: list[Eye] = []
-        first = self.lenses[0].settings
+        self.outputs = [self._output(element, several=len(elements) > 1) for element in elements]
+        for output in self.outputs[1:]:
+            # To the right of the first camera, as a stereo pair's projection matrices tell it.
+            output.baseline = -(self.outputs[0].settings.pose.inverse @ output.settings.pose).position[1]
+        self._renderers: list[CameraRenderer] = []
+        first = self.outputs[0].settings
         trigger = absolute_topic(first.trigger_topic or f"{self.topic}/trigger", context.namespace)
         self.trigger: tuple[str, type] | None = (trigger, FlagCommand) if first.triggered else None
 
     @property
     def publications(self) -> Mapping[str, type[Sample]]:
-        """Images, calibrations and points of all eyes."""
-        return {topic: kind for lens in self.lenses for topic, kind in lens.topics().items()}
+        """Images, calibrations and points of all outputs."""
+        return {topic: kind for output in self.outputs for topic, kind in output.topics().items()}
 
     @property
     def subscriptions(self) -> Mapping[str, Subscription]:
@@ -125,27 +125,27 @@ class Camera(Sensor):
         self.state.due = isinstance(command, SignalCommand) or command.value
 
     def start(self) -> Trigger:
-        """Make the eyes anew, so that a plugin may have changed their settings."""
-        self._eyes = []
+        """Create the renderers anew, since a plugin may have changed their settings."""
+        self._renderers = []
         self._pool = Pool()
         self._rays: dict[int, NDArray[np.float32]] = {}
         return Trigger()
 
     def update(self, now_ns: int) -> Iterable[Sample]:
-        """Look with the eyes that somebody listens to."""
+        """Render the outputs that have subscribers."""
         if self.trigger and not self.state.due:
             return
         self.state.due = False
         has_subscribers = self.instance.has_subscribers
-        for number, lens in enumerate(self.lenses):
-            wanted = {topic for topic in lens.topics() if has_subscribers(topic)}
+        for number, output in enumerate(self.outputs):
+            wanted = {topic for topic in output.topics() if has_subscribers(topic)}
             if wanted:
-                yield from self._look(number, lens, wanted, now_ns)
+                yield from self._capture(number, output, wanted, now_ns)
 
-    def _lens(self, element: Element, several: bool) -> Lens:
-        """Read an eye and give it the topics that gz would."""
+    def _output(self, element: Element, several: bool) -> CameraOutput:
+        """Read an output and give it the topics that gz would."""
         settings = read_camera(element)
-        lens = Lens(settings, settings.optical_frame or self.frame_id, self.frame_id, points_ahead_x=True)
+        output = CameraOutput(settings, settings.optical_frame or self.frame_id, self.frame_id, points_ahead_x=True)
         description_topic = settings.topic or self.topic
         base = absolute_topic(description_topic, self.context.namespace)
         stem = base.removesuffix("/image") if base == self.topic else base
@@ -155,132 +155,141 @@ class Camera(Sensor):
         folder = base.rpartition("/")[0]
         info = settings.info_topic or f"{folder}/camera_info"
         if self.kind == "depth":
-            lens.depth = f"{stem}/depth_image" if base.endswith("/image") else base
-            lens.points = f"{lens.depth}/points"
+            output.depth = f"{stem}/depth_image" if base.endswith("/image") else base
+            output.points = f"{output.depth}/points"
         elif self.kind == "rgbd":
-            lens.image, lens.depth, lens.points = f"{stem}/image", f"{stem}/depth_image", f"{stem}/points"
+            output.image, output.depth, output.points = f"{stem}/image", f"{stem}/depth_image", f"{stem}/points"
             info = settings.info_topic or f"{stem}/camera_info"
         elif self.kind == "segmentation":
-            lens.labels, lens.colored_labels = f"{stem}/labels_map", f"{stem}/colored_map"
+            output.labels, output.colored_labels = f"{stem}/labels_map", f"{stem}/colored_map"
             info = settings.info_topic or f"{stem}/camera_info"
         else:
-            lens.image = base
-        lens.infos = (absolute_topic(info, self.context.namespace),)
-        return lens
+            output.image = base
+        output.infos = (absolute_topic(info, self.context.namespace),)
+        return output
 
-    def _look(self, number: int, lens: Lens, wanted: set[str], now_ns: int) -> Iterable[Sample]:
-        settings = lens.settings
-        seen = wanted - set(lens.infos)
+    def _capture(self, number: int, output: CameraOutput, wanted: set[str], now_ns: int) -> Iterable[Sample]:
+        settings = output.settings
+        seen = wanted - set(output.infos)
         if seen:
-            eye = self._eye(number)
-            eye.look(self.instance.physics, self.link.pose @ self.pose @ settings.pose)
-            yield from self._pictures(eye, number, lens, wanted, now_ns)
-        for topic in lens.infos:
+            renderer = self._renderer(number)
+            renderer.render(self.instance.physics, self.link.pose @ self.pose @ settings.pose)
+            yield from self._pictures(renderer, number, output, wanted, now_ns)
+        for topic in output.infos:
             if topic in wanted:
-                yield _info(lens, topic, now_ns)
+                yield _info(output, topic, now_ns)
 
-    def _pictures(self, eye: Eye, number: int, lens: Lens, wanted: set[str], now_ns: int) -> Iterable[Sample]:
-        from daidalos.simulation.rendering.eye import encode
+    def _pictures(
+        self, renderer: CameraRenderer, number: int, output: CameraOutput, wanted: set[str], now_ns: int
+    ) -> Iterable[Sample]:
+        from daidalos.simulation.rendering.camera_renderer import encode
 
-        settings = lens.settings
-        colored = lens.points in wanted
+        settings = output.settings
+        colored = output.points in wanted
         picture = None
-        if lens.image in wanted or colored:
-            picture = eye.picture(int(self.random.integers(1 << 30)) if settings.noise.stddev else 0)
-        if lens.image in wanted and picture is not None:
-            yield self._image(lens.image, lens, encode(picture, settings.encoding), settings.encoding, now_ns)
-        if lens.depth in wanted or lens.points in wanted:
-            depth = self._depth(eye, settings)
-            if lens.depth in wanted:
-                yield self._depth_image(lens, depth, now_ns)
-            if lens.points in wanted:
-                yield self._points(number, lens, depth, picture, now_ns)
-        if lens.labels in wanted or lens.colored_labels in wanted:
-            yield from self._segments(eye, lens, wanted, now_ns)
+        if output.image in wanted or colored:
+            picture = renderer.picture(int(self.random.integers(1 << 30)) if settings.noise.stddev else 0)
+        if output.image in wanted and picture is not None:
+            yield self._image(output.image, output, encode(picture, settings.encoding), settings.encoding, now_ns)
+        if output.depth in wanted or output.points in wanted:
+            depth = self._depth(renderer, settings)
+            if output.depth in wanted:
+                yield self._depth_image(output, depth, now_ns)
+            if output.points in wanted:
+                yield self._points(number, output, depth, picture, now_ns)
+        if output.labels in wanted or output.colored_labels in wanted:
+            yield from self._segments(renderer, output, wanted, now_ns)
 
-    def _depth(self, eye: Eye, settings: CameraSettings) -> NDArray[np.float32]:
+    def _depth(self, renderer: CameraRenderer, settings: CameraSettings) -> NDArray[np.float32]:
         """Return depths with noise; what is too near or too far is marked (REP 118)."""
         noise = settings.depth_noise
         if not (noise.stddev or noise.mean):
-            return eye.depth(settings.depth_near, settings.depth_far)
-        depth = eye.depth()
+            return renderer.depth(settings.depth_near, settings.depth_far)
+        depth = renderer.depth()
         depth += self.random.standard_normal(depth.shape, dtype=np.float32) * np.float32(noise.stddev)
         depth += np.float32(noise.mean)
         depth[depth > settings.depth_far] = np.inf
         depth[depth < settings.depth_near] = -np.inf
         return depth
 
-    def _depth_image(self, lens: Lens, depth: NDArray[np.float32], now_ns: int) -> ImageSample:
-        if lens.settings.depth_encoding == "16UC1":
+    def _depth_image(self, output: CameraOutput, depth: NDArray[np.float32], now_ns: int) -> ImageSample:
+        if output.settings.depth_encoding == "16UC1":
             millimetres = np.where(np.isfinite(depth), depth * np.float32(1000), np.float32(0))
             pixels: NDArray[Any] = np.clip(np.round(millimetres), 0, 65535).astype(np.uint16)
-            return self._image(lens.depth, lens, pixels, "16UC1", now_ns)
-        return self._image(lens.depth, lens, depth, "32FC1", now_ns)
+            return self._image(output.depth, output, pixels, "16UC1", now_ns)
+        return self._image(output.depth, output, depth, "32FC1", now_ns)
 
     def _points(
-        self, number: int, lens: Lens, depth: NDArray[np.float32], colors: NDArray[np.uint8] | None, now_ns: int
+        self,
+        number: int,
+        output: CameraOutput,
+        depth: NDArray[np.float32],
+        colors: NDArray[np.uint8] | None,
+        now_ns: int,
     ) -> PointCloudSample:
-        from daidalos.simulation.rendering.film import points_of
+        from daidalos.simulation.rendering.image_effects import points_of
 
         rays = self._rays.get(number)
         if rays is None:
-            x, y, z = np.moveaxis(lens.settings.pinhole.rays, -1, 0)
-            axes = (z, -x, -y) if lens.points_ahead_x else (x, y, z)
+            x, y, z = np.moveaxis(output.settings.pinhole.rays, -1, 0)
+            axes = (z, -x, -y) if output.points_ahead_x else (x, y, z)
             rays = self._rays[number] = np.ascontiguousarray(np.stack(axes, axis=-1))
         points = self._pool.take(rays.shape, np.float32)
         points_of(depth, rays, points)
-        frame_id = (lens.points_frame_id or lens.frame_id) if lens.points_ahead_x else lens.frame_id
-        return PointCloudSample(now_ns, lens.points, frame_id, points, colors=colors)
+        frame_id = (output.points_frame_id or output.frame_id) if output.points_ahead_x else output.frame_id
+        return PointCloudSample(now_ns, output.points, frame_id, points, colors=colors)
 
-    def _segments(self, eye: Eye, lens: Lens, wanted: set[str], now_ns: int) -> Iterable[ImageSample]:
+    def _segments(
+        self, renderer: CameraRenderer, output: CameraOutput, wanted: set[str], now_ns: int
+    ) -> Iterable[ImageSample]:
         """Label pixels: the class in all bands, or (panoptic) the instance in the first two and the class in the third.
 
         Instances are counted within their class from 1, in the order in which they came.
         """
-        scene = eye.view.scene
-        classes = eye.of_parts(scene.labels)
-        if lens.settings.panoptic:
+        scene = renderer.view.scene
+        classes = renderer.of_parts(scene.labels)
+        if output.settings.panoptic:
             counts = _instances(scene.labels, scene.owners)
-            instances = eye.of_parts(counts)
+            instances = renderer.of_parts(counts)
             pixels = np.stack((instances & 0xFF, instances >> 8, classes), axis=-1).astype(np.uint8)
         else:
             pixels = np.repeat(classes.astype(np.uint8)[:, :, None], 3, axis=2)
-        if lens.labels in wanted:
-            yield self._image(lens.labels, lens, pixels, "rgb8", now_ns)
-        if lens.colored_labels in wanted:
-            key = classes.astype(np.int64) + (256 * instances.astype(np.int64) if lens.settings.panoptic else 0)
-            yield self._image(lens.colored_labels, lens, _colors(key), "rgb8", now_ns)
+        if output.labels in wanted:
+            yield self._image(output.labels, output, pixels, "rgb8", now_ns)
+        if output.colored_labels in wanted:
+            key = classes.astype(np.int64) + (256 * instances.astype(np.int64) if output.settings.panoptic else 0)
+            yield self._image(output.colored_labels, output, _colors(key), "rgb8", now_ns)
 
-    def _image(self, topic: str, lens: Lens, pixels: NDArray[Any], encoding: str, now_ns: int) -> ImageSample:
-        return ImageSample(now_ns, topic, lens.frame_id, encoding, pixels)
+    def _image(self, topic: str, output: CameraOutput, pixels: NDArray[Any], encoding: str, now_ns: int) -> ImageSample:
+        return ImageSample(now_ns, topic, output.frame_id, encoding, pixels)
 
-    def _eye(self, number: int) -> Eye:
-        """Return an eye; the renderer is imported and made when it is first needed."""
-        from daidalos.simulation.rendering.eye import Eye, EyeSettings
+    def _renderer(self, number: int) -> CameraRenderer:
+        """Return the renderer of an output; it is imported and created on first use."""
+        from daidalos.simulation.rendering.camera_renderer import CameraRenderer, CameraRendererSettings
 
-        if not self._eyes:
-            for lens in self.lenses:
-                s = lens.settings
-                eye = EyeSettings(s.pinhole, s.near, s.far, s.mask, s.noise)
-                self._eyes.append(Eye(eye, self.context.stream()))
-        return self._eyes[number]
-
-
-def set_noise(lens: Lens, stddev: float) -> None:
-    """Give an eye noise of a standard deviation in shares of full brightness."""
-    lens.settings = replace(lens.settings, noise=replace(lens.settings.noise, stddev=stddev))
+        if not self._renderers:
+            for output in self.outputs:
+                s = output.settings
+                settings = CameraRendererSettings(s.pinhole, s.near, s.far, s.mask, s.noise)
+                self._renderers.append(CameraRenderer(settings, self.context.stream()))
+        return self._renderers[number]
 
 
-def _info(lens: Lens, topic: str, now_ns: int) -> CameraInfoSample:
-    pinhole = lens.settings.pinhole
+def set_noise(output: CameraOutput, stddev: float) -> None:
+    """Set the noise by a standard deviation in shares of full brightness."""
+    output.settings = replace(output.settings, noise=replace(output.settings.noise, stddev=stddev))
+
+
+def _info(output: CameraOutput, topic: str, now_ns: int) -> CameraInfoSample:
+    pinhole = output.settings.pinhole
     projection = np.zeros((3, 4))
     projection[:, :3] = pinhole.matrix
-    projection[0, 3] = -pinhole.fx * lens.baseline + lens.settings.tx
-    projection[1, 3] = lens.settings.ty
+    projection[0, 3] = -pinhole.fx * output.baseline + output.settings.tx
+    projection[1, 3] = output.settings.ty
     return CameraInfoSample(
         stamp_ns=now_ns,
         topic=topic,
-        frame_id=lens.frame_id,
+        frame_id=output.frame_id,
         width=pinhole.width,
         height=pinhole.height,
         distortion=pinhole.distortion,

@@ -36,7 +36,7 @@ _MAX_PIXELS = 1 << 26
 
 @dataclass(frozen=True)
 class CameraSettings:
-    """One eye of a camera.
+    """Settings of one optical system of a camera.
 
     Parameters
     ----------

@@ -78,7 +78,7 @@ class ForceTorque(NoisySensor):
         centre = data.subtree_com[model.body_rootid[self.link.body]]
         torque = torque + np.cross(centre - np.array(anchor.position), force)
         turn = rotation_matrix(self._axes().orientation).T * (-1.0 if self.from_child else 1.0)
-        measured = self.disturb(np.concatenate((turn @ force, turn @ torque)), now_ns)
+        measured = self.apply_noise(np.concatenate((turn @ force, turn @ torque)), now_ns)
         yield WrenchSample(now_ns, self.topic, self.frame_id, measured[:3], measured[3:])
 
     def _axes(self) -> Pose:

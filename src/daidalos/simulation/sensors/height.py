@@ -10,7 +10,7 @@ from daidalos.common.pose3 import rotate
 from daidalos.description.markup import Element
 from daidalos.simulation.noise import Noise
 from daidalos.simulation.samples import AltimeterSample, PressureSample, Sample
-from daidalos.simulation.sensors.noisy import Biases, NoisySensor, noise_below
+from daidalos.simulation.sensors.noisy import Biases, NoisySensor, nested_noise
 
 _GRAVITY = 9.80665
 _MOLAR_MASS = 0.0289644
@@ -26,7 +26,7 @@ class Altimeter(NoisySensor):
     def read(self, element: Element) -> None:
         """Read the noise of height and speed."""
         settings = element.first("altimeter") or Element("altimeter")
-        self._noises = noise_below(settings, "vertical_position"), noise_below(settings, "vertical_velocity")
+        self._noises = nested_noise(settings, "vertical_position"), nested_noise(settings, "vertical_velocity")
         self._reference = 0.0
 
     @property
@@ -51,7 +51,7 @@ class Altimeter(NoisySensor):
         arm = np.array(rotate(pose.orientation, self.pose.position))
         height = pose.position[2] + arm[2] - self._reference
         climb = float((linear + np.cross(angular, arm))[2])
-        position, velocity = self.disturb(np.array((height, climb)), now_ns).tolist()
+        position, velocity = self.apply_noise(np.array((height, climb)), now_ns).tolist()
         yield AltimeterSample(now_ns, self.topic, self.frame_id, position, velocity, self._reference)
 
 
@@ -65,7 +65,7 @@ class Barometer(NoisySensor):
         """Read the altitude of the world's origin and the noise."""
         settings = element.first("air_pressure") or Element("air_pressure")
         self._altitude = settings.number_of("reference_altitude", default=0.0)
-        self._noises = (noise_below(settings, "pressure"),)
+        self._noises = (nested_noise(settings, "pressure"),)
 
     @property
     def noises(self) -> tuple[Noise, ...]:
@@ -83,5 +83,5 @@ class Barometer(NoisySensor):
         height = self._altitude + (self.link.pose @ self.pose).position[2]
         exponent = _GRAVITY * _MOLAR_MASS / (_GAS_CONSTANT * -air.temperature_gradient)
         share = max(1 + air.temperature_gradient * height / air.temperature, 0.0)
-        pressure = self.disturb(np.array((air.pressure * share**exponent,)), now_ns)
+        pressure = self.apply_noise(np.array((air.pressure * share**exponent,)), now_ns)
         yield PressureSample(now_ns, self.topic, self.frame_id, float(pressure[0]), float(self.variance[0]))

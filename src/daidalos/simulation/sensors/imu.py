@@ -70,7 +70,7 @@ class Imu(NoisySensor):
 
     def measure(self, now_ns: int) -> Iterable[Sample]:
         """Measure the motion of the sensor's own point."""
-        measured = self.disturb(self._motion(), now_ns)
+        measured = self.apply_noise(self._motion(), now_ns)
         of_orientation, of_rate, of_acceleration = self._covariances
         yield ImuSample(
             stamp_ns=now_ns,

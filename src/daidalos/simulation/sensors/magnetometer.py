@@ -43,6 +43,6 @@ class Magnetometer(NoisySensor):
         """Turn the field into the sensor's axes."""
         mount = self.link.pose @ self.pose
         field = np.array(rotate(mount.inverse.orientation, self.context.world.magnetic_field))
-        measured = self.disturb(field, now_ns)
+        measured = self.apply_noise(field, now_ns)
         covariance = np.diag(self.variance).ravel()
         yield MagneticFieldSample(now_ns, self.topic, self.frame_id, measured, covariance)

@@ -12,7 +12,7 @@ from daidalos.description.world import SphericalCoordinates
 from daidalos.simulation.geodesy import to_east_north_up, to_geodetic
 from daidalos.simulation.noise import Noise
 from daidalos.simulation.samples import NavSatSample, Sample
-from daidalos.simulation.sensors.noisy import NoisySensor, noise_below
+from daidalos.simulation.sensors.noisy import NoisySensor, nested_noise
 
 
 class NavSat(NoisySensor):
@@ -33,7 +33,7 @@ class NavSat(NoisySensor):
         """Read the noise; positions' is in metres."""
         settings = element.first("gps", "navsat") or Element("navsat")
         self.position_noise, self.velocity_noise = (
-            tuple(noise_below(settings, kind, axis) for axis in ("horizontal", "horizontal", "vertical"))
+            tuple(nested_noise(settings, kind, axis) for axis in ("horizontal", "horizontal", "vertical"))
             for kind in ("position_sensing", "velocity_sensing")
         )
         self.origin = self.context.world.spherical_coordinates or SphericalCoordinates()
@@ -54,7 +54,7 @@ class NavSat(NoisySensor):
         linear, angular = self.link.velocity()
         arm = np.array(rotate(pose.orientation, self.pose.position))
         speed = to_east_north_up(linear + np.cross(angular, arm), self.origin)
-        measured = self.disturb(np.concatenate((np.array(pose.position) + arm, speed)), now_ns)
+        measured = self.apply_noise(np.concatenate((np.array(pose.position) + arm, speed)), now_ns)
         place = to_geodetic(measured[:3], self.origin)
         yield NavSatSample(
             stamp_ns=now_ns,

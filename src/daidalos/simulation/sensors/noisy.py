@@ -41,7 +41,7 @@ class NoisySensor(Sensor):
         self._noise = NoiseVector(noises)
         return Biases(self._noise.draw_bias(self.random), np.zeros(len(noises)), 0)
 
-    def disturb(self, values: Array, now_ns: int) -> Array:
+    def apply_noise(self, values: Array, now_ns: int) -> Array:
         """Return the values (n,) with noise and bias."""
         biases, noise = self.state, self._noise
         biases.wandering = noise.wander(biases.wandering, (now_ns - biases.stamp_ns) * 1e-9, self.random)
@@ -62,7 +62,7 @@ def noise_of_axes(element: Element | None) -> tuple[Noise, Noise, Noise]:
     return x, y, z
 
 
-def noise_below(element: Element, *tags: str) -> Noise:
+def nested_noise(element: Element, *tags: str) -> Noise:
     """Read the ``<noise>`` that lies below nested elements; none where one of them is missing."""
     for tag in tags:
         child = element.first(tag)

@@ -14,14 +14,21 @@ from typing import Any
 from daidalos.interfaces.codec import codec_of
 from daidalos.transport.backend import (
     Backend,
-    WireClient,
-    WirePublisher,
-    WireService,
-    WireSubscription,
+    BackendClient,
+    BackendPublisher,
+    BackendService,
+    BackendSubscription,
 )
 from daidalos.transport.cyclonedds import names
 from daidalos.transport.cyclonedds.config import domain_config
 from daidalos.transport.cyclonedds.discovery import PREFIX, Discovery, node_key
+from daidalos.transport.cyclonedds.endpoints import (
+    DdsClient,
+    DdsPublisher,
+    DdsService,
+    DdsSubscription,
+    Writer,
+)
 from daidalos.transport.cyclonedds.library import (
     RETCODE_PRECONDITION_NOT_MET,
     DdsError,
@@ -31,14 +38,7 @@ from daidalos.transport.cyclonedds.library import (
     load,
 )
 from daidalos.transport.cyclonedds.qos import HISTORY_KEY, dds_qos, history_text
-from daidalos.transport.cyclonedds.reception import Reception, Taker
-from daidalos.transport.cyclonedds.wires import (
-    DdsClient,
-    DdsPublisher,
-    DdsService,
-    DdsSubscription,
-    Writer,
-)
+from daidalos.transport.cyclonedds.reception import Reception, SampleReader
 from daidalos.transport.environment import Environment, EnvironmentVariableError
 from daidalos.transport.graph import EndpointInfo, EndpointKind, Graph, NodeInfo
 from daidalos.transport.qos import Durability, History, Qos
@@ -93,7 +93,7 @@ class CycloneBackend(Backend):
             self._gid = self._gid_of_entity(self._participant)
             self._registry.register(Peer(self._gid[:PREFIX].hex(), ()))
         self._started = time.monotonic()
-        self._taker = Taker(library)
+        self._taker = SampleReader(library)
         self._reception = Reception(library, self._participant, "dds")
         info_type = names.DISCOVERY_TYPE
         info_reader = self._make(names.DISCOVERY_TOPIC, info_type, _INFO_READER_QOS, b"", writes=False)
@@ -116,7 +116,7 @@ class CycloneBackend(Backend):
         deadline = time.monotonic() + timeout_s
 
         def complete() -> bool:
-            return all(self._discovery.has_told(bytes.fromhex(session)) for session in self._alive())
+            return all(self._discovery.is_discovered(bytes.fromhex(session)) for session in self._alive())
 
         done = self._graph.wait_for(complete, timeout_s)
         left = min(deadline, self._started + _GRACE_S) - time.monotonic()
@@ -161,27 +161,27 @@ class CycloneBackend(Backend):
             self._entities[gid.hex()] = entities
         return gid.hex(), gid
 
-    def declare_publisher(self, key: str, endpoint: EndpointInfo) -> WirePublisher:
+    def declare_publisher(self, key: str, endpoint: EndpointInfo) -> BackendPublisher:
         """Hand out the writer and tell others whose it is."""
         writer, _ = self._declare(key, endpoint)
         return DdsPublisher(Writer(self._library, writer), self._closer(key, endpoint))
 
     def declare_subscription(
         self, key: str, endpoint: EndpointInfo, on_sample: Callable[[Any], None]
-    ) -> WireSubscription:
+    ) -> BackendSubscription:
         """Hand out the reader and tell others whose it is."""
         _, reader = self._declare(key, endpoint)
         close = self._closer(key, endpoint)
         return DdsSubscription(self._taker, self._reception, reader, on_sample, self._gid_of_writer, close)
 
-    def declare_service(self, key: str, endpoint: EndpointInfo, on_request: Callable[[Any], None]) -> WireService:
+    def declare_service(self, key: str, endpoint: EndpointInfo, on_request: Callable[[Any], None]) -> BackendService:
         """Hand out reader and writer and tell others whose they are."""
         writer, reader = self._declare(key, endpoint)
         close = self._closer(key, endpoint)
         replies = Writer(self._library, writer)
         return DdsService(self._library, self._taker, self._reception, reader, replies, on_request, close)
 
-    def declare_client(self, key: str, endpoint: EndpointInfo, on_response: Callable[[Any], None]) -> WireClient:
+    def declare_client(self, key: str, endpoint: EndpointInfo, on_response: Callable[[Any], None]) -> BackendClient:
         """Hand out reader and writer and tell others whose they are."""
         writer, reader = self._declare(key, endpoint)
         handle = c.c_uint64()

@@ -25,7 +25,7 @@ from daidalos.transport.cyclonedds.library import (
     SampleInfo,
 )
 from daidalos.transport.cyclonedds.qos import read_qos, user_data_of
-from daidalos.transport.cyclonedds.reception import Reception, Sample, Taker
+from daidalos.transport.cyclonedds.reception import Reception, Sample, SampleReader
 from daidalos.transport.graph import EndpointInfo, EndpointKind, Graph, NodeInfo
 from daidalos.transport.qos import Qos
 
@@ -102,7 +102,7 @@ class Discovery:
         self._dirty: set[bytes] = set()
         self._reception = Reception(library, participant, "graph", on_wake)
         self.wake = self._reception.wake
-        taker = Taker(library)
+        taker = SampleReader(library)
         builtin = {
             BUILTIN_PARTICIPANT: self._on_participant,
             BUILTIN_PUBLICATION: self._on_writer,
@@ -126,7 +126,7 @@ class Discovery:
         """Return the gid behind an instance handle of a writer or reader, None when it is not known."""
         return self._gids.get(handle)
 
-    def has_told(self, prefix: bytes) -> bool:
+    def is_discovered(self, prefix: bytes) -> bool:
         """Tell whether a participant is known with all its nodes and their endpoints."""
         participant = self._participants.get(prefix)
         if participant is None or participant.nodes is None:

@@ -106,7 +106,7 @@ class Reception:
                     _LOGGER.exception("receiving failed")
 
 
-class Taker:
+class SampleReader:
     """Takes samples from readers; belongs to one thread.
 
     Parameters

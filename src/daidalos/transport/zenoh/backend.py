@@ -17,10 +17,10 @@ from zenoh.handlers import Callback, FifoChannel
 
 from daidalos.transport.backend import (
     Backend,
-    WireClient,
-    WirePublisher,
-    WireService,
-    WireSubscription,
+    BackendClient,
+    BackendPublisher,
+    BackendService,
+    BackendSubscription,
 )
 from daidalos.transport.environment import DiscoveryRange, Environment, EnvironmentVariableError
 from daidalos.transport.graph import EndpointInfo, EndpointKind, Graph, NodeInfo
@@ -28,17 +28,17 @@ from daidalos.transport.qos import Qos
 from daidalos.transport.registry import Peer, Registry
 from daidalos.transport.zenoh import keys
 from daidalos.transport.zenoh.config import ROUTER_PORT, meets_all, reason_of, session_config
-from daidalos.transport.zenoh.latched import Caches, LatchedPublisher, LatchedSubscription
-from daidalos.transport.zenoh.links import keep_from_lingering
-from daidalos.transport.zenoh.numbers import Numbers
-from daidalos.transport.zenoh.pool import Pool
-from daidalos.transport.zenoh.threads import few_threads, on_lasting_thread
-from daidalos.transport.zenoh.wires import (
+from daidalos.transport.zenoh.endpoints import (
     ZenohClient,
     ZenohPublisher,
     ZenohService,
     ZenohSubscription,
 )
+from daidalos.transport.zenoh.entity_ids import EntityIds
+from daidalos.transport.zenoh.latched import Caches, LatchedPublisher, LatchedSubscription
+from daidalos.transport.zenoh.links import disable_linger
+from daidalos.transport.zenoh.pool import Pool
+from daidalos.transport.zenoh.threads import limit_threads, on_lasting_thread
 
 _SOCKET_PATH_LIMIT = 100
 """Longest path of a Unix socket that every system takes."""
@@ -49,7 +49,7 @@ _MANY_TOKENS = 1_000_000
 _CLOSING_S = 1.0
 """How long the thread that reads tokens may take to end; it may be in a listener's hands."""
 
-_LOOK_S = 0.002
+_POLL_S = 0.002
 """How often we look, while settling."""
 
 
@@ -62,7 +62,7 @@ class ZenohBackend(Backend):
     def __init__(self, environment: Environment) -> None:
         self._environment = environment
         self._domain = environment.domain
-        self._numbers = Numbers()
+        self._entity_ids = EntityIds()
         self._registry = Registry(self._domain)
         self._peers: set[str] = set()
         self._latched: dict[str, set[LatchedSubscription]] = {}
@@ -85,7 +85,7 @@ class ZenohBackend(Backend):
                 self._peers = {peer.session for peer in peers}
                 self._registry.register(Peer(self._session_id, tuple(listen)))
         if self._environment.discovery is DiscoveryRange.SUBNET or self._environment.static_peers:
-            self._links = keep_from_lingering(self._session)
+            self._links = disable_linger(self._session)
         # Who has been answered by us has been told of everything before. (Zenoh's own space for such questions would
         # keep a file open for every session that there ever was.)
         place = keys.answers(self._session_id)
@@ -130,7 +130,7 @@ class ZenohBackend(Backend):
     def settle(self, timeout_s: float) -> bool:
         """Wait until the sessions that were alive at our start are connected and have told of themselves."""
         deadline = time.monotonic() + timeout_s
-        router = _port_answers(ROUTER_PORT)
+        router = _is_port_open(ROUTER_PORT)
 
         def connected() -> bool:
             there = {str(zid) for zid in self._session.info.peers_zid()}
@@ -139,7 +139,7 @@ class ZenohBackend(Backend):
 
         # We look ourselves: a listener would need Python's lock within zenoh's.
         while not (complete := connected()) and time.monotonic() < deadline:
-            time.sleep(_LOOK_S)
+            time.sleep(_POLL_S)
         self._wait_for_answers(deadline)
         left = max(deadline - time.monotonic(), 0.05)
         # The tokens that are known already are handed out before anybody can read: all must fit into the channel.
@@ -158,7 +158,7 @@ class ZenohBackend(Backend):
                 if any(reply.ok is not None for reply in replies):
                     silent.discard(peer)
             if silent:
-                time.sleep(_LOOK_S)
+                time.sleep(_POLL_S)
                 silent &= self._alive()
 
     def _alive(self) -> set[str]:
@@ -185,7 +185,7 @@ class ZenohBackend(Backend):
 
     def new_node(self, name: str, namespace: str, enclave: str) -> NodeInfo:
         """Return the description of a new node of ours."""
-        number = self._numbers.take((name, namespace, enclave))
+        number = self._entity_ids.acquire((name, namespace, enclave))
         token = keys.node_token(self._domain, self._session_id, number, name, namespace, enclave)
         return NodeInfo(token, name, namespace, enclave)
 
@@ -198,7 +198,7 @@ class ZenohBackend(Backend):
 
         def undeclare() -> None:
             _undeclare(declared)
-            self._numbers.give_back(what, keys.number_of(token))
+            self._entity_ids.release(what, keys.number_of(token))
 
         return undeclare
 
@@ -206,14 +206,14 @@ class ZenohBackend(Backend):
         self, kind: EndpointKind, node: NodeInfo, name: str, type_name: str, type_hash: str, qos: Qos
     ) -> tuple[str, bytes]:
         """Return a new endpoint's token and the gid made from it."""
-        number = self._numbers.take((kind, node.key, name, type_name, type_hash, qos))
+        number = self._entity_ids.acquire((kind, node.key, name, type_name, type_hash, qos))
         token = keys.endpoint_token(node, number, kind, name, type_name, type_hash, qos)
         return token, keys.gid_of(token)
 
     def _data_key(self, endpoint: EndpointInfo) -> str:
         return keys.data_key(self._domain, endpoint.name, endpoint.type_name, endpoint.type_hash)
 
-    def declare_publisher(self, key: str, endpoint: EndpointInfo) -> WirePublisher:
+    def declare_publisher(self, key: str, endpoint: EndpointInfo) -> BackendPublisher:
         """Declare a publisher and its token."""
         name = self._data_key(endpoint)
         wire = (
@@ -226,7 +226,7 @@ class ZenohBackend(Backend):
 
     def declare_subscription(
         self, key: str, endpoint: EndpointInfo, on_sample: Callable[[Any], None]
-    ) -> WireSubscription:
+    ) -> BackendSubscription:
         """Declare a subscription and its token."""
         if endpoint.qos.transient_local:
             return self._declare_latched(key, endpoint, on_sample)
@@ -271,13 +271,13 @@ class ZenohBackend(Backend):
         if session != self._session_id:  # who is in our session is served within the process
             wire.ask(session)
 
-    def declare_service(self, key: str, endpoint: EndpointInfo, on_request: Callable[[Any], None]) -> WireService:
+    def declare_service(self, key: str, endpoint: EndpointInfo, on_request: Callable[[Any], None]) -> BackendService:
         """Declare a queryable and its token."""
         wire = ZenohService(self._session, self._data_key(endpoint), on_request)
         wire.on_close = self._closer(key, endpoint)
         return wire
 
-    def declare_client(self, key: str, endpoint: EndpointInfo, on_response: Callable[[Any], None]) -> WireClient:
+    def declare_client(self, key: str, endpoint: EndpointInfo, on_response: Callable[[Any], None]) -> BackendClient:
         """Declare a querier and its token."""
         wire = ZenohClient(self._session, self._data_key(endpoint), endpoint, on_response)
         wire.on_close = self._closer(key, endpoint)
@@ -292,7 +292,7 @@ class ZenohBackend(Backend):
 
 def _open(config: zenoh.Config) -> zenoh.Session:
     try:
-        with few_threads():
+        with limit_threads():
             return zenoh.open(config)
     except zenoh.ZError as error:
         raise EnvironmentVariableError(
@@ -307,7 +307,7 @@ def _new_session_id() -> str:
     return secrets.choice(first) + secrets.token_hex(16)[1:]
 
 
-def _port_answers(port: int) -> bool:
+def _is_port_open(port: int) -> bool:
     """Tell whether somebody listens on a port of this machine."""
     with socket.socket() as probe:
         probe.settimeout(0.2)

@@ -21,9 +21,9 @@ from zenoh.handlers import Callback
 
 from daidalos.transport.graph import EndpointInfo
 from daidalos.transport.zenoh import attachment
+from daidalos.transport.zenoh.endpoints import ZenohPublisher, ZenohSubscription
 from daidalos.transport.zenoh.pool import Pool
 from daidalos.transport.zenoh.threads import on_lasting_thread
-from daidalos.transport.zenoh.wires import ZenohPublisher, ZenohSubscription
 
 _TIMEOUT_S = 5.0
 """How long a session may take to answer; then it is asked again, for as long as it can be reached."""
@@ -238,7 +238,7 @@ class History:
                 question.again = True
 
         def on_end() -> None:
-            self._take_in(session, question)
+            self._merge_answers(session, question)
 
         if self._closed:
             return
@@ -253,7 +253,7 @@ class History:
                 allowed_destination=zenoh.Locality.REMOTE,
             )
 
-    def _take_in(self, session: str, question: Question) -> None:
+    def _merge_answers(self, session: str, question: Question) -> None:
         """Put answers, and what came meanwhile, in order."""
         with self._lock:
             samples = {_identity(sample): sample for sample in question.samples}

@@ -23,11 +23,11 @@ from zenoh.handlers import FifoChannel
 _MANY_LINKS = 100_000
 """More links than ever wait to be looked at; a full channel would hold zenoh up."""
 
-_ZENOHS = struct.pack("ii", 1, 10)
+_ZENOH_LINGER = struct.pack("ii", 1, 10)
 _NONE = struct.pack("ii", 0, 0)
 
 
-def keep_from_lingering(session: Any) -> Any:
+def disable_linger(session: Any) -> Any:
     """Take the lingering from every TCP link of a session, now and whenever there is a new one.
 
     Returns what must be kept as long as the session; a thread of its own does the work, as zenoh's must never wait
@@ -41,10 +41,10 @@ def keep_from_lingering(session: Any) -> Any:
 def _follow(events: Any) -> None:
     for event in events:
         if event.kind == zenoh.SampleKind.PUT and event.link.is_streamed:
-            stop_lingering()
+            clear_linger()
 
 
-def stop_lingering() -> None:
+def clear_linger() -> None:
     """Take the lingering from the sockets of this process that have zenoh's."""
     if sys.platform == "win32":
         return  # sockets cannot be listed there
@@ -56,5 +56,5 @@ def stop_lingering() -> None:
 
 
 def _stop(link: socket.socket) -> None:
-    if link.getsockopt(socket.SOL_SOCKET, socket.SO_LINGER, len(_ZENOHS)) == _ZENOHS:
+    if link.getsockopt(socket.SOL_SOCKET, socket.SO_LINGER, len(_ZENOH_LINGER)) == _ZENOH_LINGER:
         link.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, _NONE)

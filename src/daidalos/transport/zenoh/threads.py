@@ -14,7 +14,7 @@ _LAYOUT = "(rx: (handover: net), acc: (handover: net))"
 
 
 @contextmanager
-def few_threads() -> Iterator[None]:
+def limit_threads() -> Iterator[None]:
     """Have zenoh, where it starts in here, read from a link on the thread that waits for it.
 
     It would hand every message to another thread first, which costs a quarter of a round trip. It reads its layout of

@@ -12,10 +12,10 @@ from daidalos.workspaces.cmake.interpreter import Call, Handler, Interpreter, ke
 from daidalos.workspaces.errors import WorkspaceError
 
 _NOT_SHARED = {"src", "include", "msg", "srv", "action"}
-_NOT_LOOKED_AT = {"build", "devel", "install", "log", ".git"}
+_SKIPPED_FOLDERS = {"build", "devel", "install", "log", ".git"}
 
 
-def share_everything(folder: Path, contents: Contents) -> None:
+def install_remaining(folder: Path, contents: Contents) -> None:
     """Install what nothing else installs: a catkin package was used from its own folder before it was installed.
 
     Launch files, descriptions and the like go to the package's share folder, scripts to its executables.
@@ -23,7 +23,7 @@ def share_everything(folder: Path, contents: Contents) -> None:
     placed = {file.destination for file in contents.files}
     for path in files_below(folder):
         inside = path.relative_to(folder)
-        if inside.parts[0] in _NOT_LOOKED_AT or inside.name in ("CMakeLists.txt", "package.xml"):
+        if inside.parts[0] in _SKIPPED_FOLDERS or inside.name in ("CMakeLists.txt", "package.xml"):
             continue
         wanted = [] if inside.parts[0] in _NOT_SHARED else [f"share/{contents.project}/{inside.as_posix()}"]
         with path.open("rb") as file:

@@ -54,7 +54,7 @@ def _install_directories(run: Interpreter, call: Call, values: list[str]) -> Non
     patterns = next((at for at, value in enumerate(values) if value in ("PATTERN", "REGEX")), len(values))
     found, folders = keywords(values[:patterns], _OPTIONS, _SINGLE, _MANY)
     destination = _destination(found, run, call)
-    chooses = _Chooser(values[patterns:], "FILES_MATCHING" in found)
+    chooses = _FileFilter(values[patterns:], "FILES_MATCHING" in found)
     for name in folders:
         folder = run.path(name)
         if not folder.is_dir():
@@ -77,7 +77,7 @@ def files_below(folder: Path) -> Iterator[Path]:
             yield Path(root) / name
 
 
-class _Chooser:
+class _FileFilter:
     """Tells which files of a folder are installed, from PATTERN and REGEX with their EXCLUDE."""
 
     def __init__(self, values: list[str], only_matching: bool) -> None:

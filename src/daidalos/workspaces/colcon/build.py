@@ -29,7 +29,7 @@ class CmakePackageBuildTask(TaskExtensionPoint):  # type: ignore[misc]
     async def build(self) -> int:
         """Build and install the package; returns the exit status."""
         from daidalos.workspaces import package_build
-        from daidalos.workspaces.compiling import LeftOut, summary
+        from daidalos.workspaces.compiling import SkippedTarget, summary
         from daidalos.workspaces.errors import WorkspaceError
 
         package, args = self.context.pkg, self.context.args
@@ -53,7 +53,7 @@ class CmakePackageBuildTask(TaskExtensionPoint):  # type: ignore[misc]
             return 1
         for note in build.contents.notes:
             self._post(StdoutLine, note)
-        tests = [LeftOut(name, "a test in C++") for name in build.contents.left_out_tests]
+        tests = [SkippedTarget(name, "a test in C++") for name in build.contents.left_out_tests]
         line = summary([*build.left_out, *tests])
         if line:
             self._post(StderrLine, f"{package.name}: {line}")

@@ -24,14 +24,14 @@ TYPES = tuple(_ATTRIBUTES)
 
 
 @dataclass(frozen=True)
-class Needs:
+class PackageDependencies:
     """A package and the names of what it depends on."""
 
     package: str
     keys: tuple[str, ...]
 
 
-def find(folders: Iterable[Path], types: Iterable[str] = TYPES) -> list[Needs]:
+def find(folders: Iterable[Path], types: Iterable[str] = TYPES) -> list[PackageDependencies]:
     """Return the packages below some folders with their dependencies of some kinds, in the order of their folders.
 
     Raises
@@ -53,9 +53,9 @@ def _manifests(folder: Path) -> Iterator[Path]:
             folders[:] = sorted(name for name in folders if not name.startswith("."))
 
 
-def _needs(path: Path, types: Iterable[str]) -> Iterator[Needs]:
+def _needs(path: Path, types: Iterable[str]) -> Iterator[PackageDependencies]:
     package = read(path)
     if package is not None:
         depends = [one for kind in types for one in getattr(package, _ATTRIBUTES[kind])]
         names = dict.fromkeys(one.name for one in depends if one.evaluated_condition)
-        yield Needs(package.name, tuple(names))
+        yield PackageDependencies(package.name, tuple(names))

@@ -69,7 +69,7 @@ class NotSubstitution(Substitution):
         return _as_text(not perform_bool(context, self.value))
 
 
-class _Truths(PairSubstitution):
+class _BinaryBoolean(PairSubstitution):
     """Two truths."""
 
     def _perform_both(self, context: LaunchContext) -> tuple[bool, bool]:
@@ -77,7 +77,7 @@ class _Truths(PairSubstitution):
 
 
 @expose_substitution("and")
-class AndSubstitution(_Truths):
+class AndSubstitution(_BinaryBoolean):
     """True if two truths are."""
 
     frontend_name = "and"
@@ -88,7 +88,7 @@ class AndSubstitution(_Truths):
 
 
 @expose_substitution("or")
-class OrSubstitution(_Truths):
+class OrSubstitution(_BinaryBoolean):
     """True if one of two truths is."""
 
     frontend_name = "or"
@@ -98,7 +98,7 @@ class OrSubstitution(_Truths):
         return _as_text(any(self._perform_both(context)))
 
 
-class _Several(Substitution):
+class _VariadicBoolean(Substitution):
     """Any number of truths.
 
     Parameters
@@ -113,7 +113,7 @@ class _Several(Substitution):
     @classmethod
     def parse(
         cls, data: Iterable[SomeSubstitutionsType]
-    ) -> tuple[type[_Several], Iterable[SomeSubstitutionsType], dict[str, Any]]:
+    ) -> tuple[type[_VariadicBoolean], Iterable[SomeSubstitutionsType], dict[str, Any]]:
         """Read `$(name value ...)`."""
         return cls, data, {}
 
@@ -131,7 +131,7 @@ class _Several(Substitution):
 
 
 @expose_substitution("any")
-class AnySubstitution(_Several):
+class AnySubstitution(_VariadicBoolean):
     """True if at least one of some truths is."""
 
     def perform(self, context: LaunchContext) -> str:
@@ -140,7 +140,7 @@ class AnySubstitution(_Several):
 
 
 @expose_substitution("all")
-class AllSubstitution(_Several):
+class AllSubstitution(_VariadicBoolean):
     """True if all of some truths are."""
 
     def perform(self, context: LaunchContext) -> str:

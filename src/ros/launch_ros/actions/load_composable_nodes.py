@@ -16,7 +16,7 @@ from launch.substitution import Substitution
 from launch.utilities import normalize_to_list_of_substitutions, perform_substitutions
 
 from ..descriptions import ComposableNode
-from ..ros_adapters import get_ros_node, run_beside
+from ..ros_adapters import get_ros_node, run_with_ros_node
 from ..utilities.evaluate_parameters import evaluate_parameters
 from ..utilities.namespace_utils import make_namespace_absolute, prefix_namespace
 from ..utilities.to_parameters_list import to_parameters_list
@@ -106,7 +106,7 @@ class LoadComposableNodes(Action):
         autostarted = [
             request for description, request in zip(wanted, requests, strict=True) if description.autostarts(context)
         ]
-        self.__loading = run_beside(context, self.__load, context, requests)
+        self.__loading = run_with_ros_node(context, self.__load, context, requests)
         return [_bringup(request, context) for request in autostarted] or None
 
     def __full_container_name(self, context: LaunchContext) -> str:

@@ -44,7 +44,7 @@ if TYPE_CHECKING:
 
 
 # Operating systems limit the length of an argument; a robot's description may well be longer.
-_LONGEST_RULE = 8192
+_MAX_RULE_LENGTH = 8192
 
 
 @expose_action("node")
@@ -269,7 +269,7 @@ class Node(ExecuteProcess):
 
     def __rule_or_file(self, name: str, value: Any) -> tuple[str, bool]:
         rule = f"{name}:={_dump_yaml(value, quoted=False)}"
-        if len(rule) > _LONGEST_RULE:
+        if len(rule) > _MAX_RULE_LENGTH:
             return self._create_params_file_from_dict({name: value}), True
         return rule, False
 

@@ -11,7 +11,7 @@ from launch import EventHandler
 from launch.event import Event
 
 from ..events.lifecycle import ChangeState, StateTransition
-from ..ros_adapters import get_ros_node, run_beside
+from ..ros_adapters import get_ros_node, run_with_ros_node
 
 if TYPE_CHECKING:
     from launch import Action, LaunchContext
@@ -68,7 +68,7 @@ class LifecycleEventManager:
 
         request = lifecycle_msgs.srv.ChangeState.Request()
         request.transition.id = event.transition_id
-        context.add_completion_future(run_beside(context, self.__call, context, request, event))
+        context.add_completion_future(run_with_ros_node(context, self.__call, context, request, event))
 
     def __call(self, context: LaunchContext, request: Any, event: ChangeState) -> None:
         service = f"{self.node_name}/change_state"

@@ -73,14 +73,14 @@ def _node_class() -> type[Action]:
             self.__command_line = normalize_to_list_of_substitutions(command_line)
 
         def _perform_substitutions(self, context: LaunchContext) -> None:
-            words = _todays_words(shlex.split(perform_substitutions(context, self.__command_line)))
+            words = _ros2_arguments(shlex.split(perform_substitutions(context, self.__command_line)))
             self.process_description.cmd.extend(normalize_to_list_of_substitutions(word) for word in words)
             super()._perform_substitutions(context)
 
     return Ros1Node
 
 
-def _todays_words(words: list[str]) -> list[str]:
+def _ros2_arguments(words: list[str]) -> list[str]:
     """Return the words of a command line with its rules, such as ``scan:=/scan`` and ``_rate:=5``, marked as those."""
     rules: list[str] = []
     for word in words:

@@ -209,7 +209,7 @@ PROGRAMS: dict[tuple[str, str], str] = {
 DROPPED_OPTIONS: dict[str, tuple[str, ...]] = {"xacro": ("--inorder",)}
 
 
-def todays_program(package: str, name: str) -> str:
+def ros2_program(package: str, name: str) -> str:
     """Return the name of a program; many a script lost its ending when its package became one of Python."""
     stem = name.removesuffix(".py")
     if stem != name and not _is_there(package, name) and _is_there(package, stem):

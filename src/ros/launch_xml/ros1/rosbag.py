@@ -35,7 +35,7 @@ class BagCommand:
     duration_s: float | None = None
 
 
-def todays_command(
+def ros2_command(
     verb: str, words: Iterable[str], namespace: str = "/", remappings: Iterable[tuple[str, str]] = ()
 ) -> BagCommand:
     """Return the command for the words that followed `rosbag record` or `rosbag play`.

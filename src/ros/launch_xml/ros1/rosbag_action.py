@@ -17,7 +17,7 @@ from launch.substitutions import SubstitutionFailure
 from launch.utilities import normalize_to_list_of_substitutions, perform_substitutions
 from launch_ros.utilities import make_namespace_absolute, prefix_namespace
 
-from .rosbag import BagCommand, todays_command
+from .rosbag import BagCommand, ros2_command
 
 if TYPE_CHECKING:
     from launch import LaunchContext
@@ -78,7 +78,7 @@ class Rosbag(ExecuteProcess):
         namespace = make_namespace_absolute(prefix_namespace(outside, _perform(context, self.__namespace)) or "")
         own = [(_perform(context, old), _perform(context, new)) for old, new in self.__remappings]
         try:
-            return todays_command(
+            return ros2_command(
                 self.__verb, words, namespace, [*context.launch_configurations.get("ros_remaps", []), *own]
             )
         except ValueError as error:

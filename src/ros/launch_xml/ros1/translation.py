@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 from .._reader import LocatedElement
 from . import actions as actions  # exposes what translated files are made of
-from .packages import DROPPED_OPTIONS, INCLUDES, NODES, PROGRAMS, NodeMapping, todays_program
+from .packages import DROPPED_OPTIONS, INCLUDES, NODES, PROGRAMS, NodeMapping, ros2_program
 from .rosbag import VERBS
 
 _OLD_TEXT = re.compile(r"\$\((find|arg|optenv)\s")
@@ -168,7 +168,7 @@ class _Translator:
 
     def translate_node(self, old: LocatedElement) -> Iterator[LocatedElement]:
         package, executable = old.attrib.get("pkg", ""), old.attrib.get("type", "")
-        mapping = NODES.get((package, executable)) or NodeMapping(package, todays_program(package, executable))
+        mapping = NODES.get((package, executable)) or NodeMapping(package, ros2_program(package, executable))
         if (package, executable) != (mapping.package, mapping.executable):
             note = f" ({mapping.note})" if mapping.note else ""
             self.changes.append(f"node {package}/{executable} -> {mapping.package}/{mapping.executable}{note}")

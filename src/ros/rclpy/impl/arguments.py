@@ -150,14 +150,14 @@ def parse_remap(text: str) -> RemapRule:
 
 
 def _checked_node(rule: RemapRule, text: str) -> RemapRule:
-    fault = names.node_name_fault(rule.replacement)
+    fault = names.node_name_error(rule.replacement)
     if fault:
         raise _bad(f"couldn't parse remap rule: '{text}': {fault[0]}")
     return rule
 
 
 def _checked_namespace(rule: RemapRule, text: str) -> RemapRule:
-    fault = names.namespace_fault(rule.replacement)
+    fault = names.namespace_error(rule.replacement)
     if fault:
         raise _bad(f"couldn't parse remap rule: '{text}': {fault[0]}")
     return rule

@@ -86,7 +86,7 @@ class CallbackRunner:
                 result = callback(*arguments)
                 if result is not None and inspect.iscoroutine(result):
                     suspended = self._run_coroutine(result, entity)
-                if not in_a_row or suspended or not self._may_go_on(hook):
+                if not in_a_row or suspended or not self._may_run_again(hook):
                     return
         finally:
             thread.executor, thread.entity = outer
@@ -95,7 +95,7 @@ class CallbackRunner:
             if not suspended:
                 self._end(entity)
 
-    def _may_go_on(self, hook: ReadyHook) -> bool:
+    def _may_run_again(self, hook: ReadyHook) -> bool:
         """Tell whether the entity that just ran may run again before all others."""
         return self._ready.empty() and hook.sink is self._put and not self._is_shutdown and self._context.ok()
 

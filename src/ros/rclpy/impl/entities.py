@@ -20,7 +20,7 @@ from rclpy.impl.errors import NodeNameNonExistentError, RCLError
 from rclpy.impl.handle import Destroyable
 from rclpy.impl.introspection import Introspection
 from rclpy.impl.log_output import OUTPUT
-from rclpy.impl.ready import Announcer, weakly
+from rclpy.impl.ready import ReadyNotifier, weakly
 
 
 class NodeHandle(Destroyable):
@@ -143,7 +143,7 @@ class ServiceInfo(NamedTuple):
     received_timestamp: int
 
 
-class EndpointHandle(Announcer, Destroyable):
+class EndpointHandle(ReadyNotifier, Destroyable):
     """Base of the four kinds of endpoints; `impl` is the transport's object."""
 
     impl: Any
@@ -252,7 +252,7 @@ class PublisherHandle(EndpointHandle):
 
     def get_subscription_count(self) -> int:
         """Return how many subscriptions get the samples."""
-        return len(self.node.session.counterparts(self.endpoint))
+        return len(self.node.session.matching_endpoints(self.endpoint))
 
 
 class SubscriptionHandle(EndpointHandle):
@@ -269,7 +269,7 @@ class SubscriptionHandle(EndpointHandle):
 
     def get_publisher_count(self) -> int:
         """Return how many publishers send samples here."""
-        return len(self.node.session.counterparts(self.endpoint))
+        return len(self.node.session.matching_endpoints(self.endpoint))
 
     def take_message(self, message_type: Any, raw: bool = False) -> tuple[Any, dict[str, Any]] | None:
         """Return the oldest message, or its CDR bytes, with what is known of it; None when there is none."""
@@ -362,7 +362,7 @@ class ClientHandle(EndpointHandle):
         return self.node.session.server_is_ready(self.impl)
 
 
-class GuardConditionHandle(Announcer, Destroyable):
+class GuardConditionHandle(ReadyNotifier, Destroyable):
     """A flag that wakes an executor."""
 
     def __init__(self, context: ContextHandle, on_ready: Callable[[], None]) -> None:

@@ -13,10 +13,10 @@ from dataclasses import replace
 from enum import IntEnum
 from typing import Any
 
-from daidalos.transport.alarms import ALARMS, Alarm
 from daidalos.transport.backend import SampleInfo
 from daidalos.transport.graph import EndpointInfo, EndpointKind
 from daidalos.transport.qos import INFINITE_NS, Liveliness, Qos, incompatibilities
+from daidalos.transport.steady_timers import STEADY_TIMERS, SteadyTimer
 from daidalos.transport.subscription import Subscription
 from rclpy.impl.entities import EndpointHandle, liveliness_topic
 from rclpy.impl.errors import UnsupportedEventTypeError
@@ -33,11 +33,11 @@ from rclpy.impl.event_statuses import (
     RequestedDeadlineMissedStatus,
     RequestedIncompatibleQosStatus,
 )
-from rclpy.impl.ready import Announcer, weakly
+from rclpy.impl.ready import ReadyNotifier, weakly
 from rclpy.qos import QoSPolicyKind
 
 
-class EventSource(Announcer):
+class EventSource(ReadyNotifier):
     """Base: holds the status of one event of one endpoint; `on_ready` is called when it changes."""
 
     def __init__(self, handle: EndpointHandle, on_ready: Callable[[], None], status: Any) -> None:
@@ -208,7 +208,7 @@ class _Lease:
         self._on_lapse = weakly(on_lapse)
         self._lock = threading.Lock()
         self._valid = False
-        self._alarm: Alarm | None = None
+        self._timer: SteadyTimer | None = None
         self._until = 0
         self.renew()
 
@@ -218,7 +218,7 @@ class _Lease:
             was, self._valid = self._valid, True
             self._until = time.monotonic_ns() + self._span
             if not was:
-                self._alarm = ALARMS.at(self._until, self._check)
+                self._timer = STEADY_TIMERS.at(self._until, self._check)
         return was
 
     def _check(self) -> None:
@@ -226,7 +226,7 @@ class _Lease:
             if not self._valid:
                 return
             if self._until > time.monotonic_ns():  # renewed meanwhile
-                self._alarm = ALARMS.at(self._until, self._check)
+                self._timer = STEADY_TIMERS.at(self._until, self._check)
                 return
             self._valid = False
         self._on_lapse()
@@ -235,9 +235,9 @@ class _Lease:
         """Watch no more; tell whether it had not ended."""
         with self._lock:
             was, self._valid = self._valid, False
-            alarm, self._alarm = self._alarm, None
-        if alarm:
-            alarm.cancel()
+            timer, self._timer = self._timer, None
+        if timer:
+            timer.cancel()
         return was
 
 
@@ -268,7 +268,7 @@ class DeadlineSource(EventSource):
         super().__init__(handle, on_ready, status)
         self._span = self._mine.qos.deadline_ns
         self._last = self._start = 0
-        self._alarm: Alarm | None = None
+        self._timer: SteadyTimer | None = None
         self._closed = False
         if self._span < INFINITE_NS:
             handle.impl.observe(weakly(self._on_sample))
@@ -283,7 +283,7 @@ class DeadlineSource(EventSource):
         with self._lock:
             if not self._closed:
                 self._start = self._last
-                self._alarm = ALARMS.at(self._start + self._span, weakly(self._check))
+                self._timer = STEADY_TIMERS.at(self._start + self._span, weakly(self._check))
 
     def _check(self) -> None:
         if self._last == self._start:
@@ -294,15 +294,17 @@ class DeadlineSource(EventSource):
 
     def _has_counterparts(self) -> bool:
         """Tell whether somebody could have sent: a subscription without publishers misses nothing."""
-        return self._mine.kind is EndpointKind.PUBLISHER or bool(self._handle.node.session.counterparts(self._mine))
+        return self._mine.kind is EndpointKind.PUBLISHER or bool(
+            self._handle.node.session.matching_endpoints(self._mine)
+        )
 
     def close(self) -> None:
         """Watch no more."""
         with self._lock:
             self._closed = True
-            alarm, self._alarm = self._alarm, None
-        if alarm:
-            alarm.cancel()
+            timer, self._timer = self._timer, None
+        if timer:
+            timer.cancel()
 
 
 class MessageLostSource(EventSource):

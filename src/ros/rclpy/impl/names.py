@@ -18,7 +18,7 @@ Fault = tuple[str, int]
 """What is wrong with a name, and at which character."""
 
 
-def node_name_fault(name: str) -> Fault | None:
+def node_name_error(name: str) -> Fault | None:
     """Check a node's name."""
     if not name:
         return "node name must not be empty", 0
@@ -32,7 +32,7 @@ def node_name_fault(name: str) -> Fault | None:
     return None
 
 
-def namespace_fault(namespace: str) -> Fault | None:
+def namespace_error(namespace: str) -> Fault | None:
     """Check a namespace, which must be absolute."""
     if not namespace:
         return "namespace must not be empty", 0
@@ -40,13 +40,13 @@ def namespace_fault(namespace: str) -> Fault | None:
         return "namespace must be absolute, it must lead with a '/'", 0
     if namespace == "/":
         return None
-    fault = full_name_fault(namespace)
+    fault = full_name_error(namespace)
     if fault:
         return fault[0].replace("topic name", "namespace"), fault[1]
     return None
 
 
-def full_name_fault(name: str) -> Fault | None:
+def full_name_error(name: str) -> Fault | None:
     """Check a fully qualified topic or service name."""
     if not name:
         return "topic name must not be empty", 0
@@ -69,7 +69,7 @@ def full_name_fault(name: str) -> Fault | None:
     return None
 
 
-def topic_name_fault(name: str) -> Fault | None:
+def topic_name_error(name: str) -> Fault | None:
     """Check a topic or service name as a user writes it: relative, private or with substitutions."""
     if not name:
         return "topic name must not be empty string", 0
@@ -82,10 +82,10 @@ def topic_name_fault(name: str) -> Fault | None:
         r"[A-Za-z0-9_/~{}]",
         "topic name must not contain characters other than alphanumerics, '_', '~', '{', or '}'",
     )
-    return fault or _tilde_fault(name) or _brace_fault(name) or _token_fault(name)
+    return fault or _tilde_error(name) or _brace_error(name) or _token_error(name)
 
 
-def _tilde_fault(name: str) -> Fault | None:
+def _tilde_error(name: str) -> Fault | None:
     position = name.find("~", 1)
     if position > 0:
         return "topic name must not have tilde '~' other than at the front", position
@@ -94,7 +94,7 @@ def _tilde_fault(name: str) -> Fault | None:
     return None
 
 
-def _brace_fault(name: str) -> Fault | None:
+def _brace_error(name: str) -> Fault | None:
     depth = 0
     for i, char in enumerate(name):
         if char == "{":
@@ -112,7 +112,7 @@ def _brace_fault(name: str) -> Fault | None:
     return None
 
 
-def _token_fault(name: str) -> Fault | None:
+def _token_error(name: str) -> Fault | None:
     if "//" in name:
         return "topic name must not contain repeated '/'", name.index("//") + 1
     token = re.search(r"/[0-9]", name)

@@ -38,13 +38,13 @@ def check_value(parameter: Parameter[Any], descriptor: ParameterDescriptor) -> S
         return SetParametersResult(successful=False, reason=reason)
     reason = ""
     if parameter.type_ == ParameterType.INTEGER and descriptor.integer_range:
-        reason = _integer_fault(parameter, descriptor.integer_range[0])
+        reason = _integer_error(parameter, descriptor.integer_range[0])
     elif parameter.type_ == ParameterType.DOUBLE and descriptor.floating_point_range:
-        reason = _float_fault(parameter, descriptor.floating_point_range[0])
+        reason = _float_error(parameter, descriptor.floating_point_range[0])
     return SetParametersResult(successful=not reason, reason=reason)
 
 
-def _integer_fault(parameter: Parameter[Any], allowed: IntegerRange) -> str:
+def _integer_error(parameter: Parameter[Any], allowed: IntegerRange) -> str:
     low, high = sorted((allowed.from_value, allowed.to_value))
     value = parameter.value
     if value in (low, high):
@@ -59,7 +59,7 @@ def _integer_fault(parameter: Parameter[Any], allowed: IntegerRange) -> str:
     return ""
 
 
-def _float_fault(parameter: Parameter[Any], allowed: FloatingPointRange) -> str:
+def _float_error(parameter: Parameter[Any], allowed: FloatingPointRange) -> str:
     low, high = sorted((allowed.from_value, allowed.to_value))
     value = parameter.value
     if any(math.isclose(value, edge, rel_tol=REL_TOL) for edge in (low, high)):

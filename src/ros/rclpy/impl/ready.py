@@ -50,7 +50,7 @@ def _nothing() -> None:
     """Stand in for a function that nobody gave."""
 
 
-class Announcer:
+class ReadyNotifier:
     """Base of what calls a function, and perhaps listeners beside it, when something becomes ready."""
 
     _first: Callable[[], None] = staticmethod(_nothing)

@@ -79,7 +79,7 @@ class ReadyQueue:
         while True:
             until = deadline_ns
             if timers:
-                until = self._tell_timers(until)
+                until = self._notify_timers(until)
             if first and not (items and self._was_first):
                 self._was_first = True
                 return first.popleft()
@@ -95,7 +95,7 @@ class ReadyQueue:
             elif until == deadline_ns:
                 raise TimeoutError
 
-    def _tell_timers(self, until: int | None) -> int | None:
+    def _notify_timers(self, until: int | None) -> int | None:
         """Tell the timers that are due; returns the earliest of `until` and the next timer's deadline."""
         timers = self._timers
         while True:

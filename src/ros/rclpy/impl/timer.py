@@ -10,13 +10,13 @@ from rclpy.clock_type import ClockType
 from rclpy.impl.clock import ClockHandle
 from rclpy.impl.errors import TimerCancelledError
 from rclpy.impl.handle import Destroyable
-from rclpy.impl.ready import Announcer
+from rclpy.impl.ready import ReadyNotifier
 
 Schedule = Callable[[int, "TimerHandle"], None]
 """Asks for `on_due` when ``time.monotonic_ns()`` reaches a deadline."""
 
 
-class TimerHandle(Announcer, Destroyable):
+class TimerHandle(ReadyNotifier, Destroyable):
     """A timer with a period in nanoseconds of its clock.
 
     Attributes

@@ -125,9 +125,9 @@ class Partner:
 
     def listen(self, topic: str = "/chatter") -> None:
         """Hear numbers from now on."""
-        self.node.create_subscription(String, topic, self._hear, QoSProfile(depth=1000))
+        self.node.create_subscription(String, topic, self._receive, QoSProfile(depth=1000))
 
-    def _hear(self, message: String) -> None:
+    def _receive(self, message: String) -> None:
         with self._news:
             self.numbers.append(int(message.data))
             self.times.append(time.monotonic())

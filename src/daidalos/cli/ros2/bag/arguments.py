@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from rosbag2_py import StorageOptions
 
 STORAGES = tuple(SUFFIXES)
-LOOK_S = 0.1
+POLL_S = 0.1
 """How often who waits looks whether the process was asked to end."""
 _SAME_PRESS_S = 0.5
 
@@ -197,7 +197,7 @@ def positive_int(text: str) -> int:
     return value
 
 
-class Ending:
+class ShutdownRequest:
     """Notes, while it is entered, that the process was asked to end by Ctrl-C, ``kill`` or ``kill -INT``.
 
     An exception out of a signal's handler could strike where a lock is held. A shell's script makes what it puts in

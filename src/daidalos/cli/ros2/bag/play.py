@@ -186,13 +186,13 @@ def play_options(args: Namespace) -> PlayOptions:
 
 def run(player: Player, burst: int | None = None) -> Status:
     """Play to the end or Ctrl-C; burst so many messages at first where a number is given."""
-    with common.Ending(player.interrupt) as ending:
+    with common.ShutdownRequest(player.interrupt) as ending:
         try:
             player.start_spin()
             player.play()
             if burst is not None and not ending.asked:
                 player.burst(burst)
-            while not (ending.asked or player.wait_for_playback_to_finish(common.LOOK_S)):
+            while not (ending.asked or player.wait_for_playback_to_finish(common.POLL_S)):
                 continue
             return 1 if player.error else 0  # The node has said why.
         finally:

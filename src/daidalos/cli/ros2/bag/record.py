@@ -294,12 +294,12 @@ def _run(recorder: Recorder) -> Status:
     from rosbag2_py._progress import StatusLine
 
     status = StatusLine(_Progress(recorder).text, _STATUS_HZ)
-    with common.Ending() as ending:
+    with common.ShutdownRequest() as ending:
         try:
             recorder.start_spin()
             recorder.record()
             status.start()
-            while not (ending.asked or recorder.wait(common.LOOK_S)):
+            while not (ending.asked or recorder.wait(common.POLL_S)):
                 continue
         except (BagError, ValueError) as fault:
             raise common.error(str(fault)) from None

@@ -6,7 +6,7 @@ import subprocess
 import sys
 from typing import TYPE_CHECKING, Any
 
-from daidalos.cli.ros2.daemon.wire import Address, Station, ask, graph_from_json
+from daidalos.cli.ros2.daemon.protocol import Address, AddressFile, ask, graph_from_json
 
 if TYPE_CHECKING:
     from daidalos.transport.graph import Graph
@@ -47,7 +47,7 @@ def keep() -> bool:
     return _ask("stay") is not None
 
 
-def spawn_quietly() -> None:
+def start_in_background() -> None:
     """Start a daemon that goes when the last node of the domain does, and do not wait for it."""
     try:
         subprocess.Popen(
@@ -70,7 +70,7 @@ _COMMAND = [sys.executable, "-m", "daidalos.cli.ros2.daemon.server"]
 
 
 def _ask(question: str, timeout_s: float = 1.0) -> Any:
-    station = Station()
+    station = AddressFile()
     address: Address | None = station.read()
     if address is None:
         return None

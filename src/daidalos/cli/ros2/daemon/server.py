@@ -20,11 +20,11 @@ from typing import Any
 from ros2cli.node import NODE_NAME_PREFIX
 from ros2cli.node.direct import direct_node
 
-from daidalos.cli.ros2.daemon.wire import MAX_QUESTION, Address, Station, ask, graph_to_json
+from daidalos.cli.ros2.daemon.protocol import MAX_QUESTION, Address, AddressFile, ask, graph_to_json
 from daidalos.transport.graph import Graph
 
 _IDLE_S = 2 * 60 * 60.0
-_LONELY_S = 1.5
+_IDLE_TIMEOUT_S = 1.5
 
 
 class Server:
@@ -82,7 +82,7 @@ class Server:
             return left
         if self._alone_since is None:
             self._alone_since = now
-        return min(left, self._alone_since + _LONELY_S - now)
+        return min(left, self._alone_since + _IDLE_TIMEOUT_S - now)
 
     def _accept(self) -> None:
         connection, _ = self._listener.accept()
@@ -123,7 +123,7 @@ def main() -> int:
     args = parser.parse_args()
     signal.signal(signal.SIGTERM, lambda number, frame: sys.exit(0))
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    station = Station()
+    station = AddressFile()
     with socket.create_server(("127.0.0.1", 0)) as listener:
         with direct_node(args, f"{NODE_NAME_PREFIX}_daemon_{station.environment.domain}_{os.getpid()}") as node:
             token = secrets.token_hex(16)
@@ -146,7 +146,7 @@ def main() -> int:
     return 0
 
 
-def _answers(station: Station) -> bool:
+def _answers(station: AddressFile) -> bool:
     address = station.read()
     if address is None:
         return False

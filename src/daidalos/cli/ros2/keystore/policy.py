@@ -69,7 +69,7 @@ def access_control(file: Path, enclave: str) -> dict[str, Any]:
     for profile in found.iter("profile"):
         for permission, name in _permissions(profile):
             allowed[permission].add(name)
-    rules = [_everybodys_rule()]
+    rules = [_common_rule()]
     for permission, names in allowed.items():
         rules += [_rule(permission, flow, messages, names) for flow, messages in _FLOWS[permission] if names]
     return {
@@ -131,7 +131,7 @@ def _rule(permission: str, flow: str, messages: Iterable[str], names: Iterable[s
     }
 
 
-def _everybodys_rule() -> dict[str, Any]:
+def _common_rule() -> dict[str, Any]:
     """Return what lets everybody see who is there."""
     return {
         "id": "graph",

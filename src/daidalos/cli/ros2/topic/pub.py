@@ -137,11 +137,11 @@ def _wait_for_subscriptions(node: Node, publisher: Publisher, wanted: int, limit
         print(f"Waiting for at least {wanted} matching subscription(s)...")
         node.handle.graph.wait_for(lambda: publisher.get_subscription_count() >= wanted, left)
         if hint is None and publisher.get_subscription_count() < wanted:
-            hint = _why_nobody_matches(node, publisher)
+            hint = _mismatch_hint(node, publisher)
             sys.stderr.write(hint)
 
 
-def _why_nobody_matches(node: Node, publisher: Publisher) -> str:
+def _mismatch_hint(node: Node, publisher: Publisher) -> str:
     """Return a line about who listens to another type, or to a topic of a like name; empty when there is neither."""
     listened = {
         name: types

@@ -35,7 +35,7 @@ class AsyncClient(Client):
         loop = asyncio.get_running_loop()
         answer: asyncio.Future[Any] = loop.create_future()
         future = self.call_async(request)
-        future.on_wake(lambda: post(loop, _pass_on, future, answer))
+        future.on_wake(lambda: post(loop, _forward_message, future, answer))
         self._calls = {*getattr(self, "_calls", ()), answer}
         try:
             async with asyncio.timeout(timeout_sec):
@@ -64,6 +64,6 @@ class AsyncClient(Client):
             answer.cancel()
 
 
-def _pass_on(future: Future, answer: asyncio.Future[Any]) -> None:
+def _forward_message(future: Future, answer: asyncio.Future[Any]) -> None:
     if future.done() and not answer.done():
         answer.set_result(future.result())

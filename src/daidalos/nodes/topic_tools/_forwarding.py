@@ -13,7 +13,7 @@ _DEPTH = 10
 Receiver = Callable[[bytes], None]
 
 
-class Passage:
+class TopicForwarder:
     """Takes the messages of topics and publishes what is given to it, as soon as the type is known.
 
     Parameters

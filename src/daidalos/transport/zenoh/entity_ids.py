@@ -15,18 +15,18 @@ from collections.abc import Hashable
 _REST_S = 2.0
 """How long a number is not given again: what was sent under it, and the news of its end, are on their way."""
 _MAX_ENTITIES = 10_000
-"""So many kinds of entities are remembered."""
+"""Number of different entities whose free numbers are remembered."""
 
 
-class Numbers:
-    """Gives numbers from 0 upwards; safe to use from any thread."""
+class EntityIds:
+    """Allocator of numbers from 0 upwards; safe to use from any thread."""
 
     def __init__(self) -> None:
         self._next = itertools.count().__next__
         self._lock = threading.Lock()
         self._free: dict[Hashable, deque[tuple[float, int]]] = {}
 
-    def take(self, what: Hashable) -> int:
+    def acquire(self, what: Hashable) -> int:
         """Return a number for an entity; `what` says all that its token says beside the number."""
         with self._lock:
             free = self._free.get(what)
@@ -34,8 +34,8 @@ class Numbers:
                 return free.popleft()[1]
         return self._next()
 
-    def give_back(self, what: Hashable, number: int) -> None:
-        """Let an entity's number go."""
+    def release(self, what: Hashable, number: int) -> None:
+        """Release the number of an entity."""
         with self._lock:
             if len(self._free) >= _MAX_ENTITIES and what not in self._free:
                 self._free.clear()

@@ -13,14 +13,14 @@ from daidalos.simulation.samples import Sample, TrajectoryCommand
 
 
 @dataclass
-class Course:
+class ActiveTrajectory:
     """A trajectory that is being followed since a time."""
 
     command: TrajectoryCommand
     start_ns: int
 
 
-class CourseFollower(Component):
+class TrajectoryFollower(Component):
     """Puts the joints of a model where a course has them, in every step until its end.
 
     Parameters
@@ -28,7 +28,7 @@ class CourseFollower(Component):
     context : ComponentContext
     """
 
-    state: Course | None
+    state: ActiveTrajectory | None
 
     def __init__(self, context: ComponentContext) -> None:
         super().__init__(context)
@@ -46,7 +46,7 @@ class CourseFollower(Component):
 
 
 def place_joints(
-    instance: Instance, course: Course, now_ns: int, joint_of: Callable[[str], str] = lambda name: name
+    instance: Instance, course: ActiveTrajectory, now_ns: int, joint_of: Callable[[str], str] = lambda name: name
 ) -> bool:
     """Put joints where a course has them: between two points in proportion to time.
 

@@ -11,12 +11,12 @@ import zenoh
 from zenoh.handlers import Callback
 
 from daidalos.transport.backend import (
+    BackendClient,
+    BackendPublisher,
+    BackendService,
+    BackendSubscription,
     RequestId,
     SampleInfo,
-    WireClient,
-    WirePublisher,
-    WireService,
-    WireSubscription,
 )
 from daidalos.transport.graph import EndpointInfo
 from daidalos.transport.zenoh import attachment
@@ -46,7 +46,7 @@ class _Wire:
                 entity.undeclare()
 
 
-class ZenohPublisher(_Wire, WirePublisher):
+class ZenohPublisher(_Wire, BackendPublisher):
     """Puts samples."""
 
     def __init__(self, session: zenoh.Session, key: str, endpoint: EndpointInfo, pool: Pool) -> None:
@@ -75,7 +75,7 @@ class ZenohPublisher(_Wire, WirePublisher):
         self._close(self._publisher)
 
 
-class ZenohSubscription(_Wire, WireSubscription):
+class ZenohSubscription(_Wire, BackendSubscription):
     """Receives samples on zenoh's thread, which only queues them."""
 
     def __init__(
@@ -104,7 +104,7 @@ class ZenohSubscription(_Wire, WireSubscription):
         self._close(self._subscriber)
 
 
-class ZenohService(_Wire, WireService):
+class ZenohService(_Wire, BackendService):
     """Answers queries; a query is held until its reply is sent."""
 
     def __init__(self, session: zenoh.Session, key: str, on_request: Callable[[Any], None]) -> None:
@@ -141,7 +141,7 @@ class ZenohService(_Wire, WireService):
         self._queries.clear()
 
 
-class ZenohClient(_Wire, WireClient):
+class ZenohClient(_Wire, BackendClient):
     """Sends queries."""
 
     def __init__(

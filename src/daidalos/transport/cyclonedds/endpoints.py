@@ -11,12 +11,12 @@ from typing import Any
 
 from daidalos.interfaces.codec import CdrError
 from daidalos.transport.backend import (
+    BackendClient,
+    BackendPublisher,
+    BackendService,
+    BackendSubscription,
     RequestId,
     SampleInfo,
-    WireClient,
-    WirePublisher,
-    WireService,
-    WireSubscription,
 )
 from daidalos.transport.cyclonedds.library import (
     INFINITE,
@@ -28,7 +28,7 @@ from daidalos.transport.cyclonedds.library import (
     Library,
 )
 from daidalos.transport.cyclonedds.qos import BLOCKING_NS, user_data_of
-from daidalos.transport.cyclonedds.reception import Reception, Sample, Taker
+from daidalos.transport.cyclonedds.reception import Reception, Sample, SampleReader
 
 _ENCAPSULATION = 4
 _HEADER = struct.Struct("<Qq")
@@ -122,7 +122,7 @@ def _address(part: Any) -> tuple[int, int]:
     return address, count * part.itemsize
 
 
-class DdsPublisher(WirePublisher):
+class DdsPublisher(BackendPublisher):
     """Writes samples."""
 
     def __init__(self, writer: Writer, on_close: Callable[[], None]) -> None:
@@ -143,12 +143,12 @@ class DdsPublisher(WirePublisher):
         self._writer.close()
 
 
-class DdsSubscription(WireSubscription):
+class DdsSubscription(BackendSubscription):
     """Takes samples on the receiving thread, which only queues them."""
 
     def __init__(
         self,
-        taker: Taker,
+        taker: SampleReader,
         reception: Reception,
         reader: int,
         on_sample: Callable[[Any], None],
@@ -174,13 +174,13 @@ class DdsSubscription(WireSubscription):
         self._on_close()
 
 
-class DdsService(WireService):
+class DdsService(BackendService):
     """Reads requests and writes replies; every client gets every reply and keeps its own."""
 
     def __init__(
         self,
         library: Library,
-        taker: Taker,
+        taker: SampleReader,
         reception: Reception,
         reader: int,
         writer: Writer,
@@ -256,12 +256,12 @@ def _client_of(library: Library, endpoint: Any) -> str | None:
     return client
 
 
-class DdsClient(WireClient):
+class DdsClient(BackendClient):
     """Writes requests and reads replies."""
 
     def __init__(
         self,
-        taker: Taker,
+        taker: SampleReader,
         reception: Reception,
         reader: int,
         writer: Writer,

@@ -17,7 +17,7 @@ LIBRARY = "gz-sim-apply-link-wrench-system"
 _NEVER = 1e6  # seconds between two updates, in which there is nothing to do
 
 
-class StandingPushes(Component):
+class PersistentForces(Component):
     """Begins to push the links of its model when the simulation starts.
 
     Parameters
@@ -29,7 +29,7 @@ class StandingPushes(Component):
 
     def __init__(self, context: ComponentContext) -> None:
         super().__init__(context)
-        self._pushes = standing_pushes(context.model, context.world)
+        self._pushes = persistent_forces(context.model, context.world)
 
     def bind(self, instance: Instance) -> None:
         """Find where pushes are kept."""
@@ -45,7 +45,7 @@ class StandingPushes(Component):
         return ()
 
 
-def standing_pushes(model: Model, world: World) -> list[Push]:
+def persistent_forces(model: Model, world: World) -> list[Push]:
     """Return what a world pushes a model's links with; a push on the model is one on its first link.
 
     Raises
@@ -59,7 +59,7 @@ def standing_pushes(model: Model, world: World) -> list[Push]:
     return [Push(model.name, link, _vector(one, "force"), _vector(one, "torque")) for link, one in pushes if link]
 
 
-def check_standing_pushes(world: World, warn: Callable[[str], None]) -> None:
+def check_persistent_forces(world: World, warn: Callable[[str], None]) -> None:
     """Warn of pushes on what is not in the world."""
     known = {name for model in world.models for name in (model.name, *(f"{model.name}::{li}" for li in model.links))}
     for element in _persistent(world):

@@ -1,4 +1,4 @@
-"""One camera's eye: renders what it looks at, then bends, blurs with noise and encodes it as its sensor would."""
+"""Rendering of one camera: draws its view, then applies distortion, noise and the encoding of its sensor."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from daidalos.common.pose3 import Pose
 from daidalos.simulation.noise import SILENT, Noise
 from daidalos.simulation.physics import Physics
 from daidalos.simulation.rendering.backends import make_renderer
-from daidalos.simulation.rendering.film import add_noise, bend, mosaic, pick
+from daidalos.simulation.rendering.image_effects import add_noise, distort, mosaic, pick
 from daidalos.simulation.rendering.optics import Pinhole
 from daidalos.simulation.rendering.renderer import View
 
@@ -22,8 +22,8 @@ _BAYER = {"rggb": ((0, 1), (1, 2)), "bggr": ((2, 1), (1, 0)), "gbrg": ((1, 2), (
 
 
 @dataclass(frozen=True)
-class EyeSettings:
-    """How a camera sees.
+class CameraRendererSettings:
+    """Settings of a camera renderer.
 
     Parameters
     ----------
@@ -43,24 +43,24 @@ class EyeSettings:
     noise: Noise = SILENT
 
 
-class Eye:
-    """Looks, and tells what it saw; the arrays it returns are the caller's.
+class CameraRenderer:
+    """Renderer of one camera; the arrays it returns belong to the caller.
 
     Parameters
     ----------
-    settings : EyeSettings
+    settings : CameraRendererSettings
     random : numpy Generator
         Makes the table that noise is taken from.
     """
 
-    def __init__(self, settings: EyeSettings, random: np.random.Generator) -> None:
+    def __init__(self, settings: CameraRendererSettings, random: np.random.Generator) -> None:
         self.settings = settings
         self._random = random
         self._renderer = make_renderer(settings.pinhole.ideal, settings.near, settings.far, settings.mask)
         self._view: View | None = None
 
-    def look(self, physics: Physics, pose: Pose) -> None:
-        """See what is there now.
+    def render(self, physics: Physics, pose: Pose) -> None:
+        """Render the current state of the simulation.
 
         Parameters
         ----------
@@ -77,7 +77,7 @@ class Eye:
     def view(self) -> View:
         """What the last `look` saw, without distortion."""
         if self._view is None:
-            raise ValueError("the eye has not looked yet")
+            raise ValueError("nothing was rendered yet")
         return self._view
 
     def picture(self, start: int = 0) -> NDArray[np.uint8]:
@@ -92,7 +92,7 @@ class Eye:
         picture = self._renderer.paint(data.xpos, data.xmat, self._physics.stage.lighting)
         if pinhole.is_distorted:
             bent = np.empty((pinhole.height, pinhole.width, 3), dtype=np.uint8)
-            bend(picture, pinhole.lookup, bent)
+            distort(picture, pinhole.lookup, bent)
             picture = bent
         if self.settings.noise.stddev or self.settings.noise.mean:
             add_noise(picture.reshape(-1), self._noise, start % _NOISE_TABLE)

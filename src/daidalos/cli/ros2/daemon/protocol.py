@@ -24,7 +24,7 @@ class Address:
     token: str
 
 
-class Station:
+class AddressFile:
     """The place where the daemon of a domain leaves its address.
 
     Parameters

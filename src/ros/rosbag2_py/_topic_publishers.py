@@ -24,7 +24,7 @@ _REQUEST_EVENTS = {ServiceRequestsSource.SERVICE_INTROSPECTION: 1, ServiceReques
 """Kind of the event by which a service, or a client, tells of a request."""
 
 
-class Outlets:
+class TopicPublishers:
     """Publishes messages of some topics.
 
     Parameters

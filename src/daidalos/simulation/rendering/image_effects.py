@@ -11,7 +11,7 @@ from daidalos.common.kernels import compiled
 
 
 @compiled
-def bend(ideal: Any, lookup: Any, bent: Any) -> None:
+def distort(ideal: Any, lookup: Any, bent: Any) -> None:
     """Take each pixel of a picture from a place between four pixels of the undistorted one.
 
     Parameters
