@@ -23,6 +23,13 @@ hypothesis.settings.load_profile("daidalos")
 _numbers = itertools.count(os.getpid())
 
 
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Leave tests with limits in real time out of the quick suite, which runs in parallel."""
+    for item in items:
+        if item.get_closest_marker("timing"):
+            item.add_marker("slow")
+
+
 @pytest.fixture(scope="session")
 def shared_data() -> Path:
     """The folder of real logs, worlds and test vectors; a test that needs it is skipped where it is absent."""

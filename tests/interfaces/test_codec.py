@@ -186,11 +186,11 @@ def test_absurd_counts_cost_neither_memory_nor_time(kind):
             with pytest.raises(CdrError):
                 codec.decode(b"\0\1\0\0" + value * 4)  # compiles
             tracemalloc.start()
-            begin = time.perf_counter()
+            begin = time.thread_time()
             attempt(kind, data)
             assert tracemalloc.get_traced_memory()[1] < 5_000_000
             tracemalloc.stop()
-            assert time.perf_counter() - begin < 2.0
+            assert time.thread_time() - begin < 2.0
 
 
 @pytest.mark.parametrize(

@@ -106,10 +106,10 @@ def test_bad_constant_names(name):
 
 @pytest.mark.parametrize("name", ["a" * 5000 + "-", "A" * 5000 + "-=1"])
 def test_a_long_bad_name_is_refused_at_once(name):
-    begin = time.perf_counter()
+    begin = time.thread_time()
     with pytest.raises(InterfaceError):
         message(f"int32 {name}")
-    assert time.perf_counter() - begin < 1.0
+    assert time.thread_time() - begin < 1.0
 
 
 @pytest.mark.parametrize("name", ["lower", "With_Underscore", "3D", "", "Ünicode"])

@@ -417,6 +417,7 @@ def test_a_slow_client_gets_the_newest_and_holds_up_nobody(server, source):
     assert asyncio.run(run()) < 20
 
 
+@pytest.mark.timing
 def test_stops_within_a_second_with_clients_connected(source, tmp_path):
     server = StudioServer(source, port=0, static=tmp_path)
     server.start()

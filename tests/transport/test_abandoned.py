@@ -30,8 +30,8 @@ def test_closing_a_session_waits_for_what_was_abandoned():
 
 
 @pytest.mark.slow
-def test_programs_that_forget_their_node_end_well(monkeypatch):
-    monkeypatch.setenv("ROS_DOMAIN_ID", "19")
+def test_programs_that_forget_their_node_end_well(monkeypatch, domain):
+    monkeypatch.setenv("ROS_DOMAIN_ID", str(domain))
     for _ in range(40):
         done = subprocess.run([sys.executable, "-c", PROGRAM], capture_output=True, text=True, timeout=60)
         assert (done.returncode, done.stderr) == (0, "")

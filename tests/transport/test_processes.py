@@ -122,6 +122,7 @@ def test_a_service_that_dies_is_replaced(new_session: Callable[[], Session]):
         assert session.graph.wait_for(lambda: not session.server_is_ready(client), TIMEOUT_S)
 
 
+@pytest.mark.timing
 def test_a_stopped_process_does_not_stop_others(new_session: Callable[[], Session], middleware: str):
     session = new_session()
     node = node_of(session, "me")
@@ -167,6 +168,7 @@ def test_acknowledgements_are_waited_for_where_there_are_any(new_session: Callab
     assert publisher.wait_for_acks(None)
 
 
+@pytest.mark.timing
 def test_best_effort_never_waits(new_session: Callable[[], Session]):
     session = new_session()
     qos = Qos(reliability=Reliability.BEST_EFFORT, depth=5)

@@ -264,6 +264,7 @@ def test_a_service_goes_and_comes_back(two):
     assert answers.wait(1)[0][0].sum == 1
 
 
+@pytest.mark.timing
 def test_a_client_that_left_is_not_waited_for(two):
     here, there = two
     requests = Inbox()

@@ -97,6 +97,7 @@ def test_who_stumbles_once_is_waited_for(clock: list[int]):
     assert receiver.take_burst()[-BURST:] == list(range(BURST))
 
 
+@pytest.mark.timing
 def test_who_does_not_take_is_waited_for_once(monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(Subscription, "_gave_up_at", -module._SHORT_FOR_NS)
     receiver = Receiver()
@@ -107,6 +108,7 @@ def test_who_does_not_take_is_waited_for_once(monkeypatch: pytest.MonkeyPatch):
     assert [item[0].data for item in left if item] == list(range(BURST, DEPTH + BURST))
 
 
+@pytest.mark.timing
 def test_what_the_same_callback_stalls_is_waited_for_less(clock: list[int], monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(module, "_TIMEOUT_S", 0.8)
     times = []
@@ -118,6 +120,7 @@ def test_what_the_same_callback_stalls_is_waited_for_less(clock: list[int], monk
     assert times[0] >= 0.8 > times[1] >= module._SHORT_TIMEOUT_S
 
 
+@pytest.mark.timing
 def test_a_slow_callback_is_waited_for_no_more(clock: list[int]):
     receiver = Receiver()
     receiver.accept(DEPTH)
@@ -130,6 +133,7 @@ def test_a_slow_callback_is_waited_for_no_more(clock: list[int]):
     assert time.perf_counter() - before < module._TIMEOUT_S
 
 
+@pytest.mark.timing
 def test_best_effort_waits_for_nobody():
     receiver = Receiver(Reliability.BEST_EFFORT)
     before = time.perf_counter()

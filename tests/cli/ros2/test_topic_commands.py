@@ -65,6 +65,7 @@ def test_a_number_of_messages_at_a_rate(env, beside, wait_for):
     assert [listener.stdout.readline() for _ in range(3)] == ["5\n"] * 3
 
 
+@pytest.mark.timing
 @pytest.mark.skipif(not hasattr(signal, "SIGSTOP"), reason="nothing can be stopped here")
 def test_a_stopped_program_holds_nobody_up_for_long(env, beside, wait_for):
     stopped = beside(LATCHED)

@@ -3,7 +3,6 @@
 import os
 import sys
 import types
-import uuid
 
 import pytest
 from launch import LaunchContext, LaunchDescription, LaunchService
@@ -69,9 +68,9 @@ except KeyboardInterrupt:
 
 
 @pytest.fixture(autouse=True)
-def programs(monkeypatch):
+def programs(monkeypatch, domain):
     """Let executables be the programs above, in a ROS domain of their own."""
-    monkeypatch.setenv("ROS_DOMAIN_ID", str(uuid.uuid4().int % 90 + 10))
+    monkeypatch.setenv("ROS_DOMAIN_ID", str(domain))
     module = types.ModuleType("daidalos.workspaces.executables")
     texts = {"managed": MANAGED, "container": CONTAINER}
     module.find_executable = lambda package, executable: [sys.executable, "-u", "-c", texts[executable]]

@@ -200,9 +200,9 @@ def test_entities_that_come_and_go_leave_nothing(kind: str) -> None:
 
 
 @pytest.mark.skipif(not Path("/proc/self/fd").is_dir(), reason="counts files as Linux lists them")
-def test_contexts_that_come_and_go_leave_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_contexts_that_come_and_go_leave_nothing(monkeypatch: pytest.MonkeyPatch, domain: int) -> None:
     monkeypatch.setenv("RMW_IMPLEMENTATION", "rmw_zenoh_cpp")
-    monkeypatch.setenv("ROS_DOMAIN_ID", "149")
+    monkeypatch.setenv("ROS_DOMAIN_ID", str(domain))
 
     def once() -> None:
         with Context() as context:
@@ -262,7 +262,7 @@ print("ready", flush=True)
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 @pytest.mark.parametrize("middleware", ["rmw_zenoh_cpp", "rmw_cyclonedds_cpp"])
 def test_a_program_that_is_asked_to_end_ends_without_a_traceback(
-    middleware: str, middle: str, end: str, number: int
+    middleware: str, middle: str, end: str, number: int, domain: int
 ) -> None:
     if "dds" in middleware:
         pytest.importorskip("cyclonedds", reason="the extra 'dds' is not installed")
@@ -272,7 +272,7 @@ def test_a_program_that_is_asked_to_end_ends_without_a_traceback(
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
-        env={**os.environ, "ROS_DOMAIN_ID": "149", "RMW_IMPLEMENTATION": middleware},
+        env={**os.environ, "ROS_DOMAIN_ID": str(domain), "RMW_IMPLEMENTATION": middleware},
     )
     try:
         assert process.stdout is not None

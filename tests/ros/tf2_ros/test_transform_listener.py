@@ -272,8 +272,8 @@ except BaseException:
 
 
 @pytest.mark.slow
-def test_from_another_process(monkeypatch: pytest.MonkeyPatch, buffer: Buffer) -> None:
-    monkeypatch.setenv("ROS_DOMAIN_ID", "87")
+def test_from_another_process(monkeypatch: pytest.MonkeyPatch, buffer: Buffer, domain: int) -> None:
+    monkeypatch.setenv("ROS_DOMAIN_ID", str(domain))
     monkeypatch.delenv("RMW_IMPLEMENTATION", raising=False)
     sender = subprocess.Popen([sys.executable, "-c", SENDER], stdout=subprocess.PIPE, text=True)
     try:
