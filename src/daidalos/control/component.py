@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from daidalos.common.rate_gate import RateGate
 from daidalos.control.errors import HardwareError, StateError
 from daidalos.control.hardware.base import Hardware
 from daidalos.control.interfaces import Interfaces
 from daidalos.control.limits import CommandLimiter
-from daidalos.control.pulse import Pulse
 
 UNCONFIGURED, INACTIVE, ACTIVE, FINALIZED = "unconfigured", "inactive", "active", "finalized"
 _STEPS = (UNCONFIGURED, INACTIVE, ACTIVE)
@@ -33,7 +33,7 @@ class Component:
         self._limiter = (
             CommandLimiter(hardware.info.components, hardware.commands, hardware.states) if enforce_limits else None
         )
-        self._reading, self._writing = Pulse(hardware.info.rw_rate), Pulse(hardware.info.rw_rate)
+        self._reading, self._writing = RateGate(hardware.info.rw_rate), RateGate(hardware.info.rw_rate)
         self._last_read = self._last_write = -1
 
     @property
@@ -91,7 +91,7 @@ class Component:
 
     def read(self, now_ns: int, period: float) -> None:
         """Read when it is due; `period` [s] counts where nothing was read before."""
-        if not self.tells_states or not self._reading.due(now_ns):
+        if not self.tells_states or not self._reading.is_due(now_ns):
             return
         elapsed = (now_ns - self._last_read) * 1e-9 if 0 <= self._last_read < now_ns else period
         self._last_read = now_ns
@@ -99,7 +99,7 @@ class Component:
 
     def write(self, now_ns: int, period: float) -> None:
         """Limit the commands and write them when that is due."""
-        if not self.takes_commands or not self._writing.due(now_ns):
+        if not self.takes_commands or not self._writing.is_due(now_ns):
             return
         elapsed = (now_ns - self._last_write) * 1e-9 if 0 <= self._last_write < now_ns else period
         self._last_write = now_ns

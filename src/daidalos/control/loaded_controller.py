@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
+from daidalos.common.rate_gate import RateGate
 from daidalos.control.component import UNCONFIGURED
 from daidalos.control.controllers.base import Controller, ControllerContext
 from daidalos.control.errors import StateError
 from daidalos.control.interfaces import Interfaces
-from daidalos.control.pulse import Pulse
 from daidalos.control.switching import Candidate
 
 Reader = Callable[[type], object]
@@ -45,7 +45,7 @@ class LoadedController:
     controller: Controller | None = None
     references: Interfaces = field(default_factory=Interfaces)
     exported: Interfaces = field(default_factory=Interfaces)
-    pulse: Pulse | None = None
+    gate: RateGate | None = None
     updated_ns: int = -1
 
     @property

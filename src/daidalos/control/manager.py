@@ -9,6 +9,7 @@ from dataclasses import replace
 from typing import TypeVar
 
 from daidalos.common.extensions import find
+from daidalos.common.rate_gate import RateGate
 from daidalos.control.component import ACTIVE, FINALIZED, INACTIVE, UNCONFIGURED, Component
 from daidalos.control.controllers.base import ControllerContext
 from daidalos.control.errors import ControlError, HardwareError, StateError, SwitchError, UnknownError
@@ -16,7 +17,6 @@ from daidalos.control.extensions import CONTROLLERS
 from daidalos.control.hardware.base import Hardware
 from daidalos.control.interfaces import Interfaces
 from daidalos.control.loaded_controller import LoadedController, Reader, prefixed
-from daidalos.control.pulse import Pulse
 from daidalos.control.switcher import Switcher
 from daidalos.control.switching import Strictness, Switch
 from daidalos.simulation.samples import Sample
@@ -162,7 +162,7 @@ class ControllerManager:
         controller = loaded.kind(loaded.read_parameters(loaded.kind.parameters), context)
         loaded.references = prefixed(name, controller.references)
         loaded.exported = prefixed(name, controller.exported)
-        loaded.pulse = Pulse(rate) if rate < self.update_rate else None
+        loaded.gate = RateGate(rate) if rate < self.update_rate else None
         loaded.controller, loaded.state = controller, INACTIVE
 
     def cleanup(self, name: str) -> None:
@@ -251,7 +251,7 @@ class ControllerManager:
             self._switcher.restart(now_ns)
         said: list[tuple[str, Sample]] = []
         for loaded in self._switcher.order:
-            if loaded.state == ACTIVE and (loaded.pulse is None or loaded.pulse.due(now_ns)):
+            if loaded.state == ACTIVE and (loaded.gate is None or loaded.gate.is_due(now_ns)):
                 said += self._update_one(loaded, now_ns, nominal)
         for component in self.components.values():
             self._guard(component, component.write, now_ns, period)
@@ -268,7 +268,7 @@ class ControllerManager:
     def _update_one(self, loaded: LoadedController, now_ns: int, nominal: float) -> list[tuple[str, Sample]]:
         controller = loaded.running
         since = loaded.updated_ns
-        rate = controller.context.update_rate if loaded.pulse is not None else 1.0 / nominal
+        rate = controller.context.update_rate if loaded.gate is not None else 1.0 / nominal
         period = (now_ns - since) * 1e-9 if 0 <= since < now_ns else 1.0 / rate
         loaded.updated_ns = controller.now_ns = now_ns
         try:

@@ -132,8 +132,8 @@ class Switcher:
             LoanedInterfaces(controller.command_names, commands), LoanedInterfaces(controller.state_names, states)
         )
         loaded.updated_ns = -1
-        if loaded.pulse is not None:
-            loaded.pulse.restart()
+        if loaded.gate is not None:
+            loaded.gate.restart()
         controller.now_ns = now_ns
         controller.activate(now_ns)
         loaded.state = ACTIVE

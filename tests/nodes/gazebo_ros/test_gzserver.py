@@ -8,7 +8,6 @@ import rclpy
 from rclpy.parameter import Parameter
 from rosgraph_msgs.msg import Clock
 
-from daidalos.nodes.gazebo_ros._pacing import Beat
 from daidalos.nodes.gazebo_ros.gzserver import GzServer, Start
 from daidalos.nodes.runner import UserError
 from end_to_end.processes import ROS2, Command
@@ -43,11 +42,6 @@ def test_the_clock_is_told_as_often_as_wanted(node, rate, period_ns):  # noqa: F
     finally:
         server.destroy_node()
     assert np.diff(told[1:5]).tolist() == [period_ns] * 3  # the first comes at once
-
-
-def test_beats_go_on_when_time_is_set_back():
-    beat = Beat(20)
-    assert [now for now in (0, 10, 20, 35, 41, 45, 60, 5, 15, 20) if beat.is_due(now)] == [0, 20, 41, 60, 5, 20]
 
 
 def test_a_rate_that_can_not_be_is_refused(graph):  # noqa: F811

@@ -7,12 +7,12 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from daidalos.common.rate_gate import RateGate
 from daidalos.control.base_odometry import BaseOdometry, prefixed_frame
 from daidalos.control.controllers.base import Controller, Subscription
 from daidalos.control.errors import ParameterError
 from daidalos.control.interfaces import Interfaces
 from daidalos.control.parameters import above, not_empty, parameter, size, unique
-from daidalos.control.pulse import Pulse
 from daidalos.control.samples import VelocitySample
 from daidalos.control.speed_limiter import SpeedLimiter, SpeedLimits
 from daidalos.control.velocity_input import VelocityInput
@@ -127,7 +127,7 @@ class DiffDriveController(Controller):
             p.twist_covariance_diagonal,
             p.velocity_rolling_window_size,
         )
-        self._publishing = Pulse(p.publish_rate)
+        self._publishing = RateGate(p.publish_rate)
         self._input = VelocityInput(self)
         self._take_parameters()
 
@@ -192,7 +192,7 @@ class DiffDriveController(Controller):
         )
         self._before, self._last = self._last, allowed
         self._drive(*allowed)
-        if self._publishing.due(now_ns):
+        if self._publishing.is_due(now_ns):
             yield self._odometry.sample(now_ns, "~/odom")
             if self.p.enable_odom_tf:
                 yield self._odometry.transform(now_ns)

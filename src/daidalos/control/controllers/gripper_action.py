@@ -9,10 +9,10 @@ from typing import ClassVar
 
 import numpy as np
 
+from daidalos.common.rate_gate import RateGate
 from daidalos.control.controllers.base import Action, Controller, Goal
 from daidalos.control.parameters import at_least, not_empty, parameter, per_name
 from daidalos.control.pid import Gains, Pid
-from daidalos.control.pulse import Pulse
 from daidalos.control.samples import GripperRequest, GripperState, ParallelGripperRequest
 from daidalos.simulation.samples import Sample
 
@@ -83,7 +83,7 @@ class PositionGripperController(Controller):
         """Name interfaces."""
         self.command_names = (f"{self.p.joint}/{self.command_kind}",)
         self.state_names = (f"{self.p.joint}/position", f"{self.p.joint}/velocity")
-        self._monitor = Pulse(self.p.action_monitor_rate)
+        self._monitor = RateGate(self.p.action_monitor_rate)
         self._goal: Goal | None = None
 
     @property
@@ -148,7 +148,7 @@ class PositionGripperController(Controller):
             self._end("succeeded", reached=True)
         elif (now_ns - self._moved_ns) * 1e-9 > self.p.stall_timeout:
             self._end("succeeded" if self.p.allow_stalling else "aborted", stalled=True)
-        elif self._monitor.due(now_ns):
+        elif self._monitor.is_due(now_ns):
             self._goal.feedback(self._state(stalled=False, reached=False))
 
     _moved_ns = 0

@@ -9,12 +9,12 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.common.rate_gate import RateGate
 from daidalos.control.controllers.base import Action, Controller, Goal, Service, Subscription
 from daidalos.control.controllers.joint_trajectory_parameters import JointTrajectoryParameters
 from daidalos.control.errors import StateError
 from daidalos.control.interfaces import interface_names
 from daidalos.control.pid import Pid
-from daidalos.control.pulse import Pulse
 from daidalos.control.samples import (
     SpeedCommand,
     TrajectoryCommand,
@@ -70,7 +70,7 @@ class JointTrajectoryController(Controller):
             ]
         )
         self._closed = not p.open_loop_control and p.command_interfaces[0] in ("velocity", "effort")
-        self._monitor = Pulse(p.action_monitor_rate)
+        self._monitor = RateGate(p.action_monitor_rate)
         self._goal: Goal | None = None
         self._pending: tuple[TrajectoryCommand, Goal | None] | None = None
         self._take_gains()
@@ -276,7 +276,7 @@ class JointTrajectoryController(Controller):
             if expired:
                 self._hold(actual[0])
             return expired
-        if self._monitor.due(now_ns):
+        if self._monitor.is_due(now_ns):
             elapsed = (now_ns - self._start_ns) * 1e-9
             points = (_point(one, elapsed) for one in (desired, actual, error))
             goal.feedback(TrajectoryFeedback(now_ns, self._joints, *points))

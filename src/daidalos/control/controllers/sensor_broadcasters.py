@@ -8,11 +8,11 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from daidalos.common.pose3 import Pose, multiply
+from daidalos.common.rate_gate import RateGate
 from daidalos.control.controllers.base import Controller
 from daidalos.control.errors import ParameterError
 from daidalos.control.interfaces import Interfaces
 from daidalos.control.parameters import not_empty, parameter, size
-from daidalos.control.pulse import Pulse
 from daidalos.control.samples import PoseSample, VariedRangeSample
 from daidalos.simulation.samples import ImuSample, Sample, TransformSample, WrenchSample
 
@@ -260,7 +260,7 @@ class PoseBroadcaster(Controller):
     def configure(self) -> None:
         """Name the interfaces."""
         self.state_names = tuple(f"{self.p.pose_name}/{name}" for name in _POSE)
-        self._transforming = Pulse(self.p.tf.publish_rate)
+        self._transforming = RateGate(self.p.tf.publish_rate)
 
     @property
     def publications(self) -> Mapping[str, type[Sample]]:
@@ -280,6 +280,6 @@ class PoseBroadcaster(Controller):
         position, orientation = values[:3], values[3:]
         yield PoseSample(now_ns, "~/pose", self.p.frame_id, position, orientation)
         sound = bool(np.all(np.isfinite(values)) and abs(np.linalg.norm(orientation) - 1.0) < 1e-3)
-        if self.p.tf.enable and sound and self._transforming.due(now_ns):
+        if self.p.tf.enable and sound and self._transforming.is_due(now_ns):
             child = self.p.tf.child_frame_id or self.p.pose_name
             yield TransformSample(now_ns, "/tf", self.p.frame_id, child, position, orientation)

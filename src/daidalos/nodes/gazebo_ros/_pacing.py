@@ -16,26 +16,6 @@ _MAX_LAG_NS = 200_000_000
 """Delay after which lost time is not made up for."""
 
 
-class Beat:
-    """Tells when something is due again, also after time was set back.
-
-    Parameters
-    ----------
-    period_ns : int
-    """
-
-    def __init__(self, period_ns: int) -> None:
-        self._period_ns = period_ns
-        self._next_ns = 0
-
-    def is_due(self, now_ns: int) -> bool:
-        """Tell whether the first moment of another period has come."""
-        if self._next_ns - self._period_ns <= now_ns < self._next_ns:
-            return False
-        self._next_ns = now_ns - now_ns % self._period_ns + self._period_ns
-        return True
-
-
 class PacedSimulation:
     """Advances a simulation in real time, or as fast as wanted.
 

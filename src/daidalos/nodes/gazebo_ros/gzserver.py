@@ -17,6 +17,7 @@ from rclpy.parameter import Parameter
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.utilities import remove_ros_args
 
+from daidalos.common.rate_gate import RateGate
 from daidalos.description.errors import DescriptionError
 from daidalos.nodes.conversions import time_message
 from daidalos.nodes.gazebo_ros._command_line import parse
@@ -30,7 +31,7 @@ if TYPE_CHECKING:
     from daidalos.simulation.samples import Sample
 
 _CLOCK_RATE = 100.0
-_STATES_PERIOD_NS = 20_000_000
+_STATES_RATE = 50.0
 _LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
@@ -83,7 +84,7 @@ class GzServer(Node):
         super().__init__("gazebo", **kwargs)
         from daidalos.nodes.gazebo_ros._companions import Companions
         from daidalos.nodes.gazebo_ros._host import Host, read_world, wanted_speed
-        from daidalos.nodes.gazebo_ros._pacing import Beat, PacedSimulation
+        from daidalos.nodes.gazebo_ros._pacing import PacedSimulation
         from daidalos.simulation import Simulation
 
         start = start or Start()
@@ -106,7 +107,7 @@ class GzServer(Node):
             factor = start.update_rate * simulation.step_ns * 1e-9
         self._quit = quit_simulator
         self._end_ns = math.inf if start.steps is None else start.steps * simulation.step_ns
-        self._clock_beat, self._states_beat = Beat(round(1e9 / clock_rate)), Beat(_STATES_PERIOD_NS)
+        self._clock_gate, self._states_gate = RateGate(clock_rate), RateGate(_STATES_RATE)
         # Who wants the time seldom does not want commands to wait for it.
         period_ns = max(simulation.step_ns, round(1e9 / max(clock_rate, _CLOCK_RATE)))
         self._paced = PacedSimulation(simulation, self._publish, period_ns, factor, self._on_failure)
@@ -164,7 +165,7 @@ class GzServer(Node):
     def _publish(self, now_ns: int, samples: list[Sample]) -> None:
         from rosgraph_msgs.msg import Clock
 
-        if self._clock_beat.is_due(now_ns) or self._paced.paused:
+        if self._clock_gate.is_due(now_ns) or self._paced.paused:
             self._clock_publisher.publish(Clock(clock=time_message(now_ns)))
         transforms = []
         for sample in samples:
@@ -175,7 +176,7 @@ class GzServer(Node):
                 publisher.publish(convert(sample))
         if transforms:
             self._publish_transforms(transforms)
-        if self._states_beat.is_due(now_ns):
+        if self._states_gate.is_due(now_ns):
             self._publish_states()
         self._publish_contacts()
         self._companions.publish()

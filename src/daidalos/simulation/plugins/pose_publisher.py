@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping
 import numpy as np
 
 from daidalos.common.pose3 import Pose
+from daidalos.common.rate_gate import RateGate
 from daidalos.description.joint import JointType
 from daidalos.description.link import Plugin as Description
 from daidalos.simulation.component import ComponentContext
@@ -36,9 +37,7 @@ class PosePublisher(Plugin):
         rate = element.number_of("update_frequency", default=-1.0)
         self.period = 1.0 / rate if rate > 0 else 0.0
         self.static_topic = f"{self.topic}_static" if element.flag_of("static_publisher", default=False) else ""
-        static_rate = element.number_of("static_update_frequency", default=rate)
-        self._static_period_ns = round(1e9 / static_rate) if static_rate > 0 else 0
-        self._static_ns = -self._static_period_ns
+        self._static_gate = RateGate(element.number_of("static_update_frequency", default=rate))
 
     @property
     def publications(self) -> Mapping[str, type[Sample]]:
@@ -58,10 +57,8 @@ class PosePublisher(Plugin):
         """Say where everything is."""
         instance = self._instance
         due = {topic for topic in (self.topic, self.static_topic) if topic and instance.has_subscribers(topic)}
-        if 0 <= now_ns - self._static_ns < self._static_period_ns:
+        if self.static_topic in due and not self._static_gate.is_due(now_ns):
             due.discard(self.static_topic)
-        if self.static_topic in due:
-            self._static_ns = now_ns
         if not due:
             return
         pose = instance.pose
