@@ -17,7 +17,7 @@ def test_names_are_places() -> None:
 
 
 def test_unknown_and_double_names_are_refused() -> None:
-    with pytest.raises(UnknownError, match="no interface 'a/positon'; did you mean a/position"):
+    with pytest.raises(UnknownError, match="no interface 'a/positon'; did you mean 'a/position'"):
         Interfaces(["a/position"])["a/positon"]
     with pytest.raises(ControlError, match="'a/position' is there twice"):
         Interfaces(["a/position", "a/position"])

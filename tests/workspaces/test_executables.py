@@ -49,7 +49,7 @@ def test_a_workspace_comes_before_what_is_built_in(tmp_path: Path, monkeypatch: 
 @pytest.mark.parametrize(
     ("package", "executable", "message"),
     [
-        ("gazebo_ros", "gzsever", "No executable 'gzsever' in package 'gazebo_ros'; did you mean gzserver?"),
+        ("gazebo_ros", "gzsever", "No executable 'gzsever' in package 'gazebo_ros'; did you mean 'gzserver'?"),
         ("no_such_package", "x", "Package 'no_such_package' not found"),
     ],
 )

@@ -24,9 +24,8 @@ def test_a_field_of_unknown_type(workspace, terminal):
     status, printed = build(terminal, "bad_message")
     assert status == 1
     path = workspace / "src" / "bad_message" / "msg" / "Sphere.msg"
-    assert (
-        f"{path}:2: there is no message 'geometry_msgs/Pont'; did you mean geometry_msgs/Point?" in printed.splitlines()
-    )
+    problem = "there is no message 'geometry_msgs/Pont'; did you mean 'geometry_msgs/Point'?"
+    assert f"{path}:2: {problem}" in printed.splitlines()
     assert "Traceback" not in printed
 
 

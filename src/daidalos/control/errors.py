@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Iterable
+
+from daidalos.common.suggestions import hint
 
 
 class ControlError(Exception):
@@ -43,9 +44,7 @@ class UnknownError(ControlError):
     def __init__(self, what: str, name: str, known: Iterable[str]) -> None:
         self.name = name
         self.known = tuple(known)
-        near = difflib.get_close_matches(name, self.known, n=3)
-        hint = f"; did you mean {' or '.join(near)}?" if near else f"; there are: {', '.join(self.known) or 'none'}"
-        super().__init__(f"there is no {what} '{name}'{hint}")
+        super().__init__(f"there is no {what} '{name}'{hint(name, self.known)}")
 
 
 class StateError(ControlError):

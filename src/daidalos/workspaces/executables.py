@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import ast
 import contextlib
-import difflib
 import os
 import signal
 import sys
 from collections.abc import Iterator, Sequence
 from pathlib import Path
+
+from daidalos.common.suggestions import hint
 
 BUILT_IN = Path(__file__).resolve().parents[1] / "nodes"
 """The folder of the built-in packages: a subfolder of modules for each."""
@@ -41,9 +42,7 @@ def find_executable(package: str, executable: str) -> list[str]:
     known = executables(package)
     if not known and not is_known(package):
         raise ExecutableNotFound(f"Package '{package}' not found")
-    near = difflib.get_close_matches(executable, known, n=3)
-    hint = f"; did you mean {' or '.join(near)}?" if near else f"; there are: {', '.join(known)}" if known else ""
-    raise ExecutableNotFound(f"No executable '{executable}' in package '{package}'{hint}")
+    raise ExecutableNotFound(f"No executable '{executable}' in package '{package}'{hint(executable, known)}")
 
 
 @contextlib.contextmanager

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import difflib
 import json
 import re
 from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 
+from daidalos.common.suggestions import hint
 from daidalos.interfaces.definition import Interface, messages_of
 from daidalos.interfaces.description import Description, IndividualDescription, Lookup, describe
 from daidalos.interfaces.generator import write_package
@@ -99,10 +99,9 @@ def _check_references(path: Path, interface: Interface, lookup: Lookup, known: S
                 lookup(name)
             except InterfaceNotFound:
                 package, _, short = name.split("/")
-                near = difflib.get_close_matches(name, known, n=1)
-                hint = f"; did you mean {near[0].replace('/msg/', '/')}?" if near else ""
+                meant = hint(f"{package}/{short}", [other.replace("/msg/", "/") for other in known])
                 raise WorkspaceError(
-                    f"{path}:{_line(path, short)}: there is no message '{package}/{short}'{hint}"
+                    f"{path}:{_line(path, short)}: there is no message '{package}/{short}'{meant}"
                 ) from None
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import os
 import pathlib
 import re
@@ -39,10 +38,11 @@ def get_package_prefix(package_name: str) -> str:
     try:
         return get_resource("packages", package_name)[1]
     except LookupError as error:
-        close = difflib.get_close_matches(package_name, get_packages_with_prefixes(), n=3)
-        hint = f" (did you mean {' or '.join(close)}?)" if close else ""
+        from daidalos.common.suggestions import hint
+
+        meant = hint(package_name, get_packages_with_prefixes())
         raise PackageNotFoundError(
-            f"package '{package_name}' not found, searching: {get_all_prefixes()}{hint}"
+            f"package '{package_name}' not found, searching: {get_all_prefixes()}{meant}"
         ) from error
 
 

@@ -114,7 +114,7 @@ LAUNCH_FILES = {
     "e.launch.xml": ("<launch>\n  <node>\n</launch>\n", "e.launch.xml:3: malformed XML"),
     "f.launch.xml": (
         "<launch>\n\n  <node pkg='demo_nodes_py' exec='talkr'/>\n</launch>\n",
-        "f.launch.xml:3: No executable 'talkr' in package 'demo_nodes_py'; did you mean talker",
+        "f.launch.xml:3: No executable 'talkr' in package 'demo_nodes_py'; did you mean 'talker'",
     ),
     "g.launch.yaml": ("launch:\n- node:\n    pkg: 'a\n", "g.launch.yaml:4: malformed YAML"),
     "h.launch.yaml": (

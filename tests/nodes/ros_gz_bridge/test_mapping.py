@@ -66,7 +66,10 @@ def test_files_may_give_two_names(tmp_path: Path):
     [
         ("/scan", "'/scan' is no bridge"),
         ("/scan@sensor_msgs/msg/LaserScan@gz.msgs.Image", "stands for gz.msgs.LaserScan, not for gz.msgs.Image"),
-        ("/scan@sensor_msgs/msg/LaserScn@gz.msgs.LaserScan", "can not be bridged; known are sensor_msgs/msg/LaserScan"),
+        (
+            "/scan@sensor_msgs/msg/LaserScn@gz.msgs.LaserScan",
+            "bridged; did you mean 'sensor_msgs/msg/LaserScan'",
+        ),
     ],
 )
 def test_what_can_not_be_is_explained(word: str, words: str):

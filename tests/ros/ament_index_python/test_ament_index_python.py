@@ -123,7 +123,7 @@ def test_missing_share_folder_is_said(prefixes, capsys):
 
 def test_unknown_packages(prefixes):
     for function in (get_package_prefix, get_package_share_directory, get_package_share_path):
-        with pytest.raises(PackageNotFoundError, match=r"package 'fooo' not found, searching: \[.*did you mean foo"):
+        with pytest.raises(PackageNotFoundError, match=r"package 'fooo' not found, searching: \[.*did you mean 'foo'"):
             function("fooo")
     with pytest.raises(KeyError):
         get_package_prefix("nothing_like_it")

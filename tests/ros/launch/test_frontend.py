@@ -111,7 +111,7 @@ def test_malformed_texts(text, reason):
 
 
 def test_unknown_substitution():
-    with pytest.raises(RuntimeError, match=r"Unknown substitution: vaar \(did you mean var\?\)"):
+    with pytest.raises(RuntimeError, match=r"Unknown substitution: vaar; did you mean 'var'\?"):
         parse_substitution("$(vaar x)")
 
 

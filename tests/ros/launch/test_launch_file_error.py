@@ -72,7 +72,7 @@ def test_python(tmp_path, capsys, body, line, reason):
         (
             "<launch>\n\n  <nod pkg='a' exec='b'/>\n</launch>",
             3,
-            "Unrecognized entity of the type: nod (did you mean node?)",
+            "Unrecognized entity of the type: nod; did you mean 'node'?",
         ),
         ("<launch>\n  <log massage='x'/>\n</launch>", 2, "`message` is missing in `log`"),
         ("<launch>\n  <log message='x' extra='y'/>\n</launch>", 2, "Unexpected attribute(s) found in `log`: extra"),

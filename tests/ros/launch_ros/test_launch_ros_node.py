@@ -296,7 +296,7 @@ def test_finding_packages(context, package):
     assert FindPackageShare(["p", TextSubstitution(text="kg")]).perform(context) == str(package / "share" / "pkg")
     assert (FindPackageShare("pkg") / "launch" / "a.py").perform(context) == str(package / "share/pkg/launch/a.py")
     assert "'pkg'" in FindPackageShare("pkg").describe()
-    with pytest.raises(SubstitutionFailure, match=r"package 'pkgg' not found.*did you mean pkg"):
+    with pytest.raises(SubstitutionFailure, match=r"package 'pkgg' not found.*did you mean 'pkg'"):
         FindPackageShare("pkgg").perform(context)
 
 

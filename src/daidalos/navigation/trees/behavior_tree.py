@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
 import py_trees
 from py_trees.common import Status
 
+from daidalos.common.suggestions import hint
 from daidalos.description.errors import DescriptionError
 from daidalos.description.markup import Element, parse_markup
 from daidalos.navigation.trees.blackboard import Blackboard
@@ -143,7 +143,7 @@ class _Builder:
     def subtree(self, identifier: str, board: Blackboard, element: Element, path: tuple[str, ...]) -> Any:
         """Root node of one of the trees; `element` is where it is asked for."""
         if identifier not in self._trees:
-            raise TreeError(f"{_place(element)}: there is no tree {identifier!r}{_near(identifier, self._trees)}")
+            raise TreeError(f"{_place(element)}: there is no tree {identifier!r}{hint(identifier, self._trees)}")
         if identifier in path:
             raise TreeError(f"{_place(element)}: the tree {identifier!r} contains itself")
         tree = self._trees[identifier]
@@ -157,7 +157,7 @@ class _Builder:
             return self._inner_tree(element, board, path)
         made_by = node_class(identifier)
         if made_by is None:
-            raise TreeError(f"{_place(element)}: there is no node {identifier!r}{_near(identifier, known_nodes())}")
+            raise TreeError(f"{_place(element)}: there is no node {identifier!r}{hint(identifier, known_nodes())}")
         children = [self._node(child, board, path) for child in element.children]
         _check_number(element, len(children), made_by.CHILDREN)
         attributes = {k: v for k, v in element.attributes.items() if k not in _COMMENTARY}
@@ -189,9 +189,3 @@ def _check_number(element: Element, number: int, allowed: tuple[int, int | None]
 
 def _place(element: Element) -> str:
     return f"{element.where}: {element.label}"
-
-
-def _near(word: str, words: Any) -> str:
-    """Hint at what was meant."""
-    near = get_close_matches(word, list(words), n=1)
-    return f"; did you mean {near[0]!r}?" if near else f"; there are: {', '.join(sorted(words))}"

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
+
+from daidalos.common.suggestions import hint
 
 _NAMES = {
     "std_msgs": "Bool:Boolean ColorRGBA:Color Empty Float32:Float Float64:Double Header Int32 String:StringMsg UInt32",
@@ -147,14 +149,8 @@ def _checked(bridge: Bridge, where: str) -> Bridge:
     known = TYPES.get(bridge.ros_type)
     bare = bridge.gz_type.removeprefix("gz.msgs.").removeprefix("ignition.msgs.")
     if known is None:
-        raise MappingError(f"{where}: {bridge.ros_type} can not be bridged; known are {_near(bridge.ros_type, TYPES)}")
+        raise MappingError(f"{where}: {bridge.ros_type} cannot be bridged{hint(bridge.ros_type, TYPES)}")
     if bare not in known:
         wanted = " or ".join(f"gz.msgs.{name}" for name in sorted(known))
         raise MappingError(f"{where}: {bridge.ros_type} stands for {wanted}, not for {bridge.gz_type}")
     return bridge
-
-
-def _near(name: str, known: Iterable[str]) -> str:
-    from difflib import get_close_matches
-
-    return ", ".join(get_close_matches(name, list(known), 3) or sorted(known))

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterable
-from difflib import get_close_matches
 from typing import ClassVar
 
+from daidalos.common.suggestions import near
 from daidalos.description.link import Plugin as Description
 from daidalos.description.markup import Element
 from daidalos.simulation.component import Component, ComponentContext
@@ -46,8 +46,7 @@ class ReadElement(Element):
         """Return the tags that nobody asked for, each with one that it may be meant to be."""
         known = self._asked | set(unused)
         tags = dict.fromkeys(child.tag for child in self.children if child.tag not in known)
-        near = {tag: get_close_matches(tag, sorted(self._asked), 1, 0.8) for tag in tags}
-        return [f"<{tag}>" + "".join(f" (did you mean <{one}>?)" for one in near[tag]) for tag in tags]
+        return [f"<{tag}>" + "".join(f" (did you mean <{one}>?)" for one in near(tag, self._asked)[:1]) for tag in tags]
 
 
 class LibraryPlugin:

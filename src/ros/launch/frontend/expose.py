@@ -6,6 +6,8 @@ import importlib
 from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Any, TypeVar
 
+from daidalos.common.suggestions import hint
+
 from ..some_substitutions_type import SomeSubstitutionsType
 
 if TYPE_CHECKING:
@@ -31,7 +33,7 @@ def instantiate_action(entity: Entity, parser: Parser) -> Action:
     parse = _look_up(entity.type_name, action_parse_methods, "launch.actions")
     if parse is None:
         raise RuntimeError(
-            f"Unrecognized entity of the type: {entity.type_name}{_suggestion(entity.type_name, action_parse_methods)}"
+            f"Unrecognized entity of the type: {entity.type_name}{hint(entity.type_name, action_parse_methods)}"
         )
     return _construct(parse(entity, parser))
 
@@ -46,7 +48,7 @@ def instantiate_substitution(type_name: str, args: Iterable[SomeSubstitutionsTyp
     """
     parse = _look_up(type_name, substitution_parse_methods, "launch.substitutions")
     if parse is None:
-        raise RuntimeError(f"Unknown substitution: {type_name}{_suggestion(type_name, substitution_parse_methods)}")
+        raise RuntimeError(f"Unknown substitution: {type_name}{hint(type_name, substitution_parse_methods)}")
     return _construct(parse([] if args is None else list(args)))
 
 
@@ -111,10 +113,3 @@ def _look_up(name: str, register: dict[str, Callable[..., Any]], package: str) -
 def _construct(parsed: tuple[Any, ...]) -> Any:
     cls, *args, kwargs = parsed
     return cls(*(args[0] if args else ()), **kwargs)
-
-
-def _suggestion(name: str, register: dict[str, Callable[..., Any]]) -> str:
-    import difflib
-
-    close = difflib.get_close_matches(name, register, n=1)
-    return f" (did you mean {close[0]}?)" if close else ""
