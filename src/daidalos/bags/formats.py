@@ -44,8 +44,8 @@ def storage_of(path: Path) -> str:
         if name.endswith(suffix):
             return storage
     if start.startswith(_ROS1_MAGIC):
-        way = f"'rosbags-convert --src {path} --dst {path.with_suffix('')}'"
-        raise BagError(path, f"this is a bag of ROS 1; {way} makes one of ROS 2 from it")
+        command = f"'rosbags-convert --src {path} --dst {path.with_suffix('')}'"
+        raise BagError(path, f"is a bag of ROS 1; convert it with {command} (pip install 'daidalos[ros1]')")
     raise BagError(path, f"no bag: it begins with {start[:8].hex(' ')}, expected an MCAP or sqlite3 file")
 
 

@@ -5,21 +5,43 @@ from __future__ import annotations
 import operator
 import re
 from collections.abc import Callable, Sequence
+from functools import cache
 from typing import Any
+
+from lark import Lark, Token, Transformer, UnexpectedCharacters, UnexpectedToken, v_args
+from lark.exceptions import VisitError
 
 from daidalos.interfaces.codec import codec_of
 
 Condition = Callable[[Any], bool]
 Value = Callable[[Any], Any]
 
-_TOKEN = re.compile(
-    r"\s*(?:(?P<number>[-+]?(?:0[xX][0-9a-fA-F]+|(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?))"
-    r"|(?P<text>'[^']*'|`[^']*')"
-    r"|(?P<parameter>%\d+)"
-    r"|(?P<operator><>|!=|<=|>=|=|<|>)"
-    r"|(?P<bracket>[()])"
-    r"|(?P<name>[A-Za-z_]\w*(?:\[\d+\])?(?:\.[A-Za-z_]\w*(?:\[\d+\])?)*))"
-)
+_GRAMMAR = r"""
+?start: either
+?either: both ("OR"i both)*
+?both: one ("AND"i one)*
+?one: "NOT"i one -> negated | "(" either ")" | comparison
+comparison: value OPERATOR value -> compared
+    | value "BETWEEN"i value "AND"i value -> within
+    | value "NOT"i "BETWEEN"i value "AND"i value -> outside
+?value: FIELD -> field | PARAMETER -> parameter | (NUMBER | TEXT | BOOLEAN) -> literal
+OPERATOR: /<>|!=|<=|>=|=|<|>|LIKE\b/i
+BOOLEAN.1: /(TRUE|FALSE)\b/i
+NUMBER: /[-+]?(0x[0-9a-f]+|(\d+\.?\d*|\.\d+)(e[-+]?\d+)?)/i
+TEXT: /'[^']*'|`[^']*'/
+PARAMETER: /%\d+/
+FIELD: /[a-z_]\w*(\[\d+\])?(\.[a-z_]\w*(\[\d+\])?)*/i
+%ignore /\s+/
+"""
+_EXPECTED = {
+    "FIELD": "a field or a value",
+    "OPERATOR": "an operator",
+    "BETWEEN": "'BETWEEN'",
+    "RPAR": "')'",
+    "$END": "the end",
+    "AND": "'AND'",
+}
+"""What a fault tells that it expected: the first of these terminals that the grammar allows at that place."""
 _OPERATORS: dict[str, Callable[[Any, Any], bool]] = {
     "=": operator.eq,
     "<>": operator.ne,
@@ -44,10 +66,15 @@ def parse(expression: str, parameters: Sequence[str]) -> Condition:
     ContentFilterError
         Telling where the expression is wrong, or which parameter is missing.
     """
-    reader = _Reader(expression, parameters)
-    condition = reader.either()
-    if reader.kind:
-        raise reader.error("the end")
+    try:
+        condition: Condition = _Conditions(expression, parameters).transform(_parser().parse(expression))
+    except UnexpectedCharacters as error:
+        raise _fault(expression, "a field, a value or an operator", error.pos_in_stream) from None
+    except UnexpectedToken as error:
+        expected = next(words for terminal, words in _EXPECTED.items() if terminal in error.expected)
+        raise _fault(expression, expected, error.pos_in_stream if error.token else len(expression)) from None
+    except VisitError as error:
+        raise error.orig_exc from None
     return condition
 
 
@@ -92,105 +119,57 @@ def _holds(condition: Condition, message: Any) -> bool:
         return False  # it asks for an element that this message lacks
 
 
-class _Reader:
-    """Reads an expression token by token; `kind` and `text` are the token that comes next."""
+def _fault(expression: str, expected: str, position: int | None) -> ContentFilterError:
+    return ContentFilterError(f"content filter '{expression}': expected {expected} at character {(position or 0) + 1}")
+
+
+@cache
+def _parser() -> Lark:
+    return Lark(_GRAMMAR, parser="lalr")
+
+
+@v_args(inline=True)
+class _Conditions(Transformer[Token, Condition]):
+    """Turns the parts of an expression into functions of a message."""
 
     def __init__(self, expression: str, parameters: Sequence[str]) -> None:
+        super().__init__()
         self._expression = expression
         self._parameters = parameters
-        self._end = 0
-        self.next()
 
-    def next(self) -> str:
-        """Go on; returns the token that came before."""
-        before = getattr(self, "text", "")
-        self._start = self._end
-        match = _TOKEN.match(self._expression, self._end)
-        if match:
-            self.kind, self.text, self._end = str(match.lastgroup), match[match.lastgroup or 0], match.end()
-        elif self._expression[self._end :].strip():
-            self.kind = self.text = "?"
-            raise self.error("a field, a value or an operator")
-        else:
-            self.kind = self.text = ""
-        return before
+    def either(self, *parts: Condition) -> Condition:
+        return lambda message: any(part(message) for part in parts)
 
-    def error(self, expected: str) -> ContentFilterError:
-        """Return what tells that something else was expected here."""
-        return ContentFilterError(
-            f"content filter '{self._expression}': expected {expected} at character {self._start + 1}"
-        )
+    def both(self, *parts: Condition) -> Condition:
+        return lambda message: all(part(message) for part in parts)
 
-    def accept(self, word: str) -> bool:
-        """Go on if the next token is this keyword or bracket."""
-        if self.text.upper() != word or self.kind not in ("name", "bracket"):
-            return False
-        self.next()
-        return True
+    def negated(self, inner: Condition) -> Condition:
+        return lambda message: not inner(message)
 
-    def expect(self, word: str) -> None:
-        """Go on over this keyword or bracket."""
-        if not self.accept(word):
-            raise self.error(f"'{word}'")
-
-    def either(self) -> Condition:
-        """Read conditions joined by OR."""
-        parts = [self.both()]
-        while self.accept("OR"):
-            parts.append(self.both())
-        return parts[0] if len(parts) == 1 else lambda message: any(part(message) for part in parts)
-
-    def both(self) -> Condition:
-        """Read conditions joined by AND."""
-        parts = [self.one()]
-        while self.accept("AND"):
-            parts.append(self.one())
-        return parts[0] if len(parts) == 1 else lambda message: all(part(message) for part in parts)
-
-    def one(self) -> Condition:
-        """Read one condition, perhaps in brackets or after NOT."""
-        if self.accept("NOT"):
-            inner = self.one()
-            return lambda message: not inner(message)
-        if self.accept("("):
-            inner = self.either()
-            self.expect(")")
-            return inner
-        return self.comparison()
-
-    def comparison(self) -> Condition:
-        """Read ``value operator value`` or ``value [NOT] BETWEEN value AND value``."""
-        left = self.value()
-        negated = self.accept("NOT")
-        if negated or self.text.upper() == "BETWEEN":
-            self.expect("BETWEEN")
-            low = self.value()
-            self.expect("AND")
-            high = self.value()
-            return lambda message: (low(message) <= left(message) <= high(message)) is not negated
-        if self.kind != "operator" and self.text.upper() != "LIKE":
-            raise self.error("an operator")
-        compare = _OPERATORS[self.next().upper()]
-        right = self.value()
+    def compared(self, left: Value, name: Token, right: Value) -> Condition:
+        compare = _OPERATORS[name.upper()]
         return lambda message: compare(left(message), right(message))
 
-    def value(self) -> Value:
-        """Read a field's name, a literal or a parameter."""
-        kind, text = self.kind, self.text
-        if kind not in ("number", "text", "parameter", "name"):
-            raise self.error("a field or a value")
-        self.next()
-        if kind == "parameter":
-            number = int(text[1:])
-            if number >= len(self._parameters):
-                raise ContentFilterError(
-                    f"content filter '{self._expression}': there is no parameter {text}, only {len(self._parameters)}"
-                )
-            constant = _constant(self._parameters[number])
-        elif kind == "name" and text.upper() not in ("TRUE", "FALSE"):
-            return _field(text)
-        else:
-            constant = _constant(text)
+    def within(self, value: Value, low: Value, high: Value) -> Condition:
+        return lambda message: low(message) <= value(message) <= high(message)
+
+    def outside(self, value: Value, low: Value, high: Value) -> Condition:
+        return self.negated(self.within(value, low, high))
+
+    def field(self, path: Token) -> Value:
+        return _field(path)
+
+    def literal(self, text: Token) -> Value:
+        constant = _constant(text)
+        return lambda message: constant
+
+    def parameter(self, text: Token) -> Value:
+        number = int(text[1:])
+        if number >= len(self._parameters):
+            raise ContentFilterError(
+                f"content filter '{self._expression}': there is no parameter {text}, only {len(self._parameters)}"
+            )
+        constant = _constant(self._parameters[number])
         return lambda message: constant
 
 

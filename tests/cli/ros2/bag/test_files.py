@@ -88,7 +88,11 @@ def test_lists(bag):
         ("info text.db3", 1, "[ERROR] [ros2bag]: text.db3: no bag: it begins with 68 65 6c 6c 6f"),
         ("info folder", 1, "[ERROR] [ros2bag]: folder: no bag: it holds no file that ends in .mcap or .db3"),
         ("info broken", 1, "[ERROR] [ros2bag]: broken/metadata.yaml: no YAML: line 2, column 1"),
-        ("info old.bag", 1, "[ERROR] [ros2bag]: old.bag: this is a bag of ROS 1; 'rosbags-convert --src old.bag"),
+        (
+            "info old.bag",
+            1,
+            "[ERROR] [ros2bag]: old.bag: is a bag of ROS 1; convert it with 'rosbags-convert --src old.bag",
+        ),
         ("play", 1, "[ERROR] [ros2bag]: Expected a bag to play: bag_path or --input"),
         ("play a -i a", 1, "[ERROR] [ros2bag]: Only one of bag_path (with --storage) and --input may be given."),
         ("play -i a -i nowhere mcap", 1, "[ERROR] [ros2bag]: Bag path 'nowhere' does not exist!"),
