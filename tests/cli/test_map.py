@@ -7,15 +7,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from daidalos.cli.daidalos import map as verb
+from daidalos.cli.daidalos.map import MapVerb
 from daidalos.mapping.map_file import load_map
 from mapping.bags import write_bag
 
 
 def call(*words: object) -> int:
     parser = argparse.ArgumentParser(prog="daidalos map")
-    verb.add_arguments(parser)
-    return verb.main(parser.parse_args([str(word) for word in words]))
+    verb = MapVerb()
+    verb.add_arguments(parser, parser.prog)
+    return verb.main(args=parser.parse_args([str(word) for word in words]))
 
 
 @pytest.fixture(scope="module")

@@ -7,19 +7,19 @@ from importlib import import_module
 
 import pytest
 
-from daidalos.common.extensions import classes_in, listing, load
+from daidalos.common.extensions import classes_in, describe, listing, load
 
-LAYERS = ("simulation", "control")
+LAYERS = ("simulation", "control", "nodes")
 KINDS = {kind.name: kind for layer in LAYERS for kind in import_module(f"daidalos.{layer}.extensions").KINDS}
 
 
 @pytest.mark.parametrize("kind", KINDS.values(), ids=KINDS)
-def test_built_in_classes_fulfil_the_contract_and_have_a_description(kind) -> None:
+def test_built_in_classes_fulfil_the_contract_and_are_documented(kind) -> None:
     found = listing(kind)
     assert found
     for extension in found:
         assert load(kind, extension).__name__
-        assert extension.description, extension
+        assert describe(extension)
 
 
 @pytest.mark.parametrize(

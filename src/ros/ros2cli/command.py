@@ -6,6 +6,7 @@ from argparse import ArgumentParser, Namespace
 from collections.abc import Sequence
 from typing import Any, ClassVar, cast
 
+from daidalos.common.extensions import Kind
 from ros2cli.extensions import Extensions
 from ros2cli.parser import Parser
 from ros2cli.plugin_system import PLUGIN_SYSTEM_VERSION, satisfies_version
@@ -61,11 +62,7 @@ def add_subparsers_on_demand(
         subparser.set_defaults(**{dest: verb})
         verb.add_arguments(subparser, name)
 
-    verbs = Extensions(group_name, {}, _nothing)
+    verbs = Extensions(Kind(group_name, group_name, "ros2cli.extensions:Subcommand", f"a verb of `{cli_name}`"))
     cast(Parser, parser).add_subcommands(
         "Commands", cli_name, verbs, make, hidden=hide_extensions or (), required=required
     )
-
-
-def _nothing(name: str) -> Any:
-    raise KeyError(name)

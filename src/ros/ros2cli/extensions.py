@@ -1,62 +1,78 @@
-"""Extensions of `ros2` by name: those built in, and those that packages add by entry points."""
+"""Commands and verbs by name: those built in, and those that packages add by entry points."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol, runtime_checkable
 
-if TYPE_CHECKING:
-    from importlib.metadata import EntryPoint
+from daidalos.common.extensions import Extension, Kind, describe, listing, load
 
 
-class Extensions(Mapping[str, Any]):
-    """Extensions by name: those built in, then those of a group of entry points.
+@runtime_checkable
+class Subcommand(Protocol):
+    """What a command or verb is: a class with `main`, whose docstring is its description.
 
-    Nothing is imported, nor are the installed packages searched, before it is needed.
+    It declares its arguments in ``add_arguments(parser, cli_name)``, and `main` takes them as ``args``.
+    """
+
+    def main(self, *args: Any, **keywords: Any) -> Any:
+        """Do it; returns the exit status, or a message for standard error."""
+
+
+def built_in(descriptions: Mapping[str, str], package: str, suffix: str) -> Iterable[Extension]:
+    """Return built-in commands or verbs: ``send_goal`` is the class ``SendGoalVerb`` in the module ``send_goal``.
 
     Parameters
     ----------
-    group
-        The group of entry points.
-    built_in
-        Descriptions by name.
-    load
-        Makes a built-in extension.
+    descriptions
+        One line each, by name.
+    package
+        That of the modules.
+    suffix
+        The end of the classes' names, such as ``Verb``.
+    """
+    for name, description in descriptions.items():
+        class_name = "".join(part.capitalize() for part in name.split("_")) + suffix
+        yield Extension((name,), f"{package}.{name}:{class_name}", description)
+
+
+class Extensions(Mapping[str, Any]):
+    """The commands or verbs of a kind, made when asked for.
+
+    The installed packages are searched only for a name that is not built in, and to list them all.
+
+    Parameters
+    ----------
+    kind
+        Of extensions.
     """
 
-    def __init__(self, group: str, built_in: Mapping[str, str], load: Callable[[str], Any]) -> None:
-        self.group = group
-        self.built_in = built_in
-        self._load = load
+    def __init__(self, kind: Kind[Any]) -> None:
+        self.kind = kind
+        self._built_in = {extension.name: extension for extension in kind.built_in()}
 
     def __contains__(self, name: object) -> bool:
-        return name in self.built_in or name in self.added
+        return name in self._built_in or name in self.all
 
     def __getitem__(self, name: str) -> Any:
-        if name in self.built_in:
-            return self._load(name)
-        return self.added[name].load()()
+        return load(self.kind, self.extension(name))()
 
     def __iter__(self) -> Iterator[str]:
-        return iter(sorted({*self.built_in, *self.added}))
+        return iter(sorted(self.all))
 
     def __len__(self) -> int:
-        return len({*self.built_in, *self.added})
+        return len(self.all)
 
     @cached_property
-    def added(self) -> dict[str, EntryPoint]:
-        """The entry points of the group that have no built-in name."""
-        from importlib.metadata import entry_points
+    def all(self) -> dict[str, Extension]:
+        """All extensions by name, those of entry points included."""
+        return {extension.name: extension for extension in listing(self.kind)}
 
-        return {point.name: point for point in entry_points(group=self.group) if point.name not in self.built_in}
+    def extension(self, name: str) -> Extension:
+        """Return an extension that is not imported."""
+        return self._built_in.get(name) or self.all[name]
 
     def describe(self, name: str) -> str:
         """Return an extension's description: one line without the full stop."""
-        return self.built_in.get(name) or first_line(self.added[name].load())
-
-
-def first_line(thing: object) -> str:
-    """Return the first line of a docstring without its full stop."""
-    text = (getattr(thing, "__doc__", None) or "").strip()
-    return text.partition("\n")[0].removesuffix(".")
+        return describe(self.extension(name))

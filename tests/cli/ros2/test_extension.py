@@ -103,7 +103,7 @@ def test_an_added_verb_runs_and_is_listed(with_package):
     assert ros2("topic", "loud", "/scan", env=with_package).out == "/SCAN\n"
     assert "  loud   Shout a topic's name\n" in ros2("topic", env=with_package).out
     listed = ros2("extensions", "-v", env=with_package).out
-    assert "  loud: Shout a topic's name\n    from: greeting (greeting:LoudVerb)\n" in listed
+    assert "  loud: Shout a topic's name\n    from: greeting 1.0 (greeting:LoudVerb)\n" in listed
 
 
 def test_what_an_added_verb_returns_or_raises_is_the_message(with_package):

@@ -1,10 +1,10 @@
 import pytest
-from ros2cli.extensions import first_line
 from ros2cli.parser import Parser
 
 from daidalos.cli.ros2 import commands, main
 from daidalos.cli.ros2.extension import make_command
 from daidalos.cli.ros2.verbs import VerbCommand
+from daidalos.common.extensions import first_line
 
 NAMES = sorted(commands.BUILT_IN)
 

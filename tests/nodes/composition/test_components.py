@@ -7,8 +7,8 @@ from rcl_interfaces.msg import Log
 from rclpy.context import Context
 from rclpy.node import Node
 
-from daidalos.nodes.components import components, find_component
 from daidalos.nodes.composition._components import Client
+from daidalos.nodes.extensions import components, find_component
 from ros.graph import graph, node, spinning  # noqa: F401
 
 TIMEOUT_S = 20.0

@@ -14,7 +14,7 @@ from rclpy.task import Future
 from std_msgs.msg import String
 from std_srvs.srv import Trigger
 
-from daidalos.nodes import components
+from daidalos.nodes import extensions
 from daidalos.nodes.rclcpp_components.component_container import ComponentContainer
 
 
@@ -65,7 +65,7 @@ class Containers:
 @pytest.fixture
 def containers(monkeypatch: pytest.MonkeyPatch) -> Iterator[Containers]:
     monkeypatch.setenv("RMW_IMPLEMENTATION", "rmw_daidalos_inprocess")
-    find = components.find_component
+    find = extensions.find_component
 
     def find_ours(package: str, plugin: str) -> Any:
         return Worker if (package, plugin) == ("workshop", "workshop::Worker") else find(package, plugin)

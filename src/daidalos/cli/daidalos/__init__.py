@@ -2,41 +2,48 @@
 
 from __future__ import annotations
 
-import argparse
 import sys
+from argparse import Action, ArgumentParser, Namespace
 from collections.abc import Sequence
-from importlib import import_module
-from importlib.metadata import entry_points
 from typing import Any
 
-VERBS = {
-    "demo": ("daidalos.cli.daidalos.demo", "a robot that maps an arena and drives where it is sent"),
-    "sim": ("daidalos.cli.daidalos.sim", "simulate a world"),
-    "urdf": ("daidalos.cli.daidalos.urdf", "look at a robot description"),
-    "map": ("daidalos.cli.daidalos.map", "build a map from the log of a robot"),
+from ros2cli.extensions import Extensions, built_in
+from ros2cli.parser import Parser
+
+from daidalos.common.extensions import ExtensionError, Kind
+
+_DESCRIPTIONS = {
+    "demo": "A robot that maps an arena and drives where it is sent",
+    "extensions": "List what can be extended, and the extensions that are there",
+    "map": "Build a map from the log of a robot",
+    "sim": "Simulate a world",
+    "urdf": "Look at a robot, a model or a world: tree, masses, inertias, limits",
 }
-ENTRY_POINTS = "daidalos.command"
-"""Group of entry points by which packages add verbs: verb = module with HELP, add_arguments and main."""
+VERBS: Kind[Any] = Kind(
+    "daidalos_verb",
+    "daidalos.verbs",
+    "ros2cli.extensions:Subcommand",
+    "a verb of the command `daidalos`",
+    lambda: built_in(_DESCRIPTIONS, __name__, "Verb"),
+)
 
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command and return its exit status."""
-    arguments = list(sys.argv[1:] if argv is None else argv)
-    if arguments[:1] == ["--version"]:
-        from daidalos import __version__
-
-        print(f"daidalos {__version__}")
-        return 0
-    if not arguments or arguments[0] in ("-h", "--help"):
-        _usage().print_help()
-        return 0
-    module = _verb(arguments[0])
-    if module is None:
-        return _unknown(arguments[0])
-    parser = argparse.ArgumentParser(prog=f"daidalos {arguments[0]}", description=module.HELP)
-    module.add_arguments(parser)
+    parser = Parser(
+        prog="daidalos", description="ROS 2 without installing ROS. The graph's own commands are under `ros2`."
+    )
+    parser.add_argument("--version", action=_Version, nargs=0, help="print the version")
+    parser.add_subcommands("verbs", "daidalos", Extensions(VERBS), _complete)
     try:
-        return int(module.main(parser.parse_args(arguments[1:])))
+        args = parser.parse_args(sys.argv[1:] if argv is None else list(argv))
+        if not hasattr(args, "_main"):
+            parser.print_help()
+            return 0
+        return int(args._main(args) or 0)
+    except ExtensionError as error:
+        print(f"daidalos: {error}", file=sys.stderr)
+        return 1
     except KeyboardInterrupt:
         return 130
     except BrokenPipeError:
@@ -44,31 +51,17 @@ def main(argv: Sequence[str] | None = None) -> int:
         return 1
 
 
-def _verb(name: str) -> Any:
-    if name in VERBS:
-        return import_module(VERBS[name][0])
-    for point in entry_points(group=ENTRY_POINTS, name=name):
-        return point.load()
-    return None
+def _complete(verb: Any, parser: Parser, name: str) -> None:
+    """Complete the parser of a verb."""
+    parser.set_defaults(_main=lambda args: verb.main(args=args))
+    verb.add_arguments(parser, name)
 
 
-def _usage() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
-        prog="daidalos",
-        description="ROS 2 without installing ROS. The graph's own commands are under `ros2`.",
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-        epilog="\n".join(["verbs:", *(f"  {verb:<10} {text}" for verb, (_, text) in VERBS.items())]),
-    )
-    parser.add_argument("verb", nargs="?", help="what to do; `daidalos VERB --help` says more")
-    parser.add_argument("--version", action="store_true", help="print the version")
-    return parser
+class _Version(Action):
+    """Print the version and end."""
 
+    def __call__(self, parser: ArgumentParser, namespace: Namespace, values: Any, option_string: Any = None) -> None:
+        from daidalos import __version__
 
-def _unknown(name: str) -> int:
-    from difflib import get_close_matches
-
-    known = [*VERBS, *(point.name for point in entry_points(group=ENTRY_POINTS))]
-    near = get_close_matches(name, known, n=1)
-    hint = f"did you mean '{near[0]}'?" if near else f"there are: {', '.join(known)}"
-    print(f"daidalos: there is no verb '{name}'; {hint}", file=sys.stderr)
-    return 2
+        print(f"daidalos {__version__}")
+        parser.exit()

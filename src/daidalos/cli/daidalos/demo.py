@@ -19,8 +19,6 @@ if TYPE_CHECKING:
     from daidalos.nodes.daidalos_demo._measuring import Load
     from daidalos.nodes.daidalos_demo.trial import TrialReport
 
-HELP = "a robot that maps an arena and drives where it is sent"
-
 EPILOG = """It is nothing but `ros2 launch daidalos_demo demo.launch.py`; copy that file to begin a robot of
 your own. With --headless the robot gets three goals all over the arena and its driving is measured: the exit
 status is 0 only if it reached them all and touched nothing."""
@@ -30,20 +28,22 @@ _TRIAL_DOMAIN = 97
 _END_S = 5.0
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare what `daidalos demo` takes."""
-    parser.epilog = EPILOG
-    parser.add_argument("--headless", action="store_true", help="no browser: drive to goals and report")
-    parser.add_argument("--seed", type=int, default=0, metavar="N", help="of all random numbers (default: 0)")
-    parser.add_argument("--goals", type=int, default=3, metavar="N", help="how many, headless (default: 3)")
-    parser.add_argument("--json", action="store_true", help="print the report as JSON, headless")
-    parser.add_argument("--port", type=int, default=8765, metavar="N", help="of the studio (default: 8765)")
-    parser.add_argument("--no-browser", action="store_true", help="print the studio's address, open nothing")
+class DemoVerb:
+    """A robot that maps an arena and drives where it is sent."""
 
+    def add_arguments(self, parser: argparse.ArgumentParser, cli_name: str) -> None:
+        """Declare what `daidalos demo` takes."""
+        parser.epilog = EPILOG
+        parser.add_argument("--headless", action="store_true", help="no browser: drive to goals and report")
+        parser.add_argument("--seed", type=int, default=0, metavar="N", help="of all random numbers (default: 0)")
+        parser.add_argument("--goals", type=int, default=3, metavar="N", help="how many, headless (default: 3)")
+        parser.add_argument("--json", action="store_true", help="print the report as JSON, headless")
+        parser.add_argument("--port", type=int, default=8765, metavar="N", help="of the studio (default: 8765)")
+        parser.add_argument("--no-browser", action="store_true", help="print the studio's address, open nothing")
 
-def main(arguments: argparse.Namespace) -> int:
-    """Run the demonstration."""
-    return _try_out(arguments) if arguments.headless else _show(arguments)
+    def main(self, *, args: argparse.Namespace) -> int:
+        """Run the demonstration."""
+        return _try_out(args) if args.headless else _show(args)
 
 
 def _show(arguments: argparse.Namespace) -> int:

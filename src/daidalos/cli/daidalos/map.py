@@ -15,8 +15,6 @@ if TYPE_CHECKING:
     from daidalos.mapping.log import Log
     from daidalos.mapping.offline import LogMap
 
-HELP = "build a map from the log of a robot"
-
 EPILOG = """The bag is an MCAP or sqlite3 bag with scans (sensor_msgs/LaserScan) and odometry
 (nav_msgs/Odometry, or the transform odom -> base in /tf). NAME.pgm and NAME.yaml are written as map_server
 reads them."""
@@ -26,59 +24,63 @@ class _UserError(Exception):
     """Something the user gave is wrong; the message says what."""
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare what `daidalos map` takes."""
-    parser.epilog = EPILOG
-    parser.add_argument("bag", type=Path, help="bag: a folder, an .mcap or a .db3 file")
-    parser.add_argument(
-        "-o",
-        "--output",
-        type=Path,
-        metavar="NAME",
-        help="write NAME.pgm and NAME.yaml (default: the bag's name)",
-    )
-    parser.add_argument(
-        "--resolution",
-        type=_positive,
-        default=0.05,
-        metavar="M",
-        help="side of a cell in metres (default: 0.05)",
-    )
-    parser.add_argument(
-        "--max-range",
-        type=_positive,
-        default=20.0,
-        metavar="M",
-        help="longest range that is used in metres (default: 20)",
-    )
-    parser.add_argument(
-        "--mode",
-        choices=("trinary", "raw"),
-        default="trinary",
-        help="what the grey values mean (default: trinary)",
-    )
-    parser.add_argument("--scan-topic", metavar="TOPIC", help="topic of the scans (default: /scan or the only one)")
-    parser.add_argument("--odom-topic", metavar="TOPIC", help="topic of the odometry (default: /odom or the only one)")
-    parser.add_argument(
-        "--relations", type=Path, metavar="FILE", help="ground-truth relations to print the error against"
-    )
-    parser.add_argument("--trajectory", type=Path, metavar="FILE", help="write the trajectory in TUM format")
-    parser.add_argument("--json", action="store_true", help="print one JSON object")
+class MapVerb:
+    """Build a map from the log of a robot."""
 
+    def add_arguments(self, parser: argparse.ArgumentParser, cli_name: str) -> None:
+        """Declare what `daidalos map` takes."""
+        parser.epilog = EPILOG
+        parser.add_argument("bag", type=Path, help="bag: a folder, an .mcap or a .db3 file")
+        parser.add_argument(
+            "-o",
+            "--output",
+            type=Path,
+            metavar="NAME",
+            help="write NAME.pgm and NAME.yaml (default: the bag's name)",
+        )
+        parser.add_argument(
+            "--resolution",
+            type=_positive,
+            default=0.05,
+            metavar="M",
+            help="side of a cell in metres (default: 0.05)",
+        )
+        parser.add_argument(
+            "--max-range",
+            type=_positive,
+            default=20.0,
+            metavar="M",
+            help="longest range that is used in metres (default: 20)",
+        )
+        parser.add_argument(
+            "--mode",
+            choices=("trinary", "raw"),
+            default="trinary",
+            help="what the grey values mean (default: trinary)",
+        )
+        parser.add_argument("--scan-topic", metavar="TOPIC", help="topic of the scans (default: /scan or the only one)")
+        parser.add_argument(
+            "--odom-topic", metavar="TOPIC", help="topic of the odometry (default: /odom or the only one)"
+        )
+        parser.add_argument(
+            "--relations", type=Path, metavar="FILE", help="ground-truth relations to print the error against"
+        )
+        parser.add_argument("--trajectory", type=Path, metavar="FILE", help="write the trajectory in TUM format")
+        parser.add_argument("--json", action="store_true", help="print one JSON object")
 
-def main(args: argparse.Namespace) -> int:
-    """Map a log; returns the exit status."""
-    from daidalos.mapping.errors import MappingError
+    def main(self, *, args: argparse.Namespace) -> int:
+        """Map a log; returns the exit status."""
+        from daidalos.mapping.errors import MappingError
 
-    try:
-        report = _run(args)
-    except (MappingError, _UserError) as error:
-        print(f"daidalos map: {error}", file=sys.stderr)
-        return 2
-    except KeyboardInterrupt:
-        return 130
-    print(json.dumps(report) if args.json else _as_text(report))
-    return 0
+        try:
+            report = _run(args)
+        except (MappingError, _UserError) as error:
+            print(f"daidalos map: {error}", file=sys.stderr)
+            return 2
+        except KeyboardInterrupt:
+            return 130
+        print(json.dumps(report) if args.json else _as_text(report))
+        return 0
 
 
 def _run(args: argparse.Namespace) -> dict[str, Any]:

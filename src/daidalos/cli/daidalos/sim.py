@@ -9,39 +9,45 @@ if TYPE_CHECKING:
     from daidalos.description.robot import Robot
     from daidalos.description.world import Model
 
-HELP = "simulate a world"
-
 EPILOG = """The world is an SDF file, or the name of one in a package (arena, hexagon); without one it is empty.
 With --headless nothing but the simulation runs; with --duration it runs as fast as it can, for so long in simulated
 time, and says how fast that was."""
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare what `daidalos sim` takes."""
-    parser.epilog = EPILOG
-    parser.add_argument("world", nargs="?", default="", help="an SDF file, or the name of a world")
-    parser.add_argument("-m", "--model", action="append", default=[], metavar="FILE", help="a robot or model to spawn")
-    parser.add_argument("--pause", action="store_true", help="begin with time standing still")
-    parser.add_argument("--headless", action="store_true", help="without the studio")
-    parser.add_argument("--speed", type=float, metavar="FACTOR", help="0: as fast as possible; the world's by default")
-    parser.add_argument("--seed", type=int, default=0, help="of all random numbers")
-    parser.add_argument("--port", type=int, default=8765, help="of the studio")
-    parser.add_argument("--duration", type=float, metavar="S", help="simulate so long, then end; no graph, no studio")
+class SimVerb:
+    """Simulate a world."""
 
+    def add_arguments(self, parser: argparse.ArgumentParser, cli_name: str) -> None:
+        """Declare what `daidalos sim` takes."""
+        parser.epilog = EPILOG
+        parser.add_argument("world", nargs="?", default="", help="an SDF file, or the name of a world")
+        parser.add_argument(
+            "-m", "--model", action="append", default=[], metavar="FILE", help="a robot or model to spawn"
+        )
+        parser.add_argument("--pause", action="store_true", help="begin with time standing still")
+        parser.add_argument("--headless", action="store_true", help="without the studio")
+        parser.add_argument(
+            "--speed", type=float, metavar="FACTOR", help="0: as fast as possible; the world's by default"
+        )
+        parser.add_argument("--seed", type=int, default=0, help="of all random numbers")
+        parser.add_argument("--port", type=int, default=8765, help="of the studio")
+        parser.add_argument(
+            "--duration", type=float, metavar="S", help="simulate so long, then end; no graph, no studio"
+        )
 
-def main(args: argparse.Namespace) -> int:
-    """Simulate; returns the exit status."""
-    from daidalos.description.errors import DescriptionError
-    from daidalos.simulation.errors import SimulationError
+    def main(self, *, args: argparse.Namespace) -> int:
+        """Simulate; returns the exit status."""
+        from daidalos.description.errors import DescriptionError
+        from daidalos.simulation.errors import SimulationError
 
-    try:
-        world = _find_world(args.world)
-        if args.duration is not None:
-            return _run_offline(world, args)
-        return _launch(world, args)
-    except (DescriptionError, SimulationError, OSError) as error:
-        print(f"error: {error}", file=sys.stderr)
-        return 2
+        try:
+            world = _find_world(args.world)
+            if args.duration is not None:
+                return _run_offline(world, args)
+            return _launch(world, args)
+        except (DescriptionError, SimulationError, OSError) as error:
+            print(f"error: {error}", file=sys.stderr)
+            return 2
 
 
 def _find_world(name: str) -> Path | None:

@@ -14,36 +14,38 @@ if TYPE_CHECKING:
     from daidalos.description.robot import Robot
     from daidalos.description.world import Model, World
 
-HELP = "look at a robot, a model or a world: tree, masses, inertias, limits"
 
+class UrdfVerb:
+    """Look at a robot, a model or a world: tree, masses, inertias, limits."""
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare what `daidalos urdf` takes."""
-    parser.add_argument("file", type=Path, help="a file in URDF, xacro or SDF, or a folder with a model.config")
-    parser.add_argument("mappings", nargs="*", metavar="NAME:=VALUE", help="arguments of the xacro file")
-    parser.add_argument("--check", action="store_true", help="also load it into the simulator; says nothing but faults")
-    parser.add_argument("--svg", type=Path, metavar="FILE", help="draw its tree")
-    parser.add_argument("--json", action="store_true", help="print one JSON object")
+    def add_arguments(self, parser: argparse.ArgumentParser, cli_name: str) -> None:
+        """Declare what `daidalos urdf` takes."""
+        parser.add_argument("file", type=Path, help="a file in URDF, xacro or SDF, or a folder with a model.config")
+        parser.add_argument("mappings", nargs="*", metavar="NAME:=VALUE", help="arguments of the xacro file")
+        parser.add_argument(
+            "--check", action="store_true", help="also load it into the simulator; says nothing but faults"
+        )
+        parser.add_argument("--svg", type=Path, metavar="FILE", help="draw its tree")
+        parser.add_argument("--json", action="store_true", help="print one JSON object")
 
+    def main(self, *, args: argparse.Namespace) -> int:
+        """Look at a description; returns 0 when it can be used, 2 when not."""
+        from daidalos.description.errors import DescriptionError
+        from daidalos.simulation.errors import SimulationError
 
-def main(args: argparse.Namespace) -> int:
-    """Look at a description; returns 0 when it can be used, 2 when not."""
-    from daidalos.description.errors import DescriptionError
-    from daidalos.simulation.errors import SimulationError
-
-    try:
-        description = _load(args)
-        warnings = list(_simulated(description) if args.check else description.warnings)
-        if args.svg:
-            _draw(description, args.svg)
-    except (DescriptionError, SimulationError, OSError, ValueError) as error:
-        print(f"error: {error}", file=sys.stderr)
-        return 2
-    for line in dict.fromkeys(warnings):
-        print(f"warning: {line}", file=sys.stderr)
-    if not args.check:
-        _print_report(description, args.json)
-    return 0
+        try:
+            description = _load(args)
+            warnings = list(_simulated(description) if args.check else description.warnings)
+            if args.svg:
+                _draw(description, args.svg)
+        except (DescriptionError, SimulationError, OSError, ValueError) as error:
+            print(f"error: {error}", file=sys.stderr)
+            return 2
+        for line in dict.fromkeys(warnings):
+            print(f"warning: {line}", file=sys.stderr)
+        if not args.check:
+            _print_report(description, args.json)
+        return 0
 
 
 def _load(args: argparse.Namespace) -> "Robot | Model | World":

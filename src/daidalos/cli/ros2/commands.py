@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from importlib import import_module
+from typing import Any
 
-from ros2cli.extensions import Extensions
+from ros2cli.extensions import Extensions, built_in
 
-from daidalos.cli.ros2.extension import COMMAND_GROUP, Command
-from daidalos.cli.ros2.verbs import class_name
+from daidalos.cli.ros2.extension import COMMAND_GROUP
+from daidalos.common.extensions import Kind
 
 BUILT_IN = {
     "action": "Various action related sub-commands",
@@ -35,12 +35,15 @@ BUILT_IN = {
 """Descriptions by name; each is the class ``<Name>Command`` in the module of its name beside this one."""
 
 
+KIND: Kind[Any] = Kind(
+    "ros2_command",
+    COMMAND_GROUP,
+    "ros2cli.extensions:Subcommand",
+    "a command of `ros2`",
+    lambda: built_in(BUILT_IN, "daidalos.cli.ros2", "Command"),
+)
+
+
 def commands() -> Extensions:
     """Return the commands, built-in and added."""
-    return Extensions(COMMAND_GROUP, BUILT_IN, _load)
-
-
-def _load(name: str) -> Command:
-    module = import_module(f"daidalos.cli.ros2.{name}")
-    command: Command = getattr(module, class_name(name, "Command"))()
-    return command
+    return Extensions(KIND)

@@ -79,7 +79,7 @@ def add_component_arguments(parser: ArgumentParser) -> None:
 
 
 def _plugins(package: str) -> list[str]:
-    from daidalos.nodes.components import components
+    from daidalos.nodes.extensions import components
 
     return components(package)
 

@@ -7,6 +7,7 @@ from argparse import ArgumentParser, Namespace
 from ros2cli.extensions import Extensions
 
 from daidalos.cli.ros2.extension import Command, Status
+from daidalos.common.extensions import BUILT_IN
 
 
 class ExtensionsCommand(Command):
@@ -32,10 +33,8 @@ class ExtensionsCommand(Command):
 
 
 def _origin(extensions: Extensions, name: str) -> str:
-    if name in extensions.built_in:
-        return "daidalos"
-    point = extensions.added[name]
-    return f"{point.dist.name if point.dist else 'unknown'} ({point.value})"
+    extension = extensions.extension(name)
+    return "daidalos" if extension.origin == BUILT_IN else f"{extension.origin} ({extension.target})"
 
 
 def add_list_arguments(parser: ArgumentParser, what: str) -> None:

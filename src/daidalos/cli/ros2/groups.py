@@ -11,9 +11,9 @@ from daidalos.cli.ros2.verbs import VerbCommand
 def groups() -> dict[str, Extensions]:
     """Return the extensions of each group, the groups sorted by name."""
     everything = commands()
-    found = {everything.group: everything}
-    for name in everything.built_in:
-        command = everything[name]
+    found = {everything.kind.group: everything}
+    for extension in everything.kind.built_in():
+        command = everything[extension.name]
         if isinstance(command, VerbCommand):
             found[command.group] = command.extensions()
     return dict(sorted(found.items()))

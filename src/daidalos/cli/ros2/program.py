@@ -59,6 +59,7 @@ def _run(argv: list[str]) -> int:
     from daidalos.cli.ros2.commands import commands
     from daidalos.cli.ros2.errors import CliError
     from daidalos.cli.ros2.extension import make_command
+    from daidalos.common.extensions import ExtensionError
     from daidalos.distribution import complete_environment
 
     complete_environment()
@@ -74,7 +75,10 @@ def _run(argv: list[str]) -> int:
         import argcomplete
 
         argcomplete.autocomplete(parser, always_complete_options=False, exclude=["-h", "--help"])
-    args = parser.parse_args(argv)
+    try:
+        args = parser.parse_args(argv)
+    except ExtensionError as error:
+        return _fail(f"ros2: {error}", 1)
     if not args.use_python_default_buffering and hasattr(sys.stdout, "reconfigure"):
         sys.stdout.reconfigure(line_buffering=True)
     if not hasattr(args, "_main"):

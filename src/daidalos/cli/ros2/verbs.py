@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from argparse import ArgumentParser, Namespace
 from collections.abc import Mapping
-from importlib import import_module
-from typing import ClassVar, cast
+from typing import Any, ClassVar, cast
 
-from ros2cli.extensions import Extensions
+from ros2cli.extensions import Extensions, built_in
 from ros2cli.parser import Parser
 
-from daidalos.cli.ros2.extension import Command, Status, Verb, make_verb
+from daidalos.cli.ros2.extension import Command, Status, make_verb
+from daidalos.common.extensions import Kind
 
 
 class VerbCommand(Command):
@@ -39,15 +39,13 @@ class VerbCommand(Command):
     @classmethod
     def extensions(cls) -> Extensions:
         """Return the verbs, built-in and added."""
-        return Extensions(cls.group, cls.verbs, cls._load)
-
-    @classmethod
-    def _load(cls, name: str) -> Verb:
-        module = import_module(f"{cls.module or cls.__module__}.{name}")
-        verb: Verb = getattr(module, class_name(name, "Verb"))()
-        return verb
-
-
-def class_name(name: str, suffix: str) -> str:
-    """``send_goal`` -> ``SendGoalVerb``."""
-    return "".join(part.capitalize() for part in name.split("_")) + suffix
+        modules = cls.module or cls.__module__
+        name = modules.rpartition(".")[2]
+        kind: Kind[Any] = Kind(
+            f"ros2_{name}_verb",
+            cls.group,
+            "ros2cli.extensions:Subcommand",
+            f"a verb of `ros2 {name}`",
+            lambda: built_in(cls.verbs, modules, "Verb"),
+        )
+        return Extensions(kind)

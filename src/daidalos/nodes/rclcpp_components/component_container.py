@@ -8,7 +8,8 @@ from typing import Any
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 
-from daidalos.nodes.components import ComponentNotFound, find_component
+from daidalos.common.extensions import ExtensionError
+from daidalos.nodes.extensions import find_component
 from daidalos.nodes.node_thread import NodeThread
 from daidalos.nodes.runner import run
 
@@ -30,7 +31,7 @@ class ComponentContainer(Node):
         try:
             kind = find_component(request.package_name, request.plugin_name)
             node = kind(**_arguments(request, self.context))
-        except ComponentNotFound as error:
+        except ExtensionError as error:
             return self._refused(response, str(error))
         except Exception as error:  # whatever a component's constructor raises is told to the caller
             return self._refused(response, f"Component constructor threw an exception: {error}")

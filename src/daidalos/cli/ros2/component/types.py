@@ -20,7 +20,7 @@ class TypesVerb(Verb):
 
     def main(self, *, args: Namespace) -> Status:
         """Print the components of one package, or of all under their names."""
-        from daidalos.nodes.components import components, packages
+        from daidalos.nodes.extensions import components, packages
 
         if not args.package_name:
             for package in packages():
