@@ -12,13 +12,13 @@ from typing import Any
 
 import numpy as np
 
+from daidalos.common.parameters import parameters_from
 from daidalos.common.pose3 import Pose
 from daidalos.control.controllers.base import ControllerContext
 from daidalos.control.hardware.base import Hardware
 from daidalos.control.hardware.generic import GenericSystem
 from daidalos.control.hardware.simulated import SimulatedSystem
 from daidalos.control.manager import ControllerManager
-from daidalos.control.parameters import parameters_from
 from daidalos.control.samples import TrajectoryCommand, TrajectoryPoint
 from daidalos.description import sdf, urdf
 from daidalos.description.ros2_control import read_hardware

@@ -4,11 +4,11 @@ from collections.abc import Callable
 from typing import Any
 
 from daidalos.common.extensions import find
+from daidalos.common.parameters import parameters_from
 from daidalos.control.controllers.base import Controller, ControllerContext
 from daidalos.control.extensions import CONTROLLERS, hardware_class
 from daidalos.control.interfaces import Interfaces, LoanedInterfaces
 from daidalos.control.manager import ControllerManager
-from daidalos.control.parameters import parameters_from
 from daidalos.description import urdf
 from daidalos.description.robot import Robot
 from daidalos.description.ros2_control import read_hardware

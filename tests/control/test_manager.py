@@ -9,12 +9,12 @@ import pytest
 from control_robots import arm, from_values, manager
 
 from daidalos.common.extensions import UnknownExtension
+from daidalos.common.parameters import ParameterError, Parameters, parameter
 from daidalos.control.controllers.base import Controller, ControllerContext
-from daidalos.control.errors import HardwareError, ParameterError, StateError, SwitchError, UnknownError
+from daidalos.control.errors import HardwareError, StateError, SwitchError, UnknownError
 from daidalos.control.hardware.base import Hardware
 from daidalos.control.interfaces import Interfaces
 from daidalos.control.manager import ControllerManager
-from daidalos.control.parameters import parameter
 from daidalos.control.samples import ValuesCommand
 from daidalos.control.switching import Strictness
 from daidalos.simulation.samples import Sample
@@ -24,10 +24,10 @@ PLACE = __name__
 
 
 @dataclass(frozen=True)
-class WatchParameters:
-    command: str = parameter("")
-    state: str = parameter("elbow/position")
-    fail_at_ns: int = parameter(0)
+class WatchParameters(Parameters):
+    command: str = parameter("", "Interface that is commanded.")
+    state: str = parameter("elbow/position", "Interface that is measured.")
+    fail_at_ns: int = parameter(0, "When to fail.", unit="ns")
 
 
 class Watch(Controller):

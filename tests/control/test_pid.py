@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy import integrate
 
-from daidalos.control.errors import ParameterError
+from daidalos.common.parameters import ParameterError
 from daidalos.control.pid import Gains, Pid
 
 

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from daidalos.control.errors import ParameterError
+from daidalos.common.parameters import ParameterError
 from daidalos.control.speed_limiter import SpeedLimiter, SpeedLimits
 
 PERIOD = 0.02

@@ -1,8 +1,12 @@
-"""Where something wrong was written."""
+"""Mistakes of the user's, and where they were written."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+
+
+class UserError(Exception):
+    """A mistake of the user's; shown as one line, without a traceback."""
 
 
 @dataclass(frozen=True)

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     import ast
     from importlib.metadata import EntryPoint
 
-    from daidalos.common.errors import Location
+    from daidalos.common.errors import Location, UserError
 
 T = TypeVar("T")
 
@@ -34,7 +34,7 @@ BUILT_IN = "built in"
 _CLASS_PATH = re.compile(r"[A-Za-z_]\w*(\.[A-Za-z_]\w*)+")
 
 
-class ExtensionError(Exception):
+class ExtensionError(UserError):
     """An extension is not known or cannot be used; one line for the user.
 
     Parameters

@@ -15,21 +15,6 @@ class HardwareError(ControlError):
     """Hardware refuses or fails; raise it from a hardware class of your own."""
 
 
-class ParameterError(ControlError):
-    """A parameter of a controller has a value that it cannot have.
-
-    Parameters
-    ----------
-    name : str
-        The parameter, with dots.
-    problem : str
-    """
-
-    def __init__(self, name: str, problem: str) -> None:
-        super().__init__(f"parameter '{name}' {problem}")
-        self.name = name
-
-
 class UnknownError(ControlError):
     """A name that is not there; says which are.
 

@@ -12,44 +12,35 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from daidalos.control.errors import ParameterError
-from daidalos.control.parameters import at_least, one_of, parameter
+from daidalos.common.parameters import ParameterError, Parameters, parameter
 
 Array = NDArray[np.float64]
 STRATEGIES = ("none", "legacy", "back_calculation", "conditional_integration")
 
 
 @dataclass(frozen=True)
-class Gains:
+class Gains(Parameters):
     """Gains of one loop; u = p e + i int(e) + d de/dt.
 
-    Parameters
-    ----------
-    p, i, d : float
-    i_clamp_max, i_clamp_min : float
-        Of the integral term, in units of the output.
-    u_clamp_max, u_clamp_min : float
-        Of the output.
-    antiwindup_strategy : str
-        ``none`` only clamps; ``legacy`` is the same for old files; ``conditional_integration`` rests while
-        the output is saturated and the error drives it further; ``back_calculation`` bleeds the integral by
-        what was cut off the output, with `tracking_time_constant`.
-    tracking_time_constant : float
-        [s]; 0 chooses sqrt(d / i), or p / i without a derivative part.
-    error_deadband : float
-        Errors within it are not integrated.
+    Anti-windup: ``none`` only clamps; ``legacy`` is the same, for old files; ``conditional_integration`` rests while
+    the output is saturated and the error drives it further; ``back_calculation`` bleeds the integral by
+    what was cut off.
     """
 
-    p: float = parameter(0.0)
-    i: float = parameter(0.0)
-    d: float = parameter(0.0)
-    i_clamp_max: float = parameter(math.inf)
-    i_clamp_min: float = parameter(-math.inf)
-    u_clamp_max: float = parameter(math.inf)
-    u_clamp_min: float = parameter(-math.inf)
-    antiwindup_strategy: str = parameter("none", one_of(*STRATEGIES))
-    tracking_time_constant: float = parameter(0.0, at_least(0.0))
-    error_deadband: float = parameter(0.0, at_least(0.0))
+    p: float = parameter(0.0, "Proportional gain.")
+    i: float = parameter(0.0, "Integral gain.")
+    d: float = parameter(0.0, "Derivative gain.")
+    i_clamp_max: float = parameter(math.inf, "Upper limit of the integral term, in units of the output.")
+    i_clamp_min: float = parameter(-math.inf, "Lower limit of the integral term, in units of the output.")
+    u_clamp_max: float = parameter(math.inf, "Upper limit of the output.")
+    u_clamp_min: float = parameter(-math.inf, "Lower limit of the output.")
+    antiwindup_strategy: str = parameter(
+        "none", "What happens to the integral while the output is saturated.", choices=STRATEGIES
+    )
+    tracking_time_constant: float = parameter(
+        0.0, "Time constant of back_calculation; 0 for sqrt(d / i), or p / i where d is 0.", unit="s", minimum=0.0
+    )
+    error_deadband: float = parameter(0.0, "Error up to which nothing is integrated.", minimum=0.0)
 
 
 class Pid:

@@ -6,46 +6,34 @@ import math
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
-from daidalos.control.errors import ParameterError
-from daidalos.control.parameters import parameter
+from daidalos.common.parameters import ParameterError, Parameters, parameter
 
 NAN = math.nan
 
 
 @dataclass(frozen=True)
-class SpeedLimits:
+class SpeedLimits(Parameters):
     """Limits of one direction of motion; NaN where there is none.
 
     An acceleration or jerk of zero, with which nothing could ever move, is no limit either.
-
-    Parameters
-    ----------
-    has_velocity_limits, has_acceleration_limits, has_jerk_limits : bool
-        Files switch limits that they give off with these.
-    max_velocity, min_velocity : float
-        Ahead and backwards [m/s, rad/s]; without the second the first holds both ways.
-    max_acceleration, min_acceleration : float
-        Old names: of speeding up; and, negative, of slowing down.
-    max_deceleration : float
-        Of slowing down ahead, negative [m/s^2, rad/s^2].
-    max_acceleration_reverse, max_deceleration_reverse : float
-        Of speeding up backwards (negative) and slowing down backwards (positive).
-    max_jerk, min_jerk : float
-        [m/s^3, rad/s^3].
     """
 
-    has_velocity_limits: bool = parameter(default=True)
-    has_acceleration_limits: bool = parameter(default=True)
-    has_jerk_limits: bool = parameter(default=True)
-    max_velocity: float = parameter(NAN)
-    min_velocity: float = parameter(NAN)
-    max_acceleration: float = parameter(NAN)
-    min_acceleration: float = parameter(NAN)
-    max_deceleration: float = parameter(NAN)
-    max_acceleration_reverse: float = parameter(NAN)
-    max_deceleration_reverse: float = parameter(NAN)
-    max_jerk: float = parameter(NAN)
-    min_jerk: float = parameter(NAN)
+    has_velocity_limits: bool = parameter(True, "Whether velocity limits apply.")
+    has_acceleration_limits: bool = parameter(True, "Whether acceleration and deceleration limits apply.")
+    has_jerk_limits: bool = parameter(True, "Whether jerk limits apply.")
+    max_velocity: float = parameter(NAN, "Largest velocity.", unit="m/s or rad/s")
+    min_velocity: float = parameter(NAN, "Least velocity, negative; NaN for -max_velocity.", unit="m/s or rad/s")
+    max_acceleration: float = parameter(NAN, "Largest acceleration ahead.", unit="m/s^2 or rad/s^2")
+    min_acceleration: float = parameter(NAN, "Old name of max_deceleration, negative.", unit="m/s^2 or rad/s^2")
+    max_deceleration: float = parameter(NAN, "Largest deceleration ahead, negative.", unit="m/s^2 or rad/s^2")
+    max_acceleration_reverse: float = parameter(
+        NAN, "Largest acceleration backwards, negative.", unit="m/s^2 or rad/s^2"
+    )
+    max_deceleration_reverse: float = parameter(
+        NAN, "Largest deceleration backwards, positive.", unit="m/s^2 or rad/s^2"
+    )
+    max_jerk: float = parameter(NAN, "Largest jerk.", unit="m/s^3 or rad/s^3")
+    min_jerk: float = parameter(NAN, "Least jerk, negative; NaN for -max_jerk.", unit="m/s^3 or rad/s^3")
 
 
 class SpeedLimiter:

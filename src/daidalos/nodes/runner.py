@@ -9,15 +9,13 @@ import threading
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
+from daidalos.common.errors import UserError as UserError
+
 if TYPE_CHECKING:
     from rclpy.node import Node
 
 
 _failed = threading.Event()
-
-
-class UserError(Exception):
-    """A mistake of the user's: shown as one line, without a traceback, with exit status 2."""
 
 
 def run_program(body: Callable[[], None], interrupted: int = 0) -> int:

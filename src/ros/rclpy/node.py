@@ -38,6 +38,7 @@ from rclpy.validate_node_name import validate_node_name
 
 if TYPE_CHECKING:
     from rclpy.executors import Executor
+    from rclpy.impl.arguments import GivenParameter
 
 HIDDEN_NODE_PREFIX = "_"
 __all__ = [
@@ -137,15 +138,18 @@ class Node(NodeEntities, NodeParameters, NodeGraph):
 
     def _rcl_overrides(self, given: list[Parameter[Any]] | None) -> dict[str, Parameter[Any]]:
         """Return initial values: from files and the command line, the last outweighing, and in the end from code."""
-        found: dict[str, Parameter[Any]] = {}
+        self._rcl_given: dict[str, GivenParameter] = {}
         entries = self.handle.parameter_overrides
         if entries:
             from rclpy.impl.parameter_file import node_matches
 
             full = self.handle.get_fully_qualified_name()
-            for node, name, value in entries:
-                if node_matches(node, full):
-                    found[name] = Parameter(name, value=value)
+            self._rcl_given = {entry.name: entry for entry in entries if node_matches(entry.node, full)}
+        for parameter in given or ():
+            self._rcl_given.pop(parameter.name, None)
+        found: dict[str, Parameter[Any]] = {
+            name: Parameter(name, value=entry.value) for name, entry in self._rcl_given.items()
+        }
         found.update({parameter.name: parameter for parameter in given or ()})
         return found
 

@@ -253,7 +253,7 @@ def parameter_dict_from_yaml_file(
     for wildcards in (True, False):  # what is said of a node by its name outweighs wildcards
         found |= {
             name: value
-            for node, name, value in entries
+            for node, name, value, _ in entries
             if ("*" in node) is wildcards and _is_wanted(node, targets, use_wildcard)
         }
     if targets and not found and not any(_is_wanted(node, targets, use_wildcard) for node, *_ in entries):

@@ -7,7 +7,8 @@ import pytest
 from control_robots import PERIOD_NS, alone, cycle
 from scipy.integrate import solve_ivp
 
-from daidalos.control.errors import ControlError, ParameterError
+from daidalos.common.parameters import ParameterError
+from daidalos.control.errors import ControlError
 from daidalos.control.samples import AdmittanceSample, TrajectoryPoint
 from daidalos.description import urdf
 

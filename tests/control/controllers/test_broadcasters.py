@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from control_robots import alone, arm, cycle
 
+from daidalos.common.parameters import ParameterError
 from daidalos.common.pose3 import Pose
-from daidalos.control.errors import ParameterError
 from daidalos.control.samples import DynamicJointSample
 from daidalos.simulation.samples import JointStateSample, TransformSample
 

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from control_robots import PERIOD_NS, alone, cycle
 
+from daidalos.common.parameters import ParameterError
 from daidalos.control.controllers.base import Controller
-from daidalos.control.errors import ParameterError
 from daidalos.control.interfaces import Interfaces
 from daidalos.control.samples import VelocityCommand, VelocitySample
 from daidalos.simulation.samples import OdometrySample, TransformSample, TwistCommand

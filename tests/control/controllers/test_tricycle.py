@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from control_robots import PERIOD_NS, alone, cycle
 
-from daidalos.control.errors import ParameterError
+from daidalos.common.parameters import ParameterError
 from daidalos.control.samples import Asked, VelocityCommand
 from daidalos.simulation.samples import OdometrySample, TransformSample, TwistCommand
 

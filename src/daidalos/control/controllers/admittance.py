@@ -3,112 +3,115 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
+from daidalos.common.parameters import ParameterError, Parameters, group, parameter
 from daidalos.common.pose3 import quaternion_from_matrix
 from daidalos.control.admittance import AdmittanceLaw, AdmittanceState, advance, without_weight
 from daidalos.control.chain import Chain
 from daidalos.control.controllers.base import Controller, Subscription
-from daidalos.control.errors import ControlError, ParameterError
+from daidalos.control.errors import ControlError
 from daidalos.control.interfaces import Interfaces, interface_names
-from daidalos.control.parameters import (
-    above,
-    at_least,
-    elements_within,
-    not_empty,
-    parameter,
-    size,
-    subset_of,
-    unique,
-)
 from daidalos.control.samples import AdmittanceSample, TrajectoryPoint
 from daidalos.simulation.samples import Sample
 
 
 @dataclass(frozen=True)
-class Kinematics:
-    """The chain; plugins of others are read and ours is used."""
+class Kinematics(Parameters):
+    """The chain of joints."""
 
-    plugin_name: str = parameter("", read_only=True)
-    plugin_package: str = parameter("", read_only=True)
-    base: str = parameter("", not_empty, read_only=True)
-    tip: str = parameter("", not_empty, read_only=True)
-    alpha: float = parameter(0.0005, at_least(0.0))
+    base: str = parameter("", "Link that the chain starts at.", not_empty=True, read_only=True)
+    tip: str = parameter("", "Link that the chain ends at.", not_empty=True, read_only=True)
+    alpha: float = parameter(0.0005, "Damping of the inverse kinematics near singular positions.", minimum=0.0)
 
 
 @dataclass(frozen=True)
-class Frame:
+class Frame(Parameters):
     """A frame: a link of the robot, or one outside of it."""
 
-    id: str = parameter("", not_empty, read_only=True)
-    external: bool = parameter(default=False, read_only=True)
+    id: str = parameter("", "Name of the frame.", not_empty=True, read_only=True)
+    external: bool = parameter(False, "Whether the frame is outside of the robot.", read_only=True)
 
 
 @dataclass(frozen=True)
-class ForceSensor:
-    """The force-torque sensor, its frame, and how much of a new value counts (1: all)."""
+class ForceSensor(Parameters):
+    """The force-torque sensor."""
 
-    name: str = parameter("", not_empty, read_only=True)
-    frame: Frame = field(default_factory=Frame)
-    filter_coefficient: float = parameter(0.05, above(0.0))
+    name: str = parameter("", "Name of the sensor in its state interfaces.", not_empty=True, read_only=True)
+    frame: Frame = group(Frame)
+    filter_coefficient: float = parameter(
+        0.05, "Weight of a new value in the low-pass filter; 1 does not filter.", above=0.0
+    )
 
 
 @dataclass(frozen=True)
-class FrameHolder:
+class FrameHolder(Parameters):
     """A named frame."""
 
-    frame: Frame = field(default_factory=Frame)
+    frame: Frame = group(Frame)
 
 
 @dataclass(frozen=True)
-class CentreOfGravity:
-    """Of the tool: position in the frame [m] and weight [N]."""
+class CentreOfGravity(Parameters):
+    """Centre of gravity of the tool."""
 
-    pos: tuple[float, ...] = parameter((0.0, 0.0, 0.0), size(3))
-    force: float = parameter(0.0)
+    pos: tuple[float, ...] = parameter((0.0, 0.0, 0.0), "Position in the frame.", unit="m", length=3)
+    force: float = parameter(0.0, "Weight of the tool.", unit="N")
 
 
 @dataclass(frozen=True)
-class GravityCompensation:
+class GravityCompensation(Parameters):
     """What the sensor carries beside the outside force."""
 
-    frame: Frame = field(default_factory=Frame)
-    CoG: CentreOfGravity = field(default_factory=CentreOfGravity)
+    frame: Frame = group(Frame)
+    CoG: CentreOfGravity = group(CentreOfGravity)
 
 
 @dataclass(frozen=True)
-class LawParameters:
+class LawParameters(Parameters):
     """The law along and about the axes of the control frame; see `AdmittanceLaw`."""
 
-    selected_axes: tuple[bool, ...] = parameter((True,) * 6, size(6))
-    mass: tuple[float, ...] = parameter((), size(6), elements_within(0.0001, 1000000.0))
-    damping_ratio: tuple[float, ...] = parameter((), size(6))
-    stiffness: tuple[float, ...] = parameter((), size(6), elements_within(0.0, 100000000.0))
-    joint_damping: float = parameter(5.0, at_least(0.0))
+    selected_axes: tuple[bool, ...] = parameter((True,) * 6, "Axes along and about which the tip yields.", length=6)
+    mass: tuple[float, ...] = parameter(
+        (), "Virtual mass and inertia.", unit="kg, kg m^2", length=6, minimum=0.0001, maximum=1000000.0
+    )
+    damping_ratio: tuple[float, ...] = parameter((), "Damping relative to the critical one.", length=6)
+    stiffness: tuple[float, ...] = parameter(
+        (), "Virtual stiffness.", unit="N/m, N m/rad", length=6, minimum=0.0, maximum=100000000.0
+    )
+    joint_damping: float = parameter(5.0, "Damping of the joints' own drift.", unit="1/s", minimum=0.0)
 
 
 @dataclass(frozen=True)
-class AdmittanceParameters:
-    """Parameters, as ROS names them."""
+class AdmittanceParameters(Parameters):
+    """Parameters of the admittance controller, as ROS names them."""
 
-    joints: tuple[str, ...] = parameter((), not_empty, unique, read_only=True)
-    command_joints: tuple[str, ...] = parameter((), unique, read_only=True)
-    command_interfaces: tuple[str, ...] = parameter((), not_empty, subset_of("position", "velocity"), read_only=True)
+    joints: tuple[str, ...] = parameter((), "Joints of the chain.", not_empty=True, unique=True, read_only=True)
+    command_joints: tuple[str, ...] = parameter(
+        (), "Joints that are commanded; empty for those in joints.", unique=True, read_only=True
+    )
+    command_interfaces: tuple[str, ...] = parameter(
+        (), "Interfaces that are commanded.", choices=("position", "velocity"), not_empty=True, read_only=True
+    )
     state_interfaces: tuple[str, ...] = parameter(
-        (), not_empty, subset_of("position", "velocity", "acceleration"), read_only=True
-    )
+        (), "Interfaces that are measured.", choices=("position", "velocity", "acceleration"), not_empty=True,
+        read_only=True,
+    )  # fmt: skip
     chainable_command_interfaces: tuple[str, ...] = parameter(
-        ("position", "velocity"), subset_of("position", "velocity"), read_only=True
+        ("position", "velocity"), "References that other controllers may command.", choices=("position", "velocity"),
+        read_only=True,
+    )  # fmt: skip
+    kinematics: Kinematics = group(Kinematics)
+    ft_sensor: ForceSensor = group(ForceSensor)
+    control: FrameHolder = group(FrameHolder)
+    fixed_world_frame: FrameHolder = group(FrameHolder)
+    gravity_compensation: GravityCompensation = group(GravityCompensation)
+    admittance: LawParameters = group(LawParameters)
+    enable_parameter_update_without_reactivation: bool = parameter(
+        True, "Whether changed parameters take effect while the controller is active."
     )
-    kinematics: Kinematics = field(default_factory=Kinematics)
-    ft_sensor: ForceSensor = field(default_factory=ForceSensor)
-    control: FrameHolder = field(default_factory=FrameHolder)
-    fixed_world_frame: FrameHolder = field(default_factory=FrameHolder)
-    gravity_compensation: GravityCompensation = field(default_factory=GravityCompensation)
-    admittance: LawParameters = field(default_factory=LawParameters)
-    enable_parameter_update_without_reactivation: bool = parameter(default=True)
 
     def check(self) -> None:
         """Refuse what can not be controlled."""

@@ -129,7 +129,7 @@ class Controller(Endpoint):
     names : tuple of str
         Class attribute: the names that it goes by in parameter files.
     parameters : type
-        Class attribute: a dataclass; see `daidalos.control.parameters`.
+        Class attribute: a dataclass; see `daidalos.common.parameters`.
     chainable : bool
         Class attribute: whether other controllers may command it.
     command_names, state_names : tuple of str

@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
+from daidalos.common.parameters import ParameterError, Parameters, group, parameter
 from daidalos.common.rate_gate import RateGate
 from daidalos.control.base_odometry import BaseOdometry, prefixed_frame
 from daidalos.control.controllers.base import Controller, Subscription
-from daidalos.control.errors import ParameterError
 from daidalos.control.interfaces import Interfaces
-from daidalos.control.parameters import above, not_empty, parameter, size, unique
 from daidalos.control.samples import VelocitySample
 from daidalos.control.speed_limiter import SpeedLimiter, SpeedLimits
 from daidalos.control.velocity_input import VelocityInput
@@ -23,77 +22,60 @@ _REFERENCES = ("linear/velocity", "angular/velocity")
 
 
 @dataclass(frozen=True)
-class LinearLimits:
+class LinearLimits(Parameters):
     """Limits along the base's x axis."""
 
-    x: SpeedLimits = field(default_factory=SpeedLimits)
+    x: SpeedLimits = group(SpeedLimits)
 
 
 @dataclass(frozen=True)
-class AngularLimits:
+class AngularLimits(Parameters):
     """Limits about the base's z axis."""
 
-    z: SpeedLimits = field(default_factory=SpeedLimits)
+    z: SpeedLimits = group(SpeedLimits)
 
 
 @dataclass(frozen=True)
-class DiffDriveParameters:
-    """Parameters, as ROS names them; those of both Humble and Jazzy.
+class DiffDriveParameters(Parameters):
+    """Parameters of the differential drive, as ROS names them; those of both Humble and Jazzy."""
 
-    Parameters
-    ----------
-    left_wheel_names, right_wheel_names : tuple of str
-        Joints; as many on each side.
-    wheel_separation, wheel_radius : float
-        [m].
-    wheel_separation_multiplier, left_wheel_radius_multiplier, right_wheel_radius_multiplier : float
-        Corrections.
-    wheels_per_side : int
-        Read for old files.
-    tf_frame_prefix_enable, tf_frame_prefix : bool, str
-        Put this, or the namespace, before frames.
-    odom_frame_id, base_frame_id : str
-    pose_covariance_diagonal, twist_covariance_diagonal : tuple of 6 floats
-    open_loop : bool
-        Odometry from commands and not from wheels.
-    position_feedback : bool
-        Wheels tell angles, and not speeds.
-    enable_odom_tf : bool
-    cmd_vel_timeout : float
-        Age at which a command counts no more [s].
-    publish_limited_velocity : bool
-    velocity_rolling_window_size : int
-    use_stamped_vel : bool
-        ``~/cmd_vel`` with stamps, or ``~/cmd_vel_unstamped``.
-    publish_rate : float
-        Of the odometry [Hz].
-    linear, angular : LinearLimits, AngularLimits
-    """
-
-    left_wheel_names: tuple[str, ...] = parameter((), not_empty, unique, read_only=True)
-    right_wheel_names: tuple[str, ...] = parameter((), not_empty, unique, read_only=True)
-    wheel_separation: float = parameter(0.0, above(0.0))
-    wheel_radius: float = parameter(0.0, above(0.0))
-    wheel_separation_multiplier: float = parameter(1.0, above(0.0))
-    left_wheel_radius_multiplier: float = parameter(1.0, above(0.0))
-    right_wheel_radius_multiplier: float = parameter(1.0, above(0.0))
-    wheels_per_side: int = parameter(0)
-    tf_frame_prefix_enable: bool = parameter(default=True, read_only=True)
-    tf_frame_prefix: str = parameter("", read_only=True)
-    odom_frame_id: str = parameter("odom", read_only=True)
-    base_frame_id: str = parameter("base_link", read_only=True)
-    pose_covariance_diagonal: tuple[float, ...] = parameter(_ZEROS, size(6), read_only=True)
-    twist_covariance_diagonal: tuple[float, ...] = parameter(_ZEROS, size(6), read_only=True)
-    open_loop: bool = parameter(default=False, read_only=True)
-    position_feedback: bool = parameter(default=True, read_only=True)
-    enable_odom_tf: bool = parameter(default=True, read_only=True)
-    cmd_vel_timeout: float = parameter(0.5)
-    publish_limited_velocity: bool = parameter(default=False, read_only=True)
-    velocity_rolling_window_size: int = parameter(10, above(0), read_only=True)
-    use_stamped_vel: bool = parameter(default=True, read_only=True)
-    publish_rate: float = parameter(50.0, above(0.0), read_only=True)
-    linear: LinearLimits = field(default_factory=LinearLimits)
-    angular: AngularLimits = field(default_factory=AngularLimits)
+    left_wheel_names: tuple[str, ...] = parameter(
+        (), "Joints of the left wheels.", not_empty=True, unique=True, read_only=True
+    )
+    right_wheel_names: tuple[str, ...] = parameter(
+        (), "Joints of the right wheels, as many as left ones.", not_empty=True, unique=True, read_only=True
+    )
+    wheel_separation: float = parameter(0.0, "Distance between left and right wheels.", unit="m", above=0.0)
+    wheel_radius: float = parameter(0.0, "Radius of the wheels.", unit="m", above=0.0)
+    wheel_separation_multiplier: float = parameter(1.0, "Correction factor of wheel_separation.", above=0.0)
+    left_wheel_radius_multiplier: float = parameter(1.0, "Correction factor of the left wheels' radius.", above=0.0)
+    right_wheel_radius_multiplier: float = parameter(1.0, "Correction factor of the right wheels' radius.", above=0.0)
+    tf_frame_prefix_enable: bool = parameter(True, "Whether frames get a prefix.", read_only=True)
+    tf_frame_prefix: str = parameter("", "Prefix of frames; empty for the namespace.", read_only=True)
+    odom_frame_id: str = parameter("odom", "Frame of the odometry.", read_only=True)
+    base_frame_id: str = parameter("base_link", "Frame of the base.", read_only=True)
+    pose_covariance_diagonal: tuple[float, ...] = parameter(
+        _ZEROS, "Variances of the odometry's pose.", length=6, read_only=True
+    )
+    twist_covariance_diagonal: tuple[float, ...] = parameter(
+        _ZEROS, "Variances of the odometry's twist.", length=6, read_only=True
+    )
+    open_loop: bool = parameter(False, "Whether odometry comes from commands instead of wheels.", read_only=True)
+    position_feedback: bool = parameter(True, "Whether wheels measure angles instead of speeds.", read_only=True)
+    enable_odom_tf: bool = parameter(
+        True, "Whether to publish the transform from odom_frame_id to base_frame_id.", read_only=True
+    )
+    cmd_vel_timeout: float = parameter(0.5, "Age at which a command is ignored; 0 for never.", unit="s")
+    publish_limited_velocity: bool = parameter(False, "Whether to publish ~/cmd_vel_out.", read_only=True)
+    velocity_rolling_window_size: int = parameter(
+        10, "Number of cycles that the velocity of the odometry is averaged over.", above=0, read_only=True
+    )
+    use_stamped_vel: bool = parameter(
+        True, "Whether commands are stamped (~/cmd_vel) or not (~/cmd_vel_unstamped).", read_only=True
+    )
+    publish_rate: float = parameter(50.0, "How often the odometry is published.", unit="Hz", above=0.0, read_only=True)
+    linear: LinearLimits = group(LinearLimits)
+    angular: AngularLimits = group(AngularLimits)
 
     def check(self) -> None:
         """Refuse sides of different size."""

@@ -7,34 +7,42 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from daidalos.common.parameters import Parameters, parameter
 from daidalos.control.controllers.base import Controller, Subscription
 from daidalos.control.interfaces import Interfaces
-from daidalos.control.parameters import not_empty, parameter, unique
 from daidalos.control.samples import ValuesCommand
 from daidalos.simulation.samples import Sample
 
 
 @dataclass(frozen=True)
-class ForwardCommandParameters:
+class ForwardCommandParameters(Parameters):
     """Joints, and the interface of each that is commanded."""
 
-    joints: tuple[str, ...] = parameter((), not_empty, unique, read_only=True)
-    interface_name: str = parameter("", not_empty, read_only=True)
+    joints: tuple[str, ...] = parameter(
+        (), "Joints that are commanded, in the order of the command's values.", not_empty=True, unique=True,
+        read_only=True,
+    )  # fmt: skip
+    interface_name: str = parameter("", "Interface of each joint.", not_empty=True, read_only=True)
 
 
 @dataclass(frozen=True)
-class MultiInterfaceParameters:
+class MultiInterfaceParameters(Parameters):
     """One joint, and those of its interfaces that are commanded."""
 
-    joint: str = parameter("", not_empty, read_only=True)
-    interface_names: tuple[str, ...] = parameter((), not_empty, unique, read_only=True)
+    joint: str = parameter("", "Joint that is commanded.", not_empty=True, read_only=True)
+    interface_names: tuple[str, ...] = parameter(
+        (), "Its interfaces, in the order of the command's values.", not_empty=True, unique=True, read_only=True
+    )
 
 
 @dataclass(frozen=True)
-class GroupParameters:
+class GroupParameters(Parameters):
     """Joints of a group."""
 
-    joints: tuple[str, ...] = parameter((), not_empty, unique, read_only=True)
+    joints: tuple[str, ...] = parameter(
+        (), "Joints that are commanded, in the order of the command's values.", not_empty=True, unique=True,
+        read_only=True,
+    )  # fmt: skip
 
 
 class ForwardController(Controller):

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
 
+from daidalos.common.parameters import Parameters, parameter, per_name
 from daidalos.common.rate_gate import RateGate
 from daidalos.control.controllers.base import Action, Controller, Goal
-from daidalos.control.parameters import at_least, not_empty, parameter, per_name
 from daidalos.control.pid import Gains, Pid
 from daidalos.control.samples import GripperRequest, GripperState, ParallelGripperRequest
 from daidalos.simulation.samples import Sample
@@ -20,54 +20,46 @@ _ACTION = "~/gripper_cmd"
 
 
 @dataclass(frozen=True)
-class GripperParameters:
-    """Parameters, as ROS names them.
+class GripperParameters(Parameters):
+    """Parameters of the gripper, as ROS names them."""
 
-    Parameters
-    ----------
-    joint : str
-    action_monitor_rate : float
-        Of feedback [Hz].
-    goal_tolerance : float
-        How near counts as there [m, rad].
-    max_effort : float
-        Largest effort where a goal names none; 0 for no limit [N, N m].
-    allow_stalling : bool
-        Whether something in between is a success.
-    stall_velocity_threshold, stall_timeout : float
-        Slower than this for so long counts as stalled [m/s or rad/s, s].
-    gains : mapping
-        Of the loop that an effort interface needs, by joint.
-    """
-
-    joint: str = parameter("", not_empty, read_only=True)
-    action_monitor_rate: float = parameter(20.0, at_least(0.1), read_only=True)
-    goal_tolerance: float = parameter(0.01, at_least(0.0))
-    max_effort: float = parameter(0.0, at_least(0.0))
-    allow_stalling: bool = parameter(default=False)
-    stall_velocity_threshold: float = parameter(0.001, at_least(0.0))
-    stall_timeout: float = parameter(1.0, at_least(0.0))
-    gains: dict[str, Gains] = field(default_factory=dict, metadata=per_name(Gains, by="joint"))
+    joint: str = parameter("", "Joint that opens and closes.", not_empty=True, read_only=True)
+    action_monitor_rate: float = parameter(
+        20.0, "How often a goal gives feedback.", unit="Hz", minimum=0.1, read_only=True
+    )
+    goal_tolerance: float = parameter(
+        0.01, "Distance to the goal that counts as reached.", unit="m or rad", minimum=0.0
+    )
+    max_effort: float = parameter(
+        0.0, "Largest effort where a goal names none; 0 for no limit.", unit="N or N m", minimum=0.0
+    )
+    allow_stalling: bool = parameter(False, "Whether a goal succeeds when the gripper stalls on an object.")
+    stall_velocity_threshold: float = parameter(
+        0.001, "Velocity below which the gripper may be stalled.", unit="m/s or rad/s", minimum=0.0
+    )
+    stall_timeout: float = parameter(
+        1.0, "How long the gripper has to be that slow to count as stalled.", unit="s", minimum=0.0
+    )
+    gains: dict[str, Gains] = per_name(Gains, by="joint")
 
 
 @dataclass(frozen=True)
 class ParallelGripperParameters(GripperParameters):
-    """The same, with interfaces that take the largest effort and speed.
+    """The same, with interfaces that take the largest effort and speed."""
 
-    Parameters
-    ----------
-    max_effort_interface, max_velocity_interface : str
-        Full names; empty where the hardware has none.
-    max_velocity : float
-        Where a goal names none [m/s, rad/s].
-    state_interfaces : tuple of str
-    """
-
-    max_effort: float = parameter(10.0, at_least(0.0))
-    max_effort_interface: str = parameter("", read_only=True)
-    max_velocity_interface: str = parameter("", read_only=True)
-    max_velocity: float = parameter(0.1, at_least(0.0))
-    state_interfaces: tuple[str, ...] = parameter(("position", "velocity"), read_only=True)
+    max_effort: float = parameter(
+        10.0, "Largest effort where a goal names none; 0 for no limit.", unit="N or N m", minimum=0.0
+    )
+    max_effort_interface: str = parameter(
+        "", "Full name of the interface for the largest effort; empty for none.", read_only=True
+    )
+    max_velocity_interface: str = parameter(
+        "", "Full name of the interface for the largest velocity; empty for none.", read_only=True
+    )
+    max_velocity: float = parameter(0.1, "Largest velocity where a goal names none.", unit="m/s or rad/s", minimum=0.0)
+    state_interfaces: tuple[str, ...] = parameter(
+        ("position", "velocity"), "Interfaces that are measured.", read_only=True
+    )
 
 
 class PositionGripperController(Controller):

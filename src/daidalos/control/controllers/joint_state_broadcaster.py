@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
+from daidalos.common.parameters import Parameters, group, parameter
 from daidalos.control.controllers.base import Controller
-from daidalos.control.parameters import parameter, unique
 from daidalos.control.samples import DynamicJointSample
 from daidalos.description.joint import JointType
 from daidalos.simulation.samples import JointStateSample, Sample
@@ -17,43 +17,38 @@ _FIELDS = ("position", "velocity", "effort")
 
 
 @dataclass(frozen=True)
-class InterfaceMap:
+class InterfaceMap(Parameters):
     """Which interfaces stand for the fields of the message."""
 
-    position: str = parameter("position", read_only=True)
-    velocity: str = parameter("velocity", read_only=True)
-    effort: str = parameter("effort", read_only=True)
+    position: str = parameter("position", "Interface that positions are taken from.", read_only=True)
+    velocity: str = parameter("velocity", "Interface that velocities are taken from.", read_only=True)
+    effort: str = parameter("effort", "Interface that efforts are taken from.", read_only=True)
 
 
 @dataclass(frozen=True)
-class JointStateBroadcasterParameters:
-    """Parameters.
+class JointStateBroadcasterParameters(Parameters):
+    """Parameters of the joint state broadcaster, as ROS names them."""
 
-    Parameters
-    ----------
-    use_local_topics : bool
-        Publish on topics of its own.
-    joints, interfaces : tuple of str
-        Only these, in this order; where one is empty all interfaces.
-    extra_joints : tuple of str
-        Published as well, at zero.
-    map_interface_to_joint_state : InterfaceMap
-    use_urdf_to_filter : bool
-        Leave what is no joint of the robot's description out of the joint states.
-    frame_id : str
-        In the messages' headers.
-    publish_dynamic_joint_states : bool
-        Whether all interfaces are published as well.
-    """
-
-    use_local_topics: bool = parameter(default=False, read_only=True)
-    joints: tuple[str, ...] = parameter((), unique, read_only=True)
-    extra_joints: tuple[str, ...] = parameter((), unique, read_only=True)
-    interfaces: tuple[str, ...] = parameter((), unique, read_only=True)
-    map_interface_to_joint_state: InterfaceMap = field(default_factory=InterfaceMap)
-    use_urdf_to_filter: bool = parameter(default=True, read_only=True)
-    frame_id: str = parameter("base_link", read_only=True)
-    publish_dynamic_joint_states: bool = parameter(default=True, read_only=True)
+    use_local_topics: bool = parameter(
+        False, "Whether to publish on topics below the controller's name.", read_only=True
+    )
+    joints: tuple[str, ...] = parameter(
+        (), "Joints that are published, in this order; empty for all interfaces.", unique=True, read_only=True
+    )
+    extra_joints: tuple[str, ...] = parameter(
+        (), "Further joints that are published at zero.", unique=True, read_only=True
+    )
+    interfaces: tuple[str, ...] = parameter(
+        (), "Interfaces that are published; empty for all.", unique=True, read_only=True
+    )
+    map_interface_to_joint_state: InterfaceMap = group(InterfaceMap)
+    use_urdf_to_filter: bool = parameter(
+        True, "Whether to leave out what is not a joint of the robot's description.", read_only=True
+    )
+    frame_id: str = parameter("base_link", "Frame in the messages' headers.", read_only=True)
+    publish_dynamic_joint_states: bool = parameter(
+        True, "Whether all interfaces are published as well.", read_only=True
+    )
 
 
 class JointStateBroadcaster(Controller):

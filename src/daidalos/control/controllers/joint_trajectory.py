@@ -65,7 +65,8 @@ class JointTrajectoryController(Controller):
         robot = self.context.robot
         self._endless = np.array(
             [
-                robot is not None and name in robot.joints and robot.joints[name].type is JointType.CONTINUOUS
+                p.gains[name].angle_wraparound
+                or (robot is not None and name in robot.joints and robot.joints[name].type is JointType.CONTINUOUS)
                 for name in p.joints
             ]
         )

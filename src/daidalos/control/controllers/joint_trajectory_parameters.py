@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
-from daidalos.control.errors import ParameterError
-from daidalos.control.parameters import at_least, not_empty, one_of, parameter, per_name, subset_of, unique
+from daidalos.common.parameters import ParameterError, Parameters, group, parameter, per_name
 from daidalos.control.pid import Gains
 
 _COMMANDS = (
@@ -21,21 +20,13 @@ _STATES = ({"position"}, {"position", "velocity"}, {"position", "velocity", "acc
 
 @dataclass(frozen=True)
 class JointGains(Gains):
-    """Gains of one joint from its position and velocity errors; `Gains` explains the rest.
+    """Gains of one joint from its position and velocity errors."""
 
-    Parameters
-    ----------
-    i_clamp : float
-        Old form of both clamps of the integral; 0 for none.
-    ff_velocity_scale : float
-        How much of the wanted velocity goes into the command.
-    angle_wraparound : bool
-        Read for old files; continuous joints are known from the description.
-    """
-
-    i_clamp: float = parameter(0.0)
-    ff_velocity_scale: float = parameter(0.0)
-    angle_wraparound: bool = parameter(default=False)
+    i_clamp: float = parameter(0.0, "Old form of both clamps of the integral; 0 for none.")
+    ff_velocity_scale: float = parameter(0.0, "Factor of the reference velocity in the command.")
+    angle_wraparound: bool = parameter(
+        False, "Whether the joint turns without end, as continuous joints of the robot's description do anyway."
+    )
 
     @property
     def clamped(self) -> Gains:
@@ -46,105 +37,86 @@ class JointGains(Gains):
 
 
 @dataclass(frozen=True)
-class Constraints:
-    """When a goal counts as reached.
+class Constraints(Parameters):
+    """When a goal counts as reached."""
 
-    Parameters
-    ----------
-    stopped_velocity_tolerance : float
-        Largest velocity of each joint at the end.
-    goal_time : float
-        How much later than planned the goal may be reached [s]; 0 is without limit.
-    """
-
-    stopped_velocity_tolerance: float = parameter(0.01, at_least(0.0))
-    goal_time: float = parameter(0.0, at_least(0.0))
+    stopped_velocity_tolerance: float = parameter(
+        0.01, "Largest velocity of each joint at the end; 0 for any.", unit="rad/s or m/s", minimum=0.0
+    )
+    goal_time: float = parameter(
+        0.0, "How much later than planned the goal may be reached; 0 for no limit.", unit="s", minimum=0.0
+    )
 
 
 @dataclass(frozen=True)
-class JointConstraints:
-    """Largest position errors of one joint on the way and at the end; 0 for none."""
+class JointConstraints(Parameters):
+    """Largest position errors of one joint."""
 
-    trajectory: float = parameter(0.0, at_least(0.0))
-    goal: float = parameter(0.0, at_least(0.0))
-
-
-@dataclass(frozen=True)
-class SpeedScaling:
-    """How much slower than planned trajectories run.
-
-    Parameters
-    ----------
-    initial_scaling_factor : float
-        1 is as planned, 0 stands still.
-    state_interface : str
-        Where the hardware tells its factor; empty takes that of the topic ``~/speed_scaling_input``.
-    command_interface : str
-        Where the hardware is told the factor; empty for none.
-    """
-
-    initial_scaling_factor: float = parameter(1.0, at_least(0.0))
-    state_interface: str = parameter("", read_only=True)
-    command_interface: str = parameter("", read_only=True)
+    trajectory: float = parameter(0.0, "Largest position error on the way; 0 for any.", unit="rad or m", minimum=0.0)
+    goal: float = parameter(0.0, "Largest position error at the end; 0 for any.", unit="rad or m", minimum=0.0)
 
 
 @dataclass(frozen=True)
-class JointTrajectoryParameters:
-    """Parameters, as ROS names them.
+class SpeedScaling(Parameters):
+    """How much slower than planned trajectories run."""
 
-    Parameters
-    ----------
-    joints, command_joints : tuple of str
-        Joints that are followed, and those that are commanded where they differ.
-    command_interfaces, state_interfaces : tuple of str
-    allow_partial_joints_goal : bool
-        Whether trajectories may leave joints out.
-    interpolate_from_desired_state, open_loop_control : bool
-        Begin a trajectory where the last one wants the joints, and not where they are; the second is the old name
-        and takes no feedback either.
-    allow_integration_in_goal_trajectories : bool
-        Whether waypoints may give velocities alone.
-    set_last_command_interface_value_as_state_on_activation : bool
-        Hold at first what was commanded last.
-    action_monitor_rate : float
-        How often a goal gives feedback [Hz].
-    interpolation_method : str
-        ``splines``, or ``none`` to jump from waypoint to waypoint.
-    allow_nonzero_velocity_at_trajectory_end : bool
-    cmd_timeout : float
-        How long after its end a trajectory from the topic is held before the joints stay where they are [s].
-    speed_scaling : SpeedScaling
-    gains : mapping
-        By joint, for velocity or effort commands.
-    constraints : Constraints
-    joint_constraints : mapping
-        By joint, below ``constraints`` as well.
-    """
+    initial_scaling_factor: float = parameter(
+        1.0, "Speed of trajectories at first: 1 is as planned, 0 stands still.", minimum=0.0
+    )
+    state_interface: str = parameter(
+        "", "State interface with the factor; empty to take it from the topic ~/speed_scaling_input.", read_only=True
+    )
+    command_interface: str = parameter(
+        "", "Command interface that the factor is written to; empty for none.", read_only=True
+    )
 
-    joints: tuple[str, ...] = parameter((), not_empty, unique, read_only=True)
-    command_joints: tuple[str, ...] = parameter((), unique, read_only=True)
+
+@dataclass(frozen=True)
+class JointTrajectoryParameters(Parameters):
+    """Parameters of the joint trajectory controller, as ROS names them."""
+
+    joints: tuple[str, ...] = parameter(
+        (), "Joints that follow trajectories.", not_empty=True, unique=True, read_only=True
+    )
+    command_joints: tuple[str, ...] = parameter(
+        (), "Joints that are commanded; empty for those in joints.", unique=True, read_only=True
+    )
     command_interfaces: tuple[str, ...] = parameter(
-        (), not_empty, unique, subset_of("position", "velocity", "acceleration", "effort"), read_only=True
-    )
+        (), "Interfaces that are commanded.", choices=("position", "velocity", "acceleration", "effort"),
+        not_empty=True, unique=True, read_only=True,
+    )  # fmt: skip
     state_interfaces: tuple[str, ...] = parameter(
-        (), not_empty, unique, subset_of("position", "velocity", "acceleration"), read_only=True
+        (), "Interfaces that are measured.", choices=("position", "velocity", "acceleration"),
+        not_empty=True, unique=True, read_only=True,
+    )  # fmt: skip
+    allow_partial_joints_goal: bool = parameter(False, "Whether trajectories may leave joints out.")
+    interpolate_from_desired_state: bool = parameter(
+        False, "Whether a trajectory starts where the last one wants the joints, instead of where they are."
     )
-    allow_partial_joints_goal: bool = parameter(default=False)
-    interpolate_from_desired_state: bool = parameter(default=False)
-    open_loop_control: bool = parameter(default=False, read_only=True)
-    allow_integration_in_goal_trajectories: bool = parameter(default=False)
-    set_last_command_interface_value_as_state_on_activation: bool = parameter(default=True)
-    action_monitor_rate: float = parameter(20.0, at_least(0.1), read_only=True)
-    interpolation_method: str = parameter("splines", one_of("splines", "none"), read_only=True)
-    allow_nonzero_velocity_at_trajectory_end: bool = parameter(default=False)
-    cmd_timeout: float = parameter(0.0, at_least(0.0))
-    state_publish_rate: float = parameter(50.0)
-    speed_scaling: SpeedScaling = field(default_factory=SpeedScaling)
-    gains: dict[str, JointGains] = field(default_factory=dict, metadata=per_name(JointGains, by="joints"))
-    constraints: Constraints = field(default_factory=Constraints)
-    joint_constraints: dict[str, JointConstraints] = field(
-        default_factory=dict, metadata=per_name(JointConstraints, by="joints", at="constraints")
+    open_loop_control: bool = parameter(
+        False, "Old name of interpolate_from_desired_state, which takes no feedback either.", read_only=True
     )
+    allow_integration_in_goal_trajectories: bool = parameter(
+        False, "Whether waypoints may give velocities or accelerations alone."
+    )
+    set_last_command_interface_value_as_state_on_activation: bool = parameter(
+        True, "Whether to hold at first what was commanded last."
+    )
+    action_monitor_rate: float = parameter(
+        20.0, "How often a goal gives feedback.", unit="Hz", minimum=0.1, read_only=True
+    )
+    interpolation_method: str = parameter(
+        "splines", "How to move between waypoints; none jumps.", choices=("splines", "none"), read_only=True
+    )
+    allow_nonzero_velocity_at_trajectory_end: bool = parameter(False, "Whether the last waypoint may have a velocity.")
+    cmd_timeout: float = parameter(
+        0.0, "How long after its end a trajectory from the topic is held before the joints stay where they are; "
+        "0 for ever.", unit="s", minimum=0.0,
+    )  # fmt: skip
+    speed_scaling: SpeedScaling = group(SpeedScaling)
+    gains: dict[str, JointGains] = per_name(JointGains, by="joints")
+    constraints: Constraints = group(Constraints)
+    joint_constraints: dict[str, JointConstraints] = per_name(JointConstraints, by="joints", at="constraints")
 
     def check(self) -> None:
         """Refuse combinations that can not be controlled."""

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
+from daidalos.common.parameters import Parameters, group, parameter
 from daidalos.control.base_controller import BaseController
 from daidalos.control.base_odometry import BaseOdometry, prefixed_frame
 from daidalos.control.interfaces import Interfaces
-from daidalos.control.parameters import above, not_empty, parameter, size
 from daidalos.control.samples import MecanumSample
 from daidalos.simulation.samples import Sample
 
@@ -24,45 +24,71 @@ _TURN = np.array([-1.0, -1.0, 1.0, 1.0])
 
 
 @dataclass(frozen=True)
-class BaseOffset:
-    """The base's frame in the frame of the wheels' centre [m, m, rad]."""
+class BaseOffset(Parameters):
+    """The base's frame in the frame of the wheels' centre."""
 
-    x: float = parameter(0.0)
-    y: float = parameter(0.0)
-    theta: float = parameter(0.0)
-
-
-@dataclass(frozen=True)
-class MecanumKinematics:
-    """Sizes: radius of the wheels, and half the wheelbase plus half the track [m]."""
-
-    base_frame_offset: BaseOffset = field(default_factory=BaseOffset)
-    wheels_radius: float = parameter(0.0, above(0.0))
-    sum_of_robot_center_projection_on_X_Y_axis: float = parameter(0.0, above(0.0))
+    x: float = parameter(0.0, "Offset ahead.", unit="m")
+    y: float = parameter(0.0, "Offset to the left.", unit="m")
+    theta: float = parameter(0.0, "Turn to the left.", unit="rad")
 
 
 @dataclass(frozen=True)
-class MecanumParameters:
-    """Parameters, as ROS names them; state names are those of the commands where they are empty."""
+class MecanumKinematics(Parameters):
+    """Sizes of the base."""
 
-    reference_timeout: float = parameter(0.0)
-    front_left_wheel_command_joint_name: str = parameter("", not_empty, read_only=True)
-    front_right_wheel_command_joint_name: str = parameter("", not_empty, read_only=True)
-    rear_right_wheel_command_joint_name: str = parameter("", not_empty, read_only=True)
-    rear_left_wheel_command_joint_name: str = parameter("", not_empty, read_only=True)
-    front_left_wheel_state_joint_name: str = parameter("", read_only=True)
-    front_right_wheel_state_joint_name: str = parameter("", read_only=True)
-    rear_right_wheel_state_joint_name: str = parameter("", read_only=True)
-    rear_left_wheel_state_joint_name: str = parameter("", read_only=True)
-    kinematics: MecanumKinematics = field(default_factory=MecanumKinematics)
-    base_frame_id: str = parameter("base_link", read_only=True)
-    odom_frame_id: str = parameter("odom", read_only=True)
-    tf_frame_prefix_enable: bool = parameter(default=False, read_only=True)
-    tf_frame_prefix: str = parameter("", read_only=True)
-    enable_odom_tf: bool = parameter(default=True, read_only=True)
-    use_stamped_vel: bool = parameter(default=True, read_only=True)
-    twist_covariance_diagonal: tuple[float, ...] = parameter(_ZEROS, size(6), read_only=True)
-    pose_covariance_diagonal: tuple[float, ...] = parameter(_ZEROS, size(6), read_only=True)
+    base_frame_offset: BaseOffset = group(BaseOffset)
+    wheels_radius: float = parameter(0.0, "Radius of the wheels.", unit="m", above=0.0)
+    sum_of_robot_center_projection_on_X_Y_axis: float = parameter(
+        0.0, "Half the wheelbase plus half the track.", unit="m", above=0.0
+    )
+
+
+@dataclass(frozen=True)
+class MecanumParameters(Parameters):
+    """Parameters of the mecanum drive, as ROS names them."""
+
+    reference_timeout: float = parameter(0.0, "Age at which a command is ignored; 0 for never.", unit="s")
+    front_left_wheel_command_joint_name: str = parameter(
+        "", "Joint of the front left wheel.", not_empty=True, read_only=True
+    )
+    front_right_wheel_command_joint_name: str = parameter(
+        "", "Joint of the front right wheel.", not_empty=True, read_only=True
+    )
+    rear_right_wheel_command_joint_name: str = parameter(
+        "", "Joint of the rear right wheel.", not_empty=True, read_only=True
+    )
+    rear_left_wheel_command_joint_name: str = parameter(
+        "", "Joint of the rear left wheel.", not_empty=True, read_only=True
+    )
+    front_left_wheel_state_joint_name: str = parameter(
+        "", "Joint that measures the front left wheel; empty for the commanded one.", read_only=True
+    )
+    front_right_wheel_state_joint_name: str = parameter(
+        "", "Joint that measures the front right wheel; empty for the commanded one.", read_only=True
+    )
+    rear_right_wheel_state_joint_name: str = parameter(
+        "", "Joint that measures the rear right wheel; empty for the commanded one.", read_only=True
+    )
+    rear_left_wheel_state_joint_name: str = parameter(
+        "", "Joint that measures the rear left wheel; empty for the commanded one.", read_only=True
+    )
+    kinematics: MecanumKinematics = group(MecanumKinematics)
+    base_frame_id: str = parameter("base_link", "Frame of the base.", read_only=True)
+    odom_frame_id: str = parameter("odom", "Frame of the odometry.", read_only=True)
+    tf_frame_prefix_enable: bool = parameter(False, "Whether frames get a prefix.", read_only=True)
+    tf_frame_prefix: str = parameter("", "Prefix of frames; empty for the namespace.", read_only=True)
+    enable_odom_tf: bool = parameter(
+        True, "Whether to publish the transform from odom_frame_id to base_frame_id.", read_only=True
+    )
+    use_stamped_vel: bool = parameter(
+        True, "Whether commands are stamped (~/reference) or not (~/reference_unstamped).", read_only=True
+    )
+    twist_covariance_diagonal: tuple[float, ...] = parameter(
+        _ZEROS, "Variances of the odometry's twist.", length=6, read_only=True
+    )
+    pose_covariance_diagonal: tuple[float, ...] = parameter(
+        _ZEROS, "Variances of the odometry's pose.", length=6, read_only=True
+    )
 
 
 class MecanumDriveController(BaseController):

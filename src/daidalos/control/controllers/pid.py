@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
+from daidalos.common.parameters import ParameterError, Parameters, parameter, per_name
 from daidalos.control.controllers.base import Controller, Service, Subscription
-from daidalos.control.errors import ParameterError
 from daidalos.control.interfaces import Interfaces, interface_names
-from daidalos.control.parameters import not_empty, parameter, per_name, subset_of, unique
 from daidalos.control.pid import Gains, Pid
 from daidalos.control.samples import Answer, Asked, DofCommand, DofSample, DofState, Switched
 from daidalos.simulation.samples import Sample
@@ -21,50 +20,35 @@ _KINDS = ("position", "velocity", "acceleration", "effort")
 
 @dataclass(frozen=True)
 class DofGains(Gains):
-    """Gains of one degree of freedom; `Gains` explains the rest.
+    """Gains of one degree of freedom."""
 
-    Parameters
-    ----------
-    feedforward_gain : float
-        How much of the reference (of its rate, where that is one) goes into the command.
-    angle_wraparound : bool
-        Whether it turns without end, so that errors are at most half a turn.
-    save_i_term : bool
-        Whether the integral outlives a stop.
-    """
-
-    feedforward_gain: float = parameter(0.0)
-    angle_wraparound: bool = parameter(default=False)
-    save_i_term: bool = parameter(default=True)
+    feedforward_gain: float = parameter(
+        0.0, "Factor of the reference, or of its rate where that is one, in the command."
+    )
+    angle_wraparound: bool = parameter(False, "Whether it turns without end, so that errors are at most half a turn.")
+    save_i_term: bool = parameter(True, "Whether the integral outlives a stop.")
 
 
 @dataclass(frozen=True)
-class PidParameters:
-    """Parameters, as ROS names them.
+class PidParameters(Parameters):
+    """Parameters of the PID controller, as ROS names them."""
 
-    Parameters
-    ----------
-    dof_names : tuple of str
-        What is commanded.
-    reference_and_state_dof_names : tuple of str
-        What is measured, where it has other names.
-    command_interface : str
-    reference_and_state_interfaces : tuple of 1 or 2 strings
-        A value, and its derivative where that is known.
-    use_external_measured_states : bool
-        Measurements come from ``~/measured_state``.
-    gains : mapping
-        By name in `dof_names`.
-    enable_feedforward : bool
-    """
-
-    dof_names: tuple[str, ...] = parameter((), not_empty, unique, read_only=True)
-    reference_and_state_dof_names: tuple[str, ...] = parameter((), unique, read_only=True)
-    command_interface: str = parameter("", not_empty, read_only=True)
-    reference_and_state_interfaces: tuple[str, ...] = parameter((), not_empty, subset_of(*_KINDS), read_only=True)
-    use_external_measured_states: bool = parameter(default=False)
-    gains: dict[str, DofGains] = field(default_factory=dict, metadata=per_name(DofGains, by="dof_names"))
-    enable_feedforward: bool = parameter(default=False)
+    dof_names: tuple[str, ...] = parameter(
+        (), "Degrees of freedom that are commanded.", not_empty=True, unique=True, read_only=True
+    )
+    reference_and_state_dof_names: tuple[str, ...] = parameter(
+        (), "Degrees of freedom that are measured; empty for dof_names.", unique=True, read_only=True
+    )
+    command_interface: str = parameter("", "Interface that is commanded.", not_empty=True, read_only=True)
+    reference_and_state_interfaces: tuple[str, ...] = parameter(
+        (), "Interface of the measured value, and of its derivative where that is measured.", choices=_KINDS,
+        not_empty=True, read_only=True,
+    )  # fmt: skip
+    use_external_measured_states: bool = parameter(
+        False, "Whether measurements come from ~/measured_state.", read_only=True
+    )
+    gains: dict[str, DofGains] = per_name(DofGains, by="dof_names")
+    enable_feedforward: bool = parameter(False, "Whether feedforward is on when the controller starts.")
 
     def check(self) -> None:
         """Refuse lists that do not fit together."""

@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
+from daidalos.common.parameters import ParameterError, Parameters, group, parameter
 from daidalos.common.pose3 import Pose, multiply
 from daidalos.common.rate_gate import RateGate
 from daidalos.control.controllers.base import Controller
-from daidalos.control.errors import ParameterError
 from daidalos.control.interfaces import Interfaces
-from daidalos.control.parameters import not_empty, parameter, size
 from daidalos.control.samples import PoseSample, VariedRangeSample
 from daidalos.simulation.samples import ImuSample, Sample, TransformSample, WrenchSample
 
@@ -26,24 +25,30 @@ _IMU = (
 
 
 @dataclass(frozen=True)
-class RotationOffset:
-    """Roll, pitch and yaw [rad]."""
+class RotationOffset(Parameters):
+    """Rotation that an orientation is off by."""
 
-    roll: float = parameter(0.0)
-    pitch: float = parameter(0.0)
-    yaw: float = parameter(0.0)
+    roll: float = parameter(0.0, "Roll.", unit="rad", read_only=True)
+    pitch: float = parameter(0.0, "Pitch.", unit="rad", read_only=True)
+    yaw: float = parameter(0.0, "Yaw.", unit="rad", read_only=True)
 
 
 @dataclass(frozen=True)
-class ImuParameters:
-    """Parameters: the sensor, its frame, covariances (9,), and a rotation that its orientation is off by."""
+class ImuParameters(Parameters):
+    """Parameters of the broadcaster of IMUs, as ROS names them."""
 
-    sensor_name: str = parameter("", not_empty, read_only=True)
-    frame_id: str = parameter("", not_empty, read_only=True)
-    static_covariance_orientation: tuple[float, ...] = parameter(_NINE, size(9), read_only=True)
-    static_covariance_angular_velocity: tuple[float, ...] = parameter(_NINE, size(9), read_only=True)
-    static_covariance_linear_acceleration: tuple[float, ...] = parameter(_NINE, size(9), read_only=True)
-    rotation_offset: RotationOffset = field(default_factory=RotationOffset)
+    sensor_name: str = parameter("", "Name of the sensor in its interfaces.", not_empty=True, read_only=True)
+    frame_id: str = parameter("", "Frame of the sensor.", not_empty=True, read_only=True)
+    static_covariance_orientation: tuple[float, ...] = parameter(
+        _NINE, "Covariance of the orientation, row by row.", unit="rad^2", length=9, read_only=True
+    )
+    static_covariance_angular_velocity: tuple[float, ...] = parameter(
+        _NINE, "Covariance of the angular velocity, row by row.", unit="(rad/s)^2", length=9, read_only=True
+    )
+    static_covariance_linear_acceleration: tuple[float, ...] = parameter(
+        _NINE, "Covariance of the linear acceleration, row by row.", unit="(m/s^2)^2", length=9, read_only=True
+    )
+    rotation_offset: RotationOffset = group(RotationOffset)
 
 
 class ImuSensorBroadcaster(Controller):
@@ -82,65 +87,67 @@ class ImuSensorBroadcaster(Controller):
 
 
 @dataclass(frozen=True)
-class AxisNames:
+class AxisNames(Parameters):
     """Interfaces of three axes; empty where there is none."""
 
-    x: str = parameter("", read_only=True)
-    y: str = parameter("", read_only=True)
-    z: str = parameter("", read_only=True)
+    x: str = parameter("", "Full name of the interface of the x axis; empty for none.", read_only=True)
+    y: str = parameter("", "Full name of the interface of the y axis; empty for none.", read_only=True)
+    z: str = parameter("", "Full name of the interface of the z axis; empty for none.", read_only=True)
 
 
 @dataclass(frozen=True)
-class WrenchNames:
+class WrenchNames(Parameters):
     """Interfaces of a force-torque sensor, full names."""
 
-    force: AxisNames = field(default_factory=AxisNames)
-    torque: AxisNames = field(default_factory=AxisNames)
+    force: AxisNames = group(AxisNames)
+    torque: AxisNames = group(AxisNames)
 
 
 @dataclass(frozen=True)
-class AxisOffsets:
+class AxisOffsets(Parameters):
     """What is added to three axes."""
 
-    x: float = parameter(0.0)
-    y: float = parameter(0.0)
-    z: float = parameter(0.0)
+    x: float = parameter(0.0, "Added along x.", unit="N or N m")
+    y: float = parameter(0.0, "Added along y.", unit="N or N m")
+    z: float = parameter(0.0, "Added along z.", unit="N or N m")
 
 
 @dataclass(frozen=True)
-class WrenchOffsets:
-    """What is added to force [N] and torque [N m]."""
+class WrenchOffsets(Parameters):
+    """What is added to force and torque."""
 
-    force: AxisOffsets = field(default_factory=AxisOffsets)
-    torque: AxisOffsets = field(default_factory=AxisOffsets)
+    force: AxisOffsets = group(AxisOffsets)
+    torque: AxisOffsets = group(AxisOffsets)
 
 
 @dataclass(frozen=True)
-class AxisFactors:
+class AxisFactors(Parameters):
     """What three axes are multiplied with."""
 
-    x: float = parameter(1.0)
-    y: float = parameter(1.0)
-    z: float = parameter(1.0)
+    x: float = parameter(1.0, "Factor along x.")
+    y: float = parameter(1.0, "Factor along y.")
+    z: float = parameter(1.0, "Factor along z.")
 
 
 @dataclass(frozen=True)
-class WrenchFactors:
+class WrenchFactors(Parameters):
     """What force and torque are multiplied with, after the offsets."""
 
-    force: AxisFactors = field(default_factory=AxisFactors)
-    torque: AxisFactors = field(default_factory=AxisFactors)
+    force: AxisFactors = group(AxisFactors)
+    torque: AxisFactors = group(AxisFactors)
 
 
 @dataclass(frozen=True)
-class ForceTorqueParameters:
-    """Parameters: a sensor with all six interfaces, or the interfaces that there are; frame and corrections."""
+class ForceTorqueParameters(Parameters):
+    """Parameters of the broadcaster of force-torque sensors, as ROS names them."""
 
-    sensor_name: str = parameter("", read_only=True)
-    interface_names: WrenchNames = field(default_factory=WrenchNames)
-    frame_id: str = parameter("", not_empty, read_only=True)
-    offset: WrenchOffsets = field(default_factory=WrenchOffsets)
-    multiplier: WrenchFactors = field(default_factory=WrenchFactors)
+    sensor_name: str = parameter(
+        "", "Name of a sensor with all six interfaces; empty where interface_names are given.", read_only=True
+    )
+    interface_names: WrenchNames = group(WrenchNames)
+    frame_id: str = parameter("", "Frame of the sensor.", not_empty=True, read_only=True)
+    offset: WrenchOffsets = group(WrenchOffsets)
+    multiplier: WrenchFactors = group(WrenchFactors)
 
     @property
     def given(self) -> tuple[str, ...]:
@@ -188,16 +195,16 @@ def _six(given: WrenchOffsets | WrenchFactors) -> np.ndarray:
 
 
 @dataclass(frozen=True)
-class RangeParameters:
-    """Parameters, as in ``sensor_msgs/msg/Range``."""
+class RangeParameters(Parameters):
+    """Parameters of the broadcaster of range sensors; values as in ``sensor_msgs/msg/Range``."""
 
-    sensor_name: str = parameter("", not_empty, read_only=True)
-    frame_id: str = parameter("", not_empty, read_only=True)
-    radiation_type: int = parameter(1, read_only=True)
-    field_of_view: float = parameter(0.1, read_only=True)
-    min_range: float = parameter(0.1, read_only=True)
-    max_range: float = parameter(7.0, read_only=True)
-    variance: float = parameter(0.0, read_only=True)
+    sensor_name: str = parameter("", "Name of the sensor in its interface.", not_empty=True, read_only=True)
+    frame_id: str = parameter("", "Frame of the sensor.", not_empty=True, read_only=True)
+    radiation_type: int = parameter(1, "Radiation: 0 is ultrasound, 1 is infrared.", minimum=0, read_only=True)
+    field_of_view: float = parameter(0.1, "Angle of the cone that is seen.", unit="rad", read_only=True)
+    min_range: float = parameter(0.1, "Least range.", unit="m", read_only=True)
+    max_range: float = parameter(7.0, "Largest range.", unit="m", read_only=True)
+    variance: float = parameter(0.0, "Variance of the range.", unit="m^2", read_only=True)
 
 
 class RangeSensorBroadcaster(Controller):
@@ -233,21 +240,23 @@ class RangeSensorBroadcaster(Controller):
 
 
 @dataclass(frozen=True)
-class TransformParameters:
-    """Whether and how a pose is published as a transform; the child's name is the pose's where it is empty."""
+class TransformParameters(Parameters):
+    """Whether and how a pose is published as a transform."""
 
-    enable: bool = parameter(default=True, read_only=True)
-    child_frame_id: str = parameter("", read_only=True)
-    publish_rate: float = parameter(0.0, read_only=True)
+    enable: bool = parameter(True, "Whether the transform is published.", read_only=True)
+    child_frame_id: str = parameter("", "Frame whose pose it is; empty for pose_name.", read_only=True)
+    publish_rate: float = parameter(
+        0.0, "How often the transform is published; 0 for every cycle.", unit="Hz", minimum=0.0, read_only=True
+    )
 
 
 @dataclass(frozen=True)
-class PoseParameters:
-    """Parameters: the name before the interfaces, and the frame that the pose is in."""
+class PoseParameters(Parameters):
+    """Parameters of the broadcaster of poses, as ROS names them."""
 
-    pose_name: str = parameter("", not_empty, read_only=True)
-    frame_id: str = parameter("", not_empty, read_only=True)
-    tf: TransformParameters = field(default_factory=TransformParameters)
+    pose_name: str = parameter("", "Name before the pose's interfaces.", not_empty=True, read_only=True)
+    frame_id: str = parameter("", "Frame that the pose is in.", not_empty=True, read_only=True)
+    tf: TransformParameters = group(TransformParameters)
 
 
 class PoseBroadcaster(Controller):

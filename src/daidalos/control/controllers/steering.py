@@ -9,11 +9,10 @@ from typing import ClassVar
 
 import numpy as np
 
+from daidalos.common.parameters import ParameterError, Parameters, parameter
 from daidalos.control.base_controller import BaseController
 from daidalos.control.base_odometry import BaseOdometry
-from daidalos.control.errors import ParameterError
 from daidalos.control.interfaces import Interfaces
-from daidalos.control.parameters import above, parameter, size, unique
 from daidalos.control.samples import SteeringSample
 from daidalos.control.steering import SteeredBase, speed_share
 from daidalos.simulation.samples import Sample
@@ -22,56 +21,62 @@ _ZEROS = (0.0,) * 6
 
 
 @dataclass(frozen=True)
-class SteeringParameters:
-    """Parameters that all have, as ROS names them in Humble, Jazzy and later.
+class SteeringParameters(Parameters):
+    """Parameters that all steering controllers share, as ROS names them in Humble, Jazzy and later."""
 
-    Parameters
-    ----------
-    reference_timeout : float
-        Age at which a command counts no more [s]; 0 for never.
-    rear_wheels_names, front_wheels_names : tuple of str
-        Joints, right before left; with `front_steering` the rear ones are driven and the front ones steer.
-    traction_joints_names, steering_joints_names : tuple of str
-        The same by what they do.
-    rear_wheels_state_names, front_wheels_state_names, traction_joints_state_names, steering_joints_state_names
-        Where measurements have other names.
-    open_loop : bool
-        Odometry from commands.
-    reduce_wheel_speed_until_steering_reached : bool
-        Drive slowly while the wheels are still turning.
-    velocity_rolling_window_size : int
-    base_frame_id, odom_frame_id : str
-    enable_odom_tf : bool
-    twist_covariance_diagonal, pose_covariance_diagonal : tuple of 6 floats
-    position_feedback : bool
-        Driven wheels tell angles, and not speeds.
-    use_stamped_vel : bool
-        ``~/reference`` with stamps, or ``~/reference_unstamped``.
-    wheelbase : float
-        [m].
-    """
-
-    reference_timeout: float = parameter(1.0)
-    front_steering: bool = parameter(default=True, read_only=True)
-    rear_wheels_names: tuple[str, ...] = parameter((), unique, read_only=True)
-    front_wheels_names: tuple[str, ...] = parameter((), unique, read_only=True)
-    rear_wheels_state_names: tuple[str, ...] = parameter((), unique, read_only=True)
-    front_wheels_state_names: tuple[str, ...] = parameter((), unique, read_only=True)
-    traction_joints_names: tuple[str, ...] = parameter((), unique, read_only=True)
-    steering_joints_names: tuple[str, ...] = parameter((), unique, read_only=True)
-    traction_joints_state_names: tuple[str, ...] = parameter((), unique, read_only=True)
-    steering_joints_state_names: tuple[str, ...] = parameter((), unique, read_only=True)
-    open_loop: bool = parameter(default=False, read_only=True)
-    reduce_wheel_speed_until_steering_reached: bool = parameter(default=False, read_only=True)
-    velocity_rolling_window_size: int = parameter(10, above(0), read_only=True)
-    base_frame_id: str = parameter("base_link", read_only=True)
-    odom_frame_id: str = parameter("odom", read_only=True)
-    enable_odom_tf: bool = parameter(default=True, read_only=True)
-    twist_covariance_diagonal: tuple[float, ...] = parameter(_ZEROS, size(6), read_only=True)
-    pose_covariance_diagonal: tuple[float, ...] = parameter(_ZEROS, size(6), read_only=True)
-    position_feedback: bool = parameter(default=False, read_only=True)
-    use_stamped_vel: bool = parameter(default=True, read_only=True)
-    wheelbase: float = parameter(0.0, above(0.0), read_only=True)
+    reference_timeout: float = parameter(1.0, "Age at which a command is ignored; 0 for never.", unit="s", minimum=0.0)
+    front_steering: bool = parameter(
+        True, "Whether the front wheels steer and the rear ones are driven.", read_only=True
+    )
+    rear_wheels_names: tuple[str, ...] = parameter(
+        (), "Joints of the rear wheels, right before left.", unique=True, read_only=True
+    )
+    front_wheels_names: tuple[str, ...] = parameter(
+        (), "Joints of the front wheels, right before left.", unique=True, read_only=True
+    )
+    rear_wheels_state_names: tuple[str, ...] = parameter(
+        (), "Joints that measure the rear wheels; empty for rear_wheels_names.", unique=True, read_only=True
+    )
+    front_wheels_state_names: tuple[str, ...] = parameter(
+        (), "Joints that measure the front wheels; empty for front_wheels_names.", unique=True, read_only=True
+    )
+    traction_joints_names: tuple[str, ...] = parameter(
+        (), "Joints of the driven wheels, right before left.", unique=True, read_only=True
+    )
+    steering_joints_names: tuple[str, ...] = parameter(
+        (), "Joints that steer, right before left.", unique=True, read_only=True
+    )
+    traction_joints_state_names: tuple[str, ...] = parameter(
+        (), "Joints that measure the driven wheels; empty for traction_joints_names.", unique=True, read_only=True
+    )
+    steering_joints_state_names: tuple[str, ...] = parameter(
+        (), "Joints that measure the steering; empty for steering_joints_names.", unique=True, read_only=True
+    )
+    open_loop: bool = parameter(False, "Whether odometry comes from commands.", read_only=True)
+    reduce_wheel_speed_until_steering_reached: bool = parameter(
+        False, "Whether to drive slowly while the wheels are still turning.", read_only=True
+    )
+    velocity_rolling_window_size: int = parameter(
+        10, "Number of cycles that the velocity of the odometry is averaged over.", above=0, read_only=True
+    )
+    base_frame_id: str = parameter("base_link", "Frame of the base.", read_only=True)
+    odom_frame_id: str = parameter("odom", "Frame of the odometry.", read_only=True)
+    enable_odom_tf: bool = parameter(
+        True, "Whether to publish the transform from odom_frame_id to base_frame_id.", read_only=True
+    )
+    twist_covariance_diagonal: tuple[float, ...] = parameter(
+        _ZEROS, "Variances of the odometry's twist.", length=6, read_only=True
+    )
+    pose_covariance_diagonal: tuple[float, ...] = parameter(
+        _ZEROS, "Variances of the odometry's pose.", length=6, read_only=True
+    )
+    position_feedback: bool = parameter(
+        False, "Whether driven wheels measure angles instead of speeds.", read_only=True
+    )
+    use_stamped_vel: bool = parameter(
+        True, "Whether commands are stamped (~/reference) or not (~/reference_unstamped).", read_only=True
+    )
+    wheelbase: float = parameter(0.0, "Distance between the axles.", unit="m", above=0.0, read_only=True)
 
     @property
     def base(self) -> SteeredBase:
@@ -125,11 +130,11 @@ class SteeringParameters:
 
 @dataclass(frozen=True)
 class BicycleParameters(SteeringParameters):
-    """A driven wheel and a steered one; radii [m]."""
+    """Parameters of a base with a driven wheel and a steered one."""
 
-    front_wheel_radius: float = parameter(0.0, read_only=True)
-    rear_wheel_radius: float = parameter(0.0, read_only=True)
-    traction_wheel_radius: float = parameter(0.0, read_only=True)
+    front_wheel_radius: float = parameter(0.0, "Radius of the front wheel.", unit="m", minimum=0.0, read_only=True)
+    rear_wheel_radius: float = parameter(0.0, "Radius of the rear wheel.", unit="m", minimum=0.0, read_only=True)
+    traction_wheel_radius: float = parameter(0.0, "Radius of the driven wheel.", unit="m", minimum=0.0, read_only=True)
 
     @property
     def base(self) -> SteeredBase:
@@ -140,13 +145,17 @@ class BicycleParameters(SteeringParameters):
 
 @dataclass(frozen=True)
 class TricycleParameters(SteeringParameters):
-    """Two driven wheels and a steered one; track and radii [m]."""
+    """Parameters of a base with two driven wheels and a steered one."""
 
-    wheel_track: float = parameter(0.0, read_only=True)
-    traction_track_width: float = parameter(0.0, read_only=True)
-    front_wheels_radius: float = parameter(0.0, read_only=True)
-    rear_wheels_radius: float = parameter(0.0, read_only=True)
-    traction_wheels_radius: float = parameter(0.0, read_only=True)
+    wheel_track: float = parameter(0.0, "Old name of traction_track_width.", unit="m", minimum=0.0, read_only=True)
+    traction_track_width: float = parameter(
+        0.0, "Distance between the driven wheels.", unit="m", minimum=0.0, read_only=True
+    )
+    front_wheels_radius: float = parameter(0.0, "Radius of the front wheels.", unit="m", minimum=0.0, read_only=True)
+    rear_wheels_radius: float = parameter(0.0, "Radius of the rear wheels.", unit="m", minimum=0.0, read_only=True)
+    traction_wheels_radius: float = parameter(
+        0.0, "Radius of the driven wheels.", unit="m", minimum=0.0, read_only=True
+    )
 
     @property
     def base(self) -> SteeredBase:
@@ -160,15 +169,27 @@ class TricycleParameters(SteeringParameters):
 
 @dataclass(frozen=True)
 class AckermannParameters(SteeringParameters):
-    """Two driven wheels and two steered ones; tracks and radii [m]. The steered track may be left out."""
+    """Parameters of a base with two driven wheels and two steered ones."""
 
-    front_wheel_track: float = parameter(0.0, read_only=True)
-    rear_wheel_track: float = parameter(0.0, read_only=True)
-    traction_track_width: float = parameter(0.0, read_only=True)
-    steering_track_width: float = parameter(0.0, read_only=True)
-    front_wheels_radius: float = parameter(0.0, read_only=True)
-    rear_wheels_radius: float = parameter(0.0, read_only=True)
-    traction_wheels_radius: float = parameter(0.0, read_only=True)
+    front_wheel_track: float = parameter(
+        0.0, "Distance between the front wheels.", unit="m", minimum=0.0, read_only=True
+    )
+    rear_wheel_track: float = parameter(0.0, "Distance between the rear wheels.", unit="m", minimum=0.0, read_only=True)
+    traction_track_width: float = parameter(
+        0.0, "Distance between the driven wheels.", unit="m", minimum=0.0, read_only=True
+    )
+    steering_track_width: float = parameter(
+        0.0,
+        "Distance between the steered wheels; 0 for that of the driven ones.",
+        unit="m",
+        minimum=0.0,
+        read_only=True,
+    )
+    front_wheels_radius: float = parameter(0.0, "Radius of the front wheels.", unit="m", minimum=0.0, read_only=True)
+    rear_wheels_radius: float = parameter(0.0, "Radius of the rear wheels.", unit="m", minimum=0.0, read_only=True)
+    traction_wheels_radius: float = parameter(
+        0.0, "Radius of the driven wheels.", unit="m", minimum=0.0, read_only=True
+    )
 
     @property
     def base(self) -> SteeredBase:

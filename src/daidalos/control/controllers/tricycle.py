@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from daidalos.common.parameters import ParameterError, Parameters, group, parameter
 from daidalos.common.pose3 import quaternion_from_yaw
 from daidalos.control.base_odometry import BaseOdometry
 from daidalos.control.controllers.base import Controller, Service, Subscription
-from daidalos.control.errors import ParameterError
-from daidalos.control.parameters import above, not_empty, parameter, size
 from daidalos.control.samples import Answer, Asked, VelocityCommand
 from daidalos.control.speed_limiter import SpeedLimiter, SpeedLimits
 from daidalos.control.steering import speed_share
@@ -24,64 +23,52 @@ _ZEROS = (0.0,) * 6
 
 
 @dataclass(frozen=True)
-class TractionLimits:
-    """Limits of the wheel's speed; all positive, NaN for none [rad/s, rad/s^2, rad/s^3]."""
+class TractionLimits(Parameters):
+    """Limits of the driven wheel's speed; NaN for none."""
 
-    max_velocity: float = parameter(_NAN)
-    max_acceleration: float = parameter(_NAN)
-    max_deceleration: float = parameter(_NAN)
-    max_jerk: float = parameter(_NAN)
-
-
-@dataclass(frozen=True)
-class SteeringLimits:
-    """Limits of the wheel's angle and of how fast it turns; NaN for none [rad, rad/s]."""
-
-    min_position: float = parameter(_NAN)
-    max_position: float = parameter(_NAN)
-    max_velocity: float = parameter(_NAN)
+    max_velocity: float = parameter(_NAN, "Largest speed of the wheel.", unit="rad/s")
+    max_acceleration: float = parameter(_NAN, "Largest acceleration.", unit="rad/s^2")
+    max_deceleration: float = parameter(_NAN, "Largest deceleration, positive.", unit="rad/s^2")
+    max_jerk: float = parameter(_NAN, "Largest jerk.", unit="rad/s^3")
 
 
 @dataclass(frozen=True)
-class TricycleDriveParameters:
-    """Parameters, as ROS names them.
+class SteeringLimits(Parameters):
+    """Limits of the steered wheel; NaN for none."""
 
-    Parameters
-    ----------
-    traction_joint_name, steering_joint_name : str
-    wheelbase, wheel_radius : float
-        [m].
-    odom_frame_id, base_frame_id : str
-    pose_covariance_diagonal, twist_covariance_diagonal : tuple of 6 floats
-    open_loop : bool
-        Odometry from commands.
-    enable_odom_tf : bool
-    odom_only_twist : bool
-        Leave the pose of the odometry at zero.
-    cmd_vel_timeout : int
-        Age at which a command counts no more [ms].
-    velocity_rolling_window_size : int
-    use_stamped_vel : bool
-        Whether ``~/cmd_vel`` has stamps.
-    traction, steering : TractionLimits, SteeringLimits
-    """
+    min_position: float = parameter(_NAN, "Least angle.", unit="rad")
+    max_position: float = parameter(_NAN, "Largest angle.", unit="rad")
+    max_velocity: float = parameter(_NAN, "Largest rate of the angle.", unit="rad/s")
 
-    traction_joint_name: str = parameter("", not_empty, read_only=True)
-    steering_joint_name: str = parameter("", not_empty, read_only=True)
-    wheelbase: float = parameter(0.0, above(0.0), read_only=True)
-    wheel_radius: float = parameter(0.0, above(0.0), read_only=True)
-    odom_frame_id: str = parameter("odom", read_only=True)
-    base_frame_id: str = parameter("base_link", read_only=True)
-    pose_covariance_diagonal: tuple[float, ...] = parameter(_ZEROS, size(6), read_only=True)
-    twist_covariance_diagonal: tuple[float, ...] = parameter(_ZEROS, size(6), read_only=True)
-    open_loop: bool = parameter(default=False, read_only=True)
-    enable_odom_tf: bool = parameter(default=True, read_only=True)
-    odom_only_twist: bool = parameter(default=False, read_only=True)
-    cmd_vel_timeout: int = parameter(500)
-    velocity_rolling_window_size: int = parameter(10, above(0), read_only=True)
-    use_stamped_vel: bool = parameter(default=True, read_only=True)
-    traction: TractionLimits = field(default_factory=TractionLimits)
-    steering: SteeringLimits = field(default_factory=SteeringLimits)
+
+@dataclass(frozen=True)
+class TricycleDriveParameters(Parameters):
+    """Parameters of the tricycle drive, as ROS names them."""
+
+    traction_joint_name: str = parameter("", "Joint of the driven wheel.", not_empty=True, read_only=True)
+    steering_joint_name: str = parameter("", "Joint that steers it.", not_empty=True, read_only=True)
+    wheelbase: float = parameter(0.0, "Distance from the wheel to the rear axle.", unit="m", above=0.0, read_only=True)
+    wheel_radius: float = parameter(0.0, "Radius of the wheel.", unit="m", above=0.0, read_only=True)
+    odom_frame_id: str = parameter("odom", "Frame of the odometry.", read_only=True)
+    base_frame_id: str = parameter("base_link", "Frame of the base.", read_only=True)
+    pose_covariance_diagonal: tuple[float, ...] = parameter(
+        _ZEROS, "Variances of the odometry's pose.", length=6, read_only=True
+    )
+    twist_covariance_diagonal: tuple[float, ...] = parameter(
+        _ZEROS, "Variances of the odometry's twist.", length=6, read_only=True
+    )
+    open_loop: bool = parameter(False, "Whether odometry comes from commands.", read_only=True)
+    enable_odom_tf: bool = parameter(
+        True, "Whether to publish the transform from odom_frame_id to base_frame_id.", read_only=True
+    )
+    odom_only_twist: bool = parameter(False, "Whether the odometry's pose stays at zero.", read_only=True)
+    cmd_vel_timeout: int = parameter(500, "Age at which a command is ignored; 0 for never.", unit="ms")
+    velocity_rolling_window_size: int = parameter(
+        10, "Number of cycles that the velocity of the odometry is averaged over.", above=0, read_only=True
+    )
+    use_stamped_vel: bool = parameter(True, "Whether ~/cmd_vel is stamped.", read_only=True)
+    traction: TractionLimits = group(TractionLimits)
+    steering: SteeringLimits = group(SteeringLimits)
 
     def check(self) -> None:
         """Refuse limits that leave no angle."""

@@ -2,36 +2,20 @@
 
 from __future__ import annotations
 
-import difflib
 import threading
 from collections.abc import Callable
 from typing import Any
 
 from rclpy.action import ActionServer, CancelResponse, GoalResponse
 from rclpy.node import Node
-from rclpy.parameter import Parameter
 from rclpy.qos import QoSProfile
 from rclpy.task import Future
 
 from daidalos.control.controllers.base import Action, Controller, Goal
-from daidalos.control.errors import ControlError, ParameterError
-from daidalos.control.parameters import Leaf, read_parameters
 from daidalos.nodes.controller_manager._entries import ActionEntry
 from daidalos.nodes.controller_manager._messages import ACTIONS, INCOMING, OUTGOING, SERVICES
+from daidalos.nodes.parameters import declare, warn_of_undeclared
 from daidalos.simulation.samples import Sample
-
-_SCALARS = {
-    bool: Parameter.Type.BOOL,
-    int: Parameter.Type.INTEGER,
-    float: Parameter.Type.DOUBLE,
-    str: Parameter.Type.STRING,
-}
-_ARRAYS = {
-    bool: Parameter.Type.BOOL_ARRAY,
-    int: Parameter.Type.INTEGER_ARRAY,
-    float: Parameter.Type.DOUBLE_ARRAY,
-    str: Parameter.Type.STRING_ARRAY,
-}
 
 
 class ControllerNode(Node):
@@ -57,7 +41,6 @@ class ControllerNode(Node):
         self._outgoing: dict[str, tuple[Any, Callable[[Any], Any]]] = {}
         self._entities: list[Callable[[], Any]] = []
         self._goals: list[tuple[Any, Goal, Action]] = []
-        self.add_on_set_parameters_callback(self._on_set_parameters)
 
     def warn(self, line: str) -> None:
         """Log a line for the user."""
@@ -74,56 +57,14 @@ class ControllerNode(Node):
             When a value is of the wrong type, or not allowed.
         """
         try:
-            return read_parameters(kind, self._declared)
+            return declare(self, kind, reconfigure=self._reconfigure)
         finally:
-            self._warn_of_slips()
+            warn_of_undeclared(self)
 
-    def _warn_of_slips(self) -> None:
-        """Name given parameters that nobody reads and that are spelled nearly like one that is not given.
-
-        Others may be meant for somebody else, since a section of a file may be for many nodes.
-        """
-        given = self._parameter_overrides
-        missing = [name for name in self._parameters if name not in given]
-        for name in (one for one in given if one not in self._parameters):
-            for near in difflib.get_close_matches(name, missing, 1, 0.85):
-                self.warn(f"parameter '{name}' is not known; did you mean '{near}'?")
-
-    def _declared(self, leaf: Leaf) -> Any:
-        from rcl_interfaces.msg import ParameterDescriptor
-        from rclpy.exceptions import ParameterException, ParameterUninitializedException
-
-        if not self.has_parameter(leaf.name):
-            kind = (_ARRAYS if leaf.many else _SCALARS)[leaf.type]
-            # An empty list says nothing of its type.
-            default = kind if leaf.many and not leaf.default else leaf.default
-            descriptor = ParameterDescriptor(type=int(kind.value), read_only=leaf.read_only)
-            try:
-                self.declare_parameter(leaf.name, list(default) if isinstance(default, tuple) else default, descriptor)
-            except ParameterException as error:
-                raise ParameterError(leaf.name, f"can not be declared: {error}") from None
-        try:
-            return self.get_parameter(leaf.name).value
-        except ParameterUninitializedException:
-            return leaf.default
-
-    def _on_set_parameters(self, parameters: list[Parameter[Any]]) -> Any:
-        from rcl_interfaces.msg import SetParametersResult
-
-        controller = self._controller
-        if controller is None:
-            return SetParametersResult(successful=True)
-        new = {parameter.name: parameter.value for parameter in parameters}
-        try:
+    def _reconfigure(self, parameters: Any) -> None:
+        if self._controller is not None:
             with self._lock:
-                wanted: Any = read_parameters(
-                    type(controller).parameters,
-                    lambda leaf: new[leaf.name] if leaf.name in new else self._declared(leaf),
-                )
-                controller.reconfigure(wanted)
-        except ControlError as error:
-            return SetParametersResult(successful=False, reason=str(error))
-        return SetParametersResult(successful=True)
+                self._controller.reconfigure(parameters)
 
     # Topics
 

@@ -14,7 +14,8 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
-from daidalos.common.extensions import ExtensionError, listing, load
+from daidalos.common.errors import UserError
+from daidalos.common.extensions import listing, load
 from daidalos.control.component import INACTIVE, UNCONFIGURED
 from daidalos.control.controllers.base import ControllerContext
 from daidalos.control.errors import ControlError
@@ -176,7 +177,7 @@ class ControllerManagerNode(Node):
                 with self.lock:
                     work(request, response)
             except Exception as error:  # classes of the user's may raise anything
-                if not isinstance(error, ControlError | ExtensionError):
+                if not isinstance(error, ControlError | UserError):
                     self.get_logger().error(traceback.format_exc())
                 response.ok = False
                 if hasattr(response, "message"):
@@ -208,7 +209,7 @@ class ControllerManagerNode(Node):
         for extension in sorted(listing(CONTROLLERS)):
             try:
                 cls = load(CONTROLLERS, extension)
-            except ExtensionError as error:
+            except UserError as error:
                 self.warn(str(error))
                 continue
             response.types.append(extension.name)
@@ -250,7 +251,7 @@ class ControllerManagerNode(Node):
             )
             fallbacks = self._parameter(f"{name}.fallback_controllers", [])
             self._running.load(name, type_name, node.read_parameters, context, fallbacks)
-        except (ControlError, ExtensionError):
+        except (ControlError, UserError):
             node.destroy_node()
             raise
         self._nodes[name] = node
@@ -293,7 +294,7 @@ class ControllerManagerNode(Node):
         name = request.name
         try:
             self._running.configure(name)
-        except ControlError as error:
+        except (ControlError, UserError) as error:
             if name in self._nodes:
                 self._nodes[name].disconnect()
             raise ControlError(f"controller '{name}' can not be configured: {error}") from error

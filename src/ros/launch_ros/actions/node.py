@@ -255,22 +255,22 @@ class Node(ExecuteProcess):
         arguments: list[tuple[Any, bool]] = []
         for entry in context.launch_configurations.get("global_params", []):
             if isinstance(entry, tuple):
-                arguments.append(self.__rule_or_file(*entry))
+                arguments.append(self.__rule_or_file(*entry, context))
             else:
                 arguments += self.__existing_file(os.path.abspath(entry))
         for parameters in evaluate_parameters(context, self.__parameters):
             if isinstance(parameters, dict):
-                arguments.append((self._create_params_file_from_dict(parameters), True))
+                arguments.append((self._create_params_file_from_dict(parameters, context), True))
             elif isinstance(parameters, pathlib.Path):
                 arguments += self.__existing_file(str(parameters))
             else:
-                arguments.append(self.__rule_or_file(*parameters.evaluate(context)))
+                arguments.append(self.__rule_or_file(*parameters.evaluate(context), context))
         return arguments
 
-    def __rule_or_file(self, name: str, value: Any) -> tuple[str, bool]:
+    def __rule_or_file(self, name: str, value: Any, context: LaunchContext) -> tuple[str, bool]:
         rule = f"{name}:={_dump_yaml(value, quoted=False)}"
         if len(rule) > _MAX_RULE_LENGTH:
-            return self._create_params_file_from_dict({name: value}), True
+            return self._create_params_file_from_dict({name: value}, context), True
         return rule, False
 
     def __existing_file(self, path: str) -> list[tuple[str, bool]]:
@@ -279,10 +279,15 @@ class Node(ExecuteProcess):
         _logger().warning(f"Parameter file path is not a file: {path}")
         return []
 
-    def _create_params_file_from_dict(self, params: dict[str, Any]) -> str:
-        """Write parameters to a temporary file, which is there as long as this program runs."""
+    def _create_params_file_from_dict(self, params: dict[str, Any], context: LaunchContext) -> str:
+        """Write parameters to a temporary file, which is there as long as this program runs.
+
+        Its first line names the launch file, for messages about the parameters.
+        """
+        written_in = context.get_locals_as_dict().get("current_launch_file_path")
         node = self.node_name if self.is_node_name_fully_specified() else "/**"
         with tempfile.NamedTemporaryFile("w", prefix="launch_params_", delete=False, encoding="utf-8") as file:
+            file.write(f"# from: {written_in}\n" if written_in else "")
             file.write(_dump_yaml({node: {"ros__parameters": params}}, quoted=True))
         atexit.register(_remove, file.name)
         return file.name

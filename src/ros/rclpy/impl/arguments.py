@@ -5,8 +5,9 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
+from daidalos.common.errors import Location
 from rclpy.impl import names
 from rclpy.impl.errors import RCLInvalidROSArgsError, UnknownROSArgsError
 from rclpy.impl.names import RemapRule
@@ -18,6 +19,15 @@ _NODE_PREFIX = re.compile(r"(?P<node>[A-Za-z_]\w*):(?!//)(?P<rest>[^=].*)")
 _SCHEME = re.compile(r"(?P<scheme>rostopic|rosservice)://(?P<rest>.*)")
 
 
+class GivenParameter(NamedTuple):
+    """A parameter's value from a file or from ``-p``, for the nodes whose names match `node`."""
+
+    node: str
+    name: str
+    value: Any
+    location: Location
+
+
 @dataclass
 class RosArguments:
     """What the arguments ask for.
@@ -27,7 +37,7 @@ class RosArguments:
     remaps
         In the order given.
     parameters
-        (node name or "/**", parameter name, value), from ``-p`` and from files in the order given.
+        From ``-p``, which is for the node "/**" where it names none, and from files, in the order given.
     log_levels
         Severity by logger name; "" is the default.
     enclave
@@ -37,7 +47,7 @@ class RosArguments:
     """
 
     remaps: list[RemapRule] = field(default_factory=list)
-    parameters: list[tuple[str, str, Any]] = field(default_factory=list)
+    parameters: list[GivenParameter] = field(default_factory=list)
     log_levels: dict[str, int] = field(default_factory=dict)
     stdout_logs: bool = True
     rosout_logs: bool = True
@@ -163,7 +173,7 @@ def _checked_namespace(rule: RemapRule, text: str) -> RemapRule:
     return rule
 
 
-def _parse_parameter(text: str) -> tuple[str, str, Any]:
+def _parse_parameter(text: str) -> GivenParameter:
     from rclpy.impl.parameter_file import parse_value
 
     name, separator, value = text.partition(":=")
@@ -174,16 +184,16 @@ def _parse_parameter(text: str) -> tuple[str, str, Any]:
     if prefixed:
         node, name = prefixed["node"], prefixed["rest"]
     try:
-        return node, name, parse_value(value)
+        return GivenParameter(node, name, parse_value(value), Location(f"-p {text}"))
     except ValueError as error:
         raise _bad(f"couldn't parse parameter override rule: '-p {text}': {error}") from None
 
 
-def _read_file(path: str) -> list[tuple[str, str, Any]]:
+def _read_file(path: str) -> list[GivenParameter]:
     from rclpy.impl.parameter_file import ParameterFileError, read_file
 
     try:
-        return read_file(path)
+        return [GivenParameter(*entry) for entry in read_file(path)]
     except ParameterFileError as error:
         raise _bad(f"couldn't parse params file: '--params-file {path}': {error}") from None
 

@@ -8,7 +8,11 @@ from typing import Any
 
 import yaml
 
+from daidalos.common.errors import Location
+
 _INTEGER_MAX = 2**63 - 1
+ORIGIN = "# from: "
+"""What the first line of a file that a launch file wrote begins with; the launch file's path follows."""
 
 
 class ParameterFileError(ValueError):
@@ -22,12 +26,32 @@ class _Loader(yaml.SafeLoader):
     """
 
     def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
-        """Return the names and values of a mapping."""
-        before = {}
+        """Return the names, which know their lines, and values of a mapping."""
+        values: dict[Any, list[Any]] = {}
+        lines: dict[Any, int] = {}
         for key, value in node.value:
             name = self.construct_object(key, deep=True)
-            before.setdefault(name, []).append(self.construct_object(value, deep=True))
-        return {name: _merged(values) for name, values in before.items()}
+            values.setdefault(name, []).append(self.construct_object(value, deep=True))
+            lines[name] = key.start_mark.line + 1
+        return {_Name(name, lines[name]): _merged(found) for name, found in values.items()}
+
+
+class _Name(str):
+    """A name in a file.
+
+    Attributes
+    ----------
+    line : int
+        Where it is, from 1.
+    """
+
+    __slots__ = ("line",)
+    line: int
+
+    def __new__(cls, name: Any, line: int) -> _Name:
+        made = super().__new__(cls, name)
+        made.line = line
+        return made
 
 
 def _merged(values: list[Any]) -> Any:
@@ -105,13 +129,15 @@ def check_value(value: Any) -> Any:
     raise ValueError(f"a parameter cannot hold {value!r}")
 
 
-def read_file(path: str | Path) -> list[tuple[str, str, Any]]:
+def read_file(path: str | Path) -> list[tuple[str, str, Any, Location]]:
     """Read a parameter file.
 
     Returns
     -------
-    list of (str, str, value)
-        Node name (with its namespace; ``*`` and ``**`` are wildcards), parameter name, value; in order.
+    list of (str, str, value, Location)
+        Node name (with its namespace; ``*`` and ``**`` are wildcards), parameter name, value and where the name is
+        written; in order. A first line ``# from: FILE``, as launch writes it, names the launch file that gave the
+        values.
 
     Raises
     ------
@@ -119,7 +145,8 @@ def read_file(path: str | Path) -> list[tuple[str, str, Any]]:
         Naming the place in the file.
     """
     try:
-        document = yaml.load(Path(path).read_text(encoding="utf-8"), _Loader)
+        text = Path(path).read_text(encoding="utf-8")
+        document = yaml.load(text, _Loader)
     except OSError as error:
         raise ParameterFileError(f"{error.strerror or error}") from None
     except yaml.YAMLError as error:
@@ -128,9 +155,14 @@ def read_file(path: str | Path) -> list[tuple[str, str, Any]]:
         return []
     if not isinstance(document, dict):
         raise ParameterFileError("expected node names at the top, each with 'ros__parameters' below")
-    found: list[tuple[str, str, Any]] = []
+    found: list[tuple[str, str, Any, int]] = []
     _walk_nodes(document, "", found)
-    return found
+    first = text.partition("\n")[0]
+    written_in = first.removeprefix(ORIGIN) if first.startswith(ORIGIN) else ""
+    return [
+        (node, name, value, Location(written_in or str(path), None if written_in else line))
+        for node, name, value, line in found
+    ]
 
 
 def _where(error: yaml.YAMLError) -> str:
@@ -139,7 +171,7 @@ def _where(error: yaml.YAMLError) -> str:
     return f"line {mark.line + 1}, column {mark.column + 1}: {problem}" if mark else str(problem)
 
 
-def _walk_nodes(tree: dict[str, Any], prefix: str, found: list[tuple[str, str, Any]]) -> None:
+def _walk_nodes(tree: dict[str, Any], prefix: str, found: list[tuple[str, str, Any, int]]) -> None:
     for name, value in tree.items():
         if name == "ros__parameters":
             if not prefix:
@@ -153,16 +185,16 @@ def _walk_nodes(tree: dict[str, Any], prefix: str, found: list[tuple[str, str, A
             raise ParameterFileError(f"'{name}' has a value outside of 'ros__parameters'")
 
 
-def _walk_parameters(tree: dict[str, Any], prefix: str, node: str, found: list[tuple[str, str, Any]]) -> None:
+def _walk_parameters(tree: dict[_Name, Any], prefix: str, node: str, found: list[tuple[str, str, Any, int]]) -> None:
     for key, value in tree.items():
         name = f"{prefix}.{key}" if prefix else str(key)
         if isinstance(value, dict):
             _walk_parameters(value, name, node, found)
         elif value is not None:
             try:
-                found.append((node, name, check_value(value)))
+                found.append((node, name, check_value(value), key.line))
             except ValueError as error:
-                raise ParameterFileError(f"parameter '{name}' of '{node}': {error}") from None
+                raise ParameterFileError(f"line {key.line}: parameter '{name}' of '{node}': {error}") from None
 
 
 def node_matches(pattern: str, full_name: str) -> bool:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import traceback
 from typing import Any, NamedTuple
 
+from daidalos.common.errors import UserError
 from rclpy.callback_groups import CallbackGroup
 from rclpy.impl.errors import RCLError
 from rclpy.lifecycle.managed_entity import ManagedEntity
@@ -172,6 +173,9 @@ class LifecycleNodeMixin(ManagedEntity):
         node: Any = self
         try:
             outcome = getattr(self, callback)(state)
+        except UserError as error:
+            node.get_logger().error(str(error))
+            return TransitionCallbackReturn.FAILURE
         except Exception as error:
             node.get_logger().error(f"Error raised in {callback}: {error}")
             traceback.print_exc()
