@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 
 class UserError(Exception):
     """A mistake of the user's; shown as one line, without a traceback."""
 
 
-@dataclass(frozen=True)
-class Location:
+class Location(NamedTuple):
     """Place in a file that an error message names.
 
     Attributes

@@ -20,11 +20,13 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
 
+from daidalos.common.errors import UserError
+
 if TYPE_CHECKING:
     import ast
     from importlib.metadata import EntryPoint
 
-    from daidalos.common.errors import Location, UserError
+    from daidalos.common.errors import Location
 
 T = TypeVar("T")
 
