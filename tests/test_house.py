@@ -27,10 +27,11 @@ def test_a_tool_has_nothing_to_say(name: str) -> None:
     assert done.returncode == 0, done.stdout[-5000:] + done.stderr[-2000:]
 
 
-def test_the_layers_know_every_package_of_ours() -> None:
+def test_layers_and_types_are_checked_in_every_package() -> None:
     settings = tomllib.loads((REPOSITORY / "pyproject.toml").read_text(encoding="utf-8"))["tool"]
     packages = {path.parent.name for path in (REPOSITORY / "src/ros").glob("*/__init__.py")}
     linter = settings["importlinter"]
     assert set(linter["root_packages"]) == {"daidalos", *packages}
     layered = {name.strip() for layer in linter["contracts"][0]["layers"] for name in layer.split("|")}
     assert packages <= layered
+    assert set(settings["mypy"]["packages"]) == {"daidalos", *packages}

@@ -33,6 +33,8 @@ class Subscription:
         How the graph knows it.
     on_ready
         Called after a sample was queued, on the thread that queued it.
+    queue
+        The samples that wait to be taken, the oldest first.
     """
 
     _gave_up_at = -_SHORT_FOR_NS
@@ -42,7 +44,7 @@ class Subscription:
         self.endpoint = endpoint
         self.on_ready = on_ready
         self._codec = codec
-        self._queue: deque[tuple[Any, ...]] = deque(maxlen=endpoint.qos.limit)
+        self.queue: deque[tuple[Any, ...]] = deque(maxlen=endpoint.qos.limit)
         self._limit = endpoint.qos.limit if endpoint.qos.reliable else None
         self._wire: BackendSubscription | None = None
         self._undo: Callable[[], None] | None = None
@@ -54,7 +56,7 @@ class Subscription:
         self._space = threading.Event()
 
     def __len__(self) -> int:
-        return len(self._queue)
+        return len(self.queue)
 
     def take(self) -> tuple[Any, tuple[Any, ...]] | None:
         """Return the oldest message, with the queue's entry that `info` understands; None when there is none.
@@ -63,7 +65,7 @@ class Subscription:
         """
         while True:
             try:
-                item = self._queue.popleft()
+                item = self.queue.popleft()
             except IndexError:
                 return None
             self._note_take()
@@ -80,7 +82,7 @@ class Subscription:
     def take_raw(self) -> tuple[bytes, tuple[Any, ...]] | None:
         """Return the oldest message as CDR bytes, with its entry; None when there is none."""
         try:
-            item = self._queue.popleft()
+            item = self.queue.popleft()
         except IndexError:
             return None
         self._note_take()
@@ -100,7 +102,7 @@ class Subscription:
         if self._observers:
             _, stamp, sequence, gid = item
             self._tell(SampleInfo(stamp, stamp, sequence, gid))
-        self._queue.append(item)
+        self.queue.append(item)
         self.on_ready()
 
     def accept(self, sample: Any) -> None:
@@ -114,9 +116,9 @@ class Subscription:
             if info.gid in self._refused:
                 return
             self._tell(info)
-        if self._limit is not None and len(self._queue) >= self._limit:
+        if self._limit is not None and len(self.queue) >= self._limit:
             self._wait_for_space()
-        self._queue.append(item)
+        self.queue.append(item)
         self.on_ready()
 
     def observe(self, observer: Callable[[SampleInfo], None]) -> None:
@@ -135,7 +137,7 @@ class Subscription:
         if self._left_some:  # a thread that lost its processor once is not slow yet
             self._take_interval += (min(now - self._last_take, _SLOW_NS >> 1) - self._take_interval) >> 3
         self._last_take = now
-        self._left_some = bool(self._queue)
+        self._left_some = bool(self.queue)
         if not self._space.is_set():
             self._space.set()
 
@@ -150,7 +152,7 @@ class Subscription:
         if self._take_interval > _FAST_NS:
             return
         self._space.clear()
-        if len(self._queue) < self._limit:  # type: ignore[operator]
+        if len(self.queue) < self._limit:  # type: ignore[operator]
             return
         stalled = time.monotonic_ns() - Subscription._gave_up_at < _SHORT_FOR_NS
         if not self._space.wait(_SHORT_TIMEOUT_S if stalled else _TIMEOUT_S):
@@ -176,6 +178,6 @@ class Subscription:
     def detach(self) -> None:
         """Forget the middleware and the queue."""
         wire, self._wire = self._wire, None
-        self._queue.clear()
+        self.queue.clear()
         if wire:
             wire.close()

@@ -25,8 +25,9 @@ def main(argv: list[str] | None = None) -> str | None:
     parser = argparse.ArgumentParser(description="Query the ament resource index.")
     types = parser.add_argument("resource_type", nargs="?", help="the type of resources to show")
     names = parser.add_argument("resource_name", nargs="?", help="the resource of this type to show")
-    types.completer = resource_type_completer
-    names.completer = resource_name_completer
+    # argcomplete's own attribute
+    types.completer = resource_type_completer  # type: ignore[attr-defined]
+    names.completer = resource_name_completer  # type: ignore[attr-defined]
     _complete(parser)
     args = parser.parse_args(sys.argv[1:] if argv is None else argv)
     try:

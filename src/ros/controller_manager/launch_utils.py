@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from launch import LaunchDescription
+from launch import LaunchDescription, SomeSubstitutionsType
 from launch.actions import DeclareLaunchArgument
 from launch.conditions import IfCondition, UnlessCondition
 from launch.substitutions import LaunchConfiguration
@@ -36,7 +36,13 @@ def generate_controllers_spawner_launch_description(
     """
     manager, unload = LaunchConfiguration("controller_manager_name"), LaunchConfiguration("unload_on_kill")
     files = [word for file in controller_params_files or () if file for word in ("--param-file", file)]
-    words = [*controller_names, "--controller-manager", manager, *files, *(extra_spawner_args or ())]
+    words: list[SomeSubstitutionsType] = [
+        *controller_names,
+        "--controller-manager",
+        manager,
+        *files,
+        *(extra_spawner_args or ()),
+    ]
     once = Node(
         package="controller_manager",
         executable="spawner",

@@ -49,7 +49,8 @@ class ChildProcess(asyncio.SubprocessProtocol):
     @property
     def pid(self) -> int:
         """The process id, which is also the id of its process group."""
-        return self._transport.get_pid()
+        pid: int = self._transport.get_pid()
+        return pid
 
     @property
     def running(self) -> bool:

@@ -83,17 +83,17 @@ class ProcessRunner:
         context: LaunchContext,
     ) -> None:
         self._action = action
-        self._description = action.process_description
+        self._program = action.process_description.prepared
         self._options = options
         self._exit_handler = exit_handler
         self._context = context
-        self._logger = get_logger(self._description.final_name)
-        self._loggers = get_output_loggers(self._description.final_name, options.output)
+        self._logger = get_logger(self._program.name)
+        self._loggers = get_output_loggers(self._program.name, options.output)
         self._child: ChildProcess | None = None
         self._life: asyncio.Task[None] | None = None
         self._escalation: asyncio.Task[None] | None = None
-        self._stopping: asyncio.Future[None] = context.asyncio_loop.create_future()
-        self.completed: asyncio.Future[None] = context.asyncio_loop.create_future()
+        self._stopping: asyncio.Future[None] = context._loop.create_future()
+        self.completed: asyncio.Future[None] = context._loop.create_future()
         self.details: dict[str, Any] | None = None
         self.return_code: int | None = None
         self.stdout = TextOutput(keep=options.cached_output)
@@ -103,7 +103,7 @@ class ProcessRunner:
     def start(self) -> None:
         """Begin to run the process."""
         self._context.register_event_handler(self._handler)
-        self._life = self._context.asyncio_loop.create_task(self._run())
+        self._life = self._context._loop.create_task(self._run())
 
     # The life of the process ----------------------------------------------------------------------
 
@@ -120,41 +120,39 @@ class ProcessRunner:
         """Run the process until it ends; tell whether it could be started."""
         if self._stopping.done():
             return False
-        description = self._description
+        program = self._program
         if self._options.log_cmd:
-            self._logger.info(
-                f"process details: cmd={description.final_cmd}, cwd={description.final_cwd}, "
-                f"shell={self._options.shell}"
-            )
+            self._logger.info(f"process details: cmd={program.cmd}, cwd={program.cwd}, shell={self._options.shell}")
         try:
             self._child = await start_process(
-                description.final_cmd,
-                cwd=description.final_cwd,
-                env=description.final_env,
+                program.cmd,
+                cwd=program.cwd,
+                env=program.env,
                 shell=self._options.shell,
                 emulate_tty=self._options.emulate_tty,
                 on_output=self._on_output,
             )
         except OSError as error:
-            command = " ".join(description.final_cmd)
+            command = " ".join(program.cmd)
             self._logger.error(f"process could not be started: {error}, cmd '{command}'")
             return False
-        self.details = {
+        self.details = details = {
             "action": self._action,
-            "name": description.final_name,
-            "cmd": description.final_cmd,
-            "cwd": description.final_cwd,
-            "env": description.final_env,
+            "name": program.name,
+            "cmd": program.cmd,
+            "cwd": program.cwd,
+            "env": program.env,
             "pid": self._child.pid,
         }
-        await self._context.emit_event(ProcessStarted(**self.details))
+        await self._context.emit_event(ProcessStarted(**details))
         self._logger.info(f"process started with pid [{self._child.pid}]")
         if self._stopping.done():
             # It was asked to stop while it was being started.
-            self._stop_child()
+            self._stop_child(self._child)
         self.return_code = await self._child.wait()
         await self._stop_escalating()
         await self._after_exit(self._child, self.return_code)
+        await self._context.emit_event(ProcessExited(returncode=self.return_code, **details))
         return True
 
     async def _after_exit(self, child: ChildProcess, code: int) -> None:
@@ -163,7 +161,7 @@ class ProcessRunner:
         if code == 0:
             self._logger.info(f"process has finished cleanly [pid {child.pid}]")
         else:
-            command = " ".join(self._description.final_cmd)
+            command = " ".join(self._program.cmd)
             self._logger.error(f"process has died [pid {child.pid}, exit code {code}, cmd '{command}'].")
         if self._stopping.done():
             await child.end_group(timeouts=self._options.timeouts, interrupted=True)
@@ -172,7 +170,6 @@ class ProcessRunner:
             self._context.register_event_handler(_LeftoverHandler(child, self._options.timeouts))
         else:
             child.close()
-        await self._context.emit_event(ProcessExited(returncode=code, **self.details))
 
     async def _is_to_respawn(self, respawns: int) -> bool:
         options = self._options
@@ -213,20 +210,20 @@ class ProcessRunner:
         elif not self._stopping.done():
             self._stopping.set_result(None)
             if self._child is not None and self._child.running:
-                self._stop_child()
+                self._stop_child(self._child)
         return None
 
-    def _stop_child(self) -> None:
+    def _stop_child(self, child: ChildProcess) -> None:
         self._emit_signal(signal.SIGINT)
-        self._escalation = self._context.asyncio_loop.create_task(self._escalate())
+        self._escalation = self._context._loop.create_task(self._escalate(child))
 
-    async def _escalate(self) -> None:
+    async def _escalate(self, child: ChildProcess) -> None:
         """Send harder and harder signals until the process has ended."""
-        name = self._description.final_name
+        name = self._program.name
         sent = "SIGINT"
         for seconds, signum in zip(self._options.timeouts, (signal.SIGTERM, _SIGKILL), strict=True):
             await asyncio.sleep(seconds)
-            if not self._child.running:
+            if not child.running:
                 return
             self._logger.error(
                 f"process[{name}] failed to terminate '{seconds:g}' seconds after receiving '{sent}', "
@@ -244,7 +241,7 @@ class ProcessRunner:
         self._context.emit_event_sync(SignalProcess(signal_number=signum, process_matcher=matches_action(self._action)))
 
     def _send_signal(self, signum: signal.Signals) -> None:
-        name = self._description.final_name
+        name = self._program.name
         if self._child is None or not self._child.running:
             self._logger.debug(f"signal '{signum.name}' not sent to process[{name}], which does not run")
             return
@@ -318,7 +315,7 @@ class _LeftoverHandler(BaseEventHandler):
 
     def handle(self, event: Event, context: LaunchContext) -> SomeEntitiesType | None:
         super().handle(event, context)
-        context.add_completion_future(context.asyncio_loop.create_task(self.__end()))
+        context.add_completion_future(context._loop.create_task(self.__end()))
         return None
 
     async def __end(self) -> None:

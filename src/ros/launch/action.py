@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
 from .launch_description_entity import LaunchDescriptionEntity
 from .launch_file_error import calling_launch_file
@@ -74,7 +74,7 @@ class Action(LaunchDescriptionEntity):
         if self.condition is not None and not self.condition.evaluate(context):
             return None
         try:
-            return cast("list[LaunchDescriptionEntity] | None", self.execute(context))
+            return self.execute(context)
         finally:
             self.__announce_completion(context)
 

@@ -41,8 +41,8 @@ class LaunchContext:
         self.__globals: dict[str, Any] = {}
         self.__locals: dict[str, Any] = {}
         self.__locals_stack: list[dict[str, Any]] = []
-        self.__launch_configurations: dict[str, str] = {}
-        self.__launch_configurations_stack: list[dict[str, str]] = []
+        self.__launch_configurations: dict[str, Any] = {}
+        self.__launch_configurations_stack: list[dict[str, Any]] = []
         self.__initial_environment = dict(os.environ)
         self.__environment_stack: list[dict[str, str]] = []
 
@@ -69,6 +69,13 @@ class LaunchContext:
     @property
     def asyncio_loop(self) -> asyncio.AbstractEventLoop | None:
         """The event loop that the launch runs in, None while it does not run."""
+        return self.__asyncio_loop
+
+    @property
+    def _loop(self) -> asyncio.AbstractEventLoop:
+        """The event loop that the launch runs in; RuntimeError while it does not run."""
+        if self.__asyncio_loop is None:
+            raise RuntimeError("the launch does not run: there is no event loop yet")
         return self.__asyncio_loop
 
     def _set_asyncio_loop(self, loop: asyncio.AbstractEventLoop | None) -> None:
@@ -112,8 +119,8 @@ class LaunchContext:
         self.__locals = _pop(self.__locals_stack, "locals")
 
     @property
-    def launch_configurations(self) -> dict[str, str]:
-        """The launch configurations of the present scope."""
+    def launch_configurations(self) -> dict[str, Any]:
+        """The launch configurations of the present scope: texts, and lists that launch_ros keeps there."""
         return self.__launch_configurations
 
     def _push_launch_configurations(self) -> None:

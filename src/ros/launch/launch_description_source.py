@@ -64,13 +64,12 @@ class LaunchDescriptionSource:
         # It may have been loaded before launching, when the location meant another file.
         if self.__loaded_from not in (None, self.__expanded_location):
             self.__launch_description = None
-        if self.__launch_description is None:
-            self.__load(self.__expanded_location)
-        return self.__launch_description
+        return self.__launch_description or self.__load(self.__expanded_location)
 
-    def __load(self, location: str) -> None:
+    def __load(self, location: str) -> LaunchDescription:
         self.__launch_description = self._get_launch_description(location)
         self.__loaded_from = location
+        return self.__launch_description
 
     def _get_launch_description(self, location: str) -> LaunchDescription:
         raise NotImplementedError(f"{type(self).__name__} does not know how to load a launch description")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+from types import FrameType
 
 from .invalid_launch_file_error import InvalidLaunchFileError
 
@@ -68,7 +69,7 @@ def register_launch_file(file: str) -> None:
 def calling_launch_file() -> tuple[str | None, int | None]:
     """Return the file and line of the innermost caller that is a Python launch file."""
     if _loaded_launch_files:
-        frame = sys._getframe(1)
+        frame: FrameType | None = sys._getframe(1)
         while frame is not None:
             if frame.f_code.co_filename in _loaded_launch_files:
                 return frame.f_code.co_filename, frame.f_lineno

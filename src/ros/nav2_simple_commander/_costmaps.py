@@ -57,8 +57,10 @@ class Costmaps(Tasks):
 
     def getGlobalCostmap(self) -> Costmap:
         """Return the costmap of the whole map."""
-        return self._call(GetCostmap, "global_costmap/get_costmap").map
+        costmap: Costmap = self._call(GetCostmap, "global_costmap/get_costmap").map
+        return costmap
 
     def getLocalCostmap(self) -> Costmap:
         """Return the costmap around the robot."""
-        return self._call(GetCostmap, "local_costmap/get_costmap").map
+        costmap: Costmap = self._call(GetCostmap, "local_costmap/get_costmap").map
+        return costmap

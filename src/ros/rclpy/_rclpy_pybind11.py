@@ -14,7 +14,6 @@ from rclpy.impl.clock import ClockChange, ClockHandle
 from rclpy.impl.context import ContextHandle
 from rclpy.impl.entities import (
     ClientHandle,
-    EndpointHandle,
     GuardConditionHandle,
     NodeHandle,
     PublisherHandle,
@@ -33,7 +32,7 @@ from rclpy.impl.errors import (
     UnsupportedEventTypeError,
 )
 from rclpy.impl.event_statuses import QoSPublisherEventType, QoSSubscriptionEventType
-from rclpy.impl.events import EventSource, event_source
+from rclpy.impl.events import EventSource, TopicHandle, event_source
 from rclpy.impl.handle import Destroyable
 from rclpy.impl.log_output import OUTPUT
 from rclpy.impl.logging_severity import LoggingSeverity
@@ -202,7 +201,7 @@ class EventHandle(Destroyable):
         For what is no event.
     """
 
-    def __init__(self, parent: EndpointHandle, event_type: IntEnum) -> None:
+    def __init__(self, parent: TopicHandle, event_type: IntEnum) -> None:
         super().__init__()
         self._source: EventSource = event_source(parent, event_type, _nothing)
 

@@ -17,7 +17,7 @@ from rclpy.qos import QoSProfile
 from rclpy.task import Future
 
 
-class Client(ServiceEnd):
+class Client(ServiceEnd[ClientHandle]):
     """Calls a service; made by `Node.create_client`."""
 
     def __init__(

@@ -9,7 +9,6 @@ from typing import Any
 
 import rclpy.logging
 from rclpy.callback_groups import CallbackGroup
-from rclpy.impl.entities import EndpointHandle
 from rclpy.impl.errors import UnsupportedEventTypeError as UnsupportedEventTypeError
 from rclpy.impl.event_statuses import (
     IncompatibleTypeStatus,
@@ -24,7 +23,7 @@ from rclpy.impl.event_statuses import (
     RequestedDeadlineMissedStatus,
     RequestedIncompatibleQosStatus,
 )
-from rclpy.impl.events import EventSource, event_source
+from rclpy.impl.events import EventSource, TopicHandle, event_source
 from rclpy.impl.ready import ReadyHook
 from rclpy.qos import qos_policy_name_from_kind
 from rclpy.waitable import Waitable
@@ -50,7 +49,7 @@ class EventHandler(Waitable):
         callback_group: CallbackGroup,
         callback: Callable[[Any], Any],
         event_type: IntEnum,
-        parent_impl: EndpointHandle,
+        parent_impl: TopicHandle,
     ) -> None:
         super().__init__(callback_group)
         self.callback = callback
@@ -59,7 +58,7 @@ class EventHandler(Waitable):
         self._watched: list[tuple[EventSource, Callable[[Any], Any]]] = []
         self._watch(parent_impl, event_type, callback)
 
-    def _watch(self, endpoint: EndpointHandle, event_type: IntEnum, callback: Callable[[Any], Any]) -> None:
+    def _watch(self, endpoint: TopicHandle, event_type: IntEnum, callback: Callable[[Any], Any]) -> None:
         """Call a function at an event; each after the first has no handler of its own in the endpoint's list."""
         self._watched.append((event_source(endpoint, event_type, self._rcl_hook), callback))
 
@@ -97,7 +96,7 @@ class _EventCallbacks:
         callbacks: dict[IntEnum, Callable[[Any], Any] | None],
         defaults: dict[IntEnum, Callable[[Any], None]],
         group: CallbackGroup,
-        handle: EndpointHandle,
+        handle: TopicHandle,
     ) -> list[EventHandler]:
         """Return a handler for every function; one for the defaults together, whose first must be wanted always."""
         handlers: dict[IntEnum, EventHandler] = {}
@@ -137,7 +136,7 @@ class SubscriptionEventCallbacks(_EventCallbacks):
         self.use_default_callbacks = use_default_callbacks
 
     def create_event_handlers(
-        self, callback_group: CallbackGroup, subscription: EndpointHandle, topic_name: str
+        self, callback_group: CallbackGroup, subscription: TopicHandle, topic_name: str
     ) -> list[EventHandler]:
         """Return a handler for every function."""
         with subscription:
@@ -193,7 +192,7 @@ class PublisherEventCallbacks(_EventCallbacks):
         self.use_default_callbacks = use_default_callbacks
 
     def create_event_handlers(
-        self, callback_group: CallbackGroup, publisher: EndpointHandle, topic_name: str
+        self, callback_group: CallbackGroup, publisher: TopicHandle, topic_name: str
     ) -> list[EventHandler]:
         """Return a handler for every function."""
         with publisher:

@@ -6,7 +6,8 @@ import weakref
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
 
-from rclpy.callback_groups import CallbackGroup, MutuallyExclusiveCallbackGroup
+from rclpy.callback_groups import CallbackGroup as CallbackGroup
+from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.clock import Clock, ROSClock
 from rclpy.constants import S_TO_NS
 from rclpy.context import Context
@@ -17,7 +18,6 @@ from rclpy.impl.lazy_reexport import lazy_reexport
 from rclpy.impl.node_entities import NodeEntities, depth_or_profile
 from rclpy.impl.node_graph import NodeGraph
 from rclpy.impl.node_members import KINDS, attach, detach
-from rclpy.impl.node_parameters import NodeParameters
 from rclpy.impl.rcutils_logger import RcutilsLogger
 from rclpy.impl.rosout import rosout
 from rclpy.parameter import PARAMETER_SEPARATOR_STRING, Parameter
@@ -51,7 +51,7 @@ __all__ = [
 ]
 
 
-class Node(NodeEntities, NodeParameters, NodeGraph):
+class Node(NodeEntities, NodeGraph):
     """A participant of the ROS graph: it publishes, subscribes, serves and calls.
 
     Parameters
@@ -164,7 +164,7 @@ class Node(NodeEntities, NodeParameters, NodeGraph):
         self, new: list[Parameter[Any]], changed: list[Parameter[Any]], deleted: list[Parameter[Any]]
     ) -> None:
         publisher = self._parameter_event_publisher
-        if publisher is None or not (new or changed or deleted) or not publisher.handle.impl.has_subscribers:
+        if publisher is None or not (new or changed or deleted) or not publisher.handle.has_subscribers:
             return
         from rcl_interfaces.msg import ParameterEvent
 
@@ -191,11 +191,6 @@ class Node(NodeEntities, NodeParameters, NodeGraph):
     def handle(self, value: Any) -> None:
         raise AttributeError("handle cannot be modified after node creation")
 
-    @property
-    def context(self) -> Context:
-        """The node's context."""
-        return self._context
-
     if not TYPE_CHECKING:  # for a type checker, a class with this method has every attribute
 
         def __getattr__(self, name: str) -> Any:
@@ -205,11 +200,6 @@ class Node(NodeEntities, NodeParameters, NodeGraph):
             if "_default_callback_group" not in self.__dict__:
                 text = f"'{kind}' is no node yet: its __init__ has to call super().__init__('its_name') first"
             raise AttributeError(text, name=name, obj=self)
-
-    @property
-    def default_callback_group(self) -> CallbackGroup:
-        """The group of entities that are given none: mutually exclusive."""
-        return self._default_callback_group
 
     def get_name(self) -> str:
         """Return the node's name."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from types import GenericAlias, TracebackType
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from rclpy.callback_groups import CallbackGroup
 from rclpy.duration import Duration
@@ -17,7 +17,7 @@ from rclpy.qos import QoSProfile
 class Publisher:
     """Sends messages on a topic; made by `Node.create_publisher`."""
 
-    __class_getitem__ = classmethod(GenericAlias)
+    __class_getitem__: ClassVar[Any] = classmethod(GenericAlias)
 
     def __init__(
         self,

@@ -8,12 +8,11 @@ from rclpy.event_handler import (
     QoSMessageLostInfo,
     QoSOfferedDeadlineMissedInfo,
     QoSOfferedIncompatibleQoSInfo,
-    QoSPublisherEventType,
     QoSRequestedDeadlineMissedInfo,
     QoSRequestedIncompatibleQoSInfo,
-    QoSSubscriptionEventType,
     SubscriptionEventCallbacks,
 )
+from rclpy.impl.event_statuses import QoSPublisherEventType, QoSSubscriptionEventType
 
 __all__ = [
     "PublisherEventCallbacks",

@@ -24,7 +24,7 @@ from rclpy.qos import (
 from rclpy.subscription import Subscription
 
 if TYPE_CHECKING:
-    from rclpy.node import Node
+    from rclpy.impl.node_parameters import NodeParameters
 
 QosCallbackResult = SetParametersResult
 QosCallback = Callable[[QoSProfile], Any]
@@ -91,8 +91,8 @@ class QoSOverridingOptions:
 
 
 def _declare_qos_parameters(
-    entity_type: type[Publisher[Any]] | type[Subscription[Any]],
-    node: Node,
+    entity_type: type[Publisher] | type[Subscription],
+    node: NodeParameters,
     topic_name: str,
     qos: QoSProfile,
     options: QoSOverridingOptions,
@@ -129,7 +129,7 @@ def _declare_qos_parameters(
 _declare_qos_parameteres = _declare_qos_parameters  # so misspelt by earlier distributions of rclpy
 
 
-def _declared(node: Node, name: str, value: Any) -> Parameter[Any]:
+def _declared(node: NodeParameters, name: str, value: Any) -> Parameter[Any]:
     from rcl_interfaces.msg import ParameterDescriptor
 
     try:

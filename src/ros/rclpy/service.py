@@ -12,7 +12,7 @@ from rclpy.impl.service_end import ServiceEnd
 from rclpy.qos import QoSProfile
 
 
-class Service(ServiceEnd):
+class Service(ServiceEnd[ServiceHandle]):
     """Answers requests; made by `Node.create_service`."""
 
     concurrent = False

@@ -6,7 +6,7 @@ import inspect
 from collections.abc import Callable, Sequence
 from enum import Enum
 from types import GenericAlias, TracebackType
-from typing import TYPE_CHECKING, Any, Self, TypedDict
+from typing import TYPE_CHECKING, Any, ClassVar, Self, TypedDict
 
 from rclpy.callback_groups import CallbackGroup
 from rclpy.event_handler import EventHandler, SubscriptionEventCallbacks
@@ -35,7 +35,7 @@ class Subscription:
     concurrent = False
     """Whether callbacks may overlap, in nodes for asyncio."""
 
-    __class_getitem__ = classmethod(GenericAlias)
+    __class_getitem__: ClassVar[Any] = classmethod(GenericAlias)
 
     class CallbackType(Enum):
         """What the callback takes."""
@@ -169,7 +169,7 @@ class Subscription:
         )
 
     def _rcl_has_more(self) -> bool:
-        return bool(self._impl._queue)
+        return bool(self._impl.queue)
 
     def __enter__(self) -> Self:
         return self

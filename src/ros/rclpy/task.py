@@ -7,14 +7,12 @@ import sys
 import threading
 import warnings
 import weakref
-from collections.abc import Callable, Generator
+from collections.abc import Callable, Coroutine, Generator
 from types import GenericAlias
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
 if TYPE_CHECKING:
     import asyncio
-
-    from rclpy.executors import Executor
 
 _stepping = threading.local()  # whether an executor runs a coroutine in this thread
 
@@ -33,12 +31,19 @@ def _no_executor() -> None:
     """Stand in for the reference to an executor."""
 
 
+class TaskRunner(Protocol):
+    """What a future needs of an executor."""
+
+    def create_task(self, callback: Callable[..., Any] | Coroutine[Any, Any, Any], *args: Any, **kwargs: Any) -> Task:
+        """Carry a function or coroutine out later, and return it as a task."""
+
+
 class Future:
     """The result of something that is not yet done; a coroutine may ``await`` it."""
 
-    __class_getitem__ = classmethod(GenericAlias)
+    __class_getitem__: ClassVar[Any] = classmethod(GenericAlias)
 
-    def __init__(self, *, executor: Executor | None = None) -> None:
+    def __init__(self, *, executor: TaskRunner | None = None) -> None:
         self._done = False
         self._cancelled = False
         self._result: Any = None
@@ -46,7 +51,7 @@ class Future:
         self._exception_fetched = False
         self._callbacks: list[Callable[[Future], None]] = []
         self._lock = threading.Lock()
-        self._executor: Callable[[], Executor | None] = _no_executor
+        self._executor: Callable[[], TaskRunner | None] = _no_executor
         if executor is not None:
             self._set_executor(executor)
 
@@ -137,7 +142,7 @@ class Future:
             else:
                 _call(callback, self)
 
-    def _set_executor(self, executor: Executor | None) -> None:
+    def _set_executor(self, executor: TaskRunner | None) -> None:
         """Have callbacks called by an executor."""
         self._executor = _no_executor if executor is None else weakref.ref(executor)
 
@@ -209,7 +214,7 @@ class Task(Future):
         handler: Any,
         args: Any = None,
         kwargs: Any = None,
-        executor: Executor | None = None,
+        executor: TaskRunner | None = None,
     ) -> None:
         super().__init__(executor=executor)
         self._args = list(args or ())

@@ -73,7 +73,7 @@ class Waitable:
         self._futures: list[Future] = []
         self._rcl_node: Any = None
 
-    def __enter__(self) -> None:
+    def __enter__(self) -> Any:
         """Keep what is behind the waitable alive."""
         raise NotImplementedError("Must be implemented by subclass")
 

@@ -53,8 +53,9 @@ class BufferClient(BufferInterface):
         self.node = node
         self.action_client = ActionClient(node, LookupTransform, action_name=ns)
         self.check_frequency = check_frequency
-        given = isinstance(timeout_padding, Duration)
-        self.timeout_padding: Duration = timeout_padding if given else Duration(seconds=timeout_padding)
+        self.timeout_padding = (
+            timeout_padding if isinstance(timeout_padding, Duration) else Duration(seconds=timeout_padding)
+        )
 
     def lookup_transform(
         self, target_frame: str, source_frame: str, time: Time, timeout: Duration = NO_WAIT

@@ -71,7 +71,7 @@ class ControllerNode(Node):
     def has_subscribers(self, topic: str) -> bool:
         """Tell whether anyone listens to one of the controller's topics."""
         entry = self._outgoing.get(topic)
-        return entry is not None and entry[0].handle.impl.has_subscribers
+        return entry is not None and entry[0].handle.has_subscribers
 
     def publish(self, sample: Sample) -> None:
         """Publish what the controller says."""

@@ -14,6 +14,7 @@ from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.logging import LoggingSeverity, set_logger_level
 from rclpy.node import Node
 from rclpy.parameter import Parameter
+from rclpy.publisher import Publisher
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.utilities import remove_ros_args
 
@@ -160,7 +161,7 @@ class GzServer(Node):
 
     def _has_subscribers(self, topic: str) -> bool:
         entry = self._outgoing.get(topic)
-        return entry is not None and entry[0].handle.impl.has_subscribers
+        return entry is not None and entry[0].handle.has_subscribers
 
     def _publish(self, now_ns: int, samples: list[Sample]) -> None:
         from rosgraph_msgs.msg import Clock
@@ -323,8 +324,8 @@ class GzServer(Node):
         super().destroy_node()
 
 
-def _has_subscribers(publisher: Any) -> bool:
-    return bool(publisher.handle.impl.has_subscribers)
+def _has_subscribers(publisher: Publisher) -> bool:
+    return publisher.handle.has_subscribers
 
 
 def _publish_motions(

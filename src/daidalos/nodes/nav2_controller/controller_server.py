@@ -181,7 +181,7 @@ class ControllerServer(ManagedNode):
         goal_handle.publish_feedback(
             FollowPathAction.Feedback(distance_to_goal=float(step.distance_to_goal), speed=speed)
         )
-        if self._local_plan.handle.impl.has_subscribers:
+        if self._local_plan.handle.has_subscribers:
             stamp = self.get_clock().now().to_msg()
             self._local_plan.publish(path_message(step.path, self._costmap.global_frame, stamp))
 

@@ -318,15 +318,15 @@ class CostmapNode(ManagedNode):
         if not self._updates:
             return
         stamp = self.get_clock().now().to_msg()
-        if self._grid_publisher.handle.impl.has_subscribers:
+        if self._grid_publisher.handle.has_subscribers:
             costmap = self.snapshot()
             values = to_occupancy(costmap.costs)
             self._grid_publisher.publish(
                 grid_message(values, costmap.resolution, costmap.origin, self.global_frame, stamp)
             )
-        if self._raw_publisher.handle.impl.has_subscribers:
+        if self._raw_publisher.handle.has_subscribers:
             self._raw_publisher.publish(costmap_message(self.snapshot(), self.global_frame, stamp))
-        if self._footprint_publisher.handle.impl.has_subscribers:
+        if self._footprint_publisher.handle.has_subscribers:
             pose = self.robot_pose()
             if pose is not None:
                 self._footprint_publisher.publish(footprint_message(self.footprint, pose, self.global_frame, stamp))

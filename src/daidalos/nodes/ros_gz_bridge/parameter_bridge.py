@@ -77,11 +77,11 @@ class ParameterBridge(Node):
         own: set[bytes] = set()
         if bridge.direction != "ROS_TO_GZ":
             outward = self.create_publisher(kind, bridge.ros_topic, 10, qos_overriding_options=overrides)
-            own.add(outward.handle.impl.endpoint.gid)
+            own.add(outward.handle.endpoint.gid)
             self._gz_side.create_subscription(kind, gz, _forwarding_callback(outward, own), 10)
         if bridge.direction != "GZ_TO_ROS":
             inward = self._gz_side.create_publisher(kind, gz, 10)
-            own.add(inward.handle.impl.endpoint.gid)
+            own.add(inward.handle.endpoint.gid)
             take = _forwarding_callback(inward, own)
             self.create_subscription(kind, bridge.ros_topic, take, 10, qos_overriding_options=overrides)
         self.get_logger().info(f"{gz} is {ros} ({bridge.ros_type}, {bridge.direction})")

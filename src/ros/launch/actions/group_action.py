@@ -43,7 +43,7 @@ class GroupAction(Action):
 
     def __init__(
         self,
-        actions: Iterable[Action],
+        actions: Iterable[LaunchDescriptionEntity],
         *,
         scoped: bool = True,
         forwarding: bool = True,
@@ -74,11 +74,11 @@ class GroupAction(Action):
     def get_sub_entities(self) -> list[LaunchDescriptionEntity]:
         """Return the actions with those that make their scope."""
         if self.__sub_entities is None:
-            settings = [SetLaunchConfiguration(*item) for item in self.__launch_configurations.items()]
+            settings: list[Action] = [SetLaunchConfiguration(*item) for item in self.__launch_configurations.items()]
             if not self.__scoped:
                 self.__sub_entities = [*settings, *self.__actions]
             else:
-                beginning: list[Action] = settings
+                beginning = settings
                 if not self.__forwarding:
                     beginning = [
                         ResetEnvironment(),

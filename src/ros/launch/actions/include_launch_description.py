@@ -131,7 +131,7 @@ class IncludeLaunchDescription(Action):
 
         names = [normalize_to_list_of_substitutions(name) for name, _ in self.launch_arguments]
         return {
-            "".join(part.text for part in name)
+            "".join(part.text for part in name if isinstance(part, TextSubstitution))
             for name in names
             if all(isinstance(part, TextSubstitution) for part in name)
         }

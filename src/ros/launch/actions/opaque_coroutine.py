@@ -58,12 +58,13 @@ class OpaqueCoroutine(Action):
     def execute(self, context: LaunchContext) -> list[LaunchDescriptionEntity] | None:
         """Start the coroutine."""
         args = self.__args if self.__ignore_context else [context, *self.__args]
-        self.__task = context.asyncio_loop.create_task(self.__coroutine(*args, **self.__kwargs))
+        self.__task = context._loop.create_task(self.__coroutine(*args, **self.__kwargs))
         context.register_event_handler(OnShutdown(on_shutdown=self.__on_shutdown))
         return None
 
     def __on_shutdown(self, event: Event, context: LaunchContext) -> None:
-        self.__task.cancel()
+        if self.__task is not None:
+            self.__task.cancel()
 
     def get_asyncio_future(self) -> asyncio.Future[None] | None:
         """Return the coroutine's task."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 from ..action import Action
 from ..event import Event
@@ -119,30 +119,32 @@ class TimerAction(Action):
         self.__context_locals = dict(context.get_locals_as_dict())
         self.__launch_configurations = dict(context.launch_configurations)
         self.__environment = dict(context.environment)
-        loop = context.asyncio_loop
-        self._completed_future = loop.create_future()
-        self._canceled_future = loop.create_future()
+        loop = context._loop
+        self._completed_future = completed = loop.create_future()
+        self._canceled_future = canceled = loop.create_future()
         if self.__canceled:
-            self._completed_future.set_result(None)
+            completed.set_result(None)
             return None
         _register_timer_handler(context)
         if perform_typed_substitution(context, self.__cancel_on_shutdown, bool):
             context.register_event_handler(OnShutdown(on_shutdown=self.__on_shutdown, handle_once=True))
         period = perform_typed_substitution(context, self.period, float)
-        loop.create_task(self._wait_to_fire_event(context, period))
+        loop.create_task(self._wait_to_fire_event(context, period, completed, canceled))
         return None
 
     def __on_shutdown(self, event: Event, context: LaunchContext) -> None:
         self.cancel()
 
-    async def _wait_to_fire_event(self, context: LaunchContext, period: float) -> None:
+    async def _wait_to_fire_event(
+        self, context: LaunchContext, period: float, completed: asyncio.Future[None], canceled: asyncio.Future[bool]
+    ) -> None:
         """Wait for the period or for being cancelled, and emit the timer's event after the period."""
         try:
-            await asyncio.wait([self._canceled_future], timeout=period)
-            if not self._canceled_future.done():
+            await asyncio.wait([canceled], timeout=period)
+            if not canceled.done():
                 await context.emit_event(TimerEvent(timer_action=self))
         finally:
-            self._completed_future.set_result(None)
+            completed.set_result(None)
 
     def get_asyncio_future(self) -> asyncio.Future[None] | None:
         """Return a future that is done when the wait is over."""
@@ -157,7 +159,7 @@ class _TimerEventHandler(EventHandler):
 
     def handle(self, event: Event, context: LaunchContext) -> SomeEntitiesType | None:
         super().handle(event, context)
-        return event.timer_action.handle(context)
+        return cast("TimerEvent", event).timer_action.handle(context)
 
 
 def _register_timer_handler(context: LaunchContext) -> None:

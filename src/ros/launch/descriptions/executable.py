@@ -7,6 +7,7 @@ import os
 import re
 import shlex
 from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ..some_substitutions_type import SomeSubstitutionsType
@@ -20,6 +21,28 @@ if TYPE_CHECKING:
 
 _Text = list[Substitution]
 _process_numbers = itertools.count(1)
+
+
+@dataclass(frozen=True)
+class PreparedExecutable:
+    """A program whose texts are worked out.
+
+    Parameters
+    ----------
+    name
+        The process's name in the launch.
+    cmd
+        The whole command line.
+    cwd
+        The working directory, None for that of the launch.
+    env
+        The whole environment.
+    """
+
+    name: str
+    cmd: list[str]
+    cwd: str | None
+    env: dict[str, str]
 
 
 class Executable:
@@ -58,21 +81,18 @@ class Executable:
         self.__arguments = None if arguments is None else [normalize_to_list_of_substitutions(a) for a in arguments]
         self.__cmd = [*(normalize_to_list_of_substitutions(part) for part in cmd), *(self.__arguments or [])]
         self.__prefix_is_default = prefix is None
-        self.__prefix = (
+        self.__prefix: _Text = (
             [LaunchConfiguration("launch-prefix", default="")]
             if prefix is None
             else normalize_to_list_of_substitutions(prefix)
         )
-        self.__prefix_filter = [LaunchConfiguration("launch-prefix-filter", default="")]
+        self.__prefix_filter: _Text = [LaunchConfiguration("launch-prefix-filter", default="")]
         self.__name = _optional(name)
         self.__cwd = _optional(cwd)
         self.__env = _pairs(env)
         self.__additional_env = _pairs(additional_env)
         self.__program: str | None = None
-        self.__final_name: str | None = None
-        self.__final_cmd: list[str] | None = None
-        self.__final_cwd: str | None = None
-        self.__final_env: dict[str, str] | None = None
+        self.__prepared: PreparedExecutable | None = None
 
     @property
     def name(self) -> _Text | None:
@@ -112,22 +132,35 @@ class Executable:
     @property
     def final_name(self) -> str | None:
         """The process's name in the launch; None before `prepare`."""
-        return self.__final_name
+        return None if self.__prepared is None else self.__prepared.name
 
     @property
     def final_cmd(self) -> list[str] | None:
         """The whole command line; None before `prepare`."""
-        return self.__final_cmd
+        return None if self.__prepared is None else self.__prepared.cmd
 
     @property
     def final_cwd(self) -> str | None:
         """The working directory, None for that of the launch."""
-        return self.__final_cwd
+        return None if self.__prepared is None else self.__prepared.cwd
 
     @property
     def final_env(self) -> dict[str, str] | None:
         """The whole environment; None before `prepare`."""
-        return self.__final_env
+        return None if self.__prepared is None else self.__prepared.env
+
+    @property
+    def prepared(self) -> PreparedExecutable:
+        """What `prepare` worked out.
+
+        Raises
+        ------
+        RuntimeError
+            Before `prepare`.
+        """
+        if self.__prepared is None:
+            raise RuntimeError("the executable was not prepared: call 'prepare' first")
+        return self.__prepared
 
     def _set_program(self, command: list[str], *, name: str) -> None:
         """Replace the program by a command that runs it, and keep the name that people know it by.
@@ -156,13 +189,15 @@ class Executable:
         # A shell's command line may be one text.
         first = cmd[0].split()[0] if getattr(action, "shell", False) and cmd[0].strip() else cmd[0]
         program = self.__program or os.path.basename(first)
-        self.__final_cmd = [*self.__prefix_for(program, context), *cmd]
         name = program if self.__name is None else perform_substitutions(context, self.__name)
-        self.__final_name = f"{name}-{next(_process_numbers)}"
-        self.__final_cwd = None if self.__cwd is None else perform_substitutions(context, self.__cwd)
         env = dict(context.environment) if self.__env is None else _perform_pairs(context, self.__env)
         env.update(_perform_pairs(context, self.__additional_env or []))
-        self.__final_env = env
+        self.__prepared = PreparedExecutable(
+            name=f"{name}-{next(_process_numbers)}",
+            cmd=[*self.__prefix_for(program, context), *cmd],
+            cwd=None if self.__cwd is None else perform_substitutions(context, self.__cwd),
+            env=env,
+        )
 
     def __prefix_for(self, program: str, context: LaunchContext) -> list[str]:
         prefix = perform_substitutions(context, self.__prefix)

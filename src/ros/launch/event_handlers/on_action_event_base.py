@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 from ..event import Event
 from ..event_handler import BaseEventHandler
@@ -36,8 +36,8 @@ class OnActionEventBase(BaseEventHandler):
     def __init__(
         self,
         *,
-        action_matcher: Callable[[Action], bool] | Action | None,
-        on_event: SomeEntitiesType | Callable[[Event, LaunchContext], SomeEntitiesType | None],
+        action_matcher: Callable[[Any], bool] | Action | None,
+        on_event: SomeEntitiesType | Callable[[Any, LaunchContext], SomeEntitiesType | None],
         target_event_cls: type[Event],
         target_action_cls: type[Action],
         **kwargs: Any,
@@ -69,10 +69,11 @@ class OnActionEventBase(BaseEventHandler):
         matcher = self.__action_matcher
         if matcher is None:
             return True
+        action = cast("Any", event).action
         # An action of launch is never callable, but a stand-in for one may be.
-        if is_a_subclass(matcher, self.__target_action_cls):
-            return event.action == matcher
-        return matcher(event.action)
+        if callable(matcher) and not is_a_subclass(matcher, self.__target_action_cls):
+            return bool(matcher(action))
+        return bool(action == matcher)
 
     def handle(self, event: Event, context: LaunchContext) -> SomeEntitiesType | None:
         """Call the function, or yield the entities."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 from ..event import Event
 from ..event_handler import EventHandler
@@ -23,7 +23,7 @@ class OnIncludeLaunchDescription(EventHandler):
     def handle(self, event: Event, context: LaunchContext) -> SomeEntitiesType | None:
         """Yield the event's launch description."""
         super().handle(event, context)
-        return event.launch_description
+        return cast("IncludeLaunchDescription", event).launch_description
 
     @property
     def handler_description(self) -> str:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from ..event import Event
 from ..events.process.process_io import ProcessIO
 from ..some_entities_type import SomeEntitiesType
 from .on_action_event_base import OnActionEventBase
@@ -41,7 +40,7 @@ class OnProcessIO(OnActionEventBase):
     ) -> None:
         from ..actions.execute_local import ExecuteLocal
 
-        def on_io(event: Event, context: LaunchContext) -> SomeEntitiesType | None:
+        def on_io(event: ProcessIO, context: LaunchContext) -> SomeEntitiesType | None:
             not_stdout = on_stderr if event.from_stderr else on_stdin
             callback = on_stdout if event.from_stdout else not_stdout
             return None if callback is None else callback(event)

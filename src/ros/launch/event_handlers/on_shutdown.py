@@ -36,8 +36,7 @@ class OnShutdown(BaseEventHandler):
         if callable(on_shutdown):
             self.__on_shutdown = on_shutdown
         else:
-            entities = cast("SomeEntitiesType", on_shutdown)
-            self.__on_shutdown = lambda event, context: entities
+            self.__on_shutdown = lambda event, context: on_shutdown
 
     def handle(self, event: Event, context: LaunchContext) -> SomeEntitiesType | None:
         """Call the function, or yield the entities."""

@@ -35,7 +35,8 @@ def instantiate_action(entity: Entity, parser: Parser) -> Action:
         raise RuntimeError(
             f"Unrecognized entity of the type: {entity.type_name}{hint(entity.type_name, action_parse_methods)}"
         )
-    return _construct(parse(entity, parser))
+    action: Action = _construct(parse(entity, parser))
+    return action
 
 
 def instantiate_substitution(type_name: str, args: Iterable[SomeSubstitutionsType] | None = None) -> Substitution:
@@ -49,7 +50,8 @@ def instantiate_substitution(type_name: str, args: Iterable[SomeSubstitutionsTyp
     parse = _look_up(type_name, substitution_parse_methods, "launch.substitutions")
     if parse is None:
         raise RuntimeError(f"Unknown substitution: {type_name}{hint(type_name, substitution_parse_methods)}")
-    return _construct(parse([] if args is None else list(args)))
+    substitution: Substitution = _construct(parse([] if args is None else list(args)))
+    return substitution
 
 
 def expose_substitution(name: str) -> Callable[[T], T]:
@@ -73,12 +75,12 @@ def expose_action(name: str) -> Callable[[T], T]:
 def __expose_impl(name: str, parse_methods_map: dict[str, Callable[..., Any]], exposed_type: str) -> Callable[[T], T]:
     def expose(exposed: T) -> T:
         if isinstance(exposed, type):
-            if not callable(getattr(exposed, "parse", None)):
+            parse = getattr(exposed, "parse", None)
+            if not callable(parse):
                 raise RuntimeError(
                     f"the {exposed_type} '{name}' can not be exposed: the class {exposed.__name__} has no "
                     "method 'parse'"
                 )
-            parse = exposed.parse
         elif callable(exposed):
             parse = exposed
         else:

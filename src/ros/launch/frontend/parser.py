@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import importlib
 import importlib.metadata as importlib_metadata
-import io
 import os
 import warnings
 from collections.abc import Iterable
@@ -167,7 +166,7 @@ class Parser:
         InvalidFrontendLaunchFileError
             If no parser can read it.
         """
-        if not isinstance(file, io.TextIOBase):
+        if isinstance(file, str | bytes | os.PathLike):
             with open(file, encoding="utf-8") as opened:
                 return cls.load(opened)
         cls.load_launch_extensions()

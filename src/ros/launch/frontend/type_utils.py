@@ -21,7 +21,7 @@ def get_data_type_from_identifier(type_identifier: str) -> AllowedTypesType:
     ValueError
         If it is no such word.
     """
-    types: dict[str, Any] = {
+    types: dict[str, AllowedTypesType] = {
         "str": str,
         "int": int,
         "float": float,

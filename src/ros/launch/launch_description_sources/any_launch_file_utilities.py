@@ -3,17 +3,22 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 from ..invalid_launch_file_error import InvalidLaunchFileError
 from ..launch_description import LaunchDescription
 from ..launch_file_error import add_location
 from .python_launch_file_utilities import get_launch_description_from_python_launch_file
 
+if TYPE_CHECKING:
+    from ..frontend.parser import Parser
+
 _MARKUP = {"xml", "yaml", "yml", "launch"}
 
 
 def get_launch_description_from_any_launch_file(
-    launch_file_path: str, *, parser: type | None = None
+    launch_file_path: str, *, parser: type[Parser] | None = None
 ) -> LaunchDescription:
     """Read a launch file by the rules of what it is written in, which its extension says.
 
@@ -47,12 +52,13 @@ def get_launch_description_from_any_launch_file(
         raise
 
 
-def _from_any(launch_file_path: str, extension: str, parser: type | None) -> LaunchDescription:
+def _from_any(launch_file_path: str, extension: str, parser: type[Parser] | None) -> LaunchDescription:
     errors: list[Exception] = []
-    for load in (
+    loaders: tuple[Callable[[], LaunchDescription], ...] = (
         lambda: _from_markup(launch_file_path, parser),
         lambda: get_launch_description_from_python_launch_file(launch_file_path),
-    ):
+    )
+    for load in loaders:
         try:
             return load()
         except (InvalidLaunchFileError, SyntaxError, ValueError) as error:
@@ -60,15 +66,13 @@ def _from_any(launch_file_path: str, extension: str, parser: type | None) -> Lau
     raise InvalidLaunchFileError(extension, likely_errors=errors)
 
 
-def _from_markup(launch_file_path: str, parser: type | None) -> LaunchDescription:
+def _from_markup(launch_file_path: str, parser: type[Parser] | None) -> LaunchDescription:
     from .frontend_launch_file_utilities import get_launch_description_from_frontend_launch_file
 
     return get_launch_description_from_frontend_launch_file(launch_file_path, parser=_parser(parser))
 
 
-def _parser(parser: type | None) -> type:
-    if parser is None:
-        from ..frontend.parser import Parser
+def _parser(parser: type[Parser] | None) -> type[Parser]:
+    from ..frontend.parser import Parser
 
-        return Parser
-    return parser
+    return parser or Parser

@@ -48,7 +48,7 @@ def get_launch_description_from_python_launch_file(python_launch_file_path: str)
             f"launch file at '{python_launch_file_path}' does not contain the required function "
             "'generate_launch_description()'"
         )
-    description = generate()
+    description: LaunchDescription | None = generate()
     if description is None:
         raise InvalidPythonLaunchFileError(
             f"launch file at '{python_launch_file_path}': 'generate_launch_description()' returned nothing"

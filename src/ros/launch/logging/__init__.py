@@ -13,7 +13,7 @@ from collections.abc import Callable, Mapping
 from typing import Any, ClassVar
 
 from . import handlers
-from ._formats import log_formatter, output_screen_formatter, screen_formatter
+from ._formats import Style, log_formatter, output_screen_formatter, screen_formatter
 from ._log_dir import create_log_dir, get_logging_directory
 
 __all__ = [
@@ -98,7 +98,7 @@ class LaunchConfig:
     def log_handler_factory(self, factory: Callable[..., logging.Handler]) -> None:
         self._log_handler_factory = factory
 
-    def set_screen_format(self, screen_format: str, *, screen_style: str | None = None) -> None:
+    def set_screen_format(self, screen_format: str, *, screen_style: Style | None = None) -> None:
         """Set the format of what is printed.
 
         Parameters
@@ -121,7 +121,7 @@ class LaunchConfig:
             self._screen_handler.setFormatter(self._screen_formatter)
         return self._screen_handler
 
-    def set_log_format(self, log_format: str, *, log_style: str | None = None) -> None:
+    def set_log_format(self, log_format: str, *, log_style: Style | None = None) -> None:
         """Set the format of the main log file.
 
         Parameters

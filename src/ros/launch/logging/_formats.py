@@ -6,6 +6,10 @@ import logging
 import os
 import sys
 import zlib
+from typing import Literal
+
+Style = Literal["%", "{", "$"]
+"""How a format names its fields; see `logging.Formatter`."""
 
 _SCREEN_FORMATS = {
     "default": "[{levelname}] [{name}]: {message}",
@@ -18,7 +22,7 @@ _LEVEL_COLORS = {"DEBUG": "\033[32m", "WARNING": "\033[33m", "ERROR": "\033[31m"
 _PROCESS_COLORS = [f"\033[{code}m" for code in (36, 35, 34, 96, 95, 94)]
 
 
-def screen_formatter(screen_format: str, style: str | None) -> logging.Formatter:
+def screen_formatter(screen_format: str, style: Style | None) -> logging.Formatter:
     """Return the formatter of what launch itself prints, in colour on a terminal.
 
     Raises
@@ -32,7 +36,7 @@ def screen_formatter(screen_format: str, style: str | None) -> logging.Formatter
     )
 
 
-def log_formatter(log_format: str, style: str | None) -> logging.Formatter:
+def log_formatter(log_format: str, style: Style | None) -> logging.Formatter:
     """Return the formatter of the main log file.
 
     Raises
@@ -49,7 +53,7 @@ def output_screen_formatter() -> logging.Formatter:
     return _ColoredPrefix()
 
 
-def _choose(name: str, style: str | None, standard: dict[str, str]) -> tuple[str, str]:
+def _choose(name: str, style: Style | None, standard: dict[str, str]) -> tuple[str, Style]:
     if name in standard:
         if style is not None:
             raise ValueError(f"the format '{name}' has its own style; '{style}' can not be set for it")

@@ -18,7 +18,7 @@ def with_per_logger_formatting(cls: type[Any]) -> type[Any]:
         A subclass of `logging.Handler`.
     """
 
-    class PerLoggerFormattingHandler(cls):
+    class PerLoggerFormattingHandler(cls):  # type: ignore[misc]  # the base is known when it is called
         """A log handler with a formatter for each logger and one for all others."""
 
         def __init__(self, *args: Any, **kwargs: Any) -> None:

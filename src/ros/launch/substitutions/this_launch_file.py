@@ -34,4 +34,4 @@ class ThisLaunchFile(Substitution):
         variables = context.get_locals_as_dict()
         if "current_launch_file_path" not in variables:
             raise SubstitutionFailure("ThisLaunchFile used outside of a launch file (in a script)")
-        return variables["current_launch_file_path"]
+        return str(variables["current_launch_file_path"])

@@ -37,4 +37,4 @@ class ThisLaunchFileDir(PathSubstitution):
         variables = context.get_locals_as_dict()
         if "current_launch_file_directory" not in variables:
             raise SubstitutionFailure("ThisLaunchFileDir used outside of a launch file (in a script)")
-        return variables["current_launch_file_directory"]
+        return str(variables["current_launch_file_directory"])

@@ -8,7 +8,17 @@ from __future__ import annotations
 import contextlib
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, List, Union, get_args, get_origin  # noqa: UP035 - callers pass typing.List
+from typing import (  # noqa: UP035 - callers pass typing.List
+    TYPE_CHECKING,
+    Any,
+    List,
+    TypeGuard,
+    TypeVar,
+    Union,
+    get_args,
+    get_origin,
+    overload,
+)
 
 from ..some_substitutions_type import SomeSubstitutionsType
 from ..substitution import Substitution
@@ -55,6 +65,7 @@ ListType = Union[type[list[int]], type[list[float]], type[list[bool]], type[list
 AllowedTypesType = Union[ScalarType, ListType]  # noqa: UP007
 
 ScalarValueType = int | float | bool | str
+Scalar = TypeVar("Scalar", bound=ScalarValueType)
 ListValueType = Sequence[int] | Sequence[float] | Sequence[bool] | Sequence[str]
 AllowedValueType = ScalarValueType | ListValueType
 SomeValueType = SomeSubstitutionsType | AllowedValueType
@@ -70,7 +81,7 @@ def is_typing_list(data_type: Any) -> bool:
     return get_origin(data_type) is list and get_args(data_type)[0] in ScalarTypesTuple
 
 
-def is_valid_scalar_type(data_type: Any) -> bool:
+def is_valid_scalar_type(data_type: Any) -> TypeGuard[ScalarType]:
     """Tell whether a type is one of the scalar types."""
     return data_type in ScalarTypesTuple
 
@@ -85,9 +96,9 @@ def extract_type(data_type: AllowedTypesType) -> tuple[ScalarType, bool]:
     """
     if is_typing_list(data_type):
         return get_args(data_type)[0], True
-    if not is_valid_scalar_type(data_type):
-        raise ValueError(f"unrecognized data type: {data_type}")
-    return data_type, False
+    if is_valid_scalar_type(data_type):
+        return data_type, False
+    raise ValueError(f"unrecognized data type: {data_type}")
 
 
 def is_instance_of_valid_type(value: Any, *, can_be_str: bool = False) -> bool:
@@ -235,7 +246,7 @@ def get_typed_value(value: str | list[str], data_type: AllowedTypesType | None, 
 # Substitutions with a type ------------------------------------------------------------------------
 
 
-def is_substitution(x: Any) -> bool:
+def is_substitution(x: Any) -> TypeGuard[Substitution | list[str | Path | Substitution]]:
     """Tell whether a value is a substitution, or substitutions and strings in a row."""
     if isinstance(x, Substitution):
         return True
@@ -247,7 +258,7 @@ def is_substitution(x: Any) -> bool:
     )
 
 
-def is_normalized_substitution(x: Any) -> bool:
+def is_normalized_substitution(x: Any) -> TypeGuard[list[Substitution]]:
     """Tell whether a value is a non-empty list of substitutions."""
     return isinstance(x, list) and len(x) > 0 and all(isinstance(item, Substitution) for item in x)
 
@@ -280,8 +291,10 @@ def normalize_typed_substitution(value: SomeValueType, data_type: AllowedTypesTy
         if not isinstance(value, Iterable):
             return _checked_scalar(value, scalar)
         if scalar is not None:
-            if all(isinstance(item, str | Path) for item in value):
-                return normalize_to_list_of_substitutions(value)
+            items = list(value)
+            texts = [item for item in items if isinstance(item, str | Path)]
+            if len(texts) == len(items):
+                return normalize_to_list_of_substitutions(texts)
             raise TypeError(f"expected {_name(data_type)}, but got the list {value!r}")
     if isinstance(value, str | Path | Substitution) and is_list:
         return normalize_to_list_of_substitutions(value)
@@ -296,7 +309,8 @@ def _checked_scalar(value: Any, scalar: ScalarType | None) -> ScalarValueType:
     if not is_instance_of(value, scalar):
         wanted = "a scalar or a text" if scalar is None else scalar.__name__
         raise TypeError(f"expected {wanted}, but got {value!r} of type {type(value).__name__}")
-    return value
+    checked: ScalarValueType = value
+    return checked
 
 
 def _normalized_list(items: list[Any], scalar: ScalarType | None) -> list[NormalizedScalarType]:
@@ -312,9 +326,15 @@ def _normalized_list(items: list[Any], scalar: ScalarType | None) -> list[Normal
     return normalized
 
 
+@overload
+def perform_typed_substitution(
+    context: LaunchContext, value: NormalizedValueType, data_type: type[Scalar]
+) -> Scalar: ...
+@overload
 def perform_typed_substitution(
     context: LaunchContext, value: NormalizedValueType, data_type: AllowedTypesType | None
-) -> AllowedValueType:
+) -> AllowedValueType: ...
+def perform_typed_substitution(context: LaunchContext, value: NormalizedValueType, data_type: Any) -> Any:
     """Work out a value that `normalize_typed_substitution` prepared.
 
     Raises

@@ -27,7 +27,7 @@ def visit_all_entities_and_collect_futures(
         for _, future in pairs:
             context.add_completion_future(future)
         raise
-    future = entity.get_asyncio_future()
-    if future is not None:
-        pairs.append((entity, future))
+    own_future = entity.get_asyncio_future()
+    if own_future is not None:
+        pairs.append((entity, own_future))
     return pairs

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import threading
 from types import GenericAlias, TracebackType
-from typing import TYPE_CHECKING, Any, NamedTuple, Self
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
 from rclpy.callback_groups import CallbackGroup
-from rclpy.impl.entities import ClientHandle, PublisherHandle, ServiceHandle, SubscriptionHandle
+from rclpy.impl.entities import ClientHandle, PublisherHandle, ServiceEndHandle, ServiceHandle, SubscriptionHandle
 from rclpy.impl.errors import InvalidHandle
 from rclpy.impl.node_graph import checked_name
 from rclpy.impl.ready import ReadyHook
@@ -46,9 +46,10 @@ class ActionEnd(Waitable):
         Quality of service of all five.
     """
 
-    __class_getitem__ = classmethod(GenericAlias)
+    __class_getitem__: ClassVar[Any] = classmethod(GenericAlias)
     role: str
     """What it is, in words."""
+    _services: tuple[ServiceEndHandle, ...]
 
     def __init__(
         self,

@@ -46,6 +46,12 @@ status_sub_qos_profile
     """
 
     role = "action client"
+    _goal_end: ClientHandle
+    _cancel_end: ClientHandle
+    _result_end: ClientHandle
+    _feedback_end: SubscriptionHandle
+    _status_end: SubscriptionHandle
+    _services: tuple[ClientHandle, ...]
 
     def __init__(
         self,
@@ -105,12 +111,13 @@ status_sub_qos_profile
             if not len(source.impl):
                 continue
             if isinstance(source, ClientHandle):
-                taken = source.take_response()
+                response = source.take_response()
+                if response is not None:
+                    return callback, response
             else:
                 sample = source.impl.take()
-                taken = None if sample is None else (sample[0],)
-            if taken is not None:
-                return callback, taken
+                if sample is not None:
+                    return callback, sample[:1]
         return None
 
     def _rcl_take_unbound(self) -> tuple[Callable[..., Any], tuple[Any, ...]] | None:

@@ -86,6 +86,11 @@ status_pub_qos_profile
     """
 
     role = "action server"
+    _goal_end: ServiceHandle
+    _cancel_end: ServiceHandle
+    _result_end: ServiceHandle
+    _feedback_end: PublisherHandle
+    _status_end: PublisherHandle
 
     def __init__(
         self,

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import inspect
 from collections import deque
-from collections.abc import Coroutine
+from collections.abc import Callable, Coroutine, Iterable
+from contextlib import AbstractContextManager
 from typing import Any
 
 from rclpy.context import Context
 from rclpy.impl.ready import ReadyHook
 from rclpy.impl.ready_queue import ReadyQueue
 from rclpy.impl.running import THREAD, BlockedCalls
-from rclpy.task import Task
+from rclpy.task import Future, Task
 
 _AT_ONCE = 20
 """How many messages a subscription may take in a row while nothing else is ready."""
@@ -33,6 +34,18 @@ class CallbackRunner:
         self._is_shutdown = False
         self._spins = False  # within `spin`, where nobody counts the callbacks that run
 
+    def create_task(self, callback: Callable[..., Any] | Coroutine[Any, Any, Any], *args: Any, **kwargs: Any) -> Task:
+        """Carry a function or coroutine out later; see `Executor.create_task`."""
+        raise NotImplementedError
+
+    def _help_until_done(self, future: Future, entity: Any, services: Iterable[str], timeout_s: float | None) -> None:
+        """Run other callbacks while the one of `entity` waits for a future that one of `services` finishes."""
+        raise NotImplementedError
+
+    def _blocked(self, entity: Any, services: Iterable[str]) -> AbstractContextManager[None]:
+        """Note, for the length of a block, that the callback of `entity` waits for `services`."""
+        raise NotImplementedError
+
     def _begin(self, hook: ReadyHook) -> Any:
         """Reserve the entity's callback group; returns the entity, None when it must wait or is no longer ours."""
         entity = hook.entity()
@@ -41,10 +54,8 @@ class CallbackRunner:
         group = entity.callback_group
         if group is not None and not group.beginning_execution(entity) and not self._calls.may_enter(entity):
             unbound = getattr(entity, "_rcl_take_unbound", None)
-            work = unbound() if unbound is not None else None
-            while work is not None:
+            while unbound is not None and (work := unbound()) is not None:
                 work[0](*work[1])
-                work = unbound()
             self._deferred.append(hook)
             if group.can_execute(entity):
                 self._retry_deferred()

@@ -5,13 +5,16 @@ from __future__ import annotations
 import weakref
 from collections.abc import Callable
 from types import MethodType
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from daidalos.transport.backend import RequestId
+from daidalos.transport.client import Client
 from daidalos.transport.graph import EndpointInfo, EndpointKind, Graph, NodeInfo, names_and_types
 from daidalos.transport.publisher import Publisher
 from daidalos.transport.qos import Liveliness, Qos
+from daidalos.transport.service import Service
 from daidalos.transport.session import Session
+from daidalos.transport.subscription import Subscription
 from rclpy.impl import names
 from rclpy.impl.arguments import RosArguments, parse
 from rclpy.impl.best_available import best_available_offer, best_available_request
@@ -21,6 +24,11 @@ from rclpy.impl.handle import Destroyable
 from rclpy.impl.introspection import Introspection
 from rclpy.impl.log_output import OUTPUT
 from rclpy.impl.ready import ReadyNotifier, weakly
+
+if TYPE_CHECKING:
+    from rclpy.clock import Clock
+    from rclpy.qos import QoSProfile
+    from rclpy.service_introspection import ServiceIntrospectionState
 
 
 class NodeHandle(Destroyable):
@@ -143,31 +151,57 @@ class ServiceInfo(NamedTuple):
     received_timestamp: int
 
 
-class EndpointHandle(ReadyNotifier, Destroyable):
-    """Base of the four kinds of endpoints; `impl` is the transport's object."""
+class EndpointHandle(Destroyable):
+    """Base of the four kinds of endpoints.
 
-    impl: Any
-    introspection: Introspection | None = None
+    Parameters
+    ----------
+    node
+        The node that the endpoint belongs to.
+
+    Attributes
+    ----------
+    impl
+        The transport's object.
+    """
+
+    impl: Publisher | Subscription | Service | Client
 
     def __init__(self, node: NodeHandle) -> None:
         super().__init__()
         self.node = node
-        self._stop_new: Callable[[], None] | None = None
         node.own(self)
 
     @property
     def endpoint(self) -> EndpointInfo:
-        """How the graph knows it."""
-        info: EndpointInfo = self.impl.endpoint
-        return info
+        """The endpoint as the graph knows it."""
+        return self.impl.endpoint
 
     @property
     def name(self) -> str:
         """The full name of the topic or service."""
         return self.endpoint.name
 
+    def retire(self) -> None:
+        """Leave the graph; the handle stays, and reaches nobody."""
+        self.impl.close()
+
+    def _destroy(self) -> None:
+        self.impl.close()
+
+    def __del__(self) -> None:
+        if hasattr(self, "impl") and not self.is_destroyed:
+            self.node.session.abandon(self.impl.close)
+
+
+class QueueHandle(ReadyNotifier, EndpointHandle):
+    """Base of the endpoints with a queue of what came in."""
+
+    impl: Subscription | Service | Client
+    _stop_new: Callable[[], None] | None = None
+
     def set_on_ready(self, on_ready: Callable[[], None]) -> None:
-        """Have `on_ready` called when something was queued, and at once if something is.
+        """Call `on_ready` when something was queued, and at once if something is.
 
         A bound method does not keep its object alive.
         """
@@ -190,24 +224,34 @@ class EndpointHandle(ReadyNotifier, Destroyable):
         if stop is not None:
             stop()
 
-    def configure_introspection(self, clock: Any, service_type: Any, qos: Any, state: Any) -> None:
-        """Tell of requests and responses from now on as `state` says."""
+
+class ServiceEndHandle(QueueHandle):
+    """Base of clients and services."""
+
+    impl: Service | Client
+    introspection: Introspection | None = None
+
+    def configure_introspection(
+        self, clock: Clock, service_type: Any, qos: QoSProfile, state: ServiceIntrospectionState
+    ) -> None:
+        """Publish events of requests and responses from now on.
+
+        Parameters
+        ----------
+        clock
+            Stamps the events.
+        service_type
+            The class of the service.
+        qos
+            Quality of service of the topic of the events.
+        state
+            Whether events are published, and whether with the messages.
+        """
         before, self.introspection = self.introspection, None
         if before is not None:
             before.close()
         if state:
             self.introspection = Introspection(self, service_type, clock, qos, state)
-
-    def retire(self) -> None:
-        """Leave the graph; the handle stays, and reaches nobody."""
-        self.impl.close()
-
-    def _destroy(self) -> None:
-        self.impl.close()
-
-    def __del__(self) -> None:
-        if hasattr(self, "impl") and not self.is_destroyed:
-            self.node.session.abandon(self.impl.close)
 
 
 def liveliness_topic(topic: str) -> str:
@@ -218,7 +262,9 @@ def liveliness_topic(topic: str) -> str:
 class PublisherHandle(EndpointHandle):
     """A publisher."""
 
-    def __init__(self, node: NodeHandle, message_type: Any, topic: str, qos: Any) -> None:
+    impl: Publisher
+
+    def __init__(self, node: NodeHandle, message_type: Any, topic: str, qos: QoSProfile) -> None:
         super().__init__(node)
         resolved = best_available_offer(qos, node.graph, topic).resolved()
         self.impl = node.session.create_publisher(node.info, topic, message_type, resolved)
@@ -227,6 +273,11 @@ class PublisherHandle(EndpointHandle):
     def get_topic_name(self) -> str:
         """Return the full topic name."""
         return self.name
+
+    @property
+    def has_subscribers(self) -> bool:
+        """Whether a message would reach, or be kept for, anybody."""
+        return self.impl.has_subscribers
 
     def assert_liveliness(self) -> None:
         """Show that the publisher is alive, though it publishes nothing."""
@@ -255,10 +306,12 @@ class PublisherHandle(EndpointHandle):
         return len(self.node.session.matching_endpoints(self.endpoint))
 
 
-class SubscriptionHandle(EndpointHandle):
+class SubscriptionHandle(QueueHandle):
     """A subscription."""
 
-    def __init__(self, node: NodeHandle, message_type: Any, topic: str, qos: Any) -> None:
+    impl: Subscription
+
+    def __init__(self, node: NodeHandle, message_type: Any, topic: str, qos: QoSProfile) -> None:
         super().__init__(node)
         resolved = best_available_request(qos, node.graph, topic).resolved()
         self.impl = node.session.create_subscription(node.info, topic, message_type, resolved)
@@ -288,10 +341,12 @@ class SubscriptionHandle(EndpointHandle):
         self._clear_on_new()
 
 
-class ServiceHandle(EndpointHandle):
+class ServiceHandle(ServiceEndHandle):
     """A service."""
 
-    def __init__(self, node: NodeHandle, service_type: Any, name: str, qos: Any) -> None:
+    impl: Service
+
+    def __init__(self, node: NodeHandle, service_type: Any, name: str, qos: QoSProfile) -> None:
         super().__init__(node)
         self.impl = node.session.create_service(node.info, name, service_type, qos.resolved())
 
@@ -325,16 +380,18 @@ class ServiceHandle(EndpointHandle):
         self.impl.reply(identity, response)
 
 
-class ClientHandle(EndpointHandle):
+class ClientHandle(ServiceEndHandle):
     """A client."""
 
-    def __init__(self, node: NodeHandle, service_type: Any, name: str, qos: Any) -> None:
+    impl: Client
+
+    def __init__(self, node: NodeHandle, service_type: Any, name: str, qos: QoSProfile) -> None:
         super().__init__(node)
         self.impl = node.session.create_client(node.info, name, service_type, qos.resolved())
 
     def send_request(self, request: Any) -> int:
         """Send a request; returns its sequence number."""
-        number: int = self.impl.send(request)
+        number = self.impl.send(request)
         if self.introspection is not None:
             self.introspection.tell("REQUEST_SENT", self.endpoint.gid, number, request=request)
         return number

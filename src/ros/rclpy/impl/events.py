@@ -18,7 +18,7 @@ from daidalos.transport.graph import EndpointInfo, EndpointKind
 from daidalos.transport.qos import INFINITE_NS, Liveliness, Qos, incompatibilities
 from daidalos.transport.steady_timers import STEADY_TIMERS, SteadyTimer
 from daidalos.transport.subscription import Subscription
-from rclpy.impl.entities import EndpointHandle, liveliness_topic
+from rclpy.impl.entities import PublisherHandle, SubscriptionHandle, liveliness_topic
 from rclpy.impl.errors import UnsupportedEventTypeError
 from rclpy.impl.event_statuses import (
     IncompatibleTypeStatus,
@@ -36,11 +36,13 @@ from rclpy.impl.event_statuses import (
 from rclpy.impl.ready import ReadyNotifier, weakly
 from rclpy.qos import QoSPolicyKind
 
+TopicHandle = PublisherHandle | SubscriptionHandle
+
 
 class EventSource(ReadyNotifier):
     """Base: holds the status of one event of one endpoint; `on_ready` is called when it changes."""
 
-    def __init__(self, handle: EndpointHandle, on_ready: Callable[[], None], status: Any) -> None:
+    def __init__(self, handle: TopicHandle, on_ready: Callable[[], None], status: Any) -> None:
         self._handle = handle
         self._mine = handle.endpoint
         self._lock = threading.RLock()
@@ -87,7 +89,7 @@ class EventSource(ReadyNotifier):
 class GraphSource(EventSource):
     """An event that comes from endpoints which come and go."""
 
-    def __init__(self, handle: EndpointHandle, on_ready: Callable[[], None], status: Any) -> None:
+    def __init__(self, handle: TopicHandle, on_ready: Callable[[], None], status: Any) -> None:
         super().__init__(handle, on_ready, status)
         self._stop = handle.node.session.watch(self._mine.name, weakly(self._on_change))
 
@@ -144,7 +146,7 @@ class IncompatibleTypeSource(GraphSource):
 class LivelinessChangedSource(GraphSource):
     """Counts publishers that are alive: those in the graph, and manual ones only as long as they show it."""
 
-    def __init__(self, handle: EndpointHandle, on_ready: Callable[[], None], status: Any) -> None:
+    def __init__(self, handle: TopicHandle, on_ready: Callable[[], None], status: Any) -> None:
         self._leases: dict[bytes, _Lease] = {}
         self._assertions: Subscription | None = None
         super().__init__(handle, on_ready, status)
@@ -244,7 +246,7 @@ class _Lease:
 class LivelinessLostSource(EventSource):
     """Counts how often a manual publisher did not show that it was alive."""
 
-    def __init__(self, handle: EndpointHandle, on_ready: Callable[[], None], status: Any) -> None:
+    def __init__(self, handle: TopicHandle, on_ready: Callable[[], None], status: Any) -> None:
         super().__init__(handle, on_ready, status)
         qos = self._mine.qos
         self._lease: _Lease | None = None
@@ -264,7 +266,7 @@ class LivelinessLostSource(EventSource):
 class DeadlineSource(EventSource):
     """Counts how often a deadline passed without a sample, from the first sample on."""
 
-    def __init__(self, handle: EndpointHandle, on_ready: Callable[[], None], status: Any) -> None:
+    def __init__(self, handle: TopicHandle, on_ready: Callable[[], None], status: Any) -> None:
         super().__init__(handle, on_ready, status)
         self._span = self._mine.qos.deadline_ns
         self._last = self._start = 0
@@ -310,7 +312,7 @@ class DeadlineSource(EventSource):
 class MessageLostSource(EventSource):
     """Counts the gaps in publishers' sequence numbers."""
 
-    def __init__(self, handle: EndpointHandle, on_ready: Callable[[], None], status: Any) -> None:
+    def __init__(self, handle: TopicHandle, on_ready: Callable[[], None], status: Any) -> None:
         super().__init__(handle, on_ready, status)
         self._last: dict[bytes, int] = {}
         handle.impl.observe(weakly(self._on_sample))
@@ -341,7 +343,7 @@ _SOURCES: dict[tuple[type[IntEnum], int], tuple[type[EventSource], type[Any]]] =
 }
 
 
-def event_source(handle: EndpointHandle, event_type: IntEnum, on_ready: Callable[[], None]) -> EventSource:
+def event_source(handle: TopicHandle, event_type: IntEnum, on_ready: Callable[[], None]) -> EventSource:
     """Return what watches for an event.
 
     Raises

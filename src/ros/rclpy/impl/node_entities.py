@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from rclpy.callback_groups import CallbackGroup
 from rclpy.client import Client
-from rclpy.clock import Clock
+from rclpy.clock import Clock, ROSClock
 from rclpy.constants import S_TO_NS
 from rclpy.context import Context
 from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
@@ -15,6 +15,7 @@ from rclpy.guard_condition import GuardCondition
 from rclpy.impl.entities import ClientHandle, NodeHandle, PublisherHandle, ServiceHandle, SubscriptionHandle
 from rclpy.impl.node_graph import checked_name
 from rclpy.impl.node_members import NodeMembers
+from rclpy.impl.node_parameters import NodeParameters
 from rclpy.publisher import Publisher
 from rclpy.qos import QoSProfile, qos_profile_services_default
 from rclpy.service import Service
@@ -27,14 +28,24 @@ if TYPE_CHECKING:
     from rclpy.subscription_content_filter_options import ContentFilterOptions
 
 
-class NodeEntities(NodeMembers):
+class NodeEntities(NodeMembers, NodeParameters):
     """The part of `Node` that makes what it consists of."""
 
     handle: NodeHandle
-    context: Context
-    default_callback_group: CallbackGroup
-    _clock: Clock
+    _context: Context
+    _default_callback_group: CallbackGroup
+    _clock: ROSClock
     _rcl_client_class: type[Client] = Client
+
+    @property
+    def context(self) -> Context:
+        """The node's context."""
+        return self._context
+
+    @property
+    def default_callback_group(self) -> CallbackGroup:
+        """The group of entities that are given none: mutually exclusive."""
+        return self._default_callback_group
 
     def create_publisher(
         self,

@@ -28,6 +28,10 @@ class NodeMembers:
     executor: Executor | None
     _rcl_members: dict[str, list[Any]]
 
+    def _wake_executor(self) -> None:
+        """Have the node's executor, if there is one, look again at what it waits for."""
+        raise NotImplementedError
+
     @property
     def publishers(self) -> Iterator[Publisher]:
         """The node's publishers."""

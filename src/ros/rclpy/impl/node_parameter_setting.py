@@ -98,7 +98,9 @@ class NodeParameterSetting:
     def _rcl_commit(self, parameters: list[Parameter[Any]]) -> None:
         from rcl_interfaces.msg import ParameterDescriptor
 
-        new, changed, deleted = [], [], []
+        new: list[Parameter[Any]] = []
+        changed: list[Parameter[Any]] = []
+        deleted: list[Parameter[Any]] = []
         for parameter in parameters:
             if parameter.type_ == ParameterType.NOT_SET:
                 if parameter.name in self._parameters:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 def unpacked(index: int, entry: Any) -> tuple[str, Any, Any]:
     """Return (name, value, descriptor) of a declaration."""
-    from rcl_interfaces.msg import ParameterDescriptor
+    from rcl_interfaces.msg import ParameterDescriptor, ParameterValue
 
     if not isinstance(entry, tuple) or not 1 <= len(entry) <= 3:
         raise TypeError(
@@ -25,8 +25,8 @@ def unpacked(index: int, entry: Any) -> tuple[str, Any, Any]:
     if not isinstance(name, str):
         raise TypeError(f"First element {name} at index {index} in parameters list is not a str.")
     value = entry[1] if len(entry) > 1 else None
-    is_message = type(value).__name__ == "ParameterValue"
-    if is_message:
+    is_message = isinstance(value, ParameterValue)
+    if isinstance(value, ParameterValue):
         value = parameter_value_to_python(value)
     descriptor = copy.deepcopy(entry[2]) if len(entry) > 2 else None
     if descriptor is None:

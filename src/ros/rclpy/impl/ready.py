@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import weakref
 from collections.abc import Callable
-from types import MethodType
 from typing import Any
 
 
@@ -89,8 +88,8 @@ class ReadyNotifier:
         raise NotImplementedError
 
 
-def weakly(method: MethodType) -> Callable[..., None]:
-    """Return what calls a bound method as long as its object lives."""
+def weakly(method: Callable[..., Any]) -> Callable[..., None]:
+    """Return a function that calls a bound method as long as its object lives."""
     reference = weakref.WeakMethod(method)
 
     def call(*arguments: Any) -> None:

@@ -12,14 +12,14 @@ from rclpy.exceptions import ROSInterruptException
 if TYPE_CHECKING:
     from rclpy.callback_groups import CallbackGroup
     from rclpy.context import Context
-    from rclpy.executors import Executor
+    from rclpy.impl.callback_runner import CallbackRunner
     from rclpy.task import Future
 
 
 class _Thread(threading.local):
     """The present thread's executor and entity, None outside of callbacks."""
 
-    executor: Executor | None = None
+    executor: CallbackRunner | None = None
     entity: Any = None
 
 

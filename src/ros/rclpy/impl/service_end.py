@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from types import GenericAlias, TracebackType
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, Self, TypeVar
 
 from rclpy.callback_groups import CallbackGroup
 from rclpy.impl.entities import ClientHandle, ServiceHandle
@@ -15,15 +15,32 @@ if TYPE_CHECKING:
     from rclpy.service_introspection import ServiceIntrospectionState
 
 
-class ServiceEnd:
-    """One end of a service, as a node has it."""
+Handle = TypeVar("Handle", bound=ClientHandle | ServiceHandle)
 
-    __class_getitem__ = classmethod(GenericAlias)
+
+class ServiceEnd(Generic[Handle]):
+    """One end of a service, as a node has it.
+
+    Parameters
+    ----------
+    handle
+        The endpoint.
+    srv_type
+        The class of the service.
+    srv_name
+        Its name, as the user gave it.
+    qos_profile
+        Quality of service.
+    callback_group
+        Decides when the end may run.
+    """
+
+    __class_getitem__: ClassVar[Any] = classmethod(GenericAlias)
 
     def __init__(
-        self, handle: Any, srv_type: Any, srv_name: str, qos_profile: QoSProfile, callback_group: CallbackGroup
+        self, handle: Handle, srv_type: Any, srv_name: str, qos_profile: QoSProfile, callback_group: CallbackGroup
     ) -> None:
-        self.__handle: ClientHandle | ServiceHandle = handle
+        self.__handle = handle
         self._rcl_hook = ReadyHook(self)
         self._rcl_node: Any = None
         self.srv_type = srv_type
@@ -32,8 +49,8 @@ class ServiceEnd:
         self.callback_group = callback_group
 
     @property
-    def handle(self) -> Any:
-        """What is behind it."""
+    def handle(self) -> Handle:
+        """The endpoint behind it."""
         return self.__handle
 
     @property

@@ -12,7 +12,7 @@ import weakref
 from collections.abc import Callable
 from typing import Any
 
-from rclpy.impl.entities import EndpointHandle, GuardConditionHandle
+from rclpy.impl.entities import GuardConditionHandle, QueueHandle
 from rclpy.impl.ready import ReadyHook
 from rclpy.impl.timer import TimerHandle
 
@@ -115,7 +115,7 @@ class WaitSet:
 
 
 def _is_ready(entity: Any) -> bool:
-    if isinstance(entity, EndpointHandle):
+    if isinstance(entity, QueueHandle):
         return len(entity.impl) > 0
     if isinstance(entity, TimerHandle):
         return entity.is_timer_ready()

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections import namedtuple
 from collections.abc import Callable, Iterable
-from typing import Any
+from typing import Any, NamedTuple
 
 from rclpy.action import (
     get_action_client_names_and_types_by_node,
@@ -13,11 +12,21 @@ from rclpy.action import (
 from ros2cli.graph import NameCompleter, visible
 from ros2cli.node.strategy import NodeStrategy
 
-NodeName = namedtuple("NodeName", ("name", "namespace", "full_name"))
-"""A node: its name, its namespace, and both joined."""
 
-TopicInfo = namedtuple("Topic", ("name", "types"))
-"""A topic, service or action with its types."""
+class NodeName(NamedTuple):
+    """A node: its name, its namespace, and both joined."""
+
+    name: str
+    namespace: str
+    full_name: str
+
+
+class TopicInfo(NamedTuple):
+    """A topic, service or action with its types."""
+
+    name: str
+    types: list[str]
+
 
 _HIDDEN_PREFIX = "_"
 
@@ -73,7 +82,7 @@ def wait_for_node(node: Any, node_name: str, include_hidden_nodes: bool = False,
     timeout
         For how long [s].
     """
-    wanted = get_absolute_node_name(node_name)
+    wanted = get_absolute_node_name(node_name) or ""
 
     def is_there() -> bool:
         found = get_node_names(node=node, include_hidden_nodes=include_hidden_nodes)

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import argparse
-from typing import Any
+from collections.abc import Callable
+from contextlib import suppress
+from typing import Any, TypeVar
 
 from ros2cli.graph import NameCompleter, NamesAndTypes, TypeCompleter, class_of, visible
 from ros2cli.interfaces import interface_names, prototype
 from ros2cli.qos import add_qos_arguments as add_qos_arguments
 from ros2cli.qos import profile_configure_short_keys as profile_configure_short_keys
 from ros2cli.qos import qos_profile_from_short_keys as qos_profile_from_short_keys
+
+Number = TypeVar("Number", int, float)
 
 
 def get_topic_names_and_types(*, node: Any, include_hidden_topics: bool = False) -> NamesAndTypes:
@@ -128,11 +132,9 @@ def _types_of(node: Any, topic: str) -> list[str]:
     )
 
 
-def _number(string: str, kind: Any, is_good: Any, words: str) -> Any:
-    try:
+def _number(string: str, kind: type[Number], is_good: Callable[[Number], bool], words: str) -> Number:
+    with suppress(ValueError):
         value = kind(string)
-    except ValueError:
-        value = None
-    if value is None or not is_good(value):
-        raise argparse.ArgumentTypeError(f"value must be {words}, not '{string}'")
-    return value
+        if is_good(value):
+            return value
+    raise argparse.ArgumentTypeError(f"value must be {words}, not '{string}'")

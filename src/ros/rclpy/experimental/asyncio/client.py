@@ -44,7 +44,9 @@ class AsyncClient(Client):
             self._calls.discard(answer)
             self.remove_pending_request(future)
 
-    async def wait_for_service(self, timeout_sec: float | None = None) -> bool:
+    async def wait_for_service(  # type: ignore[override]  # awaited, unlike that of `Client`
+        self, timeout_sec: float | None = None
+    ) -> bool:
         """Wait until somebody serves the service; False when `timeout_sec` seconds pass."""
         try:
             async with asyncio.timeout(timeout_sec):

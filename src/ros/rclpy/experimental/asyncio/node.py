@@ -168,7 +168,9 @@ class AsyncNode(Node):
         self._rcl_add("timer", timer)
         return timer
 
-    async def wait_for_node(self, fully_qualified_node_name: str, timeout: float | None = None) -> bool:
+    async def wait_for_node(  # type: ignore[override]  # awaited, unlike that of `Node`
+        self, fully_qualified_node_name: str, timeout: float | None = None
+    ) -> bool:
         """Wait until a node is there; False when `timeout` seconds (None: no limit) pass first."""
         name = f"/{fully_qualified_node_name.lstrip('/')}"
         graph = self.handle.graph
