@@ -50,7 +50,7 @@ class AnonName(Substitution):
     def perform(self, context: LaunchContext) -> str:
         """Return the name in its unique form."""
         name = perform_substitutions(context, self.name)
-        return context.launch_configurations.setdefault(f"anon{name}", self.compute_name(name))
+        return str(context.launch_configurations.setdefault(f"anon{name}", self.compute_name(name)))
 
     def compute_name(self, id_value: str) -> str:
         """Return a new unique name that begins with `id_value` and that ROS accepts."""
