@@ -28,7 +28,7 @@ from tf2_msgs.msg import TFMessage
 from daidalos.common.kernels import warm_up
 from daidalos.nodes.conversions import time_message, transform_stamped
 
-TIMEOUT_S = 100.0
+TIMEOUT_S = 30.0
 """How long [s] of real time anything may take that is expected to happen."""
 
 STEP_S = 0.05
@@ -157,7 +157,7 @@ class Stage:
         self.step_until(future.done)
         return future.result()
 
-    def send(self, action: Any, name: str, feedback: Callable[[Any], None] | None = None, **goal: Any) -> Any:
+    def send(self, action: Any, name: str, feedback: Callable[[Any], None] | None = None, /, **goal: Any) -> Any:
         """Return the handle of a goal that is sent to an action server."""
         client = ActionClient(self.node, action, name)
         self.step_until(client.server_is_ready)
@@ -168,7 +168,7 @@ class Stage:
         answer = self.result(handle.get_result_async())
         return answer.status, answer.result
 
-    def call(self, kind: Any, name: str, **request: Any) -> Any:
+    def call(self, kind: Any, name: str, /, **request: Any) -> Any:
         """Return the response of a service."""
         client = self.node.create_client(kind, name)
         self.step_until(client.service_is_ready)

@@ -8,10 +8,11 @@ from rclpy.time import Time
 from tf2_py import TransformException
 from tf2_ros import Buffer
 
-from daidalos.nodes.conversions import nanoseconds
+from daidalos.nodes.conversions import nanoseconds, pose2_of_transform
 
 if TYPE_CHECKING:
     from geometry_msgs.msg import TransformStamped
+    from rclpy.impl.rcutils_logger import RcutilsLogger
     from rclpy.task import Future
 
 _AHEAD_NS = 1_000_000_000
@@ -48,3 +49,36 @@ class BlockingBuffer(Buffer):
                 raise
 
         return self._future(look_up)
+
+
+class SensorPoses:
+    """The poses of sensors in the robot's base, which do not change.
+
+    Parameters
+    ----------
+    buffer
+        Where they are looked up once.
+    base_frame
+        The frame of the robot's base.
+    logger
+        Logs for which sensor a transform is missing.
+    """
+
+    def __init__(self, buffer: Buffer, base_frame: str, logger: RcutilsLogger) -> None:
+        self._buffer = buffer
+        self._base_frame = base_frame
+        self._logger = logger
+        self._poses: dict[str, Any] = {}
+
+    def find(self, frame: str) -> Any | None:
+        """Return the pose (x, y, yaw) of the sensor of a frame, None while it is not known."""
+        if frame not in self._poses:
+            try:
+                found = self._buffer.lookup_transform(self._base_frame, frame, Time())
+            except TransformException:
+                self._logger.info(
+                    f"waiting for the transform from {frame} to {self._base_frame}", throttle_duration_sec=5.0
+                )
+                return None
+            self._poses[frame] = pose2_of_transform(found.transform)
+        return self._poses[frame]

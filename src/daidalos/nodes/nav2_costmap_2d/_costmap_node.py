@@ -41,7 +41,7 @@ from daidalos.nodes.cycles import wait_until
 from daidalos.nodes.managed import ManagedNode
 from daidalos.nodes.nav2_costmap_2d._costmap_messages import costmap_message, footprint_message
 from daidalos.nodes.parameters import declare_dataclass, declare_plugin
-from daidalos.nodes.transforms import BlockingBuffer
+from daidalos.nodes.transforms import BlockingBuffer, SensorPoses
 from daidalos.nodes.warming import warm_up_in_background
 
 _LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
@@ -105,7 +105,7 @@ class CostmapNode(ManagedNode):
         self.footprint = self._read_footprint()
         self.buffer = BlockingBuffer(node=self)
         self._listener = TransformListener(self.buffer, self)
-        self._sensor_poses: dict[str, Any] = {}
+        self._sensor_poses = SensorPoses(self.buffer, self.base_frame, self.get_logger())
         self._compiled = warm_up_in_background("daidalos.navigation", self.get_logger())
         self._timers: list[Any] = []
 
@@ -228,7 +228,9 @@ class CostmapNode(ManagedNode):
             topic = f"/{topic}"
 
         async def take(scan: Any) -> None:
-            sensor_pose = await self._sensor_pose(scan.header.frame_id)
+            sensor_pose = self._sensor_poses.find(scan.header.frame_id)
+            if sensor_pose is None:
+                return
             stamp = scan.header.stamp
             found = await self.buffer.transform_at(self.global_frame, self.base_frame, stamp)
             if found is None:
@@ -243,12 +245,6 @@ class CostmapNode(ManagedNode):
         # A scan waits for its transform; updates and services do not wait with it.
         group = MutuallyExclusiveCallbackGroup()
         self.create_subscription(LaserScan, topic, take, qos_profile_sensor_data, callback_group=group)
-
-    async def _sensor_pose(self, frame: str) -> Any:
-        if frame not in self._sensor_poses:
-            found = await self.buffer.lookup_transform_async(self.base_frame, frame, Time())
-            self._sensor_poses[frame] = pose2_of_transform(found.transform)
-        return self._sensor_poses[frame]
 
     # Cycle.
 

@@ -46,7 +46,7 @@ class SlamToolbox(Node):
         from slam_toolbox.srv import Reset, SaveMap
         from tf2_ros import TransformBroadcaster, TransformListener
 
-        from daidalos.nodes.transforms import BlockingBuffer
+        from daidalos.nodes.transforms import BlockingBuffer, SensorPoses
 
         self._config = declare_dataclass(self, SlamConfig, match_every_scan=True)
         self._map_frame = self.declare_parameter("map_frame", "map").value
@@ -60,12 +60,12 @@ class SlamToolbox(Node):
         self.declare_parameter("transform_publish_period", 0.02)
         self._slam: Any = None
         self._lock = threading.Lock()
-        self._sensor_poses: dict[str, Any] = {}
         self._scans = 0
         self._drawn_keys = -1
         self._map_to_odom: Any = None
         self._buffer = BlockingBuffer()
         self._listener = TransformListener(self._buffer, self)
+        self._sensor_poses = SensorPoses(self._buffer, self._base_frame, self.get_logger())
         self._broadcaster = TransformBroadcaster(self)
         self._map_publisher = self.create_publisher(OccupancyGrid, "map", _LATCHED)
         self._metadata_publisher = self.create_publisher(MapMetaData, "map_metadata", _LATCHED)
@@ -99,7 +99,9 @@ class SlamToolbox(Node):
         self._scans += 1
         if self._scans % self._throttle or self._slam is None:
             return
-        sensor_pose = await self._sensor_pose(scan.header.frame_id)
+        sensor_pose = self._sensor_poses.find(scan.header.frame_id)
+        if sensor_pose is None:
+            return
         # Odometry comes a little later than the scan that it belongs to.
         odometry = await self._buffer.transform_at(self._odom_frame, self._base_frame, scan.header.stamp)
         if odometry is None:
@@ -109,15 +111,6 @@ class SlamToolbox(Node):
         with self._lock:
             self._slam.add_scan(stamp_ns, data, pose2_of_transform(odometry.transform))
             self._map_to_odom = self._slam.map_to_odom
-
-    async def _sensor_pose(self, frame: str) -> Any:
-        """Return the sensor's pose in the base, which does not change."""
-        if frame not in self._sensor_poses:
-            from rclpy.time import Time
-
-            found = await self._buffer.lookup_transform_async(self._base_frame, frame, Time())
-            self._sensor_poses[frame] = pose2_of_transform(found.transform)
-        return self._sensor_poses[frame]
 
     def _publish_transform(self) -> None:
         if self._map_to_odom is None:
@@ -157,8 +150,10 @@ class SlamToolbox(Node):
         if self._slam is None or not self._slam.key_count:
             response.result = response.RESULT_NO_MAP_RECEIEVD
             return response
+        with self._lock:
+            grid = self._slam.grid()
         try:
-            save_map(self._slam.grid(), name)
+            save_map(grid, name)
         except (OSError, MappingError) as error:
             self.get_logger().error(f"cannot save the map: {error}")
             response.result = response.RESULT_UNDEFINED_FAILURE
@@ -168,10 +163,11 @@ class SlamToolbox(Node):
         return response
 
     def _on_reset(self, request: Any, response: Any) -> Any:
-        if self._slam is not None:
-            self._slam = self._new_slam()
-        self._map_to_odom = None
-        self._drawn_keys = -1
+        with self._lock:
+            if self._slam is not None:
+                self._slam = self._new_slam()
+            self._map_to_odom = None
+            self._drawn_keys = -1
         response.result = response.RESULT_SUCCESS
         return response
 
