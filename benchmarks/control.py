@@ -17,14 +17,14 @@ from daidalos.common.pose3 import Pose
 from daidalos.control.controllers.base import ControllerContext
 from daidalos.control.hardware.base import Hardware
 from daidalos.control.hardware.generic import GenericSystem
-from daidalos.control.hardware.simulated import SimulatedSystem
 from daidalos.control.manager import ControllerManager
-from daidalos.control.samples import TrajectoryCommand, TrajectoryPoint
 from daidalos.description import sdf, urdf
 from daidalos.description.ros2_control import read_hardware
+from daidalos.nodes.controller_manager._simulated_system import SimulatedSystem
+from daidalos.samples.commands import TwistCommand
+from daidalos.samples.controllers import TrajectoryCommand, TrajectoryPoint
 from daidalos.simulation import Simulation
 from daidalos.simulation.plugins.ros2_control import Ros2Control
-from daidalos.simulation.samples import TwistCommand
 
 SECOND = 1_000_000_000
 INERTIA = '<inertia ixx="{0}" iyy="{0}" izz="{0}" ixy="0" ixz="0" iyz="0"/>'

@@ -18,8 +18,9 @@ import daidalos
 from daidalos.common.pose3 import Pose
 from daidalos.description import sdf, urdf
 from daidalos.description.robot import Robot
+from daidalos.samples.commands import TwistCommand
+from daidalos.samples.sensors import LaserScanSample, OdometrySample
 from daidalos.simulation import Simulation
-from daidalos.simulation.samples import LaserScanSample, OdometrySample, TwistCommand
 
 SHARE = Path(daidalos.__file__).parent / "share"
 SECOND = 1_000_000_000

@@ -15,9 +15,9 @@ from daidalos.control.errors import HardwareError, StateError, SwitchError, Unkn
 from daidalos.control.hardware.base import Hardware
 from daidalos.control.interfaces import Interfaces
 from daidalos.control.manager import ControllerManager
-from daidalos.control.samples import ValuesCommand
 from daidalos.control.switching import Strictness
-from daidalos.simulation.samples import Sample
+from daidalos.samples.controllers import ValuesCommand
+from daidalos.samples.sensors import Sample
 
 FORWARD = "forward_command_controller/ForwardCommandController"
 PLACE = __name__

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy import interpolate
 
-from daidalos.control.samples import TrajectoryPoint
 from daidalos.control.trajectory import Trajectory, integrated, waypoints
+from daidalos.samples.controllers import TrajectoryPoint
 
 TIMES = np.array([0.0, 0.7, 1.0, 2.5])
 

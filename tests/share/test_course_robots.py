@@ -9,8 +9,14 @@ from daidalos.common.pose3 import Pose
 from daidalos.description import sdf, urdf
 from daidalos.description.joint import JointType
 from daidalos.description.kinematics import KinematicTree
+from daidalos.samples.commands import TwistCommand
+from daidalos.samples.sensors import (
+    ImageSample,
+    LaserScanSample,
+    OdometrySample,
+    PointCloudSample,
+)
 from daidalos.simulation import Simulation
-from daidalos.simulation.samples import ImageSample, LaserScanSample, OdometrySample, PointCloudSample, TwistCommand
 from description.robots import SHARE, share_of
 from simulation.models import world
 

@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 
 from daidalos.common.pose3 import Pose
+from daidalos.samples.commands import TwistCommand
 from daidalos.simulation import Simulation
-from daidalos.simulation.samples import TwistCommand
 from simulation.models import arena, box, turtlebot, world
 
 SECOND = 1_000_000_000

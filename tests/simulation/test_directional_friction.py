@@ -4,8 +4,8 @@ import pytest
 
 from daidalos.description import sdf, urdf
 from daidalos.description.gazebo import model_from_robot
+from daidalos.samples.commands import NumberCommand
 from daidalos.simulation import Simulation
-from daidalos.simulation.samples import NumberCommand
 from simulation.models import world
 from simulation.plugins.vehicles import four_wheels
 

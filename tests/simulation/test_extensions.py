@@ -7,11 +7,11 @@ import pytest
 from daidalos.common.extensions import UnknownExtension, find
 from daidalos.description.link import Plugin as Description
 from daidalos.description.markup import Element
+from daidalos.samples.sensors import TransformSample
 from daidalos.simulation import Simulation
 from daidalos.simulation.extensions import PLUGINS, SENSORS, is_built_in, library_name, library_of
 from daidalos.simulation.plugins.base import Plugin
 from daidalos.simulation.plugins.diff_drive import DiffDrive
-from daidalos.simulation.samples import TransformSample
 from daidalos.simulation.sensors.base import Sensor
 from daidalos.simulation.sensors.lidar import Lidar
 from places import REPOSITORY

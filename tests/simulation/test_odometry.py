@@ -1,7 +1,8 @@
 import numpy as np
 import pytest
 
-from daidalos.simulation.odometry import EncoderError, planar_covariance
+from daidalos.samples.odometry import planar_covariance
+from daidalos.simulation.encoder_error import EncoderError
 
 
 @pytest.mark.parametrize("pieces", [10, 1000])

@@ -5,9 +5,10 @@ from daidalos.common.pose3 import Pose
 from daidalos.description import sdf, urdf
 from daidalos.description.errors import DescriptionError
 from daidalos.description.link import Inertial
+from daidalos.samples.commands import TwistCommand
+from daidalos.samples.sensors import ImuSample, LaserScanSample
 from daidalos.simulation import Simulation
 from daidalos.simulation.errors import NameTakenError, SimulationError, UnknownNameError
-from daidalos.simulation.samples import ImuSample, LaserScanSample, TwistCommand
 from simulation.models import arena, box, turtlebot, world
 
 SECOND = 1_000_000_000

@@ -10,7 +10,7 @@ import numpy as np
 from daidalos.control.base_odometry import BaseOdometry
 from daidalos.control.controllers.base import Controller, ControllerContext, Subscription
 from daidalos.control.velocity_input import VelocityInput
-from daidalos.simulation.samples import OdometrySample, Sample, TransformSample
+from daidalos.samples.sensors import OdometrySample, Sample, TransformSample
 
 
 class BaseController(Controller):

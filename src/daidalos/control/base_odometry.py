@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from daidalos.common.pose2 import move_along_arc
 from daidalos.common.pose3 import quaternion_from_yaw
-from daidalos.simulation.odometry import transform_of
-from daidalos.simulation.samples import OdometrySample, TransformSample
+from daidalos.samples.odometry import transform_of
+from daidalos.samples.sensors import OdometrySample, TransformSample
 
 Array = NDArray[np.float64]
 

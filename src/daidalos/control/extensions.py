@@ -25,7 +25,7 @@ HARDWARE: Kind[Hardware] = Kind(
     "daidalos.hardware",
     "daidalos.control.hardware.base:Hardware",
     "stands between controllers and motors; named by the <plugin> of a <ros2_control> element",
-    partial(classes_in, "daidalos.control.hardware"),
+    partial(classes_in, "daidalos.control.hardware", "daidalos.nodes.controller_manager"),
 )
 KINDS = (CONTROLLERS, HARDWARE)
 

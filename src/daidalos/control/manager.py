@@ -19,7 +19,7 @@ from daidalos.control.interfaces import Interfaces
 from daidalos.control.loaded_controller import LoadedController, Reader, prefixed
 from daidalos.control.switcher import Switcher
 from daidalos.control.switching import Strictness, Switch
-from daidalos.simulation.samples import Sample
+from daidalos.samples.sensors import Sample
 
 _log = logging.getLogger(__name__)
 T = TypeVar("T")

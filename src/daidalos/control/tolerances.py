@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from daidalos.control.samples import JointTolerance
+from daidalos.samples.controllers import JointTolerance
 
 Array = NDArray[np.float64]
 

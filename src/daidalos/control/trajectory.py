@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from daidalos.control.samples import TrajectoryPoint
+from daidalos.samples.controllers import TrajectoryPoint
 
 Array = NDArray[np.float64]
 

@@ -7,7 +7,7 @@ from typing import Protocol
 
 import numpy as np
 
-from daidalos.control.samples import TrajectoryCommand, TrajectoryPoint
+from daidalos.samples.controllers import TrajectoryCommand, TrajectoryPoint
 
 _AT_REST = 1e-9
 

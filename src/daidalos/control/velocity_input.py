@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from daidalos.control.controllers.base import Controller, Subscription
-from daidalos.control.samples import VelocityCommand
-from daidalos.simulation.samples import TwistCommand
+from daidalos.samples.commands import TwistCommand
+from daidalos.samples.controllers import VelocityCommand
 
 
 class VelocityInput:

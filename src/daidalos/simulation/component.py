@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from daidalos.description.world import Model, World
-from daidalos.simulation.samples import Sample
+from daidalos.samples.endpoint import Endpoint
+from daidalos.samples.sensors import Sample
 
 if TYPE_CHECKING:
     from daidalos.simulation.conversion.model_build import ModelBuild
@@ -53,14 +54,6 @@ def random_stream(seed: int, name: str) -> np.random.Generator:
 
 
 @dataclass(frozen=True)
-class Subscription:
-    """A topic that is listened to: the command's class and who takes it."""
-
-    type: type
-    take: Callable[[Any], None]
-
-
-@dataclass(frozen=True)
 class Switch:
     """A service that turns something on or off.
 
@@ -74,20 +67,6 @@ class Switch:
 
     take: Callable[[bool], None]
     fixed: bool | None = None
-
-
-class Endpoint:
-    """Something that gives samples and takes commands on topics."""
-
-    @property
-    def publications(self) -> Mapping[str, type[Sample]]:
-        """Topics that its samples may have, with their classes."""
-        return {}
-
-    @property
-    def subscriptions(self) -> Mapping[str, Subscription]:
-        """Topics that it takes commands from."""
-        return {}
 
 
 class Component(Endpoint):

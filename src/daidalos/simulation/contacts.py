@@ -10,51 +10,11 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.samples.sensors import Contact
 from daidalos.simulation.instance import Instance
 from daidalos.simulation.physics import Physics
 
 Array = NDArray[np.float64]
-
-
-@dataclass(frozen=True, eq=False)
-class Contact:
-    """Two collisions that touch in k points.
-
-    Parameters
-    ----------
-    model1, link1, collision1, model2, link2, collision2 : str
-        Names as in the descriptions.
-    positions : array (k, 3)
-        In the world [m].
-    normals : array (k, 3)
-        Unit vectors from the first to the second.
-    forces : array (k, 3)
-        On the second, in world axes [N].
-    depths : array (k,)
-        How far they overlap [m].
-    """
-
-    model1: str
-    link1: str
-    collision1: str
-    model2: str
-    link2: str
-    collision2: str
-    positions: Array
-    normals: Array
-    forces: Array
-    depths: Array
-
-    def swapped(self) -> Contact:
-        """Return the same with the two sides exchanged."""
-        return Contact(
-            *(self.model2, self.link2, self.collision2),
-            *(self.model1, self.link1, self.collision1),
-            positions=self.positions,
-            normals=-self.normals,
-            forces=-self.forces,
-            depths=self.depths,
-        )
 
 
 @dataclass(frozen=True)

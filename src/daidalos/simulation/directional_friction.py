@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 
 from daidalos.description.link import Surface
 from daidalos.description.world import Model
+from daidalos.samples.sensors import Sample
 from daidalos.simulation.component import Component, ComponentContext
 from daidalos.simulation.conversion.contact import MAX_FRICTION, friction_of, set_friction
 from daidalos.simulation.conversion.model_build import ModelBuild
 from daidalos.simulation.instance import Instance
 from daidalos.simulation.last_step import cross, velocities
-from daidalos.simulation.samples import Sample
 
 Array = NDArray[np.float64]
 

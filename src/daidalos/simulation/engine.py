@@ -14,17 +14,22 @@ import mujoco
 from daidalos.common.pose3 import Pose, Vector
 from daidalos.description.actors import actor_pose
 from daidalos.description.world import Actor, Model, World
+from daidalos.samples.sensors import Contact, Sample
 from daidalos.simulation.actors import ActorMotion
 from daidalos.simulation.assembly import check_world_plugins, make_components
 from daidalos.simulation.compilation import Compilation
-from daidalos.simulation.component import Component, ComponentContext, Switch, random_stream
-from daidalos.simulation.contacts import Contact, ContactMonitor, read_contacts
+from daidalos.simulation.component import (
+    Component,
+    ComponentContext,
+    Switch,
+    random_stream,
+)
+from daidalos.simulation.contacts import ContactMonitor, read_contacts
 from daidalos.simulation.conversion.options import physics_step
 from daidalos.simulation.errors import NameTakenError, SimulationError, UnknownNameError
 from daidalos.simulation.forces import Forces
 from daidalos.simulation.instance import Instance
 from daidalos.simulation.physics import Physics
-from daidalos.simulation.samples import Sample
 from daidalos.simulation.schedule import Schedule
 from daidalos.simulation.stage import Stage
 from daidalos.simulation.state import State, copy_states, restore_states

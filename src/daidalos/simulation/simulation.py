@@ -15,11 +15,11 @@ from daidalos.description.link import Inertial
 from daidalos.description.robot import Robot
 from daidalos.description.scaling import scaled
 from daidalos.description.world import Model
+from daidalos.samples.commands import PositionTrajectoryCommand
 from daidalos.simulation.engine import Engine
 from daidalos.simulation.errors import SimulationError
 from daidalos.simulation.forces import JointPush, Push
 from daidalos.simulation.instance import JointView
-from daidalos.simulation.samples import TrajectoryCommand
 from daidalos.simulation.trajectory_follower import ActiveTrajectory, TrajectoryFollower
 
 Array = NDArray[np.float64]
@@ -154,7 +154,7 @@ class Simulation(Engine):
         """Return a view on a joint: its position, velocity and effort."""
         return self.instance(model).joint(joint)
 
-    def follow(self, model: str, course: TrajectoryCommand) -> None:
+    def follow(self, model: str, course: PositionTrajectoryCommand) -> None:
         """Put joints where a trajectory says from now on, in every step until its end, without any force.
 
         Raises

@@ -7,16 +7,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from daidalos.samples.commands import PositionTrajectoryCommand
+from daidalos.samples.sensors import Sample
 from daidalos.simulation.component import Component, ComponentContext
 from daidalos.simulation.instance import Instance
-from daidalos.simulation.samples import Sample, TrajectoryCommand
 
 
 @dataclass
 class ActiveTrajectory:
     """A trajectory that is being followed since a time."""
 
-    command: TrajectoryCommand
+    command: PositionTrajectoryCommand
     start_ns: int
 
 

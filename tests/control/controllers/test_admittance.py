@@ -9,8 +9,8 @@ from scipy.integrate import solve_ivp
 
 from daidalos.common.parameters import ParameterError
 from daidalos.control.errors import ControlError
-from daidalos.control.samples import AdmittanceSample, TrajectoryPoint
 from daidalos.description import urdf
+from daidalos.samples.controllers import AdmittanceSample, TrajectoryPoint
 
 PERIOD = PERIOD_NS * 1e-9
 GANTRY = urdf.parse("""<robot name="gantry"><link name="base"/><link name="x"/><link name="y"/><link name="tip"/>

@@ -9,8 +9,8 @@ from control_robots import alone, arm, cycle
 
 from daidalos.common.parameters import ParameterError
 from daidalos.common.pose3 import Pose
-from daidalos.control.samples import DynamicJointSample
-from daidalos.simulation.samples import JointStateSample, TransformSample
+from daidalos.samples.controllers import DynamicJointSample
+from daidalos.samples.sensors import JointStateSample, TransformSample
 
 STATES = ("elbow/position", "elbow/velocity", "wrist/position", "wrist/torque", "gauge/pressure")
 

@@ -10,8 +10,9 @@ from control_robots import PERIOD_NS, alone, cycle
 from daidalos.common.parameters import ParameterError
 from daidalos.control.controllers.base import Controller
 from daidalos.control.interfaces import Interfaces
-from daidalos.control.samples import VelocityCommand, VelocitySample
-from daidalos.simulation.samples import OdometrySample, TransformSample, TwistCommand
+from daidalos.samples.commands import TwistCommand
+from daidalos.samples.controllers import VelocityCommand, VelocitySample
+from daidalos.samples.sensors import OdometrySample, TransformSample
 
 TYPE = "diff_drive_controller/DiffDriveController"
 PERIOD = PERIOD_NS * 1e-9

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from control_robots import PERIOD_NS, alone, cycle
 
-from daidalos.control.samples import ValuesCommand
+from daidalos.samples.controllers import ValuesCommand
 
 KINDS = {
     "forward_command_controller/ForwardCommandController": (

@@ -8,7 +8,7 @@ import pytest
 from control_robots import PERIOD_NS, alone, cycle
 
 from daidalos.control.controllers.base import Goal
-from daidalos.control.samples import GripperRequest, ParallelGripperRequest
+from daidalos.samples.controllers import GripperRequest, ParallelGripperRequest
 
 PERIOD = PERIOD_NS * 1e-9
 POSITION = "position_controllers/GripperActionController"

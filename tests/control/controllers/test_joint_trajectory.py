@@ -13,7 +13,7 @@ from daidalos.control.controllers.base import Goal
 from daidalos.control.controllers.joint_trajectory import JointTrajectoryController
 from daidalos.control.errors import StateError
 from daidalos.control.interfaces import Interfaces
-from daidalos.control.samples import (
+from daidalos.samples.controllers import (
     JointTolerance,
     SpeedCommand,
     TrajectoryCommand,

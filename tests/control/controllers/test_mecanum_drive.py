@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from control_robots import PERIOD_NS, alone, cycle
 
-from daidalos.control.samples import MecanumSample, VelocityCommand
-from daidalos.simulation.samples import OdometrySample
+from daidalos.samples.controllers import MecanumSample, VelocityCommand
+from daidalos.samples.sensors import OdometrySample
 
 PERIOD = PERIOD_NS * 1e-9
 RADIUS, LENGTH, WIDTH = 0.05, 0.2, 0.15

@@ -8,7 +8,7 @@ import pytest
 from control_robots import PERIOD_NS, alone, cycle
 
 from daidalos.common.parameters import ParameterError
-from daidalos.control.samples import Asked, DofCommand, Switched
+from daidalos.samples.controllers import Asked, DofCommand, Switched
 
 TYPE = "pid_controller/PidController"
 

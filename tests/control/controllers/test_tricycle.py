@@ -8,8 +8,9 @@ import pytest
 from control_robots import PERIOD_NS, alone, cycle
 
 from daidalos.common.parameters import ParameterError
-from daidalos.control.samples import Asked, VelocityCommand
-from daidalos.simulation.samples import OdometrySample, TransformSample, TwistCommand
+from daidalos.samples.commands import TwistCommand
+from daidalos.samples.controllers import Asked, VelocityCommand
+from daidalos.samples.sensors import OdometrySample, TransformSample
 
 PERIOD = PERIOD_NS * 1e-9
 

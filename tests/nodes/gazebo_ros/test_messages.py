@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from daidalos.nodes.gazebo_ros._messages import INCOMING, OUTGOING, outgoing
-from daidalos.simulation import Simulation, samples
+from daidalos.samples import sensors as samples
+from daidalos.simulation import Simulation
 from simulation.models import world
 
 

@@ -5,8 +5,8 @@ import pytest
 
 from daidalos.description import sdf
 from daidalos.nodes.gazebo_ros._worlds import find_world
+from daidalos.samples.commands import TwistCommand
 from daidalos.simulation import Simulation
-from daidalos.simulation.samples import TwistCommand
 
 SECOND = 1_000_000_000
 

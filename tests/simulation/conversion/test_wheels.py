@@ -11,9 +11,10 @@ from daidalos.common.pose3 import Pose, quaternion_from_rpy
 from daidalos.description.geometry import Box, Cylinder, Mesh
 from daidalos.description.joint import Axis, Joint, JointType
 from daidalos.description.link import Collision
+from daidalos.samples.commands import TwistCommand
+from daidalos.samples.sensors import OdometrySample
 from daidalos.simulation import Simulation
 from daidalos.simulation.conversion.wheels import wheel_disc
-from daidalos.simulation.samples import OdometrySample, TwistCommand
 from simulation.models import turtlebot, world
 
 SECOND = 1_000_000_000

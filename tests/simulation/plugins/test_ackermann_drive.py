@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from daidalos.description.errors import DescriptionError
+from daidalos.samples.commands import TwistCommand
+from daidalos.samples.sensors import OdometrySample
 from daidalos.simulation import Simulation
-from daidalos.simulation.samples import OdometrySample, TwistCommand
 from simulation.models import world
 from simulation.plugins.vehicles import four_wheels
 

@@ -6,9 +6,10 @@ import pytest
 from daidalos.common.pose3 import Pose
 from daidalos.description import urdf
 from daidalos.description.errors import DescriptionError
+from daidalos.samples.commands import TwistCommand
+from daidalos.samples.sensors import JointStateSample, OdometrySample, TransformSample
 from daidalos.simulation import Simulation
 from daidalos.simulation.plugins.diff_drive_settings import Limits
-from daidalos.simulation.samples import JointStateSample, OdometrySample, TransformSample, TwistCommand
 from simulation.models import turtlebot, world
 from simulation.plugins import vehicles
 

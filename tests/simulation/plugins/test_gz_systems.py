@@ -6,16 +6,14 @@ import numpy as np
 import pytest
 
 from daidalos.description.errors import DescriptionError
-from daidalos.simulation import Simulation
-from daidalos.simulation.samples import (
+from daidalos.samples.commands import NumberCommand, SignalCommand, TwistCommand
+from daidalos.samples.sensors import (
     BatterySample,
     FlagSample,
-    NumberCommand,
     OdometrySample,
-    SignalCommand,
     TextSample,
-    TwistCommand,
 )
+from daidalos.simulation import Simulation
 from simulation.models import box, world
 from simulation.plugins.vehicles import four_wheels, inertia
 from simulation.test_directional_friction import mecanum

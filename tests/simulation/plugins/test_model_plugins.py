@@ -6,15 +6,9 @@ import numpy as np
 import pytest
 
 from daidalos.description.errors import DescriptionError
+from daidalos.samples.commands import NumberCommand, PositionTrajectoryCommand, WrenchCommand
+from daidalos.samples.sensors import FlagSample, NavSatSample, OdometrySample
 from daidalos.simulation import Simulation
-from daidalos.simulation.samples import (
-    FlagSample,
-    NavSatSample,
-    NumberCommand,
-    OdometrySample,
-    TrajectoryCommand,
-    WrenchCommand,
-)
 from simulation.models import box, world
 from simulation.plugins.vehicles import four_wheels
 
@@ -166,7 +160,7 @@ ARM = (
 )
 def test_joints_follow_a_trajectory(library, topic):
     simulation = Simulation(world(with_plugin(ARM, library)))
-    command = TrajectoryCommand(("j",), np.array((0.0, 1.0, 2.0)), np.array(((0.0,), (1.0,), (0.5,))))
+    command = PositionTrajectoryCommand(("j",), np.array((0.0, 1.0, 2.0)), np.array(((0.0,), (1.0,), (0.5,))))
     assert simulation.command(topic, command) == 1
     simulation.advance(SECOND // 2)
     assert simulation.joint("arm", "j").position == pytest.approx(0.5, abs=0.01)
@@ -182,7 +176,7 @@ def test_gzs_trajectory_controller_holds_the_start_and_the_end(names):
     simulation.gravity = (0, -9.8, 0)  # across the arm, which turns about z
     simulation.advance(SECOND)
     assert simulation.joint("arm", "j").position == pytest.approx(0.3, abs=0.01)
-    command = TrajectoryCommand(("j",), np.array((0.5,)), np.array(((1.0,),)))
+    command = PositionTrajectoryCommand(("j",), np.array((0.5,)), np.array(((1.0,),)))
     simulation.command("/model/arm/joint_trajectory", command)
     simulation.advance(2 * SECOND)
     assert simulation.joint("arm", "j").position == pytest.approx(1, abs=0.01)
@@ -206,7 +200,7 @@ def test_mistakes_of_gzs_trajectory_controller_are_named(parameters, words):
 def test_a_trajectory_of_unknown_joints_is_ignored_with_a_warning():
     said = []
     simulation = Simulation(world(with_plugin(ARM, "libgazebo_ros_joint_pose_trajectory.so")), warn=said.append)
-    simulation.command("/set_joint_trajectory", TrajectoryCommand(("k",), np.zeros(1), np.zeros((1, 1))))
+    simulation.command("/set_joint_trajectory", PositionTrajectoryCommand(("k",), np.zeros(1), np.zeros((1, 1))))
     assert "no movable joint 'k'" in said[-1]
 
 

@@ -4,9 +4,10 @@ import pytest
 
 from daidalos.description import urdf
 from daidalos.description.errors import DescriptionError
+from daidalos.samples.commands import FlagCommand, SignalCommand
+from daidalos.samples.sensors import ImageSample
 from daidalos.simulation import Simulation
 from daidalos.simulation.plugins.ros2_control import Ros2Control
-from daidalos.simulation.samples import FlagCommand, ImageSample, SignalCommand
 from simulation.models import box, world
 from simulation.plugins.vehicles import four_wheels
 

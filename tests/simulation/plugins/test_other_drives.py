@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from daidalos.description.errors import DescriptionError
+from daidalos.samples.commands import TwistCommand
+from daidalos.samples.sensors import OdometrySample, TransformSample, WheelSlipSample
 from daidalos.simulation import Simulation
-from daidalos.simulation.samples import OdometrySample, TransformSample, TwistCommand, WheelSlipSample
 from simulation.models import box, world
 from simulation.plugins.vehicles import four_wheels
 

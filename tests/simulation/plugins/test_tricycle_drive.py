@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from daidalos.description.errors import DescriptionError
+from daidalos.samples.commands import TwistCommand
+from daidalos.samples.sensors import JointStateSample, OdometrySample, TransformSample
 from daidalos.simulation import Simulation
-from daidalos.simulation.samples import JointStateSample, OdometrySample, TransformSample, TwistCommand
 from simulation.models import world
 from simulation.plugins.vehicles import WHEEL, inertia
 

@@ -5,10 +5,10 @@ from daidalos.common.pose3 import Pose
 from daidalos.description import sdf
 from daidalos.description.geometry import Sphere
 from daidalos.description.link import Visual
+from daidalos.samples.sensors import ImageSample
 from daidalos.simulation import Simulation
 from daidalos.simulation.rendering.scene import Item, make_scene
 from daidalos.simulation.rendering.shadows import simplify
-from daidalos.simulation.samples import ImageSample
 
 SUN = (
     "<light name='sun' type='directional'><cast_shadows>true</cast_shadows><diffuse>0.6 0.6 0.6 1</diffuse>"

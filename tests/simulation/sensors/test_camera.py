@@ -3,8 +3,13 @@ import numpy as np
 import pytest
 
 from daidalos.description.errors import DescriptionError
+from daidalos.samples.sensors import (
+    CameraInfoSample,
+    ImageSample,
+    LogicalImageSample,
+    PointCloudSample,
+)
 from daidalos.simulation import Simulation
-from daidalos.simulation.samples import CameraInfoSample, ImageSample, LogicalImageSample, PointCloudSample
 from simulation.models import box, world
 
 SUN = "<include><uri>model://sun</uri></include>"

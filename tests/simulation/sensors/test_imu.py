@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 
 from daidalos.description import sdf
+from daidalos.samples.sensors import ImuSample
 from daidalos.simulation import Simulation
-from daidalos.simulation.samples import ImuSample
 from simulation.models import box, turtlebot, world
 
 SECOND = 1_000_000_000

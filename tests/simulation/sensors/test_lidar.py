@@ -4,8 +4,8 @@ import pytest
 from daidalos.common.pose3 import Pose
 from daidalos.description import sdf, urdf
 from daidalos.description.errors import DescriptionError
+from daidalos.samples.sensors import LaserScanSample, PointCloudSample
 from daidalos.simulation import Simulation
-from daidalos.simulation.samples import LaserScanSample, PointCloudSample
 from simulation.models import box, world
 
 

@@ -7,8 +7,7 @@ import pytest
 
 from daidalos.description import sdf
 from daidalos.description.errors import DescriptionError
-from daidalos.simulation import Simulation
-from daidalos.simulation.samples import (
+from daidalos.samples.sensors import (
     AltimeterSample,
     BumperSample,
     ContactsSample,
@@ -18,6 +17,7 @@ from daidalos.simulation.samples import (
     RangeSample,
     WrenchSample,
 )
+from daidalos.simulation import Simulation
 from simulation.models import box, world
 
 SECOND = 1_000_000_000

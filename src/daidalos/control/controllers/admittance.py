@@ -14,8 +14,8 @@ from daidalos.control.chain import Chain
 from daidalos.control.controllers.base import Controller, Subscription
 from daidalos.control.errors import ControlError
 from daidalos.control.interfaces import Interfaces, interface_names
-from daidalos.control.samples import AdmittanceSample, TrajectoryPoint
-from daidalos.simulation.samples import Sample
+from daidalos.samples.controllers import AdmittanceSample, TrajectoryPoint
+from daidalos.samples.sensors import Sample
 
 
 @dataclass(frozen=True)

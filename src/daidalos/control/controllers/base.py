@@ -9,9 +9,9 @@ from typing import Any, ClassVar
 from daidalos.control.interfaces import Interfaces, LoanedInterfaces
 from daidalos.description.robot import Robot
 from daidalos.description.world import Model
-from daidalos.simulation.component import Endpoint
-from daidalos.simulation.component import Subscription as Subscription
-from daidalos.simulation.samples import Sample
+from daidalos.samples.endpoint import Endpoint
+from daidalos.samples.endpoint import Subscription as Subscription
+from daidalos.samples.sensors import Sample
 
 
 def _always(topic: str) -> bool:

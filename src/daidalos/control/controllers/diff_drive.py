@@ -12,10 +12,10 @@ from daidalos.common.rate_gate import RateGate
 from daidalos.control.base_odometry import BaseOdometry, prefixed_frame
 from daidalos.control.controllers.base import Controller, Subscription
 from daidalos.control.interfaces import Interfaces
-from daidalos.control.samples import VelocitySample
 from daidalos.control.speed_limiter import SpeedLimiter, SpeedLimits
 from daidalos.control.velocity_input import VelocityInput
-from daidalos.simulation.samples import OdometrySample, Sample, TransformSample
+from daidalos.samples.controllers import VelocitySample
+from daidalos.samples.sensors import OdometrySample, Sample, TransformSample
 
 _ZEROS = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 _REFERENCES = ("linear/velocity", "angular/velocity")

@@ -10,8 +10,8 @@ import numpy as np
 from daidalos.common.parameters import Parameters, parameter
 from daidalos.control.controllers.base import Controller, Subscription
 from daidalos.control.interfaces import Interfaces
-from daidalos.control.samples import ValuesCommand
-from daidalos.simulation.samples import Sample
+from daidalos.samples.controllers import ValuesCommand
+from daidalos.samples.sensors import Sample
 
 
 @dataclass(frozen=True)

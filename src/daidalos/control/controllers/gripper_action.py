@@ -13,8 +13,8 @@ from daidalos.common.parameters import Parameters, parameter, per_name
 from daidalos.common.rate_gate import RateGate
 from daidalos.control.controllers.base import Action, Controller, Goal
 from daidalos.control.pid import Gains, Pid
-from daidalos.control.samples import GripperRequest, GripperState, ParallelGripperRequest
-from daidalos.simulation.samples import Sample
+from daidalos.samples.controllers import GripperRequest, GripperState, ParallelGripperRequest
+from daidalos.samples.sensors import Sample
 
 _ACTION = "~/gripper_cmd"
 

@@ -9,9 +9,9 @@ import numpy as np
 
 from daidalos.common.parameters import Parameters, group, parameter
 from daidalos.control.controllers.base import Controller
-from daidalos.control.samples import DynamicJointSample
 from daidalos.description.joint import JointType
-from daidalos.simulation.samples import JointStateSample, Sample
+from daidalos.samples.controllers import DynamicJointSample
+from daidalos.samples.sensors import JointStateSample, Sample
 
 _FIELDS = ("position", "velocity", "effort")
 

@@ -15,7 +15,11 @@ from daidalos.control.controllers.joint_trajectory_parameters import JointTrajec
 from daidalos.control.errors import StateError
 from daidalos.control.interfaces import interface_names
 from daidalos.control.pid import Pid
-from daidalos.control.samples import (
+from daidalos.control.tolerances import Tolerances
+from daidalos.control.trajectory import Trajectory, integrated, waypoints
+from daidalos.control.trajectory_checks import problem_with
+from daidalos.description.joint import JointType
+from daidalos.samples.controllers import (
     SpeedCommand,
     TrajectoryCommand,
     TrajectoryFeedback,
@@ -26,11 +30,7 @@ from daidalos.control.samples import (
     TrajectoryStateRequest,
     TrajectoryStateResponse,
 )
-from daidalos.control.tolerances import Tolerances
-from daidalos.control.trajectory import Trajectory, integrated, waypoints
-from daidalos.control.trajectory_checks import problem_with
-from daidalos.description.joint import JointType
-from daidalos.simulation.samples import Sample
+from daidalos.samples.sensors import Sample
 
 Array = NDArray[np.float64]
 Motion = tuple[Array, Array, Array]

@@ -12,8 +12,8 @@ from daidalos.common.parameters import Parameters, group, parameter
 from daidalos.control.base_controller import BaseController
 from daidalos.control.base_odometry import BaseOdometry, prefixed_frame
 from daidalos.control.interfaces import Interfaces
-from daidalos.control.samples import MecanumSample
-from daidalos.simulation.samples import Sample
+from daidalos.samples.controllers import MecanumSample
+from daidalos.samples.sensors import Sample
 
 _ZEROS = (0.0,) * 6
 _WHEELS = ("front_left", "rear_left", "rear_right", "front_right")

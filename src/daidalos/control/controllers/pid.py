@@ -12,8 +12,15 @@ from daidalos.common.parameters import ParameterError, Parameters, parameter, pe
 from daidalos.control.controllers.base import Controller, Service, Subscription
 from daidalos.control.interfaces import Interfaces, interface_names
 from daidalos.control.pid import Gains, Pid
-from daidalos.control.samples import Answer, Asked, DofCommand, DofSample, DofState, Switched
-from daidalos.simulation.samples import Sample
+from daidalos.samples.controllers import (
+    Answer,
+    Asked,
+    DofCommand,
+    DofSample,
+    DofState,
+    Switched,
+)
+from daidalos.samples.sensors import Sample
 
 _KINDS = ("position", "velocity", "acceleration", "effort")
 

@@ -12,8 +12,13 @@ from daidalos.common.pose3 import Pose, multiply
 from daidalos.common.rate_gate import RateGate
 from daidalos.control.controllers.base import Controller
 from daidalos.control.interfaces import Interfaces
-from daidalos.control.samples import PoseSample, VariedRangeSample
-from daidalos.simulation.samples import ImuSample, Sample, TransformSample, WrenchSample
+from daidalos.samples.controllers import PoseSample, VariedRangeSample
+from daidalos.samples.sensors import (
+    ImuSample,
+    Sample,
+    TransformSample,
+    WrenchSample,
+)
 
 _NINE = (0.0,) * 9
 _POSE = ("position.x", "position.y", "position.z", "orientation.x", "orientation.y", "orientation.z", "orientation.w")

@@ -13,9 +13,9 @@ from daidalos.common.parameters import ParameterError, Parameters, parameter
 from daidalos.control.base_controller import BaseController
 from daidalos.control.base_odometry import BaseOdometry
 from daidalos.control.interfaces import Interfaces
-from daidalos.control.samples import SteeringSample
 from daidalos.control.steering import SteeredBase, speed_share
-from daidalos.simulation.samples import Sample
+from daidalos.samples.controllers import SteeringSample
+from daidalos.samples.sensors import Sample
 
 _ZEROS = (0.0,) * 6
 

@@ -12,11 +12,12 @@ from daidalos.common.parameters import ParameterError, Parameters, group, parame
 from daidalos.common.pose3 import quaternion_from_yaw
 from daidalos.control.base_odometry import BaseOdometry
 from daidalos.control.controllers.base import Controller, Service, Subscription
-from daidalos.control.samples import Answer, Asked, VelocityCommand
 from daidalos.control.speed_limiter import SpeedLimiter, SpeedLimits
 from daidalos.control.steering import speed_share
 from daidalos.control.velocity_input import VelocityInput
-from daidalos.simulation.samples import OdometrySample, Sample, TransformSample, TwistCommand
+from daidalos.samples.commands import TwistCommand
+from daidalos.samples.controllers import Answer, Asked, VelocityCommand
+from daidalos.samples.sensors import OdometrySample, Sample, TransformSample
 
 _NAN = math.nan
 _ZEROS = (0.0,) * 6

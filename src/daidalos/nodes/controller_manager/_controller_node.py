@@ -15,7 +15,7 @@ from daidalos.control.controllers.base import Action, Controller, Goal
 from daidalos.nodes.controller_manager._entries import ActionEntry
 from daidalos.nodes.controller_manager._messages import ACTIONS, INCOMING, OUTGOING, SERVICES
 from daidalos.nodes.parameters import declare, warn_of_undeclared
-from daidalos.simulation.samples import Sample
+from daidalos.samples.sensors import Sample
 
 
 class ControllerNode(Node):

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from daidalos.control import samples
 from daidalos.nodes.controller_manager._entries import ActionEntry
 from daidalos.nodes.conversions import time_message
+from daidalos.samples import controllers as samples
 
 
 def _single_type() -> Any:

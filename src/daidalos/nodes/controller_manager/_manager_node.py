@@ -33,7 +33,7 @@ from daidalos.nodes.controller_manager._reports import (
     controller_message,
     interface_messages,
 )
-from daidalos.simulation.samples import Sample
+from daidalos.samples.sensors import Sample
 
 _LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL, reliability=ReliabilityPolicy.RELIABLE)
 _CHAINABLE = "controller_interface::ChainableControllerInterface"

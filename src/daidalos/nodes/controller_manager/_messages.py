@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 
 from daidalos.common.pose3 import quaternion_from_rotation_vector
-from daidalos.control import samples
 from daidalos.nodes.controller_manager import _gripper_messages, _trajectory_messages
 from daidalos.nodes.controller_manager._entries import ActionEntry, ServiceEntry
 from daidalos.nodes.controller_manager._trajectory_messages import (
@@ -19,6 +18,7 @@ from daidalos.nodes.conversions import nanoseconds
 from daidalos.nodes.gazebo_ros._conversion import Incoming, Outgoing, header, named, quaternion, vector
 from daidalos.nodes.gazebo_ros._messages import INCOMING as SIMULATED_INCOMING
 from daidalos.nodes.gazebo_ros._messages import OUTGOING as SIMULATED_OUTGOING
+from daidalos.samples import controllers as samples
 
 
 def _dynamic_joint_state(sample: samples.DynamicJointSample) -> Any:
@@ -170,9 +170,9 @@ def _admittance(sample: samples.AdmittanceSample) -> Any:
     )
 
 
-def _wrench_command(message: Any) -> samples.WrenchCommand:
+def _wrench_command(message: Any) -> samples.StampedWrenchCommand:
     force, torque = message.wrench.force, message.wrench.torque
-    return samples.WrenchCommand(
+    return samples.StampedWrenchCommand(
         np.array([force.x, force.y, force.z]), np.array([torque.x, torque.y, torque.z]), message.header.frame_id
     )
 
@@ -215,7 +215,7 @@ INCOMING: dict[type, Incoming] = {
     samples.VelocityCommand: Incoming(named("geometry_msgs", "TwistStamped"), _velocity),
     samples.ValuesCommand: Incoming(named("std_msgs", "Float64MultiArray"), _values),
     samples.DofCommand: Incoming(named("control_msgs", "MultiDOFCommand"), _dof_command),
-    samples.WrenchCommand: Incoming(named("geometry_msgs", "WrenchStamped"), _wrench_command),
+    samples.StampedWrenchCommand: Incoming(named("geometry_msgs", "WrenchStamped"), _wrench_command),
     samples.SpeedCommand: Incoming(named("control_msgs", "SpeedScalingFactor"), _speed),
     samples.TrajectoryCommand: Incoming(named("trajectory_msgs", "JointTrajectory"), trajectory_command),
     samples.TrajectoryPoint: Incoming(named("trajectory_msgs", "JointTrajectoryPoint"), trajectory_point_command),

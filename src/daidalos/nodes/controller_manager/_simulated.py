@@ -7,12 +7,12 @@ from rclpy.parameter import Parameter
 
 from daidalos.control.extensions import hardware_class
 from daidalos.control.hardware.base import Hardware, HardwareContext
-from daidalos.control.hardware.simulated import SimulatedSystem
 from daidalos.description.ros2_control import HardwareInfo
 from daidalos.nodes.controller_manager._manager_node import ControllerManagerNode
+from daidalos.nodes.controller_manager._simulated_system import SimulatedSystem
 from daidalos.nodes.node_thread import NodeThread
+from daidalos.samples.sensors import Sample
 from daidalos.simulation.plugins.ros2_control import Ros2Control
-from daidalos.simulation.samples import Sample
 
 
 class SimulatedManager:

@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from daidalos.control import samples
 from daidalos.nodes.controller_manager._entries import ActionEntry, ServiceEntry
 from daidalos.nodes.conversions import duration_message, nanoseconds, seconds, time_message
 from daidalos.nodes.gazebo_ros._conversion import header
+from daidalos.samples import controllers as samples
 
 _FIELDS = ("positions", "velocities", "accelerations")
 

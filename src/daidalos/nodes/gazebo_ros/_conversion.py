@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from daidalos.nodes.conversions import time_message
-from daidalos.simulation import samples
+from daidalos.samples import sensors as samples
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ import numpy as np
 
 from daidalos.nodes.gazebo_ros._conversion import Outgoing, array_bytes, header, named
 from daidalos.nodes.gazebo_ros._states import pose_message
-from daidalos.simulation import samples
+from daidalos.samples import sensors as samples
 
 _image_type = named("sensor_msgs", "Image")
 _camera_info_type = named("sensor_msgs", "CameraInfo")

@@ -10,7 +10,8 @@ from daidalos.nodes.conversions import seconds
 from daidalos.nodes.gazebo_ros._conversion import Incoming, Outgoing, floats, header, named, quaternion, vector
 from daidalos.nodes.gazebo_ros._image_messages import IMAGES
 from daidalos.nodes.gazebo_ros._sensor_messages import SENSORS
-from daidalos.simulation import samples
+from daidalos.samples import commands
+from daidalos.samples import sensors as samples
 
 
 def _scan_type() -> Any:
@@ -109,28 +110,28 @@ def _joint_state(sample: samples.JointStateSample) -> Any:
     )
 
 
-def _twist(message: Any) -> samples.TwistCommand:
+def _twist(message: Any) -> commands.TwistCommand:
     linear, angular = message.linear, message.angular
-    return samples.TwistCommand(np.array([linear.x, linear.y, linear.z]), np.array([angular.x, angular.y, angular.z]))
+    return commands.TwistCommand(np.array([linear.x, linear.y, linear.z]), np.array([angular.x, angular.y, angular.z]))
 
 
 _trajectory_type = named("trajectory_msgs", "JointTrajectory")
 
 
-def _wrench(message: Any) -> samples.WrenchCommand:
+def _wrench(message: Any) -> commands.WrenchCommand:
     force, torque = message.force, message.torque
-    return samples.WrenchCommand(np.array([force.x, force.y, force.z]), np.array([torque.x, torque.y, torque.z]))
+    return commands.WrenchCommand(np.array([force.x, force.y, force.z]), np.array([torque.x, torque.y, torque.z]))
 
 
-def _number(message: Any) -> samples.NumberCommand:
-    return samples.NumberCommand(float(message.data))
+def _number(message: Any) -> commands.NumberCommand:
+    return commands.NumberCommand(float(message.data))
 
 
-def trajectory_of(message: Any) -> samples.TrajectoryCommand:
+def trajectory_of(message: Any) -> commands.PositionTrajectoryCommand:
     """Return the points of a message that name every joint's position."""
     count = len(message.joint_names)
     points = [point for point in message.points if len(point.positions) == count]
-    return samples.TrajectoryCommand(
+    return commands.PositionTrajectoryCommand(
         tuple(message.joint_names),
         np.array([seconds(point.time_from_start) for point in points]),
         np.array([list(point.positions) for point in points]).reshape(-1, count),
@@ -147,12 +148,12 @@ OUTGOING: dict[type[samples.Sample], Outgoing] = {
     samples.JointStateSample: Outgoing(_joint_state_type, _joint_state),
 }
 INCOMING: dict[type, Incoming] = {
-    samples.TwistCommand: Incoming(named("geometry_msgs", "Twist"), _twist),
-    samples.WrenchCommand: Incoming(named("geometry_msgs", "Wrench"), _wrench),
-    samples.SignalCommand: Incoming(named("std_msgs", "Empty"), lambda message: samples.SignalCommand()),
-    samples.FlagCommand: Incoming(named("std_msgs", "Bool"), lambda message: samples.FlagCommand(message.data)),
-    samples.NumberCommand: Incoming(named("std_msgs", "Float64"), _number),
-    samples.TrajectoryCommand: Incoming(_trajectory_type, trajectory_of),
+    commands.TwistCommand: Incoming(named("geometry_msgs", "Twist"), _twist),
+    commands.WrenchCommand: Incoming(named("geometry_msgs", "Wrench"), _wrench),
+    commands.SignalCommand: Incoming(named("std_msgs", "Empty"), lambda message: commands.SignalCommand()),
+    commands.FlagCommand: Incoming(named("std_msgs", "Bool"), lambda message: commands.FlagCommand(message.data)),
+    commands.NumberCommand: Incoming(named("std_msgs", "Float64"), _number),
+    commands.PositionTrajectoryCommand: Incoming(_trajectory_type, trajectory_of),
 }
 
 

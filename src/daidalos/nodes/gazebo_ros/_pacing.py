@@ -8,8 +8,8 @@ from collections import deque
 from collections.abc import Callable
 from typing import Any, TypeVar
 
+from daidalos.samples.sensors import Sample
 from daidalos.simulation import Simulation
-from daidalos.simulation.samples import Sample
 
 T = TypeVar("T")
 _MAX_LAG_NS = 200_000_000

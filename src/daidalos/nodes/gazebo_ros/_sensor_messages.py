@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from daidalos.nodes.gazebo_ros._conversion import Outgoing, header, named, vector
-from daidalos.simulation import samples
+from daidalos.samples import sensors as samples
 
 _range_type = named("sensor_msgs", "Range")
 _navsat_type = named("sensor_msgs", "NavSatFix")

@@ -28,8 +28,8 @@ from daidalos.nodes.warming import warm_up_in_background
 
 if TYPE_CHECKING:
     from daidalos.description.world import World
+    from daidalos.samples.sensors import Sample
     from daidalos.simulation import Simulation
-    from daidalos.simulation.samples import Sample
 
 _CLOCK_RATE = 100.0
 _STATES_RATE = 50.0
@@ -225,7 +225,7 @@ class GzServer(Node):
     def _connect(self, simulation: Simulation) -> None:
         """Make a publisher or subscription for every topic of the simulation, and remove those it lost."""
         from daidalos.nodes.gazebo_ros._messages import INCOMING, outgoing
-        from daidalos.simulation.samples import ImageSample
+        from daidalos.samples.sensors import ImageSample
 
         wanted = simulation.publications
         for topic in [topic for topic in self._outgoing if topic not in wanted]:

@@ -13,14 +13,21 @@ from daidalos.common.pose2 import move_along_arc
 from daidalos.description.geometry import Cylinder, Sphere
 from daidalos.description.link import Plugin as Description
 from daidalos.description.world import Model
-from daidalos.simulation.component import ComponentContext, Subscription
+from daidalos.samples.commands import TwistCommand
+from daidalos.samples.endpoint import Subscription
+from daidalos.samples.odometry import transform_of, wheel_odometry
+from daidalos.samples.sensors import (
+    NumberSample,
+    OdometrySample,
+    Sample,
+    TransformSample,
+)
+from daidalos.simulation.component import ComponentContext
 from daidalos.simulation.conversion.model_build import ModelBuild
 from daidalos.simulation.instance import Instance
-from daidalos.simulation.odometry import transform_of, wheel_odometry
 from daidalos.simulation.plugins.ackermann_settings import Settings, read_settings
 from daidalos.simulation.plugins.base import Plugin
 from daidalos.simulation.plugins.truth import link_transforms, true_odometry
-from daidalos.simulation.samples import NumberSample, OdometrySample, Sample, TransformSample, TwistCommand
 
 Array = NDArray[np.float64]
 

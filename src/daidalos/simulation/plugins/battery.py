@@ -8,9 +8,11 @@ from dataclasses import dataclass
 from functools import partial
 
 from daidalos.description.link import Plugin as Description
-from daidalos.simulation.component import ComponentContext, Subscription, Switch
+from daidalos.samples.commands import SignalCommand
+from daidalos.samples.endpoint import Subscription
+from daidalos.samples.sensors import BatterySample, Sample
+from daidalos.simulation.component import ComponentContext, Switch
 from daidalos.simulation.plugins.base import Plugin
-from daidalos.simulation.samples import BatterySample, Sample, SignalCommand
 from daidalos.simulation.topics import absolute_topic
 
 _HOUR = 3600.0

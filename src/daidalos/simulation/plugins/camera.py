@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from daidalos.description.markup import Element
+from daidalos.samples.commands import SignalCommand
 from daidalos.simulation.plugins.base import Parameters, SensorPlugin
-from daidalos.simulation.samples import SignalCommand
 from daidalos.simulation.sensors.base import Sensor
 from daidalos.simulation.sensors.camera import Camera, CameraOutput
 from daidalos.simulation.topics import frame

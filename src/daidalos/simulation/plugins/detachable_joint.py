@@ -9,11 +9,13 @@ import mujoco
 
 from daidalos.common.pose3 import Pose
 from daidalos.description.link import Plugin as Description
-from daidalos.simulation.component import ComponentContext, Subscription
+from daidalos.samples.commands import SignalCommand
+from daidalos.samples.endpoint import Subscription
+from daidalos.samples.sensors import Sample, TextSample
+from daidalos.simulation.component import ComponentContext
 from daidalos.simulation.instance import Instance, LinkView
 from daidalos.simulation.plugins.base import Plugin
 from daidalos.simulation.plugins.holding import let_go, pull
-from daidalos.simulation.samples import Sample, SignalCommand, TextSample
 from daidalos.simulation.topics import absolute_topic
 
 

@@ -10,23 +10,21 @@ from numpy.typing import NDArray
 
 from daidalos.common.pose2 import move_along_arc
 from daidalos.description.link import Plugin as Description
-from daidalos.simulation.component import ComponentContext, Subscription
-from daidalos.simulation.conversion.model_build import ModelBuild
-from daidalos.simulation.instance import Instance, JointView, LinkView
-from daidalos.simulation.odometry import (
-    transform_of,
-    wheel_odometry,
-)
-from daidalos.simulation.plugins.base import Plugin
-from daidalos.simulation.plugins.diff_drive_settings import read_settings
-from daidalos.simulation.plugins.truth import link_transforms, true_odometry
-from daidalos.simulation.samples import (
+from daidalos.samples.commands import TwistCommand
+from daidalos.samples.endpoint import Subscription
+from daidalos.samples.odometry import transform_of, wheel_odometry
+from daidalos.samples.sensors import (
     JointStateSample,
     OdometrySample,
     Sample,
     TransformSample,
-    TwistCommand,
 )
+from daidalos.simulation.component import ComponentContext
+from daidalos.simulation.conversion.model_build import ModelBuild
+from daidalos.simulation.instance import Instance, JointView, LinkView
+from daidalos.simulation.plugins.base import Plugin
+from daidalos.simulation.plugins.diff_drive_settings import read_settings
+from daidalos.simulation.plugins.truth import link_transforms, true_odometry
 
 Array = NDArray[np.float64]
 

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass, field
 
 from daidalos.simulation.component import ComponentContext
-from daidalos.simulation.odometry import EncoderError
+from daidalos.simulation.encoder_error import EncoderError
 from daidalos.simulation.plugins.base import Parameters
 from daidalos.simulation.topics import absolute_topic, frame
 

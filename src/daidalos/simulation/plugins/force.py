@@ -8,10 +8,12 @@ import numpy as np
 
 from daidalos.common.pose3 import rotation_matrix
 from daidalos.description.link import Plugin as Description
-from daidalos.simulation.component import ComponentContext, Subscription
+from daidalos.samples.commands import WrenchCommand
+from daidalos.samples.endpoint import Subscription
+from daidalos.samples.sensors import Sample
+from daidalos.simulation.component import ComponentContext
 from daidalos.simulation.instance import Instance
 from daidalos.simulation.plugins.base import Plugin
-from daidalos.simulation.samples import Sample, WrenchCommand
 
 
 class Force(Plugin):

@@ -10,11 +10,13 @@ import numpy as np
 from daidalos.description.joint import JointType
 from daidalos.description.link import Plugin as Description
 from daidalos.description.markup import Element
-from daidalos.simulation.component import ComponentContext, Subscription
+from daidalos.samples.commands import NumberCommand, PositionTrajectoryCommand
+from daidalos.samples.endpoint import Subscription
+from daidalos.samples.sensors import Sample
+from daidalos.simulation.component import ComponentContext
 from daidalos.simulation.conversion.model_build import ModelBuild
 from daidalos.simulation.instance import Instance
 from daidalos.simulation.plugins.base import Plugin
-from daidalos.simulation.samples import NumberCommand, Sample, TrajectoryCommand
 from daidalos.simulation.topics import absolute_topic
 from daidalos.simulation.trajectory_follower import ActiveTrajectory, place_joints
 
@@ -54,7 +56,7 @@ class JointPoseTrajectory(Plugin):
     @property
     def subscriptions(self) -> Mapping[str, Subscription]:
         """The trajectory."""
-        return {self.topic: Subscription(TrajectoryCommand, self._command)}
+        return {self.topic: Subscription(PositionTrajectoryCommand, self._command)}
 
     def start(self) -> ActiveTrajectory | None:
         """Hold the joints where the description has them, if it says so."""
@@ -75,7 +77,7 @@ class JointPoseTrajectory(Plugin):
             self.state = None
         return ()
 
-    def _command(self, command: TrajectoryCommand) -> None:
+    def _command(self, command: PositionTrajectoryCommand) -> None:
         unknown = [name for name in command.joints if self.parameters.scoped(name) not in self._joints]
         if unknown or not len(command.times):
             words = f"there is no movable joint {unknown[0]!r}" if unknown else "it has no points"
@@ -99,7 +101,7 @@ class JointPoseTrajectory(Plugin):
         if not positions:
             return None
         return ActiveTrajectory(
-            TrajectoryCommand(tuple(names[: len(positions)]), np.zeros(1), np.array([positions])), 0
+            PositionTrajectoryCommand(tuple(names[: len(positions)]), np.zeros(1), np.array([positions])), 0
         )
 
 

@@ -8,11 +8,13 @@ import numpy as np
 
 from daidalos.common.pose3 import rotate
 from daidalos.description.link import Plugin as Description
-from daidalos.simulation.component import ComponentContext, Subscription
+from daidalos.samples.commands import NumberCommand
+from daidalos.samples.endpoint import Subscription
+from daidalos.samples.sensors import Sample
+from daidalos.simulation.component import ComponentContext
 from daidalos.simulation.conversion.model_build import ModelBuild
 from daidalos.simulation.instance import Instance
 from daidalos.simulation.plugins.base import Plugin
-from daidalos.simulation.samples import NumberCommand, Sample
 from daidalos.simulation.topics import absolute_topic
 
 

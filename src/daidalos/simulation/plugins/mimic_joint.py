@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from daidalos.description.link import Plugin as Description
+from daidalos.samples.sensors import Sample
 from daidalos.simulation.component import ComponentContext
 from daidalos.simulation.conversion.couplings import couple
 from daidalos.simulation.conversion.model_build import ModelBuild
 from daidalos.simulation.plugins.base import Plugin
 from daidalos.simulation.plugins.joint_forces import joint_of
-from daidalos.simulation.samples import Sample
 
 
 class MimicJoint(Plugin):

@@ -10,12 +10,12 @@ import numpy as np
 from daidalos.common.pose3 import Pose
 from daidalos.description.link import Plugin as Description
 from daidalos.description.markup import Element
+from daidalos.samples.odometry import transform_of
+from daidalos.samples.sensors import OdometrySample, Sample, TransformSample
 from daidalos.simulation.component import ComponentContext
 from daidalos.simulation.instance import Instance
-from daidalos.simulation.odometry import transform_of
 from daidalos.simulation.plugins.base import Plugin
 from daidalos.simulation.plugins.truth import true_odometry
-from daidalos.simulation.samples import OdometrySample, Sample, TransformSample
 from daidalos.simulation.topics import absolute_topic, frame
 
 

@@ -10,12 +10,14 @@ from numpy.typing import NDArray
 
 from daidalos.common.pose3 import Pose, rotation_matrix
 from daidalos.description.link import Plugin as Description
-from daidalos.simulation.component import ComponentContext, Subscription
+from daidalos.samples.commands import TwistCommand
+from daidalos.samples.endpoint import Subscription
+from daidalos.samples.odometry import transform_of
+from daidalos.samples.sensors import OdometrySample, Sample, TransformSample
+from daidalos.simulation.component import ComponentContext
 from daidalos.simulation.instance import Instance
-from daidalos.simulation.odometry import transform_of
 from daidalos.simulation.plugins.base import Plugin
 from daidalos.simulation.plugins.truth import true_odometry
-from daidalos.simulation.samples import OdometrySample, Sample, TransformSample, TwistCommand
 from daidalos.simulation.topics import absolute_topic, frame
 
 Array = NDArray[np.float64]

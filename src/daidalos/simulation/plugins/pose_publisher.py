@@ -10,10 +10,10 @@ from daidalos.common.pose3 import Pose
 from daidalos.common.rate_gate import RateGate
 from daidalos.description.joint import JointType
 from daidalos.description.link import Plugin as Description
+from daidalos.samples.sensors import Sample, TransformSample
 from daidalos.simulation.component import ComponentContext
 from daidalos.simulation.instance import Instance
 from daidalos.simulation.plugins.base import Plugin
-from daidalos.simulation.samples import Sample, TransformSample
 from daidalos.simulation.topics import absolute_topic
 
 

@@ -14,12 +14,17 @@ from numpy.typing import NDArray
 from daidalos.description.link import Plugin as Description
 from daidalos.description.markup import Element
 from daidalos.description.ros2_control import ComponentInfo, read_hardware
+from daidalos.samples.sensors import (
+    ImuSample,
+    RangeSample,
+    Sample,
+    WrenchSample,
+)
 from daidalos.simulation.component import Component, ComponentContext
 from daidalos.simulation.conversion.model_build import ModelBuild
 from daidalos.simulation.instance import Instance
 from daidalos.simulation.joint_drives import DriveState, JointDrives
 from daidalos.simulation.plugins.base import Plugin
-from daidalos.simulation.samples import ImuSample, RangeSample, Sample, WrenchSample
 
 DEFAULT_RATE = 100.0
 _KINEMATIC = "gazebo_ros2_control/GazeboSystem"

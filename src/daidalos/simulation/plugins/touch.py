@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from daidalos.description.link import Plugin as Description
+from daidalos.samples.sensors import FlagSample, Sample
 from daidalos.simulation.component import ComponentContext, Switch
 from daidalos.simulation.instance import Instance
 from daidalos.simulation.plugins.base import Plugin
-from daidalos.simulation.samples import FlagSample, Sample
 from daidalos.simulation.topics import absolute_topic
 
 

@@ -7,9 +7,9 @@ from collections.abc import Iterable, Iterator
 import numpy as np
 
 from daidalos.common.pose3 import Pose, rotate
+from daidalos.samples.odometry import planar_covariance
+from daidalos.samples.sensors import OdometrySample, TransformSample
 from daidalos.simulation.instance import Instance, LinkView
-from daidalos.simulation.odometry import planar_covariance
-from daidalos.simulation.samples import OdometrySample, TransformSample
 
 
 def true_odometry(

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, ClassVar
 from daidalos.common.pose3 import Pose
 from daidalos.description.link import Sensor as Description
 from daidalos.description.markup import Element
+from daidalos.samples.sensors import Sample
 from daidalos.simulation.component import Component, ComponentContext
-from daidalos.simulation.samples import Sample
 from daidalos.simulation.topics import absolute_topic
 
 if TYPE_CHECKING:

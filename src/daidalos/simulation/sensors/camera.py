@@ -11,16 +11,16 @@ from numpy.typing import NDArray
 
 from daidalos.description.link import Sensor as Description
 from daidalos.description.markup import Element
-from daidalos.simulation.component import ComponentContext, Subscription
-from daidalos.simulation.rendering.pool import Pool
-from daidalos.simulation.samples import (
+from daidalos.samples.commands import FlagCommand, SignalCommand
+from daidalos.samples.endpoint import Subscription
+from daidalos.samples.sensors import (
     CameraInfoSample,
-    FlagCommand,
     ImageSample,
     PointCloudSample,
     Sample,
-    SignalCommand,
 )
+from daidalos.simulation.component import ComponentContext
+from daidalos.simulation.rendering.pool import Pool
 from daidalos.simulation.sensors.base import Sensor
 from daidalos.simulation.sensors.camera_settings import CameraSettings, read_camera
 from daidalos.simulation.topics import absolute_topic

@@ -7,9 +7,9 @@ from collections.abc import Iterable, Mapping
 import numpy as np
 
 from daidalos.description.markup import Element
+from daidalos.samples.sensors import BumperSample, ContactsSample, Sample
 from daidalos.simulation.contacts import read_contacts
 from daidalos.simulation.instance import Instance
-from daidalos.simulation.samples import BumperSample, ContactsSample, Sample
 from daidalos.simulation.sensors.base import Sensor
 
 

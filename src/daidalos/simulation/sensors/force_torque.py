@@ -9,9 +9,9 @@ import numpy as np
 
 from daidalos.common.pose3 import Pose, rotation_matrix
 from daidalos.description.markup import Element
+from daidalos.samples.sensors import Sample, WrenchSample
 from daidalos.simulation.instance import Instance
 from daidalos.simulation.noise import Noise
-from daidalos.simulation.samples import Sample, WrenchSample
 from daidalos.simulation.sensors.noisy import NoisySensor, noise_of_axes
 
 _FRAMES = ("child", "parent", "sensor")

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from daidalos.common.pose3 import Pose, Quaternion, multiply, rotation_matrix
 from daidalos.description.markup import Element
+from daidalos.samples.sensors import ImuSample, Sample
 from daidalos.simulation.noise import Noise, read_noise
-from daidalos.simulation.samples import ImuSample, Sample
 from daidalos.simulation.sensors.noisy import Biases, NoisySensor, noise_of_axes
 
 Array = NDArray[np.float64]

@@ -13,11 +13,16 @@ from numpy.typing import NDArray
 from daidalos.common.pose3 import rotation_matrix
 from daidalos.description.link import Sensor as Description
 from daidalos.description.markup import Element
+from daidalos.samples.sensors import (
+    LaserScanSample,
+    PointCloudSample,
+    RangeSample,
+    Sample,
+)
 from daidalos.simulation.component import ComponentContext
 from daidalos.simulation.conversion.geometry import RAY_GROUPS
 from daidalos.simulation.instance import Instance
 from daidalos.simulation.noise import read_noise
-from daidalos.simulation.samples import LaserScanSample, PointCloudSample, RangeSample, Sample
 from daidalos.simulation.sensors.base import Sensor
 
 Array = NDArray[np.float64]

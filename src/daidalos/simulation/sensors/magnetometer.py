@@ -8,8 +8,8 @@ import numpy as np
 
 from daidalos.common.pose3 import rotate
 from daidalos.description.markup import Element
+from daidalos.samples.sensors import MagneticFieldSample, Sample
 from daidalos.simulation.noise import Noise
-from daidalos.simulation.samples import MagneticFieldSample, Sample
 from daidalos.simulation.sensors.noisy import NoisySensor, noise_of_axes
 
 

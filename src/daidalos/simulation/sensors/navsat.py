@@ -9,9 +9,9 @@ import numpy as np
 from daidalos.common.pose3 import rotate
 from daidalos.description.markup import Element
 from daidalos.description.world import SphericalCoordinates
+from daidalos.samples.sensors import NavSatSample, Sample
 from daidalos.simulation.geodesy import to_east_north_up, to_geodetic
 from daidalos.simulation.noise import Noise
-from daidalos.simulation.samples import NavSatSample, Sample
 from daidalos.simulation.sensors.noisy import NoisySensor, nested_noise
 
 

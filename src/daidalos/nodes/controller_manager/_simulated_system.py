@@ -1,4 +1,4 @@
-"""Hardware that is in the simulation: joints with motors, and sensors."""
+"""Hardware of the controller manager that is in the simulation: joints with motors, and sensors."""
 
 from __future__ import annotations
 

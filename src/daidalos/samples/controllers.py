@@ -1,7 +1,6 @@
-"""What goes in and out of controllers beside their interfaces: samples to publish and commands to take.
+"""Samples, commands and requests of controllers, beside those of `daidalos.samples.sensors` and `commands`.
 
-A shell maps each class to one message type; the classes of `daidalos.simulation.samples` go out as well. Times
-are nanoseconds of the node's clock, units are SI, quaternions are x, y, z, w.
+Times are nanoseconds of the node's clock, units are SI, quaternions are x, y, z, w.
 """
 
 from __future__ import annotations
@@ -12,7 +11,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from daidalos.simulation.samples import Sample
+from daidalos.samples.sensors import Sample
 
 Array = NDArray[np.float64]
 
@@ -260,7 +259,7 @@ class GripperState:
 
 
 @dataclass(frozen=True, eq=False)
-class WrenchCommand:
+class StampedWrenchCommand:
     """A wanted force [N] and torque [N m], each (3,), in a frame; empty for the sensor's."""
 
     force: Array

@@ -1,35 +1,32 @@
-"""Everything that goes in and out of a simulation: samples of sensors and plugins, and commands to them.
+"""What sensors and a robot's plugins measure.
 
-A shell maps each class here to one message type. Times are simulated nanoseconds, units are SI,
-quaternions are x, y, z, w, topics are absolute, frame ids are without a leading slash.
+Times are nanoseconds, simulated or of the node's clock; units are SI, quaternions are x, y, z, w, topics are absolute,
+frame ids are without a leading slash.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from daidalos.common.pose3 import Pose
 
-if TYPE_CHECKING:
-    from daidalos.simulation.contacts import Contact
-
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
 class Sample:
-    """What a sensor or plugin says at one instant.
+    """A measurement of a sensor, plugin or controller at one instant.
 
     Parameters
     ----------
     stamp_ns : int
         When it was measured.
     topic : str
-        Where it goes, such as ``/scan``.
+        On which it is published, such as ``/scan``.
     frame_id : str
         The frame that its numbers are in.
     """
@@ -245,6 +242,47 @@ class WrenchSample(Sample):
 
 
 @dataclass(frozen=True, eq=False)
+class Contact:
+    """Two collisions that touch in k points.
+
+    Parameters
+    ----------
+    model1, link1, collision1, model2, link2, collision2 : str
+        Names as in the descriptions.
+    positions : array (k, 3)
+        In the world [m].
+    normals : array (k, 3)
+        Unit vectors from the first to the second.
+    forces : array (k, 3)
+        On the second, in world axes [N].
+    depths : array (k,)
+        How far they overlap [m].
+    """
+
+    model1: str
+    link1: str
+    collision1: str
+    model2: str
+    link2: str
+    collision2: str
+    positions: Array
+    normals: Array
+    forces: Array
+    depths: Array
+
+    def swapped(self) -> Contact:
+        """Return the same with the two sides exchanged."""
+        return Contact(
+            *(self.model2, self.link2, self.collision2),
+            *(self.model1, self.link1, self.collision1),
+            positions=self.positions,
+            normals=-self.normals,
+            forces=-self.forces,
+            depths=self.depths,
+        )
+
+
+@dataclass(frozen=True, eq=False)
 class ContactsSample(Sample):
     """What touches a link, pair by pair; the link's collision is the first of each."""
 
@@ -375,62 +413,3 @@ class WheelSlipSample(Sample):
     names: tuple[str, ...]
     lateral: Array
     longitudinal: Array
-
-
-@dataclass(frozen=True, eq=False)
-class TwistCommand:
-    """A wanted velocity in the frame of the base.
-
-    Parameters
-    ----------
-    linear, angular : array (3,)
-        [m/s, rad/s].
-    """
-
-    linear: Array = field(default_factory=lambda: np.zeros(3))
-    angular: Array = field(default_factory=lambda: np.zeros(3))
-
-
-@dataclass(frozen=True, eq=False)
-class WrenchCommand:
-    """A wanted force (3,) [N] and torque (3,) [N m]."""
-
-    force: Array = field(default_factory=lambda: np.zeros(3))
-    torque: Array = field(default_factory=lambda: np.zeros(3))
-
-
-@dataclass(frozen=True)
-class SignalCommand:
-    """That something should happen now."""
-
-
-@dataclass(frozen=True)
-class FlagCommand:
-    """Whether something should be so."""
-
-    value: bool = False
-
-
-@dataclass(frozen=True, eq=False)
-class NumberCommand:
-    """A wanted position, speed or effort of one joint."""
-
-    value: float = 0.0
-
-
-@dataclass(frozen=True, eq=False)
-class TrajectoryCommand:
-    """Positions of joints over time.
-
-    Parameters
-    ----------
-    joints : tuple of n strings
-    times : array (k,)
-        From the start [s].
-    positions : array (k, n)
-        [rad, m].
-    """
-
-    joints: tuple[str, ...]
-    times: Array
-    positions: Array

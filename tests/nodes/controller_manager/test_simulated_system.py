@@ -12,12 +12,12 @@ from control_robots import from_values
 from daidalos.control.controllers.base import ControllerContext
 from daidalos.control.errors import HardwareError, SwitchError
 from daidalos.control.hardware.base import HardwareContext
-from daidalos.control.hardware.simulated import SimulatedSystem
 from daidalos.control.manager import ControllerManager
-from daidalos.control.samples import TrajectoryCommand, TrajectoryPoint, ValuesCommand
 from daidalos.description import sdf, urdf
 from daidalos.description.errors import DescriptionError
 from daidalos.description.ros2_control import read_hardware
+from daidalos.nodes.controller_manager._simulated_system import SimulatedSystem
+from daidalos.samples.controllers import TrajectoryCommand, TrajectoryPoint, ValuesCommand
 from daidalos.simulation import Simulation
 from daidalos.simulation.plugins.ros2_control import Ros2Control
 
@@ -313,7 +313,7 @@ ROVER = f"""<robot name="rover"><link name="base"><inertial><mass value="2"/>{IN
 
 
 def drive(rig: Rig, seconds: float, speed: float, turn: float) -> Any:
-    from daidalos.simulation.samples import TwistCommand
+    from daidalos.samples.commands import TwistCommand
 
     controller = rig.manager.controllers["drive"].controller
     assert controller is not None

@@ -1,0 +1,1 @@
+"""What sensors measure and commands say, as dataclasses of arrays, and their messages."""

@@ -1,0 +1,72 @@
+"""Commands to plugins and controllers.
+
+Units are SI. The commands of controllers that need more than these are in `daidalos.samples.controllers`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class TwistCommand:
+    """A wanted velocity in the frame of the base.
+
+    Parameters
+    ----------
+    linear, angular : array (3,)
+        [m/s, rad/s].
+    """
+
+    linear: Array = field(default_factory=lambda: np.zeros(3))
+    angular: Array = field(default_factory=lambda: np.zeros(3))
+
+
+@dataclass(frozen=True, eq=False)
+class WrenchCommand:
+    """A wanted force (3,) [N] and torque (3,) [N m]."""
+
+    force: Array = field(default_factory=lambda: np.zeros(3))
+    torque: Array = field(default_factory=lambda: np.zeros(3))
+
+
+@dataclass(frozen=True)
+class SignalCommand:
+    """That something should happen now."""
+
+
+@dataclass(frozen=True)
+class FlagCommand:
+    """Whether something should be so."""
+
+    value: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class NumberCommand:
+    """A wanted position, speed or effort of one joint."""
+
+    value: float = 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class PositionTrajectoryCommand:
+    """Positions of joints over time.
+
+    Parameters
+    ----------
+    joints : tuple of n strings
+    times : array (k,)
+        From the start [s].
+    positions : array (k, n)
+        [rad, m].
+    """
+
+    joints: tuple[str, ...]
+    times: Array
+    positions: Array
