@@ -1,7 +1,6 @@
 import numpy as np
 import pytest
 
-from daidalos.samples.odometry import planar_covariance
 from daidalos.simulation.encoder_error import EncoderError
 
 
@@ -18,8 +17,3 @@ def test_slip_scales_and_rest_is_silent():
     random = np.random.default_rng(0)
     assert EncoderError(slip=0.1).measure(np.array([2.0]), random) == pytest.approx([2.2])
     assert EncoderError(noise=1.0).measure(np.zeros(2), random).tolist() == [0, 0]
-
-
-def test_the_covariance_of_a_planar_pose_has_large_variances_out_of_the_plane():
-    covariance = planar_covariance(1, 2, 3).reshape(6, 6)
-    assert np.diag(covariance).tolist() == [1, 2, 1e12, 1e12, 1e12, 3]
