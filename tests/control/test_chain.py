@@ -71,7 +71,7 @@ def test_what_does_not_fit_is_named() -> None:
         Chain(ROBOT, "world", "e", JOINTS)
     with pytest.raises(ControlError, match="'side' does not hang on 'b'"):
         Chain(ROBOT, "b", "side", ())
-    with pytest.raises(UnknownError, match="no joint 'j4'; there are: j1, j2"):
+    with pytest.raises(UnknownError, match="no joint 'j4'; there are: aside, flange, j1, j2"):
         Chain(ROBOT, "world", "d", ("j4",))
     with pytest.raises(ControlError, match="'flange' can not be moved"):
         Chain(ROBOT, "world", "d", ("flange",))
