@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from daidalos.nodes.gazebo_ros._messages import INCOMING, OUTGOING, outgoing
+from daidalos.samples import commands
 from daidalos.samples import sensors as samples
 from daidalos.simulation import Simulation
 from simulation.models import world
@@ -21,8 +22,8 @@ def test_every_kind_of_sample_has_a_message():
 
 
 def test_every_kind_of_command_has_a_message():
-    commands = {cls for name, cls in inspect.getmembers(samples, inspect.isclass) if name.endswith("Command")}
-    assert commands == set(INCOMING)
+    kinds = {cls for name, cls in inspect.getmembers(commands, inspect.isclass) if name.endswith("Command")}
+    assert kinds == set(INCOMING)
 
 
 def test_users_may_bring_samples_of_their_own():
