@@ -37,6 +37,14 @@ class BackendPublisher(ABC):
     def put(self, parts: list[Any], sequence: int, stamp_ns: int) -> None:
         """Send one sample, given as buffers to be concatenated."""
 
+    @property
+    def has_readers(self) -> bool:
+        """Whether the middleware itself knows of readers in other processes, before the graph names their nodes."""
+        return False
+
+    def watch_readers(self, on_change: Callable[[], None]) -> None:  # noqa: B027 - few middlewares know
+        """Call `on_change`, on any thread, when `has_readers` has changed."""
+
     def wait_for_acks(self, timeout_ns: int | None) -> bool:
         """Wait until everyone has acknowledged what was sent; False when time ran out.
 

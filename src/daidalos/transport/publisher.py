@@ -58,8 +58,9 @@ class Publisher:
         if self._observers:
             self.note()
         remote = self._has_remote_subscribers
+        sequence = self._next_sequence()
         if self._targets or remote or self._latched:
-            sequence, stamp = self._next_sequence(), time.time_ns()
+            stamp = time.time_ns()
             if self._latched:
                 self._history.append((self._codec.snapshot(message), stamp, sequence, self._gid))
             for subscription in self._targets:
@@ -96,6 +97,11 @@ class Publisher:
         """
         wire = self._wire
         return wire is None or wire.wait_for_acks(timeout_ns)
+
+    @property
+    def wire_has_readers(self) -> bool:
+        """Whether the middleware itself knows of readers in other processes."""
+        return self._wire is not None and self._wire.has_readers
 
     @property
     def has_subscribers(self) -> bool:

@@ -119,6 +119,7 @@ class Session:
         publisher = Publisher(endpoint, codec_of(message_type, self.backend.wide))
         wire = self.backend.declare_publisher(key, endpoint)
         publisher.attach(wire, lambda: self._remove(key, self._publishers, publisher))
+        wire.watch_readers(lambda: self._note_listeners(publisher))
         with self._lock:
             self._publishers.setdefault(topic, set()).add(publisher)
             self._match_topic(topic)
@@ -271,7 +272,8 @@ class Session:
         mine = publisher.endpoint
         subscriptions = self.graph.endpoints(EndpointKind.SUBSCRIPTION, name=mine.name)
         publisher.set_remote_subscribers(
-            any(other.gid not in self._own and _same_type(mine, other) for other in subscriptions)
+            publisher.wire_has_readers
+            or any(other.gid not in self._own and _same_type(mine, other) for other in subscriptions)
         )
 
     def _refuse_incompatible(self, subscription: Subscription) -> None:

@@ -23,6 +23,8 @@ def graph_view(args: argparse.Namespace) -> Iterator[Graph]:
     args
         What `ros2cli.node.strategy.add_arguments` declared, as far as the verb did.
     """
+    from rclpy.utilities import get_rmw_implementation_identifier
+
     from daidalos.cli.ros2.daemon import client
 
     if getattr(args, "no_daemon", False):
@@ -33,8 +35,11 @@ def graph_view(args: argparse.Namespace) -> Iterator[Graph]:
     if graph is not None:
         yield graph
         return
+    slow = get_rmw_implementation_identifier() == "rmw_cyclonedds_cpp"
+    if slow:  # discovery takes half a second, which the next command is to be spared
+        client.start_in_background()
     with direct_node(args) as node:
         graph = node.handle.graph
         yield graph
-        if any(not other.name.startswith(NODE_NAME_PREFIX) for other in graph.nodes()):
+        if not slow and any(not other.name.startswith(NODE_NAME_PREFIX) for other in graph.nodes()):
             client.start_in_background()

@@ -27,7 +27,6 @@ from daidalos.transport.cyclonedds.endpoints import (
     DdsPublisher,
     DdsService,
     DdsSubscription,
-    Writer,
 )
 from daidalos.transport.cyclonedds.library import (
     RETCODE_PRECONDITION_NOT_MET,
@@ -39,13 +38,15 @@ from daidalos.transport.cyclonedds.library import (
 )
 from daidalos.transport.cyclonedds.qos import HISTORY_KEY, dds_qos, history_text
 from daidalos.transport.cyclonedds.reception import Reception, SampleReader
-from daidalos.transport.environment import Environment, EnvironmentVariableError
+from daidalos.transport.cyclonedds.writer import Writer
+from daidalos.transport.environment import DiscoveryRange, Environment, EnvironmentVariableError
 from daidalos.transport.graph import EndpointInfo, EndpointKind, Graph, NodeInfo
 from daidalos.transport.qos import Durability, History, Qos
 from daidalos.transport.registry import Peer, Registry
 
-_GRACE_S = 0.3
-"""How long after our start those who are in no registry may take to answer."""
+_DISCOVERY_S = 0.5
+"""Time after our start in which participants that are in no registry answer; ROS 2's own tools wait as long."""
+_POLL_S = 0.02
 _ONE_OCTET = (c.c_uint32 * 3)(0x01010000, 0, 0)
 """What the library is told of every type, since it only ever sees serialised samples: that it has one octet."""
 _INFO_QOS = Qos(durability=Durability.TRANSIENT_LOCAL, depth=1)
@@ -83,7 +84,7 @@ class CycloneBackend(Backend):
         library = self._library
         self._graph = graph
         with self._registry.locked():
-            self._peers = [] if self._environment.discovery.value == "OFF" else self._registry.peers()
+            self._peers = [] if self._environment.discovery is DiscoveryRange.OFF else self._registry.peers()
             self._domain = _join_domain(library, self._environment)
             try:
                 self._participant = self._make_participant()
@@ -96,9 +97,10 @@ class CycloneBackend(Backend):
         self._taker = SampleReader(library)
         self._reception = Reception(library, self._participant, "dds")
         info_type = names.DISCOVERY_TYPE
-        info_reader = self._make(names.DISCOVERY_TOPIC, info_type, _INFO_READER_QOS, b"", writes=False)
-        info_writer = self._make(names.DISCOVERY_TOPIC, info_type, _INFO_QOS, b"", writes=True)
-        self._info_writer = Writer(library, info_writer)
+        info_hash = names.write_user_data(typehash=names.discovery_type_hash())
+        info_reader = self._make(names.DISCOVERY_TOPIC, info_type, _INFO_READER_QOS, info_hash, writes=False)
+        info_writer = self._make(names.DISCOVERY_TOPIC, info_type, _INFO_QOS, info_hash, writes=True)
+        self._info_writer = Writer(library, info_writer, names.DISCOVERY_TOPIC, _INFO_QOS.limit)
         prefix = self._gid[:PREFIX]
         self._discovery = Discovery(library, self._participant, prefix, info_reader, graph, self._tell)
 
@@ -112,17 +114,23 @@ class CycloneBackend(Backend):
             _leave_domain(self._library, self._domain)
 
     def settle(self, timeout_s: float) -> bool:
-        """Wait until the processes that were alive at our start have told of themselves."""
+        """Wait until discovery has come to rest; return whether it did in time.
+
+        That is: `_DISCOVERY_S` after our start, as soon as every participant that is known, by the registry of this
+        machine or by DDS, has listed its nodes and their endpoints.
+        """
         deadline = time.monotonic() + timeout_s
+        earliest = self._started + (0.0 if self._environment.discovery is DiscoveryRange.OFF else _DISCOVERY_S)
 
         def complete() -> bool:
-            return all(self._discovery.is_discovered(bytes.fromhex(session)) for session in self._alive())
+            known = all(self._discovery.is_discovered(bytes.fromhex(session)) for session in self._alive())
+            return known and self._discovery.all_discovered()
 
-        done = self._graph.wait_for(complete, timeout_s)
-        left = min(deadline, self._started + _GRACE_S) - time.monotonic()
-        if left > 0:
-            self._graph.wait_for(lambda: False, left)
-        return done
+        while (now := time.monotonic()) < deadline:
+            if now >= earliest and complete():
+                return True
+            self._graph.wait_for(lambda: False, min(max(earliest - now, _POLL_S), deadline - now))
+        return False
 
     def _alive(self) -> set[str]:
         """Return which of the sessions known at our start still live."""
@@ -164,7 +172,8 @@ class CycloneBackend(Backend):
     def declare_publisher(self, key: str, endpoint: EndpointInfo) -> BackendPublisher:
         """Hand out the writer and tell others whose it is."""
         writer, _ = self._declare(key, endpoint)
-        return DdsPublisher(Writer(self._library, writer), self._closer(key, endpoint))
+        wire = Writer(self._library, writer, endpoint.name, endpoint.qos.limit)
+        return DdsPublisher(self._library, self._reception, wire, self._closer(key, endpoint))
 
     def declare_subscription(
         self, key: str, endpoint: EndpointInfo, on_sample: Callable[[Any], None]
@@ -178,7 +187,7 @@ class CycloneBackend(Backend):
         """Hand out reader and writer and tell others whose they are."""
         writer, reader = self._declare(key, endpoint)
         close = self._closer(key, endpoint)
-        replies = Writer(self._library, writer)
+        replies = Writer(self._library, writer, endpoint.name, endpoint.qos.limit)
         return DdsService(self._library, self._taker, self._reception, reader, replies, on_request, close)
 
     def declare_client(self, key: str, endpoint: EndpointInfo, on_response: Callable[[Any], None]) -> BackendClient:
@@ -187,7 +196,7 @@ class CycloneBackend(Backend):
         handle = c.c_uint64()
         self._library.check(self._library.dds_get_instance_handle(writer, c.byref(handle)), "number a client")
         close = self._closer(key, endpoint)
-        requests = Writer(self._library, writer)
+        requests = Writer(self._library, writer, endpoint.name, endpoint.qos.limit)
         return DdsClient(self._taker, self._reception, reader, requests, handle.value, on_response, close)
 
     def _declare(self, key: str, endpoint: EndpointInfo) -> tuple[int, int]:

@@ -133,6 +133,11 @@ class Discovery:
             return False
         return all(gid in participant.all_gids for _, _, gids in participant.nodes for gid in gids)
 
+    def all_discovered(self) -> bool:
+        """Return whether every ROS participant that is known has listed its nodes and their endpoints."""
+        known = tuple(self._participants.items())  # a copy: the receiving thread changes it
+        return all(participant.enclave is None or self.is_discovered(prefix) for prefix, participant in known)
+
     def _taking(self, reader: int, handler: Callable[[int, SampleInfo], None]) -> Callable[[], None]:
         """Return what takes all samples of a built-in reader and then brings the graph up to date."""
         library = self._library

@@ -19,127 +19,62 @@ from daidalos.transport.backend import (
     SampleInfo,
 )
 from daidalos.transport.cyclonedds.library import (
-    INFINITE,
     PUBLICATION_MATCHED_STATUS,
-    RETCODE_TIMEOUT,
-    SERDATA_DATA,
-    Buffer,
     BuiltinEndpoint,
     Library,
+    MatchedStatus,
 )
-from daidalos.transport.cyclonedds.qos import BLOCKING_NS, user_data_of
+from daidalos.transport.cyclonedds.qos import user_data_of
 from daidalos.transport.cyclonedds.reception import Reception, Sample, SampleReader
+from daidalos.transport.cyclonedds.writer import Writer
 
 _ENCAPSULATION = 4
 _HEADER = struct.Struct("<Qq")
 """What precedes the fields of a request and its reply: the client's number and its count of requests."""
 _REQUEST_ID = struct.Struct("<QQ")
-_PADDING = (b"", b"\0\0\0", b"\0\0", b"\0")
-_JOINED = 4096
-"""Up to so many items buffers are joined; larger ones are handed over where they are."""
 _CLIENT_TIMEOUT_NS = 100_000_000
 _MAX_REACHABLE = 1000
 """So many clients are remembered, whether they still live or not."""
 
 
-class Writer:
-    """A DDS writer of serialised samples."""
-
-    def __init__(self, library: Library, entity: int) -> None:
-        self._library = library
-        self.entity = entity
-        self._type = c.c_void_p()
-        library.check(library.dds_get_entity_sertype(entity, c.byref(self._type)), "find a writer's type")
-        self._congested_until = 0
-        # The library does not notice when the type that a sample is made of is gone. A signal's handler may close
-        # what the thread that it interrupts is about to use.
-        self._lock = threading.RLock()
-        self._closed = False
-
-    def write(self, parts: list[Any]) -> None:
-        """Write one sample, given as buffers.
-
-        A reader that does not keep up holds us back once; then samples are dropped for as long as that took,
-        so that one stopped process does not stop us. After `close`, nothing is written.
-        """
-        if self._congested_until and time.monotonic_ns() < self._congested_until:
-            return
-        if sum(map(len, parts)) <= _JOINED:
-            data = b"".join(parts)
-            data += _PADDING[len(data) & 3]
-            size, count, buffers = len(data), 1, c.byref(Buffer(data, len(data)))
-        else:
-            size, count, buffers = _buffers(parts)
-        with self._lock:
-            if not self._closed:
-                self._write(size, count, buffers)
-
-    def _write(self, size: int, count: int, buffers: Any) -> None:
-        library = self._library
-        serialised = library.ddsi_serdata_from_ser_iov(self._type, SERDATA_DATA, count, buffers, size)
-        if not serialised:
-            raise CdrError(f"DDS refused a sample of {size} bytes")
-        result = library.dds_writecdr(self.entity, serialised)
-        self._congested_until = time.monotonic_ns() + BLOCKING_NS if result == RETCODE_TIMEOUT else 0
-
-    def wait_for_acks(self, timeout_ns: int | None) -> bool:
-        """Wait until all reliable readers have acknowledged what was written; False when time ran out."""
-        if self._closed:
-            return True
-        library = self._library
-        result = library.dds_wait_for_acks(self.entity, INFINITE if timeout_ns is None else timeout_ns)
-        if result == RETCODE_TIMEOUT:
-            return False
-        library.check(result, "wait for acknowledgements")
-        return True
-
-    def close(self) -> None:
-        """Delete the writer."""
-        with self._lock:
-            self._closed = True
-        self._library.dds_delete(self.entity)
-
-
-def _buffers(parts: list[Any]) -> tuple[int, int, Any]:
-    """Return how many bytes buffers have when padded to a multiple of four, how many they are, and C's list of them.
-
-    They stay where they are, so they must outlive the list.
-    """
-    addressed = [(part, len(part)) if isinstance(part, bytes) else _address(part) for part in parts]
-    size = sum(length for _, length in addressed)
-    if size & 3:
-        addressed.append((_PADDING[size & 3], -size & 3))
-    return (
-        size + (-size & 3),
-        len(addressed),
-        (Buffer * len(addressed))(*(Buffer(base, length) for base, length in addressed)),
-    )
-
-
-def _address(part: Any) -> tuple[int, int]:
-    """Return where the bytes of an array are, and how many."""
-    address, count = part.buffer_info()
-    return address, count * part.itemsize
-
-
 class DdsPublisher(BackendPublisher):
-    """Writes samples."""
+    """Writer of a topic's samples, whose readers DDS reports as soon as it writes to them."""
 
-    def __init__(self, writer: Writer, on_close: Callable[[], None]) -> None:
+    def __init__(self, library: Library, reception: Reception, writer: Writer, on_close: Callable[[], None]) -> None:
+        self._library = library
+        self._reception = reception
         self._writer = writer
         self._on_close = on_close
+        self._has_readers = False
+
+    @property
+    def has_readers(self) -> bool:
+        """Whether DDS has matched a reader of another process."""
+        return self._has_readers
+
+    def watch_readers(self, on_change: Callable[[], None]) -> None:
+        """Call `on_change` on the receiving thread when `has_readers` has changed."""
+        status = MatchedStatus()
+
+        def update() -> None:
+            self._library.dds_get_publication_matched_status(self._writer.entity, c.byref(status))
+            self._has_readers = status.current_count > 0
+            on_change()
+
+        self._reception.add(self._writer.entity, update, PUBLICATION_MATCHED_STATUS)
 
     def put(self, parts: list[Any], sequence: int, stamp_ns: int) -> None:
         """Send one sample."""
         self._writer.write(parts)
 
     def wait_for_acks(self, timeout_ns: int | None) -> bool:
-        """Wait until all reliable readers have acknowledged what was written."""
+        """Wait until all reliable readers have acknowledged what was written; return whether they have."""
         return self._writer.wait_for_acks(timeout_ns)
 
     def close(self) -> None:
         """Delete the writer."""
         self._on_close()
+        self._reception.remove(self._writer.entity)
         self._writer.close()
 
 

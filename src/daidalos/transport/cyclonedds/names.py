@@ -69,6 +69,14 @@ def parts_of_service(type_name: str) -> tuple[tuple[str, str], tuple[str, str]]:
     )
 
 
+def discovery_type_hash() -> str:
+    """Return the type hash of `ros_discovery_info`, which ROS 2 expects of its endpoints as of all others."""
+    from rmw_dds_common.msg import ParticipantEntitiesInfo
+
+    type_hash: str = ParticipantEntitiesInfo._TYPE_HASH
+    return type_hash
+
+
 def write_user_data(**values: str) -> bytes:
     """Write ``key=value;`` pairs, those without a value left out."""
     return "".join(f"{key}={value};" for key, value in values.items() if value).encode()

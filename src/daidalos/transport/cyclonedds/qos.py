@@ -11,8 +11,8 @@ from daidalos.transport.cyclonedds.names import read_user_data
 from daidalos.transport.qos import INFINITE_NS, Durability, History, Liveliness, Qos, Reliability
 
 UNLIMITED = -1
-BLOCKING_NS = 500_000_000
-"""How long a reliable writer waits for readers that do not keep up."""
+BLOCKING_NS = 100_000_000
+"""Longest time that one call of a reliable writer waits for readers that do not keep up, in nanoseconds."""
 _READER_SAMPLES = 256
 """Samples that wait for the receiving thread; when there are more, the writer is held back."""
 

@@ -60,13 +60,23 @@ class Reception:
         self._thread = threading.Thread(target=self._run, name=name, daemon=True)
         self._thread.start()
 
-    def add(self, reader: int, on_data: Callable[[], None]) -> None:
-        """Call `on_data` on the thread whenever data arrived; it must take all there is."""
+    def add(self, entity: int, on_event: Callable[[], None], status: int = DATA_AVAILABLE_STATUS) -> None:
+        """Call `on_event` on the thread whenever a status of a reader or writer is raised.
+
+        Parameters
+        ----------
+        entity
+            The reader or writer.
+        on_event
+            What resets the status: where data is available, by taking all samples.
+        status
+            The status that is waited for.
+        """
         library = self._library
-        number = self._numbers[reader] = self._number()
-        self._handlers[number] = on_data
-        library.check(library.dds_set_status_mask(reader, DATA_AVAILABLE_STATUS), "watch a reader")
-        library.check(library.dds_waitset_attach(self._waitset, reader, number), "watch a reader")
+        number = self._numbers[entity] = self._number()
+        self._handlers[number] = on_event
+        library.check(library.dds_set_status_mask(entity, status), "watch an entity")
+        library.check(library.dds_waitset_attach(self._waitset, entity, number), "watch an entity")
 
     def remove(self, reader: int) -> None:
         """Stop waiting for a reader."""

@@ -132,7 +132,7 @@ class IncompatibleQosSource(GraphSource):
     def _note(self, added: bool, other: EndpointInfo) -> None:
         faults = self._faults(other) if added and self._same_type(other) else []
         if faults:
-            self._change(total_count=1, last_policy_kind=QoSPolicyKind(int(faults[-1])))
+            self._change(total_count=1, last_policy_kind=QoSPolicyKind(int(faults[0])))
 
 
 class IncompatibleTypeSource(GraphSource):

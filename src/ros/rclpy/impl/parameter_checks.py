@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
-from rclpy.exceptions import ParameterImmutableException
 from rclpy.parameter import Parameter, ParameterType
 
 if TYPE_CHECKING:
@@ -20,7 +19,7 @@ def check_change(parameter: Parameter[Any], descriptor: ParameterDescriptor) -> 
     from rcl_interfaces.msg import SetParametersResult
 
     if descriptor.read_only:
-        return SetParametersResult(successful=False, reason=str(ParameterImmutableException(parameter.name)))
+        return SetParametersResult(successful=False, reason=f"Trying to set a read-only parameter: {parameter.name}.")
     if parameter.type_ == ParameterType.NOT_SET and not descriptor.dynamic_typing:
         return SetParametersResult(successful=False, reason="Static parameter cannot be undeclared")
     return check_value(parameter, descriptor)
