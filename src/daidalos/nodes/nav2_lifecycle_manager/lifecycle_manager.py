@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from enum import IntEnum
 from typing import Any
 
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
@@ -10,9 +11,16 @@ from rclpy.node import Node
 
 from daidalos.nodes.runner import run
 
-_CONFIGURE, _CLEANUP, _ACTIVATE, _DEACTIVATE = 1, 2, 3, 4
-_UNCONFIGURED, _INACTIVE, _ACTIVE = 1, 2, 3
-_RETRY_S = 1.0
+_INACTIVE, _ACTIVE = 2, 3
+
+
+class _Transition(IntEnum):
+    """Transitions of managed nodes, by lifecycle_msgs' numbers."""
+
+    CONFIGURE = 1
+    CLEANUP = 2
+    ACTIVATE = 3
+    DEACTIVATE = 4
 
 
 class LifecycleManager(Node):
@@ -42,33 +50,47 @@ class LifecycleManager(Node):
         self.destroy_timer(self._start_timer)
         await self._startup()
 
+    # Commands.
+
+    async def _configure(self) -> bool:
+        return await self._raise(_Transition.CONFIGURE, {_INACTIVE, _ACTIVE})
+
     async def _startup(self) -> bool:
         self.get_logger().info(f"starting {', '.join(self._names)}")
-        for name in self._names:
-            if not await self._bring(name, _INACTIVE, _CONFIGURE):
-                return False
-        for name in self._names:
-            if not await self._bring(name, _ACTIVE, _ACTIVATE):
-                return False
+        if not (await self._configure() and await self._raise(_Transition.ACTIVATE, {_ACTIVE})):
+            return False
         self._active = True
         self.get_logger().info("Managed nodes are active")
         return True
 
-    async def _bring(self, name: str, wanted: int, transition: int) -> bool:
-        """Take a node through a transition unless it is where that leads already."""
-        state = await self._state_of(name)
-        if state == wanted or (wanted == _INACTIVE and state == _ACTIVE):
-            return True
-        if await self._change(name, transition):
-            return True
-        self.get_logger().error(f"'{name}' did not go through transition {transition}; the others are not started")
-        return False
+    async def _pause(self) -> bool:
+        self._active = False
+        return await self._lower(_Transition.DEACTIVATE, _ACTIVE)
 
-    async def _lower(self, transition: int, wanted: int) -> bool:
-        for name in reversed(self._names):
-            if await self._state_of(name) == wanted and not await self._change(name, transition):
+    async def _cleanup(self) -> bool:
+        return await self._lower(_Transition.CLEANUP, _INACTIVE)
+
+    async def _reset(self) -> bool:
+        paused = await self._pause()
+        return await self._cleanup() and paused
+
+    async def _raise(self, transition: _Transition, done: set[int]) -> bool:
+        """Take the nodes through a transition in their order, unless they are where that leads; stop at a failure."""
+        for name in self._names:
+            if await self._state_of(name) not in done and not await self._change(name, transition):
+                self.get_logger().error(f"'{name}' did not {transition.name.lower()}; the others are not started")
                 return False
         return True
+
+    async def _lower(self, transition: _Transition, source: int) -> bool:
+        """Take the nodes that are in a state through a transition in the reverse order; stop at a failure."""
+        for name in reversed(self._names):
+            if await self._state_of(name) == source and not await self._change(name, transition):
+                self.get_logger().error(f"'{name}' did not {transition.name.lower()}")
+                return False
+        return True
+
+    # Requests to the nodes.
 
     async def _state_of(self, name: str) -> int:
         from lifecycle_msgs.srv import GetState
@@ -77,12 +99,12 @@ class LifecycleManager(Node):
         response = await client.call_async(GetState.Request())
         return int(response.current_state.id)
 
-    async def _change(self, name: str, transition: int) -> bool:
+    async def _change(self, name: str, transition: _Transition) -> bool:
         from lifecycle_msgs.srv import ChangeState
 
         client = await self._ready_client(ChangeState, name, "change_state")
         request = ChangeState.Request()
-        request.transition.id = transition
+        request.transition.id = int(transition)
         response = await client.call_async(request)
         return bool(response.success)
 
@@ -115,15 +137,19 @@ class LifecycleManager(Node):
         watcher()
 
     async def _on_manage(self, request: Any, response: Any) -> Any:
-        command = request.command
-        if command == request.STARTUP or command == request.RESUME:
-            response.success = await self._startup()
-            return response
-        self._active = False
-        success = await self._lower(_DEACTIVATE, _ACTIVE)
-        if command in (request.RESET, request.SHUTDOWN):
-            success = await self._lower(_CLEANUP, _INACTIVE) and success
-        response.success = success
+        commands = {
+            request.STARTUP: self._startup,
+            request.PAUSE: self._pause,
+            request.RESUME: self._startup,
+            request.RESET: self._reset,
+            request.SHUTDOWN: self._reset,
+            request.CONFIGURE: self._configure,
+            request.CLEANUP: self._cleanup,
+        }
+        if request.command in commands:
+            response.success = await commands[request.command]()
+        else:
+            self.get_logger().error(f"there is no command {request.command}; they go from 0 to {max(commands)}")
         return response
 
     def _on_is_active(self, request: Any, response: Any) -> Any:
