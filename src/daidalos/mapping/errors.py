@@ -2,8 +2,10 @@
 
 from pathlib import Path
 
+from daidalos.common.errors import UserError
 
-class MappingError(Exception):
+
+class MappingError(UserError):
     """Something about mapping failed; the message is one line for the person who gave the input."""
 
 

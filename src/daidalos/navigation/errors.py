@@ -1,7 +1,9 @@
 """What can go wrong while navigating: the base of every error of this layer."""
 
+from daidalos.common.errors import UserError
 
-class NavigationError(Exception):
+
+class NavigationError(UserError):
     """Something in navigation failed; the message is meant for the person who sent the robot.
 
     Attributes

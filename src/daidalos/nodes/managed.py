@@ -10,12 +10,11 @@ from rclpy.exceptions import ParameterException
 from rclpy.lifecycle import LifecycleNode, LifecycleState, ManagedEntity, TransitionCallbackReturn
 from rclpy.parameter import Parameter
 
-from daidalos.mapping.errors import MappingError
+from daidalos.common.errors import UserError
 from daidalos.navigation.errors import NavigationError
 from daidalos.nodes.action_results import set_error
 from daidalos.nodes.node_thread import NodeThread
 
-_USER_ERRORS = (NavigationError, MappingError, ParameterException)
 _MEMBERS = ("publisher", "subscription", "service", "client")
 
 
@@ -48,7 +47,7 @@ class ManagedNode(LifecycleNode):
 
         Raises
         ------
-        NavigationError, MappingError, ParameterException
+        UserError, ParameterException
             The parameters cannot be followed. The transition fails, with the error's message in the log.
         """
 
@@ -113,7 +112,7 @@ class ManagedNode(LifecycleNode):
         if outcome == TransitionCallbackReturn.SUCCESS:
             try:
                 self.configure()
-            except _USER_ERRORS as error:
+            except (UserError, ParameterException) as error:
                 self.get_logger().error(f"cannot configure {self.get_name()}: {error}")
                 outcome = TransitionCallbackReturn.FAILURE
         if outcome != TransitionCallbackReturn.SUCCESS:
