@@ -10,6 +10,8 @@ from daidalos.studio import protocol, typescript
 from daidalos.studio.frames import CLIENT_LAYOUTS, SERVER_LAYOUTS
 from daidalos.studio.typescript import GENERATED, GenerationError, generate, write
 
+OWN = {"protocol", "arrangement", "extensions", "definitions"}
+
 
 def text_of(module: str, web: Path = typescript.WEB) -> str:
     return generate(web)[GENERATED / f"{module}.ts"]
@@ -27,7 +29,7 @@ def web(tmp_path: Path) -> Path:
 
 
 def test_only_what_the_page_imports_is_generated_with_what_it_refers_to(web):
-    packages = {path.stem for path in generate(web)} - {"protocol", "arrangement", "definitions"}
+    packages = {path.stem for path in generate(web)} - OWN
     assert packages == {"sensor_msgs", "std_srvs", "std_msgs", "builtin_interfaces"}
     scan = text_of("sensor_msgs", web)
     assert 'import type { Header } from "./std_msgs";' in scan
@@ -47,7 +49,7 @@ def test_writing_removes_what_is_no_longer_generated(web):
     write(web)
     (web / "src" / "panels" / "scan.tsx").write_text("")
     write(web)
-    assert {path.stem for path in (web / GENERATED).iterdir()} == {"protocol", "arrangement", "definitions"}
+    assert {path.stem for path in (web / GENERATED).iterdir()} == OWN
 
 
 @pytest.mark.parametrize(

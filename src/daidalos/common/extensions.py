@@ -153,7 +153,9 @@ def find(kind: Kind[T], name: str, *, asked_by: Location | None = None) -> type[
 
 def locate(kind: Kind[T], name: str, *, asked_by: Location | None = None) -> Extension:
     """Return the extension of a name without importing its class; see `find`."""
-    found = _by_name(kind, name, kind.built_in()) or _by_name(kind, name, _added(kind.group)) or _by_path(name)
+    found = (
+        _by_name(kind, name, kind.built_in()) or _by_name(kind, name, from_entry_points(kind.group)) or _by_path(name)
+    )
     if found is None:
         from daidalos.common.suggestions import hint
 
@@ -183,7 +185,7 @@ def listing(kind: Kind[Any]) -> list[Extension]:
     """Return the extensions of a kind, built-in ones first, without importing their classes."""
     built_in = list(kind.built_in())
     known = {name for extension in built_in for name in extension.names}
-    return [*built_in, *(extension for extension in _added(kind.group) if extension.name not in known)]
+    return [*built_in, *(extension for extension in from_entry_points(kind.group) if extension.name not in known)]
 
 
 def describe(extension: Extension) -> str:
@@ -224,8 +226,8 @@ def _spelling(name: str) -> str:
     return name.strip().replace("::", "/")
 
 
-def _added(group: str) -> Iterator[Extension]:
-    """Yield what the entry points of a group offer."""
+def from_entry_points(group: str) -> Iterator[Extension]:
+    """Yield what the entry points of a group offer, without importing it."""
     from importlib.metadata import entry_points
 
     for point in entry_points(group=group):

@@ -6,9 +6,9 @@ Runs when the project is built; needs the standard library only.
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 
-from daidalos.interfaces.definition import Constant, FieldType, Interface, Kind, Message, Service, messages_of
+from daidalos.interfaces.definition import FieldType, Interface, Kind, Message, Service, messages_of
 from daidalos.interfaces.library import Library
 
 _SCALARS = {"bool": "boolean", "string": "string", "wstring": "string", "int64": "bigint", "uint64": "bigint"}
@@ -21,7 +21,7 @@ _ARRAYS = {
 }  # fmt: skip
 
 
-def typescript_modules(names: Iterable[str], library: Library) -> dict[str, str]:
+def typescript_modules(names: Iterable[str], library: Library, *, ambient: bool = False) -> dict[str, str]:
     """Generate the TypeScript types of interfaces and of all that they refer to.
 
     A message is an interface of its short name, with an object of the same name for its constants. A service
@@ -33,11 +33,13 @@ def typescript_modules(names: Iterable[str], library: Library) -> dict[str, str]
         Full names such as ``sensor_msgs/msg/LaserScan`` and ``std_srvs/srv/Empty``.
     library
         Where the definitions are found.
+    ambient
+        Whether to generate namespaces for one declaration file, which have no constants, instead of modules.
 
     Returns
     -------
     dict
-        The text of one module per ROS package, by the package's name.
+        The text of one module or namespace per ROS package, by the package's name.
 
     Raises
     ------
@@ -50,7 +52,7 @@ def typescript_modules(names: Iterable[str], library: Library) -> dict[str, str]
         other = packages.setdefault(package, {}).setdefault(short, interface)
         if other.name != interface.name:
             raise ValueError(f"{other.name} and {interface.name} have the same name in TypeScript")
-    return {package: _module(package, packages[package]) for package in sorted(packages)}
+    return {package: (_namespace if ambient else _module)(package, packages[package]) for package in sorted(packages)}
 
 
 def _with_dependencies(names: Iterable[str], library: Library) -> list[Interface]:
@@ -70,39 +72,57 @@ def _sent(interface: Interface) -> tuple[Message, ...]:
 
 
 def _module(package: str, interfaces: dict[str, Interface]) -> str:
+    imported = _imported(package, interfaces)
+    blocks = [f'import type {{ {", ".join(names)} }} from "./{other}";' for other, names in imported.items()]
+    blocks += _declarations(interfaces, _constants)
+    return "\n\n".join(blocks) + "\n"
+
+
+def _namespace(package: str, interfaces: dict[str, Interface]) -> str:
+    imported = _imported(package, interfaces)
+    lines = [f"import {name} = {other}.{name};" for other, names in imported.items() for name in names]
+    lines += _declarations(interfaces, lambda message: [])
+    return f"export declare namespace {package} {{\n" + "\n".join(lines) + "\n}\n"
+
+
+def _imported(package: str, interfaces: dict[str, Interface]) -> dict[str, list[str]]:
+    """Return the names that are imported from other packages, by these."""
     imported: dict[str, set[str]] = {}
     for interface in interfaces.values():
         for name in [name for message in _sent(interface) for name in message.nested()]:
             other, _, short = name.split("/")
             if other != package:
                 imported.setdefault(other, set()).add(short)
-    blocks = [f'import type {{ {", ".join(sorted(imported[other]))} }} from "./{other}";' for other in sorted(imported)]
+    return {other: sorted(imported[other]) for other in sorted(imported)}
+
+
+def _declarations(interfaces: dict[str, Interface], constants: Callable[[Message], Iterable[str]]) -> Iterator[str]:
     for interface in interfaces.values():
-        blocks += [_declaration(message) for message in _sent(interface)]
+        for message in _sent(interface):
+            yield "\n".join([*_declaration(message), *constants(message)])
         if isinstance(interface, Service):
             short = _short(interface.name)
-            blocks.append(
+            yield (
                 f"/** {interface.name} */\n"
                 f"export interface {short} {{\n  Request: {short}_Request;\n  Response: {short}_Response;\n}}"
             )
-    return "\n\n".join(blocks) + "\n"
 
 
-def _declaration(message: Message) -> str:
+def _declaration(message: Message) -> list[str]:
     short = _short(message.name)
     lines = [*_comment(f"{message.name}\n{message.comment}".strip(), ""), f"export interface {short} {{"]
     for field in message.fields:
         lines += [*_comment(field.comment, "  "), f"  {field.name}: {_type(field.type)};"]
-    lines.append("}")
+    return [*lines, "}"]
+
+
+def _constants(message: Message) -> Iterator[str]:
     if message.constants:
-        lines += [f"export const {short} = {{", *_constants(message.constants), "} as const;"]
-    return "\n".join(lines)
-
-
-def _constants(constants: Iterable[Constant]) -> Iterator[str]:
-    for constant in constants:
-        wide = _SCALARS.get(constant.type.base) == "bigint"
-        yield f"  {constant.name}: {json.dumps(constant.value)}{'n' if wide else ''},"
+        yield f"export const {_short(message.name)} = {{"
+        for constant in message.constants:
+            wide = _SCALARS.get(constant.type.base) == "bigint"
+            yield f"  {constant.name}: {json.dumps(constant.value)}{'n' if wide else ''},"
+        yield "} as const;"
 
 
 def _type(kind: FieldType) -> str:

@@ -28,6 +28,7 @@ STUDIO = Path(__file__).resolve().parent
 WEB = STUDIO / "web"
 STATIC = STUDIO / "static"
 STAMP = "source.sha256"
+CONTRACT = "daidalos-studio.d.ts"
 SKIP = "DAIDALOS_SKIP_STUDIO"  # environment variable: set it to leave the page as it is
 
 NPM_TIMEOUT_S = 600
@@ -216,6 +217,8 @@ def _build_into(static: Path, web: Path, node: _Node) -> None:
         _run([str(node.node), str(vite), "build", "--outDir", str(fresh)], web, node, VITE_TIMEOUT_S)
         if not (fresh / "index.html").is_file():
             raise BuildError("Vite wrote no index.html")
+        if (web / "src" / "contract.ts").is_file():
+            (fresh / CONTRACT).write_text(typescript.contract(web), encoding="utf-8", newline="\n")
         _compress(fresh)
         (fresh / STAMP).write_text(digest + "\n")
         if static.exists():

@@ -2,28 +2,18 @@
 
 from __future__ import annotations
 
+import asyncio
 from pathlib import Path
 
 from aiohttp import web
 
 from daidalos.studio.arrangement import Arrangement
+from daidalos.studio.extensions import module_file, page_modules
+from daidalos.studio.files import CONTENT_TYPES, find_file
+from daidalos.studio.records import to_json
 
 STATIC = Path(__file__).parent / "static"
 
-# The registry of a system may name other types, which browsers refuse for modules and workers.
-CONTENT_TYPES = {
-    ".css": "text/css",
-    ".html": "text/html",
-    ".ico": "image/vnd.microsoft.icon",
-    ".js": "text/javascript",
-    ".json": "application/json",
-    ".map": "application/json",
-    ".png": "image/png",
-    ".svg": "image/svg+xml",
-    ".wasm": "application/wasm",
-    ".webmanifest": "application/manifest+json",
-    ".woff2": "font/woff2",
-}
 HEADERS = {
     "Content-Security-Policy": (
         "default-src 'self'; script-src 'self' 'wasm-unsafe-eval'; style-src 'self' 'unsafe-inline'; "
@@ -62,15 +52,36 @@ async def page(request: web.Request) -> web.StreamResponse:
     static: Path = request.app[STATIC_KEY]
     if not (static / "index.html").is_file():
         return web.Response(text=NOT_BUILT, content_type="text/html", headers={"Cache-Control": "no-store"})
-    path = _find(static, request.path)
+    path = find_file(static, request.path)
     if path is None:
-        return web.Response(status=404, text=f"no {request.path} here\n")
+        return _missing(request)
+    # Vite puts a hash of the content into the names below assets/.
+    return _file_response(path, FOREVER if path.parent.name == "assets" else ASK_FIRST)
+
+
+async def extension_module(request: web.Request) -> web.StreamResponse:
+    """Answer with a file of a panel or display that an installed package brings."""
+    asked = request.match_info
+    path = await asyncio.to_thread(module_file, asked["kind"], asked["name"], asked["path"])
+    return _missing(request) if path is None else _file_response(path, ASK_FIRST)
+
+
+async def extensions_of(request: web.Request) -> web.Response:
+    """Answer with the panels and displays that installed packages bring."""
+    modules = to_json(await asyncio.to_thread(page_modules))
+    return web.json_response(modules, headers={**HEADERS, "Cache-Control": ASK_FIRST})
+
+
+def _missing(request: web.Request) -> web.Response:
+    return web.Response(status=404, text=f"no {request.path} here\n")
+
+
+def _file_response(path: Path, keeping: str) -> web.FileResponse:
     response = web.FileResponse(path, headers=HEADERS)
     response.content_type = CONTENT_TYPES.get(path.suffix, "application/octet-stream")
     if response.content_type.startswith("text/"):
         response.charset = "utf-8"
-    # Vite puts a hash of the content into the names below assets/.
-    response.headers["Cache-Control"] = FOREVER if path.parent.name == "assets" else ASK_FIRST
+    response.headers["Cache-Control"] = keeping
     return response
 
 
@@ -84,11 +95,3 @@ async def arrangement_of(request: web.Request) -> web.Response:
 
 STATIC_KEY = web.AppKey("static", Path)
 ARRANGEMENT_KEY: web.AppKey[Arrangement | None] = web.AppKey("arrangement")
-
-
-def _find(static: Path, path: str) -> Path | None:
-    parts = [part for part in path.split("/") if part] or ["index.html"]
-    if any(part.startswith(".") or "\\" in part or ":" in part for part in parts):
-        return None
-    found = static.joinpath(*parts)
-    return found if found.is_file() else None

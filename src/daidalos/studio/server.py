@@ -21,7 +21,16 @@ from daidalos.studio.arrangement import Arrangement
 from daidalos.studio.assets import AssetResolver
 from daidalos.studio.client import Client
 from daidalos.studio.hub import Changes, Hub
-from daidalos.studio.pages import ARRANGEMENT_KEY, HEADERS, STATIC, STATIC_KEY, arrangement_of, page
+from daidalos.studio.pages import (
+    ARRANGEMENT_KEY,
+    HEADERS,
+    STATIC,
+    STATIC_KEY,
+    arrangement_of,
+    extension_module,
+    extensions_of,
+    page,
+)
 from daidalos.studio.ports import open_port
 from daidalos.studio.protocol import Level
 from daidalos.studio.source import GraphSource, Parameter, Topic
@@ -182,6 +191,8 @@ class StudioServer:
         app[ARRANGEMENT_KEY] = self._arrangement
         app.router.add_get("/", self._root)
         app.router.add_get("/arrangement.json", arrangement_of)
+        app.router.add_get("/extensions.json", extensions_of)
+        app.router.add_get("/extensions/{kind}/{name}/{path:.*}", extension_module)
         app.router.add_get("/{path:.*}", page)
         runner = web.AppRunner(app, access_log=None, handle_signals=False, shutdown_timeout=GOODBYE_S)
         observing = None

@@ -6,29 +6,22 @@ import "uplot/dist/uPlot.min.css";
 import "./styles/theme.css";
 import "./styles/shell.css";
 import "./styles/controls.css";
-import "./styles/view_3d.css";
-import "./styles/displays.css";
-import "./styles/topics.css";
-import "./styles/message.css";
-import "./styles/plot.css";
-import "./styles/image.css";
-import "./styles/log.css";
-import "./styles/turtlesim.css";
-import "./styles/graph.css";
-import "./styles/simulation.css";
-import "./styles/joints.css";
-import "./styles/call.css";
 import { fetchArrangement } from "./app/arrangement";
 import { Help } from "./app/help";
 import { Layout } from "./app/layout";
-import { readFront, readOpening } from "./app/opening";
+import { asksForMore, readFront, readOpening } from "./app/opening";
 import { listenToKeys } from "./app/shortcuts";
 import { Studio } from "./app/studio";
 import { attachedWorld, installTestHooks } from "./app/test_hooks";
 import { TopBar } from "./app/top_bar";
+import { loadExtensions } from "./extensions";
 import { PANELS } from "./panels/registry";
 
 let layout: Layout;
+const extensions = loadExtensions();
+if (asksForMore(location.search, PANELS)) {
+  await extensions;
+}
 const opening = readOpening(location.search, PANELS);
 
 function App({ studio }: { studio: Studio }) {

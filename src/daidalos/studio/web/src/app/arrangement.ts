@@ -1,5 +1,5 @@
 // What the page shows when a file of RViz or PlotJuggler was opened (studio/arrangement.py).
-import { displayType } from "../displays/registry";
+import { DISPLAYS } from "../displays/registry";
 import type { DisplayConfig } from "../displays/settings";
 import type { Arrangement, Plot, Split } from "../generated/arrangement";
 
@@ -14,7 +14,7 @@ export async function fetchArrangement(): Promise<Arrangement | undefined> {
 /** The displays that an arrangement asks for, with all that it leaves open as it is by default. */
 export function displaysOf({ displays }: Arrangement): DisplayConfig[] | undefined {
   return displays?.flatMap(({ settings, ...display }, i) => {
-    const type = displayType(display.type);
+    const type = DISPLAYS.find(display.type);
     return type ? [{ ...display, id: `arranged-${i}`, settings: { ...type.defaults, ...settings } }] : [];
   });
 }

@@ -1,5 +1,5 @@
 // Where the panels are: docking, the layout that everyone sees first, and keeping what the user made of it.
-import { signal } from "@preact/signals";
+import { effect, signal, untracked } from "@preact/signals";
 import {
   createDockview,
   type DockviewApi,
@@ -8,11 +8,12 @@ import {
   type IDockviewPanel,
   type SerializedDockview,
 } from "dockview-core";
-import { h, render } from "preact";
-import { PANELS } from "../panels/registry";
-import type { PanelType } from "../panels/panel";
+import type { BuiltInPanel } from "../panels/panel";
+import { PANELS, type RegisteredPanel } from "../panels/registry";
+import type { PanelContext } from "../contract";
 import type { Arrangement, Plot, Split } from "../generated/arrangement";
 import { allPlots, firstPlot, isSplit } from "./arrangement";
+import { showErrorLine } from "../ui/error_line";
 import type { Opening } from "./opening";
 import { forget, isRecord, read, write } from "./stored";
 import type { Studio } from "./studio";
@@ -25,13 +26,6 @@ const NARROW_PX = 1200;
 const PHONE_PX = 640;
 const DISPLAYS_NARROW_PX = 250;
 const IMAGE_PX = 460;
-
-/** What stands beside a panel that is opened as a window of its own, and how wide. */
-const BESIDE: Readonly<Record<string, readonly [panel: string, width: number]>> = {
-  scene: ["displays", 290],
-  plot: ["topics", 330],
-  message: ["topics", 330],
-};
 
 type Direction = "right" | "below";
 interface Position {
@@ -53,7 +47,7 @@ export class Layout {
     this.key = opening ? `${KEY}.${opening.panel.id}` : KEY;
     this.dock = createDockview(element, {
       theme: THEME,
-      createComponent: ({ name }) => new PanelHost(panelType(name), studio),
+      createComponent: ({ name }) => new PanelHost(name, studio),
       disableFloatingGroups: true,
     });
     this.restore();
@@ -62,7 +56,7 @@ export class Layout {
   }
 
   /** Show a panel: the one that is there, else a new one. */
-  open(type: PanelType, params: Record<string, unknown> = {}, direction?: Direction): void {
+  open(type: RegisteredPanel, params: Record<string, unknown> = {}, direction?: Direction): void {
     const present = this.dock.panels.find((panel) => panel.view.contentComponent === type.id);
     if (present && !type.many) {
       present.api.setActive();
@@ -114,10 +108,11 @@ export class Layout {
     }
   }
 
-  private arrangeWindow({ panel: { id, title }, details }: Opening): void {
+  private arrangeWindow({ panel, details }: Opening): void {
+    const { id, title } = panel;
     document.title = `${title} · Daidalos`;
     const main = this.dock.addPanel({ id, component: id, title, params: details });
-    const [beside, width] = BESIDE[id] ?? [];
+    const [beside, width] = (panel as Partial<BuiltInPanel>).beside ?? [];
     if (beside !== undefined && width !== undefined) {
       const position = { referencePanel: id, direction: "left" } as const;
       this.dock
@@ -246,46 +241,49 @@ function clamp(value: number, least: number, most: number): number {
   return Math.min(most, Math.max(least, value));
 }
 
-function panelType(id: string): PanelType {
-  const found = PANELS.find((panel) => panel.id === id);
+function panelType(id: string): RegisteredPanel {
+  const found = PANELS.find(id);
   if (!found) {
     throw new Error(`there is no panel ${id}`);
   }
   return found;
 }
 
-/** Puts a Preact component into a docked panel. */
+/** Puts a panel into its place in the dock, once it is known: packages' panels come after the page's own. */
 class PanelHost implements IContentRenderer {
   readonly element = document.createElement("div");
   private readonly visible = signal(false);
-  private readonly disposers: { dispose(): void }[] = [];
+  private readonly stops: (() => void)[] = [];
 
   constructor(
-    private readonly type: PanelType,
+    private readonly id: string,
     private readonly studio: Studio,
   ) {
     this.element.className = "panel";
-    this.element.dataset.panel = type.id;
+    this.element.dataset.panel = id;
   }
 
   init({ api, params }: GroupPanelPartInitParameters): void {
     this.visible.value = api.isVisible;
-    this.disposers.push(api.onDidVisibilityChange(({ isVisible }) => (this.visible.value = isVisible)));
-    render(
-      h(this.type.component, {
-        studio: this.studio,
-        visible: this.visible,
-        params,
-        remember: (changed: Record<string, unknown>) => api.updateParameters(changed),
-      }),
-      this.element,
-    );
+    const watching = api.onDidVisibilityChange(({ isVisible }) => (this.visible.value = isVisible));
+    const remember = (changed: Record<string, unknown>) => api.updateParameters(changed);
+    const context: PanelContext = { studio: this.studio, visible: this.visible, params, remember };
+    let isMounted = false;
+    const stop = effect(() => {
+      const panel = isMounted ? undefined : PANELS.find(this.id);
+      if (panel) {
+        isMounted = true;
+        this.element.replaceChildren();
+        const unmount = untracked(() => panel.mount(this.element, context));
+        this.stops.push(() => unmount?.());
+      } else if (!isMounted && PANELS.isComplete.value) {
+        showErrorLine(this.element, `No installed package has a panel ${this.id}`);
+      }
+    });
+    this.stops.push(stop, () => watching.dispose());
   }
 
   dispose(): void {
-    render(null, this.element);
-    for (const disposer of this.disposers) {
-      disposer.dispose();
-    }
+    this.stops.forEach((stop) => stop());
   }
 }

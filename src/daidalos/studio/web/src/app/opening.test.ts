@@ -1,23 +1,28 @@
 import { describe, expect, it } from "vitest";
-import type { PanelType } from "../panels/panel";
-import { readFront, readOpening } from "./opening";
+import type { Panel } from "../contract";
+import type { RegisteredPanel } from "../panels/registry";
+import { Registry } from "../registry";
+import { asksForMore, readFront, readOpening } from "./opening";
 
-const plot = { id: "plot" } as PanelType;
+const plot = { id: "plot" } as RegisteredPanel;
+const panels = new Registry<Panel>({ plot });
 
 describe("the page's address", () => {
   it("names a panel and what it is to show", () => {
-    const opening = readOpening("?panel=plot&window=/turtlesim/_window&connect=ws://robot:8765", [plot]);
+    const opening = readOpening("?panel=plot&window=/turtlesim/_window&connect=ws://robot:8765", panels);
     expect(opening).toEqual({ panel: plot, details: { window: "/turtlesim/_window" } });
   });
 
   it("may want one to be in front", () => {
-    expect(readFront("?front=plot", [plot])).toBe(plot);
-    expect(readFront("?front=graph", [plot])).toBeUndefined();
-    expect(readOpening("?front=plot", [plot])).toBeUndefined();
+    expect(readFront("?front=plot", panels)).toBe(plot);
+    expect(readFront("?front=graph", panels)).toBeUndefined();
+    expect(readOpening("?front=plot", panels)).toBeUndefined();
   });
 
-  it("may name none, or one that does not exist", () => {
-    expect(readOpening("", [plot])).toBeUndefined();
-    expect(readOpening("?panel=graph", [plot])).toBeUndefined();
+  it("may name none, or one that an installed package may bring", () => {
+    expect(asksForMore("?panel=plot", panels)).toBe(false);
+    expect(asksForMore("?front=battery", panels)).toBe(true);
+    expect(readOpening("", panels)).toBeUndefined();
+    expect(readOpening("?panel=graph", panels)).toBeUndefined();
   });
 });

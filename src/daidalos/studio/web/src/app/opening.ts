@@ -1,8 +1,10 @@
 // What the page's address asks for: ?panel=turtlesim&window=/turtlesim/_window shows one panel as a window of its own.
-import type { PanelType } from "../panels/panel";
+import type { Panel } from "../contract";
+import type { RegisteredPanel } from "../panels/registry";
+import type { Registry } from "../registry";
 
 export interface Opening {
-  panel: PanelType;
+  panel: RegisteredPanel;
   /** What else the address says, for the panel. */
   details: Record<string, string>;
 }
@@ -10,15 +12,21 @@ export interface Opening {
 const NOT_DETAILS = ["panel", "connect"];
 
 /** The panel that an address names; undefined where it names none, or one that does not exist. */
-export function readOpening(search: string, panels: readonly PanelType[]): Opening | undefined {
+export function readOpening(search: string, panels: Registry<Panel>): Opening | undefined {
   const query = new URLSearchParams(search);
-  const panel = panels.find(({ id }) => id === query.get("panel"));
+  const panel = panels.find(query.get("panel") ?? "");
   const details = Object.fromEntries([...query].filter(([name]) => !NOT_DETAILS.includes(name)));
   return panel && { panel, details };
 }
 
 /** The panel that an address wants to be in front of the others: ?front=simulation; undefined as above. */
-export function readFront(search: string, panels: readonly PanelType[]): PanelType | undefined {
+export function readFront(search: string, panels: Registry<Panel>): RegisteredPanel | undefined {
   const front = new URLSearchParams(search).get("front");
-  return panels.find(({ id }) => id === front);
+  return panels.find(front ?? "");
+}
+
+/** Whether an address names a panel that is not there: an installed package may bring it. */
+export function asksForMore(search: string, panels: Registry<Panel>): boolean {
+  const query = new URLSearchParams(search);
+  return ["panel", "front"].some((key) => query.has(key) && !panels.find(query.get(key) ?? ""));
 }

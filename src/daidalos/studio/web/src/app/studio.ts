@@ -3,6 +3,7 @@ import { effect, signal } from "@preact/signals";
 import type { Arrangement } from "../generated/arrangement";
 import { displaysOf } from "./arrangement";
 import { Session } from "../connection/session";
+import type * as contract from "../contract";
 import { DisplayList } from "../displays/list";
 import type { TFMessage } from "../generated/tf2_msgs";
 import { Assets } from "../scene/assets";
@@ -21,7 +22,7 @@ export interface TimeReading {
   factor: number | undefined;
 }
 
-export class Studio {
+export class Studio implements contract.Studio {
   readonly session: Session;
   readonly tf = new TransformBuffer();
   readonly clock = new RobotClock();

@@ -1,6 +1,6 @@
 // window.daidalos: what end-to-end tests (and the curious) read from the page.
 import { Vector3 } from "three";
-import { MapDisplay } from "../displays/occupancy_grid";
+import { MapDisplay } from "../displays/types/occupancy_grid";
 import { PointsDisplay } from "../displays/points_display";
 import type { Editor } from "../panels/simulation/editor";
 import type { World } from "../scene/world";

@@ -1,7 +1,7 @@
 // The bar at the top: who we are, whether we are connected, robot time, and the menus.
 import { PANELS } from "../panels/registry";
 import { formatTime } from "../ros/time";
-import { Icon } from "../ui/icons";
+import { Icon, iconNamed } from "../ui/icons";
 import { Menu, MenuItem, MenuSeparator } from "../ui/menu";
 import { helpIsOpen } from "./help_state";
 import type { Layout } from "./layout";
@@ -23,8 +23,8 @@ export function TopBar({ studio, layout }: { studio: Studio; layout: () => Layou
       <Clock studio={studio} />
       <span class="stretch" />
       <Menu label="Panels" icon="panel">
-        {PANELS.map((panel) => (
-          <MenuItem key={panel.id} icon={panel.icon} onChoose={() => layout().open(panel)}>
+        {PANELS.list.map((panel) => (
+          <MenuItem key={panel.id} icon={iconNamed(panel.icon, "panel")} onChoose={() => layout().open(panel)}>
             {panel.title}
           </MenuItem>
         ))}

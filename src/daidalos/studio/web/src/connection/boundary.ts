@@ -1,17 +1,6 @@
 // The messages between the page and its worker.
+import type { ServiceInfo, TopicInfo } from "../contract";
 import type { ParameterEntry } from "../generated/protocol";
-
-export interface TopicInfo {
-  name: string;
-  type: string;
-  /** False where the server does not know the definition, so that messages stay bytes. */
-  known: boolean;
-}
-
-export interface ServiceInfo {
-  name: string;
-  type: string;
-}
 
 /** Who talks to whom: names of nodes by topic or service. */
 export interface ConnectionGraph {

@@ -6,14 +6,14 @@ import type {
   FromWorker,
   LinkState,
   Received,
-  ServiceInfo,
   StatusInfo,
   ToWorker,
-  TopicInfo,
   Traffic,
 } from "./boundary";
+import type { ServiceInfo, TopicInfo } from "../contract";
+import type * as contract from "../contract";
 import type { ParameterEntry } from "../generated/protocol";
-import type { Outgoing, ServiceType } from "../ros/types";
+import type { Outgoing, ServiceType } from "../contract";
 
 export type Listener<M> = (message: M, time: number) => void;
 
@@ -27,7 +27,7 @@ interface Subscriber {
   received: Listener<never>;
 }
 
-export class Session {
+export class Session implements contract.Session {
   readonly link = signal<LinkState>("connecting");
   readonly serverName = signal("");
   readonly topics = signal<TopicInfo[]>([]);

@@ -1,40 +1,33 @@
-// The contract of a display: something that draws a part of the robot's world into the scene.
+// The base of the page's own displays; see contract.ts.
 import { signal } from "@preact/signals";
 import { Group, type Material, type Mesh, type Object3D, type Texture } from "three";
-import type { Theme } from "../app/theme";
 import type { Session } from "../connection/session";
+import type * as contract from "../contract";
+import type { Settings, Status } from "../contract";
+import type { Registered } from "../registry";
 import type { Assets } from "../scene/assets";
 import type { View } from "../scene/view";
 import { Transform, type TransformBuffer, type When } from "../tf/buffer";
-import type { Property, Settings } from "./settings";
+import type { IconName } from "../ui/icons";
 
-/** How a display fares: idle has nothing to show yet, and that is no fault. */
-export interface Status {
-  level: "ok" | "idle" | "warning" | "error";
-  text: string;
+export interface DisplayContext extends contract.DisplayContext {
+  readonly session: Session;
+  readonly tf: TransformBuffer;
+  readonly assets: Assets;
 }
 
-export interface DisplayContext {
-  session: Session;
-  tf: TransformBuffer;
-  assets: Assets;
-  theme: () => Theme;
-  /** Ask for the scene to be drawn again. */
-  invalidate: () => void;
+export interface FrameInfo extends contract.FrameInfo {
+  readonly view: View;
+  /** Of the view, in pixels. */
+  readonly height: number;
 }
 
-/** What a display needs to know to bring itself up to date for one frame. */
-export interface FrameInfo {
-  fixed: string;
-  /** The moment to draw, in robot time. */
-  time: When;
-  /** The page's clock, in seconds. */
-  page: number;
-  view: View;
-  height: number;
+export interface BuiltInDisplay extends Registered<contract.DisplayType> {
+  readonly icon: IconName;
+  create(context: DisplayContext, settings: Settings): Display;
 }
 
-export abstract class Display {
+export abstract class Display implements contract.Display {
   readonly object = new Group();
   readonly status = signal<Status>({ level: "idle", text: "" });
 
@@ -120,14 +113,4 @@ function disposeMaterial(material: Material): void {
     }
   }
   material.dispose();
-}
-
-export interface DisplayType {
-  /** RViz's class without its package. */
-  readonly type: string;
-  /** The message types that it shows, in full. */
-  readonly messages: readonly string[];
-  readonly properties: readonly Property[];
-  readonly defaults: Settings;
-  create(context: DisplayContext, settings: Settings): Display;
 }

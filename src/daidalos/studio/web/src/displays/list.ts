@@ -1,15 +1,13 @@
 // The list of displays: what is configured, kept in the browser; and the first list that everyone sees.
 import { signal, type Signal } from "@preact/signals";
 import { forget, isRecord, stored } from "../app/stored";
-import type { TopicInfo } from "../connection/boundary";
-import type { Display, DisplayType } from "./display";
-import { displayFor, displayType } from "./registry";
-import type { DisplayConfig, Settings, Value } from "./settings";
+import type { Display, DisplayType, Settings, TopicInfo, Value } from "../contract";
+import type { Registered } from "../registry";
+import { DISPLAYS, displayFor } from "./registry";
+import type { DisplayConfig } from "./settings";
 
 const KEY = "displays";
 
-/** What appears by itself when its topic exists and nothing shows it yet. */
-const DISCOVERED = new Set(["LaserScan", "Map", "Path", "PointCloud2", "Marker", "MarkerArray", "PoseArray"]);
 const MAX_DISCOVERED = 24;
 /** What navigation publishes of its inner life repeats the plan: listed, but switched off. */
 const INNER_LIFE = /(received|transformed)_global_plan|(un)?smoothed/;
@@ -35,7 +33,7 @@ export class DisplayList {
     return this.saved.value.configs;
   }
 
-  add(type: DisplayType, topic?: string): void {
+  add(type: Registered<DisplayType>, topic?: string): void {
     const config = makeConfig(
       type,
       { ...(topic === undefined ? {} : { topic }) },
@@ -72,7 +70,7 @@ export class DisplayList {
     const shown = new Set(configs.map(({ settings }) => settings.topic));
     const found = topics.flatMap(({ name, type }) => {
       const display = displayFor(type);
-      const isNew = display && DISCOVERED.has(display.type) && !shown.has(name) && !seen.includes(name);
+      const isNew = display && display.discovery === "appears" && !shown.has(name) && !seen.includes(name);
       return isNew ? [{ display, name }] : [];
     });
     if (found.length && configs.length < MAX_DISCOVERED) {
@@ -95,7 +93,7 @@ export class DisplayList {
 /** What shows a mobile robot at its best; each entry waits quietly until its topic exists. */
 function firstConfigs(): DisplayConfig[] {
   const entry = (type: string, name: string, settings: Settings = {}, enabled = true) => {
-    const found = displayType(type);
+    const found = DISPLAYS.find(type);
     return found ? [makeConfig(found, settings, name, enabled)] : [];
   };
   return [
@@ -119,10 +117,10 @@ function looksOf(topic: string): Settings {
   return topic.includes("costmap") && !topic.includes("footprint") ? { scheme: "glow", alpha: 0.5 } : {};
 }
 
-function makeConfig(type: DisplayType, settings: Settings, name = type.type, enabled = true): DisplayConfig {
+function makeConfig(type: Registered<DisplayType>, settings: Settings, name = type.id, enabled = true): DisplayConfig {
   return {
     id: crypto.getRandomValues(new Uint32Array(2)).join("-"),
-    type: type.type,
+    type: type.id,
     name,
     enabled,
     settings: { ...type.defaults, ...settings },
@@ -145,8 +143,7 @@ function isSaved(value: unknown): value is Saved {
         typeof config.name === "string" &&
         typeof config.enabled === "boolean" &&
         isRecord(config.settings) &&
-        typeof config.type === "string" &&
-        displayType(config.type) !== undefined,
+        typeof config.type === "string",
     )
   );
 }

@@ -1,10 +1,12 @@
 // Makes displays of their configurations, keeps them up to date, and takes them down.
 import { effect, untracked } from "@preact/signals";
 import type { Group } from "three";
-import type { Display, DisplayContext, FrameInfo } from "./display";
+import type { Display, Settings } from "../contract";
+import type { DisplayContext, FrameInfo } from "./display";
+import { FailedDisplay } from "./failed_display";
 import type { DisplayList } from "./list";
-import { displayType } from "./registry";
-import type { DisplayConfig, Settings } from "./settings";
+import { DISPLAYS } from "./registry";
+import type { DisplayConfig } from "./settings";
 
 interface Made {
   display: Display;
@@ -22,13 +24,14 @@ export class DisplayManager {
   ) {
     this.stop = effect(() => {
       const configs = list.configs;
+      configs.forEach(({ type }) => DISPLAYS.find(type)); // packages may bring it later
       untracked(() => this.apply(configs));
     });
   }
 
   update(frame: FrameInfo): void {
-    for (const { display } of this.made.values()) {
-      display.update(frame);
+    for (const [id, { display }] of this.made) {
+      this.guard(id, () => display.update(frame));
     }
   }
 
@@ -68,7 +71,7 @@ export class DisplayManager {
         changed = this.make(config) || changed;
       } else if (made.settings !== config.settings) {
         made.settings = config.settings;
-        made.display.restyle(config.settings);
+        this.guard(id, () => made.display.restyle(config.settings));
       }
     }
     if (changed) {
@@ -77,7 +80,7 @@ export class DisplayManager {
   }
 
   private make(config: DisplayConfig): boolean {
-    const type = displayType(config.type);
+    const type = DISPLAYS.find(config.type);
     if (!type) {
       return false;
     }
@@ -87,6 +90,19 @@ export class DisplayManager {
     this.parent.add(display.object);
     this.context.invalidate();
     return true;
+  }
+
+  /** Run what a display does; one that throws draws nothing any more, and says why. */
+  private guard(id: string, run: () => void): void {
+    try {
+      run();
+    } catch (error) {
+      const made = this.made.get(id) as Made;
+      made.display.object.removeFromParent();
+      made.display = new FailedDisplay(error instanceof Error ? error.message : String(error));
+      this.context.invalidate();
+      this.tell();
+    }
   }
 
   private tell(): void {

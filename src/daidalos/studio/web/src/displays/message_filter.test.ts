@@ -1,5 +1,5 @@
 import { expect, it } from "vitest";
-import type { Stamped } from "../ros/types";
+import type { Stamped } from "../contract";
 import { toStamp } from "../ros/time";
 import { TransformBuffer } from "../tf/buffer";
 import { MessageFilter } from "./message_filter";

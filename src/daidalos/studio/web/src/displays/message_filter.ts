@@ -1,5 +1,5 @@
 // Holds messages until the transform at their stamp is known: tf2_ros' message filter.
-import type { Stamped } from "../ros/types";
+import type { Stamped } from "../contract";
 import { toSeconds } from "../ros/time";
 import { Transform, type TransformBuffer, type When } from "../tf/buffer";
 

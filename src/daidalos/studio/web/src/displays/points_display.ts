@@ -1,10 +1,11 @@
 // What laser scans and point clouds share: points that a sensor saw at one moment, kept for a while if wished.
-import type { Stamped } from "../ros/types";
+import type { Stamped } from "../contract";
 import { parseColor, TURBO } from "../scene/colors";
 import { PointSprites } from "../scene/point_sprites";
+import type { Property, Settings } from "../contract";
 import { Display, place, type DisplayContext, type FrameInfo } from "./display";
 import { frameOf, MessageFilter, stampOf } from "./message_filter";
-import { number, text, type Property, type Settings } from "./settings";
+import { number, text } from "./settings";
 
 /** Where points are written: x y z and r g b, one after another. */
 export interface PointWriter {

@@ -1,23 +1,5 @@
-// A display's settings as data: what can be set, how it is shown, and how it is kept.
-
-export type Value = string | number | boolean;
-export type Settings = Readonly<Record<string, Value>>;
-
-interface PropertyBase {
-  key: string;
-  label: string;
-  /** Shown only where another setting makes it matter. */
-  when?: (settings: Settings) => boolean;
-}
-
-export type Property = PropertyBase &
-  (
-    | { kind: "topic" }
-    | { kind: "toggle" }
-    | { kind: "color" }
-    | { kind: "number"; min: number; max: number; step: number; unit?: string }
-    | { kind: "choice"; options: readonly (readonly [value: string, label: string])[] }
-  );
+// A display's settings as data: how they are kept and read.
+import type { Settings } from "../contract";
 
 export interface DisplayConfig {
   readonly id: string;

@@ -1,8 +1,9 @@
 // Displays that show the messages of one topic.
-import type { Stamped } from "../ros/types";
+import type { Stamped } from "../contract";
+import type { Settings } from "../contract";
 import { Display, place, type DisplayContext, type FrameInfo } from "./display";
 import { frameOf, MessageFilter, stampOf } from "./message_filter";
-import { text, type Settings } from "./settings";
+import { text } from "./settings";
 
 /** Shows each message of a topic as it comes. */
 export abstract class TopicDisplay<M> extends Display {

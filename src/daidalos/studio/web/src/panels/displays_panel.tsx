@@ -1,32 +1,15 @@
 // Displays: what the 3-D view draws, as RViz's tree of displays and their properties.
 import { useState } from "preact/hooks";
 import type { Studio } from "../app/studio";
-import type { Status } from "../displays/display";
-import { displayFor, DISPLAY_TYPES, displayType } from "../displays/registry";
-import type { DisplayConfig, Property, Value } from "../displays/settings";
+import type { Property, Status, Value } from "../contract";
+import { displayFor, DISPLAYS } from "../displays/registry";
+import type { DisplayConfig } from "../displays/settings";
 import { AUTOMATIC } from "../tf/fixed_frame";
 import { Choice, ColorField, NumberField, Toggle } from "../ui/editors";
-import { Icon, type IconName } from "../ui/icons";
+import { Icon, iconNamed } from "../ui/icons";
 import { Menu, MenuHeading, MenuItem, MenuSeparator } from "../ui/menu";
-import type { PanelProps, PanelType } from "./panel";
-
-const ICONS: Readonly<Record<string, IconName>> = {
-  Grid: "grid",
-  TF: "axes",
-  RobotModel: "robot",
-  LaserScan: "scan",
-  Map: "map",
-  Path: "path",
-  Pose: "goal",
-  PoseWithCovariance: "estimate",
-  PoseArray: "arrow",
-  Odometry: "arrow",
-  Marker: "marker",
-  MarkerArray: "marker",
-  PointCloud2: "cloud",
-  PointStamped: "point",
-  Polygon: "polygon",
-};
+import { type BuiltInPanel, type PanelProps, withPreact } from "./panel";
+import "../styles/displays.css";
 
 function DisplaysPanel({ studio }: PanelProps) {
   const [open, setOpen] = useState<ReadonlySet<string>>(new Set());
@@ -92,7 +75,7 @@ interface RowProps {
 function DisplayRow({ studio, config, open, onToggle }: RowProps) {
   const { displays } = studio;
   const status = statusOf(studio, config);
-  const type = displayType(config.type);
+  const type = DISPLAYS.find(config.type);
   return (
     <section
       class={`display ${config.enabled ? status.level : "off"} ${open ? "open" : ""}`}
@@ -105,9 +88,13 @@ function DisplayRow({ studio, config, open, onToggle }: RowProps) {
           </span>
           <span
             class={`type-icon ${config.enabled ? status.level : "off"}`}
-            style={config.enabled && status.level === "ok" ? { color: colorOf(config) } : {}}
+            style={
+              config.enabled && status.level === "ok"
+                ? { color: type?.legend?.(config.settings) ?? "var(--text-soft)" }
+                : {}
+            }
           >
-            <Icon name={ICONS[config.type] ?? "cube"} size={15} />
+            <Icon name={iconNamed(type?.icon, "cube")} size={15} />
           </span>
           <span class="ellipsis">{config.name}</span>
           {config.enabled && (status.level === "error" || status.level === "warning") && (
@@ -136,18 +123,14 @@ function DisplayRow({ studio, config, open, onToggle }: RowProps) {
   );
 }
 
-/** The colour in which a display draws, so that the list is the picture's legend too. */
-function colorOf({ type, settings }: DisplayConfig): string {
-  if (type === "Map") {
-    return settings.scheme === "glow" || settings.scheme === "costmap" ? "#f47060" : "var(--text)";
-  }
-  const isPainted = settings.color !== undefined && type !== "Grid" && (settings.colorBy ?? "flat") === "flat";
-  return isPainted ? String(settings.color) : "var(--text-soft)";
-}
-
 function statusOf(studio: Studio, config: DisplayConfig): Status {
   if (studio.session.link.value !== "connected" && config.settings.topic !== undefined) {
     return { level: "idle", text: "not connected" };
+  }
+  if (DISPLAYS.find(config.type) === undefined) {
+    return DISPLAYS.isComplete.value
+      ? { level: "error", text: `no installed package has a display ${config.type}` }
+      : { level: "idle", text: "loading" };
   }
   const live = studio.displays.live.value.get(config.id);
   const status = live?.status.value ?? { level: "idle", text: "the 3D panel is closed" };
@@ -211,7 +194,7 @@ interface TopicChoiceProps {
 }
 
 function TopicChoice({ studio, config, value, onChange }: TopicChoiceProps) {
-  const messages = displayType(config.type)?.messages ?? [];
+  const messages = DISPLAYS.find(config.type)?.messages ?? [];
   const topics = studio.session.topics.value.filter(({ type }) => messages.includes(type));
   return <Choice label="Topic" value={value} options={topics.map(({ name }) => [name, name])} onChange={onChange} />;
 }
@@ -229,8 +212,8 @@ function AddMenu({ studio }: { studio: Studio }) {
       {topics.map(({ name, display }) => (
         <MenuItem
           key={name}
-          icon={ICONS[display.type] ?? "cube"}
-          note={display.type}
+          icon={iconNamed(display.icon, "cube")}
+          note={display.id}
           onChoose={() => displays.add(display, name)}
         >
           {name}
@@ -238,18 +221,18 @@ function AddMenu({ studio }: { studio: Studio }) {
       ))}
       {topics.length > 0 && <MenuSeparator />}
       <MenuHeading>By type</MenuHeading>
-      {DISPLAY_TYPES.map((display) => (
-        <MenuItem key={display.type} icon={ICONS[display.type] ?? "cube"} onChoose={() => displays.add(display)}>
-          {display.type}
+      {DISPLAYS.list.map((display) => (
+        <MenuItem key={display.id} icon={iconNamed(display.icon, "cube")} onChoose={() => displays.add(display)}>
+          {display.id}
         </MenuItem>
       ))}
     </Menu>
   );
 }
 
-export const DISPLAYS_PANEL: PanelType = {
+export default {
   id: "displays",
   title: "Displays",
   icon: "sliders",
-  component: DisplaysPanel,
-};
+  mount: withPreact(DisplaysPanel),
+} satisfies BuiltInPanel;

@@ -10,7 +10,8 @@ import { SearchField } from "../ui/search";
 import { Canvas } from "./graph/canvas";
 import { around, diagramOf, nodeId, type Kind, type Wishes } from "./graph/diagram";
 import { place, type Placed } from "./graph/layout";
-import type { PanelProps, PanelType } from "./panel";
+import { type BuiltInPanel, type PanelProps, withPreact } from "./panel";
+import "../styles/graph.css";
 
 const KINDS: readonly (readonly [Kind, string])[] = [
   ["nodes", "Nodes only"],
@@ -252,4 +253,9 @@ function wishesOf(params: Readonly<Record<string, unknown>>): Wishes {
   return { ...FIRST, kind, debug: given("debug"), tf: given("tf"), hidden: given("hidden") };
 }
 
-export const GRAPH_PANEL: PanelType = { id: "graph", title: "Graph", icon: "graph", component: GraphPanel };
+export default {
+  id: "graph",
+  title: "Graph",
+  icon: "graph",
+  mount: withPreact(GraphPanel),
+} satisfies BuiltInPanel;

@@ -5,7 +5,9 @@ import { isRecord } from "../app/stored";
 import type { CompressedImage, Image } from "../generated/sensor_msgs";
 import { Choice } from "../ui/editors";
 import { Empty } from "../ui/empty";
-import type { PanelProps, PanelType } from "./panel";
+import { type BuiltInPanel, type PanelProps, withPreact } from "./panel";
+import "../styles/image.css";
+
 import { decodeImage, ImageError } from "./image/decode";
 
 const TYPES = ["sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage"];
@@ -85,4 +87,10 @@ async function draw(canvas: HTMLCanvasElement | null, image: Image | CompressedI
   return `${bitmap.width || canvas?.width} × ${bitmap.height || canvas?.height}`;
 }
 
-export const IMAGE_PANEL: PanelType = { id: "image", title: "Image", icon: "image", many: true, component: ImagePanel };
+export default {
+  id: "image",
+  title: "Image",
+  icon: "image",
+  many: true,
+  mount: withPreact(ImagePanel),
+} satisfies BuiltInPanel;

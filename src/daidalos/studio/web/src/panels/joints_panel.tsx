@@ -2,12 +2,13 @@
 import { useSignal } from "@preact/signals";
 import { useEffect, useMemo } from "preact/hooks";
 import type { Studio } from "../app/studio";
-import type { ServiceInfo } from "../connection/boundary";
+import type { ServiceInfo } from "../contract";
 import { Choice } from "../ui/editors";
 import { Empty } from "../ui/empty";
 import { Icon } from "../ui/icons";
 import { Joints, type Joint } from "./joints/joints";
-import type { PanelProps, PanelType } from "./panel";
+import { type BuiltInPanel, type PanelProps, withPreact } from "./panel";
+import "../styles/joints.css";
 
 function JointsPanel({ studio, visible, params, remember }: PanelProps) {
   const nodes = publishersIn(studio.session.services.value);
@@ -128,4 +129,9 @@ function publishersIn(services: readonly ServiceInfo[]): string[] {
     .filter((node) => names.has(`${node}/center`));
 }
 
-export const JOINTS_PANEL: PanelType = { id: "joints", title: "Joints", icon: "sliders", component: JointsPanel };
+export default {
+  id: "joints",
+  title: "Joints",
+  icon: "sliders",
+  mount: withPreact(JointsPanel),
+} satisfies BuiltInPanel;

@@ -7,7 +7,8 @@ import { Choice } from "../ui/editors";
 import { Empty } from "../ui/empty";
 import { Icon } from "../ui/icons";
 import { SearchField } from "../ui/search";
-import type { PanelProps, PanelType } from "./panel";
+import { type BuiltInPanel, type PanelProps, withPreact } from "./panel";
+import "../styles/log.css";
 
 const KEEP = 256;
 const KEPT_LINES = 2000;
@@ -122,4 +123,9 @@ function LogLine({ log }: { log: Log }) {
   );
 }
 
-export const LOG_PANEL: PanelType = { id: "log", title: "Log", icon: "log", component: LogPanel };
+export default {
+  id: "log",
+  title: "Log",
+  icon: "log",
+  mount: withPreact(LogPanel),
+} satisfies BuiltInPanel;

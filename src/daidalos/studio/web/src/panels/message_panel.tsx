@@ -6,7 +6,8 @@ import { Choice } from "../ui/editors";
 import { Empty } from "../ui/empty";
 import { Icon } from "../ui/icons";
 import { Fields } from "./message/fields";
-import type { PanelProps, PanelType } from "./panel";
+import { type BuiltInPanel, type PanelProps, withPreact } from "./panel";
+import "../styles/message.css";
 
 const REFRESH_MS = 100;
 
@@ -85,4 +86,10 @@ function MessagePanel({ studio, visible }: PanelProps) {
   );
 }
 
-export const MESSAGE_PANEL: PanelType = { id: "message", title: "Message", icon: "message", component: MessagePanel };
+export default {
+  id: "message",
+  title: "Message",
+  icon: "message",
+  beside: ["topics", 330],
+  mount: withPreact(MessagePanel),
+} satisfies BuiltInPanel;

@@ -1,23 +1,26 @@
-// The contract of a panel: a part of the page that can be docked anywhere.
+// How the page's own panels are written: a Preact component for what the contract calls mount.
 import type { ReadonlySignal } from "@preact/signals";
-import type { ComponentType } from "preact";
+import { type ComponentType, h, render } from "preact";
 import type { Studio } from "../app/studio";
+import type { Panel, PanelContext } from "../contract";
+import type { Registered } from "../registry";
 import type { IconName } from "../ui/icons";
 
-export interface PanelProps {
-  studio: Studio;
-  /** Whether the panel is on the screen; hidden ones should cost nothing. */
-  visible: ReadonlySignal<boolean>;
-  /** What the panel remembers, kept with the layout. */
-  params: Readonly<Record<string, unknown>>;
-  remember(params: Record<string, unknown>): void;
+export interface PanelProps extends PanelContext {
+  readonly studio: Studio;
+  readonly visible: ReadonlySignal<boolean>;
 }
 
-export interface PanelType {
-  readonly id: string;
-  readonly title: string;
+export interface BuiltInPanel extends Registered<Panel> {
   readonly icon: IconName;
-  /** Whether there may be several. */
-  readonly many?: boolean;
-  readonly component: ComponentType<PanelProps>;
+  /** The panel beside it where it is a window of its own, and how wide that one is. */
+  readonly beside?: readonly [panel: string, width: number];
+}
+
+/** Mount a component; the page's context is more than the contract's. */
+export function withPreact(component: ComponentType<PanelProps>): Panel["mount"] {
+  return (element, context) => {
+    render(h(component, context as PanelProps), element);
+    return () => render(null, element);
+  };
 }

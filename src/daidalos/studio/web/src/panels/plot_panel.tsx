@@ -14,7 +14,8 @@ import { add, type Curve, curveOf, curvesIn, isXY, painted, turned } from "./plo
 import { PLOT_DRAG } from "./plot/drag";
 import { History } from "./plot/history";
 import { extent, formatReading, inProportion, roomAround } from "./plot/ranges";
-import type { PanelProps, PanelType } from "./panel";
+import { type BuiltInPanel, type PanelProps, withPreact } from "./panel";
+import "../styles/plot.css";
 
 const KEEP = 512;
 const WINDOWS = [5, 10, 30, 60, 300] as const;
@@ -348,4 +349,11 @@ function spanOf(params: unknown): number {
   return isRecord(params) && typeof params.span === "number" && params.span > 0 ? params.span : 30;
 }
 
-export const PLOT_PANEL: PanelType = { id: "plot", title: "Plot", icon: "plot", many: true, component: PlotPanel };
+export default {
+  id: "plot",
+  title: "Plot",
+  icon: "plot",
+  many: true,
+  beside: ["topics", 330],
+  mount: withPreact(PlotPanel),
+} satisfies BuiltInPanel;

@@ -5,7 +5,8 @@ import { NumberField } from "../ui/editors";
 import { Empty } from "../ui/empty";
 import { Icon } from "../ui/icons";
 import { DraftField, NameField, useDraft } from "./call/editor";
-import type { PanelProps, PanelType } from "./panel";
+import { type BuiltInPanel, type PanelProps, withPreact } from "./panel";
+import "../styles/call.css";
 
 function PublishPanel({ studio: { session }, params, remember }: PanelProps) {
   const name = useSignal(typeof params.topic === "string" ? params.topic : "");
@@ -81,4 +82,9 @@ function PublishPanel({ studio: { session }, params, remember }: PanelProps) {
   );
 }
 
-export const PUBLISH_PANEL: PanelType = { id: "publish", title: "Publish", icon: "arrow", component: PublishPanel };
+export default {
+  id: "publish",
+  title: "Publish",
+  icon: "arrow",
+  mount: withPreact(PublishPanel),
+} satisfies BuiltInPanel;

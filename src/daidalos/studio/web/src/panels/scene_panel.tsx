@@ -6,7 +6,8 @@ import { attachWorld } from "../app/test_hooks";
 import { followed, World } from "../scene/world";
 import { TOOLS } from "../tools/registry";
 import { Icon } from "../ui/icons";
-import type { PanelProps, PanelType } from "./panel";
+import { type BuiltInPanel, type PanelProps, withPreact } from "./panel";
+import "../styles/view_3d.css";
 
 const MOUSE_HINT = {
   orbit: "Left: turn · Middle: move · Right or wheel: zoom",
@@ -133,4 +134,10 @@ function Note({ studio }: { studio: Studio }) {
   ) : null;
 }
 
-export const SCENE_PANEL: PanelType = { id: "scene", title: "3D", icon: "cube", component: ScenePanel };
+export default {
+  id: "scene",
+  title: "3D",
+  icon: "cube",
+  beside: ["displays", 290],
+  mount: withPreact(ScenePanel),
+} satisfies BuiltInPanel;

@@ -4,7 +4,8 @@ import { toText } from "../ros/text";
 import { Empty } from "../ui/empty";
 import { Icon } from "../ui/icons";
 import { DraftField, NameField, useDraft } from "./call/editor";
-import type { PanelProps, PanelType } from "./panel";
+import { type BuiltInPanel, type PanelProps, withPreact } from "./panel";
+import "../styles/call.css";
 
 function ServicePanel({ studio: { session }, params, remember }: PanelProps) {
   const name = useSignal(typeof params.service === "string" ? params.service : "");
@@ -70,4 +71,9 @@ function ServicePanel({ studio: { session }, params, remember }: PanelProps) {
   );
 }
 
-export const SERVICE_PANEL: PanelType = { id: "service", title: "Service", icon: "arrow", component: ServicePanel };
+export default {
+  id: "service",
+  title: "Service",
+  icon: "arrow",
+  mount: withPreact(ServicePanel),
+} satisfies BuiltInPanel;

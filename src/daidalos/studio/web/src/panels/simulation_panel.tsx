@@ -9,7 +9,9 @@ import { Choice, NumberField } from "../ui/editors";
 import { Empty } from "../ui/empty";
 import { Icon, type IconName } from "../ui/icons";
 import { Menu, MenuItem, MenuSeparator } from "../ui/menu";
-import type { PanelProps, PanelType } from "./panel";
+import { type BuiltInPanel, type PanelProps, withPreact } from "./panel";
+import "../styles/simulation.css";
+
 import { describePose, Editor, type Mode, type Shape } from "./simulation/editor";
 import { resourceAt, SIMULATOR_TYPE, Simulator, type Resource } from "./simulation/simulator";
 import { Stage } from "./simulation/stage";
@@ -366,9 +368,9 @@ function Foot({ tools: { stage, editor } }: { tools: Tools }) {
   );
 }
 
-export const SIMULATION_PANEL: PanelType = {
+export default {
   id: "simulation",
   title: "Simulation",
   icon: "play",
-  component: SimulationPanel,
-};
+  mount: withPreact(SimulationPanel),
+} satisfies BuiltInPanel;

@@ -2,13 +2,15 @@
 import { useSignal } from "@preact/signals";
 import { useEffect, useState } from "preact/hooks";
 import type { Studio } from "../app/studio";
-import type { TopicInfo, Traffic } from "../connection/boundary";
+import type { Traffic } from "../connection/boundary";
+import type { TopicInfo } from "../contract";
 import { displayFor } from "../displays/registry";
 import { Empty } from "../ui/empty";
 import { Icon } from "../ui/icons";
 import { SearchField } from "../ui/search";
 import { Fields } from "./message/fields";
-import type { PanelProps, PanelType } from "./panel";
+import { type BuiltInPanel, type PanelProps, withPreact } from "./panel";
+import "../styles/topics.css";
 
 /** Listening only to measure would make a robot send what nobody looks at; these are large. */
 const HEAVY = new Set([
@@ -125,7 +127,7 @@ function TopicRow({ studio, topic, isVisible }: { studio: Studio; topic: TopicIn
         {display && !isShown ? (
           <button
             class="icon-button small"
-            title={`Show in 3D as ${display.type}`}
+            title={`Show in 3D as ${display.id}`}
             onClick={() => studio.displays.add(display, topic.name)}
           >
             <Icon name="add" size={14} />
@@ -204,4 +206,9 @@ function bandwidth(traffic: Traffic | undefined): string {
   return `${value < 9.95 ? value.toFixed(1) : value.toFixed(0)} ${units[unit]}`;
 }
 
-export const TOPICS_PANEL: PanelType = { id: "topics", title: "Topics", icon: "topics", component: TopicsPanel };
+export default {
+  id: "topics",
+  title: "Topics",
+  icon: "topics",
+  mount: withPreact(TopicsPanel),
+} satisfies BuiltInPanel;

@@ -5,7 +5,9 @@ import type { Studio } from "../app/studio";
 import { Choice } from "../ui/editors";
 import { Empty } from "../ui/empty";
 import { Icon } from "../ui/icons";
-import type { PanelProps, PanelType } from "./panel";
+import { type BuiltInPanel, type PanelProps, withPreact } from "./panel";
+import "../styles/turtlesim.css";
+
 import type { GetTurtleDrawing, TurtleWindow } from "../generated/daidalos_msgs";
 import { DrawingFollower } from "./turtlesim/follower";
 import { Tank } from "./turtlesim/tank";
@@ -192,9 +194,9 @@ function namespaceOf(topic: string): string {
   return nodeOf(topic).replace(/[^/]*$/, "");
 }
 
-export const TURTLESIM_PANEL: PanelType = {
+export default {
   id: "turtlesim",
   title: "TurtleSim",
   icon: "turtle",
-  component: TurtlesimPanel,
-};
+  mount: withPreact(TurtlesimPanel),
+} satisfies BuiltInPanel;

@@ -1,6 +1,6 @@
 // 2D Goal Pose and 2D Pose Estimate: press where, drag to where it looks, release.
 import { Group, Mesh, MeshBasicMaterial, RingGeometry, type Vector3 } from "three";
-import { poseArrow } from "../displays/poses";
+import { poseArrow } from "../displays/arrows";
 import { disposeTree } from "../displays/display";
 import type { Pose } from "../generated/geometry_msgs";
 import { toStamp } from "../ros/time";

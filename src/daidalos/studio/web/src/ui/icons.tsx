@@ -61,6 +61,11 @@ const PATHS = {
 
 export type IconName = keyof typeof PATHS;
 
+/** The icon of a name, which may come from somebody else's module. */
+export function iconNamed(name: string | undefined, otherwise: IconName): IconName {
+  return name !== undefined && name in PATHS ? (name as IconName) : otherwise;
+}
+
 export function Icon({ name, size = 16 }: { name: IconName; size?: number }) {
   return (
     <svg class="icon" width={size} height={size} viewBox="0 0 24 24" aria-hidden="true">

@@ -10,7 +10,7 @@ import {
   type SetParameters,
 } from "../../generated/rcl_interfaces";
 import type { Empty } from "../../generated/std_srvs";
-import type { Outgoing, ServiceType } from "../../ros/types";
+import type { Outgoing, ServiceType } from "../../contract";
 
 const PREFIX = "joints.";
 const KEEP = 32;

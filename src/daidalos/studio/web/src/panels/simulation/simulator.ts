@@ -18,7 +18,7 @@ import {
   type StepSimulation,
 } from "../../generated/simulation_interfaces";
 import type { ColorRGBA } from "../../generated/std_msgs";
-import type { Outgoing, ServiceType } from "../../ros/types";
+import type { Outgoing, ServiceType } from "../../contract";
 
 /** The service by which a simulator is recognised. */
 export const SIMULATOR_TYPE = "simulation_interfaces/srv/SetSimulationState";

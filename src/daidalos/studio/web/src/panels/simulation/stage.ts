@@ -14,7 +14,7 @@ import {
   Vector3,
 } from "three";
 import { disposeTree, type DisplayContext } from "../../displays/display";
-import { GRID } from "../../displays/grid";
+import GRID from "../../displays/types/grid";
 import { markerObject } from "../../displays/marker_shapes";
 import type { Pose } from "../../generated/geometry_msgs";
 import type { Marker } from "../../generated/visualization_msgs";

@@ -1,8 +1,9 @@
 // Grid: the ground, with lines that fade out towards the horizon.
 import { BufferGeometry, Color, Float32BufferAttribute, LineBasicMaterial, LineSegments } from "three";
-import { Layer } from "../scene/layers";
-import { Display, disposeTree, place, type DisplayContext, type FrameInfo, type DisplayType } from "./display";
-import { flag, number, text, type Settings } from "./settings";
+import { Layer } from "../../scene/layers";
+import type { Settings } from "../../contract";
+import { Display, disposeTree, place, type DisplayContext, type FrameInfo, type BuiltInDisplay } from "../display";
+import { flag, number, text } from "../settings";
 
 const MAJOR_EVERY = 5;
 /** Each line is cut into pieces, so that its ends can fade. */
@@ -74,8 +75,9 @@ function gridGeometry(cells: number, size: number, color: string, fade: boolean)
   return geometry;
 }
 
-export const GRID: DisplayType = {
-  type: "Grid",
+export default {
+  id: "Grid",
+  icon: "grid",
   messages: [],
   properties: [
     { key: "cells", label: "Cells", kind: "number", min: 2, max: 200, step: 2 },
@@ -86,4 +88,4 @@ export const GRID: DisplayType = {
   ],
   defaults: { cells: 40, size: 1, color: "#7d8896", alpha: 0.5, fade: true },
   create: (context, settings) => new Grid(context, settings),
-};
+} satisfies BuiltInDisplay;

@@ -1,11 +1,12 @@
 // Odometry: where the robot has been, as a trail of arrows.
 import { Quaternion, Vector3 } from "three";
-import type { Pose } from "../generated/geometry_msgs";
-import type { Odometry } from "../generated/nav_msgs";
-import type { DisplayContext, DisplayType } from "./display";
-import { Arrows, ARROW_PROPERTIES } from "./poses";
-import { number, text, type Settings } from "./settings";
-import { StampedDisplay } from "./topic_display";
+import type { Pose } from "../../generated/geometry_msgs";
+import type { Odometry } from "../../generated/nav_msgs";
+import type { Settings } from "../../contract";
+import type { DisplayContext, BuiltInDisplay } from "../display";
+import { Arrows, ARROW_PROPERTIES } from "../arrows";
+import { number, text } from "../settings";
+import { StampedDisplay } from "../topic_display";
 
 const MAX_ARROWS = 2000;
 
@@ -46,8 +47,9 @@ function isFar(a: Pose, b: Pose, distance: number, angle: number): boolean {
   return new Vector3(q.x - p.x, q.y - p.y, q.z - p.z).length() >= distance || turned >= angle;
 }
 
-export const ODOMETRY: DisplayType = {
-  type: "Odometry",
+export default {
+  id: "Odometry",
+  icon: "arrow",
   messages: ["nav_msgs/msg/Odometry"],
   properties: [
     { key: "topic", label: "Topic", kind: "topic" },
@@ -57,5 +59,6 @@ export const ODOMETRY: DisplayType = {
     { key: "angle", label: "or every", kind: "number", min: 0, max: 3.2, step: 0.05, unit: "rad" },
   ],
   defaults: { topic: "/odom", color: "#fb923c", alpha: 0.9, length: 0.2, keep: 200, distance: 0.2, angle: 0.3 },
+  legend: ({ color }) => String(color),
   create: (context, settings) => new OdometryDisplay(context, settings),
-};
+} satisfies BuiltInDisplay;

@@ -1,10 +1,11 @@
 // Path: the way ahead, as a line over the ground.
-import type { Path } from "../generated/nav_msgs";
-import { Layer } from "../scene/layers";
-import { setLinePoints, thickLine } from "../scene/shapes";
-import type { DisplayContext, DisplayType } from "./display";
-import { number, text, type Settings } from "./settings";
-import { StampedDisplay } from "./topic_display";
+import type { Path } from "../../generated/nav_msgs";
+import { Layer } from "../../scene/layers";
+import { setLinePoints, thickLine } from "../../scene/shapes";
+import type { Settings } from "../../contract";
+import type { DisplayContext, BuiltInDisplay } from "../display";
+import { number, text } from "../settings";
+import { StampedDisplay } from "../topic_display";
 
 class PathDisplay extends StampedDisplay<Path> {
   private readonly line = thickLine("#fff", 3);
@@ -34,8 +35,10 @@ class PathDisplay extends StampedDisplay<Path> {
   }
 }
 
-export const PATH: DisplayType = {
-  type: "Path",
+export default {
+  id: "Path",
+  icon: "path",
+  discovery: "appears",
   messages: ["nav_msgs/msg/Path"],
   properties: [
     { key: "topic", label: "Topic", kind: "topic" },
@@ -45,5 +48,6 @@ export const PATH: DisplayType = {
     { key: "offset", label: "Height", kind: "number", min: -10, max: 10, step: 0.01, unit: "m" },
   ],
   defaults: { topic: "/plan", color: "#4fd17e", width: 3.5, alpha: 1, offset: 0.02 },
+  legend: ({ color }) => String(color),
   create: (context, settings) => new PathDisplay(context, settings),
-};
+} satisfies BuiltInDisplay;

@@ -1,10 +1,11 @@
 // Polygon: an outline, such as the robot's footprint.
-import type { PolygonStamped } from "../generated/geometry_msgs";
-import { Layer } from "../scene/layers";
-import { setLinePoints, thickLine } from "../scene/shapes";
-import type { DisplayContext, DisplayType } from "./display";
-import { number, text, type Settings } from "./settings";
-import { StampedDisplay } from "./topic_display";
+import type { PolygonStamped } from "../../generated/geometry_msgs";
+import { Layer } from "../../scene/layers";
+import { setLinePoints, thickLine } from "../../scene/shapes";
+import type { Settings } from "../../contract";
+import type { DisplayContext, BuiltInDisplay } from "../display";
+import { number, text } from "../settings";
+import { StampedDisplay } from "../topic_display";
 
 class PolygonDisplay extends StampedDisplay<PolygonStamped> {
   private readonly line = thickLine("#fff", 2);
@@ -31,8 +32,9 @@ class PolygonDisplay extends StampedDisplay<PolygonStamped> {
   }
 }
 
-export const POLYGON: DisplayType = {
-  type: "Polygon",
+export default {
+  id: "Polygon",
+  icon: "polygon",
   messages: ["geometry_msgs/msg/PolygonStamped"],
   properties: [
     { key: "topic", label: "Topic", kind: "topic" },
@@ -41,5 +43,6 @@ export const POLYGON: DisplayType = {
     { key: "alpha", label: "Alpha", kind: "number", min: 0, max: 1, step: 0.05 },
   ],
   defaults: { topic: "", color: "#67e8f9", width: 2, alpha: 0.9 },
+  legend: ({ color }) => String(color),
   create: (context, settings) => new PolygonDisplay(context, settings),
-};
+} satisfies BuiltInDisplay;

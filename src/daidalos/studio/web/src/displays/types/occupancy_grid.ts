@@ -10,14 +10,15 @@ import {
   ShaderMaterial,
   UnsignedByteType,
 } from "three";
-import type { OccupancyGridUpdate } from "../generated/map_msgs";
-import type { OccupancyGrid } from "../generated/nav_msgs";
-import { costmapPalette, glowPalette, mapPalette, planPalette, rawPalette, type Palette } from "../scene/colors";
-import { beginsFine } from "../scene/graphics";
-import { Layer } from "../scene/layers";
-import type { DisplayContext, DisplayType, FrameInfo } from "./display";
-import { number, text, type Settings } from "./settings";
-import { StampedDisplay } from "./topic_display";
+import type { OccupancyGridUpdate } from "../../generated/map_msgs";
+import type { OccupancyGrid } from "../../generated/nav_msgs";
+import { costmapPalette, glowPalette, mapPalette, planPalette, rawPalette, type Palette } from "../../scene/colors";
+import { beginsFine } from "../../scene/graphics";
+import { Layer } from "../../scene/layers";
+import type { Settings } from "../../contract";
+import type { DisplayContext, BuiltInDisplay, FrameInfo } from "../display";
+import { number, text } from "../settings";
+import { StampedDisplay } from "../topic_display";
 
 const LARGEST_TEXTURE = 8192;
 
@@ -36,7 +37,7 @@ const FRAGMENT = /* glsl */ `
     gl_FragColor = texture2D(cells, at) * vec4(1.0, 1.0, 1.0, alpha);
   }`;
 
-class MapDisplay extends StampedDisplay<OccupancyGrid> {
+export class MapDisplay extends StampedDisplay<OccupancyGrid> {
   private readonly uniforms = { cells: { value: null as DataTexture | null }, alpha: { value: 1 } };
   private readonly mesh = new Mesh(
     new PlaneGeometry(1, 1).translate(0.5, 0.5, 0),
@@ -182,8 +183,10 @@ function paletteFor(scheme: string, dark: boolean): Palette {
   return planPalette(dark);
 }
 
-export const OCCUPANCY_GRID: DisplayType = {
-  type: "Map",
+export default {
+  id: "Map",
+  icon: "map",
+  discovery: "appears",
   messages: ["nav_msgs/msg/OccupancyGrid"],
   properties: [
     { key: "topic", label: "Topic", kind: "topic" },
@@ -211,7 +214,6 @@ export const OCCUPANCY_GRID: DisplayType = {
     },
   ],
   defaults: { topic: "/map", scheme: "plan", alpha: 1, layer: "normal" },
+  legend: ({ scheme }) => (scheme === "glow" || scheme === "costmap" ? "#f47060" : "var(--text)"),
   create: (context, settings) => new MapDisplay(context, settings),
-};
-
-export { MapDisplay };
+} satisfies BuiltInDisplay;

@@ -1,12 +1,12 @@
 // Marker and MarkerArray: shapes that programs put into the scene.
 import { Group } from "three";
-import { Marker, type MarkerArray } from "../generated/visualization_msgs";
-import { toSeconds } from "../ros/time";
-import { disposeTree, place, type DisplayContext, type FrameInfo, type DisplayType } from "./display";
-import { markerObject } from "./marker_shapes";
-import { frameOf, stampOf } from "./message_filter";
-import type { Settings } from "./settings";
-import { TopicDisplay } from "./topic_display";
+import { Marker, type MarkerArray } from "../../generated/visualization_msgs";
+import { toSeconds } from "../../ros/time";
+import type { Settings } from "../../contract";
+import { disposeTree, place, type DisplayContext, type FrameInfo, type BuiltInDisplay } from "../display";
+import { markerObject } from "../marker_shapes";
+import { frameOf, stampOf } from "../message_filter";
+import { TopicDisplay } from "../topic_display";
 
 const KEEP = 256;
 const TIMEOUT_S = 2;
@@ -108,16 +108,12 @@ class MarkerDisplay extends TopicDisplay<Marker | MarkerArray> {
   }
 }
 
-export const MARKER: DisplayType = {
-  type: "Marker",
+export default {
+  id: "Marker",
+  icon: "marker",
+  discovery: "appears",
   messages: ["visualization_msgs/msg/Marker"],
   properties: [{ key: "topic", label: "Topic", kind: "topic" }],
   defaults: { topic: "" },
   create: (context, settings) => new MarkerDisplay(context, settings),
-};
-
-export const MARKER_ARRAY: DisplayType = {
-  ...MARKER,
-  type: "MarkerArray",
-  messages: ["visualization_msgs/msg/MarkerArray"],
-};
+} satisfies BuiltInDisplay;

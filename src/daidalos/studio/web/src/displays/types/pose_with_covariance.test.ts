@@ -1,5 +1,5 @@
 import { expect, it } from "vitest";
-import { ellipseOf } from "./poses";
+import { ellipseOf } from "./pose_with_covariance";
 
 it("finds the axes of a covariance", () => {
   const yaw = 0.6;

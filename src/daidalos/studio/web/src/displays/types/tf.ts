@@ -10,11 +10,12 @@ import {
   MeshBasicMaterial,
   Vector3,
 } from "three";
-import { Layer } from "../scene/layers";
-import { axesGeometry, Label } from "../scene/shapes";
-import { Transform } from "../tf/buffer";
-import { Display, type DisplayContext, type FrameInfo, type DisplayType } from "./display";
-import { flag, number, type Settings } from "./settings";
+import { Layer } from "../../scene/layers";
+import { axesGeometry, Label } from "../../scene/shapes";
+import { Transform } from "../../tf/buffer";
+import type { Settings } from "../../contract";
+import { Display, type DisplayContext, type FrameInfo, type BuiltInDisplay } from "../display";
+import { flag, number } from "../settings";
 
 const LABEL_PIXELS = 19;
 const THICKNESS = 0.026;
@@ -131,8 +132,9 @@ class TfDisplay extends Display {
   }
 }
 
-export const TF: DisplayType = {
-  type: "TF",
+export default {
+  id: "TF",
+  icon: "axes",
   messages: [],
   properties: [
     { key: "axes", label: "Axes", kind: "toggle" },
@@ -142,4 +144,4 @@ export const TF: DisplayType = {
   ],
   defaults: { axes: true, names: false, links: false, scale: 0.09 },
   create: (context, settings) => new TfDisplay(context, settings),
-};
+} satisfies BuiltInDisplay;

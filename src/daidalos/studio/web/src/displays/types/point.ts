@@ -1,9 +1,10 @@
 // PointStamped: a ball, such as the point that was clicked.
 import { Mesh, MeshStandardMaterial, SphereGeometry } from "three";
-import type { PointStamped } from "../generated/geometry_msgs";
-import type { DisplayContext, DisplayType } from "./display";
-import { number, text, type Settings } from "./settings";
-import { StampedDisplay } from "./topic_display";
+import type { PointStamped } from "../../generated/geometry_msgs";
+import type { Settings } from "../../contract";
+import type { DisplayContext, BuiltInDisplay } from "../display";
+import { number, text } from "../settings";
+import { StampedDisplay } from "../topic_display";
 
 class PointDisplay extends StampedDisplay<PointStamped> {
   private readonly ball = new Mesh(new SphereGeometry(1, 24, 16), new MeshStandardMaterial({ roughness: 0.6 }));
@@ -22,8 +23,9 @@ class PointDisplay extends StampedDisplay<PointStamped> {
   }
 }
 
-export const POINT: DisplayType = {
-  type: "PointStamped",
+export default {
+  id: "PointStamped",
+  icon: "point",
   messages: ["geometry_msgs/msg/PointStamped"],
   properties: [
     { key: "topic", label: "Topic", kind: "topic" },
@@ -32,5 +34,6 @@ export const POINT: DisplayType = {
     { key: "alpha", label: "Alpha", kind: "number", min: 0, max: 1, step: 0.05 },
   ],
   defaults: { topic: "/clicked_point", color: "#facc15", radius: 0.06, alpha: 1 },
+  legend: ({ color }) => String(color),
   create: (context, settings) => new PointDisplay(context, settings),
-};
+} satisfies BuiltInDisplay;

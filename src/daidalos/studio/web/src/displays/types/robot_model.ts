@@ -13,11 +13,12 @@ import {
   type Object3D,
 } from "three";
 import URDFLoader, { type URDFCollider, type URDFLink, type URDFVisual } from "urdf-loader";
-import type { String as StringMessage } from "../generated/std_msgs";
-import { plainMaterial } from "../scene/assets";
-import { disposeTree, place, type DisplayContext, type FrameInfo, type DisplayType } from "./display";
-import { flag, number, type Settings } from "./settings";
-import { TopicDisplay } from "./topic_display";
+import type { String as StringMessage } from "../../generated/std_msgs";
+import { plainMaterial } from "../../scene/assets";
+import type { Settings } from "../../contract";
+import { disposeTree, place, type DisplayContext, type FrameInfo, type BuiltInDisplay } from "../display";
+import { flag, number } from "../settings";
+import { TopicDisplay } from "../topic_display";
 
 class RobotModel extends TopicDisplay<StringMessage> {
   private readonly links = new Map<string, Group>();
@@ -295,8 +296,10 @@ function styleMesh(object: Object3D, alpha: number, collides: boolean): void {
   }
 }
 
-export const ROBOT_MODEL: DisplayType = {
-  type: "RobotModel",
+export default {
+  id: "RobotModel",
+  icon: "robot",
+  discovery: "hidden",
   messages: ["std_msgs/msg/String"],
   properties: [
     { key: "topic", label: "Topic", kind: "topic" },
@@ -306,4 +309,4 @@ export const ROBOT_MODEL: DisplayType = {
   ],
   defaults: { topic: "/robot_description", visual: true, collision: false, alpha: 1 },
   create: (context, settings) => new RobotModel(context, settings),
-};
+} satisfies BuiltInDisplay;

@@ -1,8 +1,8 @@
 // LaserScan: where the beams ended.
-import type { LaserScan } from "../generated/sensor_msgs";
-import type { DisplayType } from "./display";
-import { paintByValue, paintFlat, POINT_PROPERTIES, PointsDisplay, type PointWriter } from "./points_display";
-import { text } from "./settings";
+import type { LaserScan } from "../../generated/sensor_msgs";
+import type { BuiltInDisplay } from "../display";
+import { paintByValue, paintFlat, POINT_PROPERTIES, PointsDisplay, type PointWriter } from "../points_display";
+import { text } from "../settings";
 
 class LaserScanDisplay extends PointsDisplay<LaserScan> {
   private values = new Float32Array();
@@ -45,8 +45,10 @@ class LaserScanDisplay extends PointsDisplay<LaserScan> {
   }
 }
 
-export const LASER_SCAN: DisplayType = {
-  type: "LaserScan",
+export default {
+  id: "LaserScan",
+  icon: "scan",
+  discovery: "appears",
   messages: ["sensor_msgs/msg/LaserScan"],
   properties: [
     { key: "topic", label: "Topic", kind: "topic" },
@@ -73,5 +75,6 @@ export const LASER_SCAN: DisplayType = {
     alpha: 1,
     decay: 0,
   },
+  legend: ({ color, colorBy }) => (colorBy === "flat" ? String(color) : undefined),
   create: (context, settings) => new LaserScanDisplay(context, settings),
-};
+} satisfies BuiltInDisplay;

@@ -1,8 +1,8 @@
 // PointCloud2: points of any layout, coloured by height, by a field, or by their own colours.
-import { type PointCloud2, PointField } from "../generated/sensor_msgs";
-import type { DisplayType } from "./display";
-import { paintByValue, paintFlat, POINT_PROPERTIES, PointsDisplay, type PointWriter } from "./points_display";
-import { text } from "./settings";
+import { type PointCloud2, PointField } from "../../generated/sensor_msgs";
+import type { BuiltInDisplay } from "../display";
+import { paintByValue, paintFlat, POINT_PROPERTIES, PointsDisplay, type PointWriter } from "../points_display";
+import { text } from "../settings";
 
 type Getter = (offset: number) => number;
 
@@ -92,8 +92,10 @@ function packedColor(view: DataView, cloud: PointCloud2): Getter | undefined {
   return field && ((offset) => view.getUint32(offset + field.offset, !cloud.is_bigendian));
 }
 
-export const POINT_CLOUD: DisplayType = {
-  type: "PointCloud2",
+export default {
+  id: "PointCloud2",
+  icon: "cloud",
+  discovery: "appears",
   messages: ["sensor_msgs/msg/PointCloud2"],
   properties: [
     { key: "topic", label: "Topic", kind: "topic" },
@@ -123,5 +125,6 @@ export const POINT_CLOUD: DisplayType = {
     alpha: 1,
     decay: 0,
   },
+  legend: ({ color, colorBy }) => (colorBy === "flat" ? String(color) : undefined),
   create: (context, settings) => new PointCloudDisplay(context, settings),
-};
+} satisfies BuiltInDisplay;

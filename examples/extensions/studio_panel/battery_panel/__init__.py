@@ -1,0 +1,1 @@
+"""A panel for the studio: see battery.js."""

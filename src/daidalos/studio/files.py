@@ -1,0 +1,32 @@
+"""Which files of a folder browsers may have, and of which type."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+# The registry of a system may name other types, which browsers refuse for modules and workers.
+CONTENT_TYPES = {
+    ".css": "text/css",
+    ".html": "text/html",
+    ".ico": "image/vnd.microsoft.icon",
+    ".js": "text/javascript",
+    ".mjs": "text/javascript",
+    ".ts": "text/plain",
+    ".json": "application/json",
+    ".map": "application/json",
+    ".png": "image/png",
+    ".svg": "image/svg+xml",
+    ".wasm": "application/wasm",
+    ".webmanifest": "application/manifest+json",
+    ".woff2": "font/woff2",
+}
+
+
+def find_file(folder: Path, path: str) -> Path | None:
+    """Return the file of a path below a folder that browsers may have; None where there is none."""
+    parts = [part for part in path.split("/") if part] or ["index.html"]
+    if any(part.startswith(".") or "\\" in part or ":" in part for part in parts):
+        return None
+    found = folder.joinpath(*parts)
+    inside = found.resolve().is_relative_to(folder.resolve())
+    return found if inside and found.suffix in CONTENT_TYPES and found.is_file() else None

@@ -1,0 +1,21 @@
+// A display whose module failed: draws nothing and says why.
+import { signal } from "@preact/signals";
+import { Group } from "three";
+import type { Display, Status } from "../contract";
+
+export class FailedDisplay implements Display {
+  readonly object = new Group();
+  readonly status;
+
+  constructor(reason: string) {
+    this.status = signal<Status>({ level: "error", text: reason });
+  }
+
+  restyle(): void {}
+
+  update(): void {}
+
+  dispose(): void {
+    this.object.removeFromParent();
+  }
+}
