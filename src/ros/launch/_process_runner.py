@@ -92,8 +92,8 @@ class ProcessRunner:
         self._child: ChildProcess | None = None
         self._life: asyncio.Task[None] | None = None
         self._escalation: asyncio.Task[None] | None = None
-        self._stopping: asyncio.Future[None] = context._loop.create_future()
-        self.completed: asyncio.Future[None] = context._loop.create_future()
+        self._stopping: asyncio.Future[None] = context.running_loop.create_future()
+        self.completed: asyncio.Future[None] = context.running_loop.create_future()
         self.details: dict[str, Any] | None = None
         self.return_code: int | None = None
         self.stdout = TextOutput(keep=options.cached_output)
@@ -103,7 +103,7 @@ class ProcessRunner:
     def start(self) -> None:
         """Begin to run the process."""
         self._context.register_event_handler(self._handler)
-        self._life = self._context._loop.create_task(self._run())
+        self._life = self._context.running_loop.create_task(self._run())
 
     # The life of the process ----------------------------------------------------------------------
 
@@ -215,7 +215,7 @@ class ProcessRunner:
 
     def _stop_child(self, child: ChildProcess) -> None:
         self._emit_signal(signal.SIGINT)
-        self._escalation = self._context._loop.create_task(self._escalate(child))
+        self._escalation = self._context.running_loop.create_task(self._escalate(child))
 
     async def _escalate(self, child: ChildProcess) -> None:
         """Send harder and harder signals until the process has ended."""
@@ -315,7 +315,7 @@ class _LeftoverHandler(BaseEventHandler):
 
     def handle(self, event: Event, context: LaunchContext) -> SomeEntitiesType | None:
         super().handle(event, context)
-        context.add_completion_future(context._loop.create_task(self.__end()))
+        context.add_completion_future(context.running_loop.create_task(self.__end()))
         return None
 
     async def __end(self) -> None:

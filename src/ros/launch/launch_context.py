@@ -72,7 +72,7 @@ class LaunchContext:
         return self.__asyncio_loop
 
     @property
-    def _loop(self) -> asyncio.AbstractEventLoop:
+    def running_loop(self) -> asyncio.AbstractEventLoop:
         """The event loop that the launch runs in; RuntimeError while it does not run."""
         if self.__asyncio_loop is None:
             raise RuntimeError("the launch does not run: there is no event loop yet")

@@ -36,7 +36,7 @@ def get_launch_test_fixturename(item: Any) -> str | None:
 
 def fixture_name(fixture: Any) -> str:
     """Return the name that a launch fixture goes by."""
-    return getattr(fixture, "name", None) or fixture.__name__
+    return str(getattr(fixture, "name", None) or fixture.__name__)
 
 
 def is_valid_test_item(obj: Any) -> bool:
@@ -51,12 +51,12 @@ def need_shutdown_test_item(obj: Any) -> bool:
 
 def is_shutdown_test(item: Any) -> bool:
     """Tell whether an item runs after the launch has ended."""
-    return getattr(item, "_launch_pytest_is_shutdown", False)
+    return bool(getattr(item, "_launch_pytest_is_shutdown", False))
 
 
 def is_same_launch_test_fixture(left_item: Any, right_item: Any) -> bool:
     """Tell whether two items run beside the same launch."""
-    return launch_of(left_item) == launch_of(right_item)
+    return bool(launch_of(left_item) == launch_of(right_item))
 
 
 def launch_of(item: Any) -> Any:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import asyncio
-import inspect
+import sys
 from collections.abc import Callable, Iterator
-from typing import Any
+from typing import Any, Literal
 
 import pytest
 from launch import LaunchContext, LaunchService
 
+Scope = Literal["function", "class", "module", "package", "session"]
 SCOPES = ("function", "class", "module", "package", "session")
 
 #: Where a fixture function keeps how its launch is to be run.
@@ -40,9 +41,9 @@ def fixture(
     *args, **kwargs
         As for `pytest.fixture`.
     """
-    scope = kwargs.get("scope", "function")
-    if isinstance(scope, str) and scope != "function":
-        _provide_fixtures(inspect.currentframe().f_back.f_globals, scope)
+    scope: Any = kwargs.get("scope", "function")
+    if scope in SCOPES and scope != "function":
+        _provide_fixtures(sys._getframe(1).f_globals, scope)
 
     def decorator(function: Callable[..., Any]) -> Any:
         options = {"shutdown_when_idle": shutdown_when_idle, "auto_shutdown": auto_shutdown}
@@ -52,7 +53,7 @@ def fixture(
     return decorator if decorated is None else decorator(decorated)
 
 
-def get_launch_service_fixture(*, scope: str = "function", overridable: bool = True) -> Any:
+def get_launch_service_fixture(*, scope: Scope = "function", overridable: bool = True) -> Any:
     """Return a fixture that is a launch service.
 
     Parameters
@@ -71,7 +72,7 @@ def get_launch_service_fixture(*, scope: str = "function", overridable: bool = T
     return _as_fixture(launch_service, scope, overridable)
 
 
-def get_launch_context_fixture(*, scope: str = "function", overridable: bool = True) -> Any:
+def get_launch_context_fixture(*, scope: Scope = "function", overridable: bool = True) -> Any:
     """Return a fixture that is the context of the launch service; as `get_launch_service_fixture`."""
 
     def launch_context(launch_service: LaunchService) -> LaunchContext:
@@ -80,7 +81,7 @@ def get_launch_context_fixture(*, scope: str = "function", overridable: bool = T
     return _as_fixture(launch_context, scope, overridable)
 
 
-def get_event_loop_fixture(*, scope: str = "function", overridable: bool = True) -> Any:
+def get_event_loop_fixture(*, scope: Scope = "function", overridable: bool = True) -> Any:
     """Return a fixture that is the event loop of the launch service; as `get_launch_service_fixture`."""
 
     def event_loop() -> Iterator[asyncio.AbstractEventLoop]:
@@ -110,7 +111,7 @@ def finalize_launch_service(launch_service: LaunchService, eprefix: str = "", au
         If the launch ends with an error.
     """
     loop, task = launch_service.event_loop, launch_service.task
-    if loop is None or loop.is_closed():
+    if loop is None or task is None or loop.is_closed():
         return
     if auto_shutdown:
         launch_service.shutdown(force_sync=True)
@@ -118,14 +119,14 @@ def finalize_launch_service(launch_service: LaunchService, eprefix: str = "", au
     assert code == 0, f"{eprefix} launch service failed when finishing, return code '{code}'"
 
 
-def _as_fixture(function: Callable[..., Any], scope: str, overridable: bool) -> Any:
+def _as_fixture(function: Callable[..., Any], scope: Scope, overridable: bool) -> Any:
     made = pytest.fixture(scope=scope)(function)
     if overridable:
         setattr(made, _OVERRIDABLE_SCOPE, scope)
     return made
 
 
-def _provide_fixtures(namespace: dict[str, Any], scope: str) -> None:
+def _provide_fixtures(namespace: dict[str, Any], scope: Scope) -> None:
     makers = {
         "launch_service": get_launch_service_fixture,
         "launch_context": get_launch_context_fixture,

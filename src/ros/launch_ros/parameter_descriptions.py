@@ -15,7 +15,6 @@ from launch.substitutions import SubstitutionFailure
 from launch.utilities import normalize_to_list_of_substitutions, perform_substitutions
 from launch.utilities.type_utils import (
     AllowedTypesType,
-    NormalizedValueType,
     SomeValueType,
     normalize_typed_substitution,
     perform_typed_substitution,
@@ -85,7 +84,7 @@ class Parameter:
         return self.__name if self.__evaluated_name is None else self.__evaluated_name
 
     @property
-    def value(self) -> NormalizedValueType:
+    def value(self) -> Any:
         """The value, or the substitutions for it as long as it was not worked out."""
         return self.__value.value
 
@@ -111,9 +110,7 @@ class ParameterFile:
         Whether `$(...)` in it is replaced as in a launch file.
     """
 
-    def __init__(
-        self, param_file: FilePath | SomeSubstitutionsType, *, allow_substs: bool | SomeSubstitutionsType = False
-    ) -> None:
+    def __init__(self, param_file: FilePath | SomeSubstitutionsType, *, allow_substs: SomeValueType = False) -> None:
         path: Any = param_file
         if isinstance(path, bytes | os.PathLike):
             path = os.fsdecode(path)
@@ -134,9 +131,11 @@ class ParameterFile:
         return self.__allow_substs if self.__evaluated_allow_substs is None else self.__evaluated_allow_substs
 
     def __str__(self) -> str:
-        file = self.param_file
-        if isinstance(file, list):
-            file = " + ".join(substitution.describe() for substitution in file)
+        file = (
+            " + ".join(substitution.describe() for substitution in self.param_file)
+            if isinstance(self.param_file, list)
+            else str(self.param_file)
+        )
         return f"launch_ros.description.ParameterFile(param_file={file}, allow_substs={self.allow_substs})"
 
     def evaluate(self, context: LaunchContext) -> pathlib.Path:

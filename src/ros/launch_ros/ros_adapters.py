@@ -136,13 +136,13 @@ def run_with_ros_node(context: LaunchContext, function: Callable[..., None], *ar
     function, args
         What to call. It must return soon after the context says that the launch is being stopped.
     """
-    future = context.asyncio_loop.run_in_executor(None, function, *args)
+    future = context.running_loop.run_in_executor(None, function, *args)
     get_ros_adapter(context)._users.append(future)
     return future
 
 
 def _stop(adapter: ROSAdapter, context: LaunchContext) -> None:
-    context.add_completion_future(context.asyncio_loop.create_task(_stop_when_unused(adapter)))
+    context.add_completion_future(context.running_loop.create_task(_stop_when_unused(adapter)))
 
 
 async def _stop_when_unused(adapter: ROSAdapter) -> None:

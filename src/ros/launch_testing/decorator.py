@@ -12,7 +12,7 @@ def post_shutdown_test() -> Callable[[T], T]:
     """Return a decorator for test classes that are to run after the processes have ended."""
 
     def decorator(test_class: T) -> T:
-        test_class.__post_shutdown_test__ = True
+        test_class.__post_shutdown_test__ = True  # type: ignore[attr-defined]  # marks the class
         return test_class
 
     return decorator

@@ -10,7 +10,7 @@ from launch.actions import ExecuteProcess
 from launch.events.process import ProcessIO
 
 from .asserts.assert_output import assertInStream
-from .util.proc_lookup import NoMatchingProcessException
+from .util.proc_lookup import NoMatchingProcessException, process_details
 
 
 class IoHandler:
@@ -42,7 +42,7 @@ class IoHandler:
 
     def __getitem__(self, key: str | ExecuteProcess) -> list[ProcessIO]:
         """Return the output of a process, given its name or action."""
-        name = key if isinstance(key, str) else key.process_details["name"]
+        name = key if isinstance(key, str) else process_details(key)["name"]
         return list(self._by_name[name])
 
 

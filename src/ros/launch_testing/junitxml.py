@@ -60,4 +60,4 @@ def unittestCaseToXml(test_result: Any, test_case: unittest.TestCase) -> ET.Elem
 
 
 def _time(test_result: Any) -> float:
-    return sum(test_result.testTimes.values())
+    return float(sum(test_result.testTimes.values()))

@@ -86,7 +86,9 @@ def run(
 
 def _load(path: str) -> ModuleType:
     loader = SourceFileLoader("launch_test_file", path)
-    module = module_from_spec(spec_from_loader(loader.name, loader))
+    spec = spec_from_loader(loader.name, loader)
+    assert spec is not None, "a loader of its own always gives a specification"
+    module = module_from_spec(spec)
     # Tests beside the file may be imported from it.
     sys.path.insert(0, os.path.dirname(path))
     try:

@@ -55,7 +55,8 @@ class TestRun:
         self.post_shutdown_tests = post_shutdown_tests
         # Known to the results' files, too.
         for case in self.all_cases():
-            case._testMethodName_in_run = f"{case._testMethodName}{self._suffix()}"
+            name_in_run = f"{case._testMethodName}{self._suffix()}"
+            case._testMethodName_in_run = name_in_run  # type: ignore[attr-defined]  # our own
 
     def _suffix(self) -> str:
         return self.name[self.name.index("[") :] if self.param_args else ""
@@ -173,7 +174,7 @@ class _Loader(unittest.TestLoader):
     def loadTestsFromTestCase(self, testCaseClass: type[unittest.TestCase]) -> unittest.TestSuite:
         if getattr(testCaseClass, "__post_shutdown_test__", False) == self._post_shutdown:
             return super().loadTestsFromTestCase(testCaseClass)
-        return self.suiteClass()
+        return unittest.TestSuite()
 
 
 def _flatten(tests: Any) -> Iterator[unittest.TestCase]:
@@ -185,7 +186,7 @@ def _flatten(tests: Any) -> Iterator[unittest.TestCase]:
 
 
 def _bind_arguments(test: unittest.TestCase, arguments: dict[str, Any]) -> None:
-    if isinstance(test, unittest.loader._FailedTest):
+    if isinstance(test, unittest.loader._FailedTest):  # type: ignore[attr-defined]  # not in typeshed
         return
     for name in ("setUp", "tearDown", test._testMethodName):
         method = getattr(test, name)

@@ -6,7 +6,7 @@ import functools
 import time
 import unittest
 from collections.abc import Callable
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 T = TypeVar("T", bound=Callable[..., Any])
 
@@ -15,7 +15,7 @@ def keep_alive(test_description: T) -> T:
     """Keep a launch going until its tests are done, although its processes have all ended."""
     markers = getattr(test_description, "__markers__", {})
     markers["keep_alive"] = True
-    test_description.__markers__ = markers
+    test_description.__markers__ = markers  # type: ignore[attr-defined]  # marks the function
     return test_description
 
 
@@ -45,6 +45,6 @@ def retry_on_failure(*, times: int, delay: float | None = None) -> Callable[[T],
                         time.sleep(delay)
             return None
 
-        return wrapper
+        return cast("T", wrapper)
 
     return decorator

@@ -34,7 +34,7 @@ def parametrize(
                 functools.update_wrapper(partial, function)
                 yield partial, arguments
 
-        descriptions.__parametrized__ = True
+        descriptions.__parametrized__ = True  # type: ignore[attr-defined]  # marks the function
         return descriptions
 
     return decorator

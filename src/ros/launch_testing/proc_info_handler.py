@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Iterable, Iterator
+from types import UnionType
 
 from launch.actions import ExecuteProcess
 from launch.events.process import ProcessExited, ProcessStarted
 
-from .util.proc_lookup import NoMatchingProcessException, resolveProcesses
+from .util.proc_lookup import NoMatchingProcessException, process_details, resolveProcesses
 
 ProcessInfo = ProcessStarted | ProcessExited
 
@@ -32,13 +33,13 @@ class ProcInfoHandler:
 
     def process_names(self) -> Iterable[str]:
         """Return the names of all known processes."""
-        return [action.process_details["name"] for action in self._events]
+        return [process_details(action)["name"] for action in self._events]
 
     def __getitem__(self, key: str | ExecuteProcess) -> ProcessInfo:
         """Return the last event of a process, given its name, a part of it, or its action."""
         if isinstance(key, str):
             for action, event in self._events.items():
-                if key in action.process_details["name"]:
+                if key in process_details(action)["name"]:
                     return event
             raise KeyError(key)
         return self._events[key]
@@ -114,7 +115,9 @@ class ActiveProcInfoHandler:
         success = self.__wait_for(ProcessStarted | ProcessExited, process, cmd_args, timeout)
         assert success, f"Timed out waiting for process '{process}' to start"
 
-    def __wait_for(self, kind: type, process: ExecuteProcess | str, cmd_args: str | None, timeout: float) -> bool:
+    def __wait_for(
+        self, kind: type | UnionType, process: ExecuteProcess | str, cmd_args: str | None, timeout: float
+    ) -> bool:
         def happened() -> bool:
             try:
                 found = resolveProcesses(self._proc_info_handler, process=process, cmd_args=cmd_args)

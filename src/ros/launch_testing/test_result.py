@@ -15,7 +15,7 @@ class TestResult(unittest.TextTestResult):
     __test__ = False
 
     def __init__(self, stream: Any = None, descriptions: bool | None = None, verbosity: int | None = None) -> None:
-        super().__init__(stream, descriptions, 1 if verbosity is None else verbosity)
+        super().__init__(stream, bool(descriptions), 1 if verbosity is None else verbosity)
         self.__test_cases: list[unittest.TestCase] = []
         self.__starts: dict[unittest.TestCase, float] = {}
         self.__times: dict[unittest.TestCase, float] = {}

@@ -6,7 +6,7 @@ import inspect
 import sys
 import threading
 import unittest
-from typing import Any
+from typing import Any, cast
 
 from launch import Action, LaunchDescription, LaunchDescriptionSource, LaunchService
 from launch.actions import IncludeLaunchDescription, RegisterEventHandler
@@ -206,7 +206,7 @@ class _RunnerWorker:
             self._launch_service.shutdown()
 
     def _print_process_output_summary(self) -> None:
-        failed = [info for info in self.proc_info if getattr(info, "returncode", 0)]
+        failed = [info for info in self.proc_info if isinstance(info, ProcessExited) and info.returncode]
         for info in failed:
             sys.stdout.write(f"Process '{info.process_name}' exited with {info.returncode}\n")
             if info.process_name in self.proc_output.process_names():
@@ -216,4 +216,4 @@ class _RunnerWorker:
 
 def _run_tests(tests: unittest.TestSuite) -> TestResult:
     runner = unittest.TextTestRunner(verbosity=2, resultclass=TestResult)
-    return runner.run(tests)
+    return cast("TestResult", runner.run(tests))

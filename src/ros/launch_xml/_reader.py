@@ -3,15 +3,25 @@
 from __future__ import annotations
 
 import xml.etree.ElementTree as ET
+from typing import TYPE_CHECKING, cast
 from xml.parsers import expat
 
 from launch.launch_file_error import LaunchFileError
 
+if TYPE_CHECKING:
+    from collections.abc import Generator, Iterator
+
 
 class LocatedElement(ET.Element):
-    """An XML element with its file and line in `location`."""
+    """An XML element with its file and line in `location`, like all elements inside it."""
 
     location: tuple[str | None, int | None] = (None, None)
+
+    if TYPE_CHECKING:
+
+        def __iter__(self) -> Iterator[LocatedElement]: ...
+
+        def iter(self, tag: str | None = None) -> Generator[LocatedElement, None, None]: ...
 
 
 def read_xml(text: str, filename: str | None) -> LocatedElement:
@@ -34,7 +44,7 @@ def read_xml(text: str, filename: str | None) -> LocatedElement:
     parser.buffer_text = True
 
     def start(tag: str, attributes: dict[str, str]) -> None:
-        element = builder.start(tag, attributes)
+        element = cast("LocatedElement", builder.start(tag, attributes))
         element.location = (filename, parser.CurrentLineNumber)
 
     parser.StartElementHandler = start
@@ -45,4 +55,4 @@ def read_xml(text: str, filename: str | None) -> LocatedElement:
     except expat.ExpatError as error:
         reason = f"malformed XML: {expat.ErrorString(error.code)} at column {error.offset + 1}"
         raise LaunchFileError(filename, error.lineno, reason) from error
-    return builder.close()
+    return cast("LocatedElement", builder.close())

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import xml.etree.ElementTree as ET
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from copy import deepcopy
 from typing import Any
 
 from launch.frontend.entity import Entity as BaseEntity
 from launch.frontend.type_utils import check_is_list_entity
 from launch.utilities.type_utils import get_typed_value
+
+from ._reader import LocatedElement
 
 
 class Entity(BaseEntity):
@@ -47,7 +49,7 @@ class Entity(BaseEntity):
         return getattr(self.__element, "location", (None, None))
 
     @property
-    def children(self) -> list[Entity]:
+    def children(self) -> Sequence[Entity]:
         """The elements inside this one."""
         self.__read_children.update(child.tag for child in self.__element)
         return [Entity(child, parent=self) for child in self.__element]
@@ -62,9 +64,8 @@ class Entity(BaseEntity):
         ignored
             Attributes that the elements inside do not have in the copy.
         """
-        copy = type(self.__element)(self.type_name, dict(self.__element.attrib))
-        if hasattr(self.__element, "location"):
-            copy.location = self.__element.location
+        copy = LocatedElement(self.type_name, dict(self.__element.attrib))
+        copy.location = self.location
         for child, element in zip(self.children, self.__element, strict=True):
             if not leave_out(child):
                 kept = deepcopy(element)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 from launch.frontend.entity import Entity as BaseEntity
@@ -30,9 +31,9 @@ class Entity(BaseEntity):
         self.__children_read = False
 
     @property
-    def type_name(self) -> str | None:
-        """The name of the element's type."""
-        return self.__type_name
+    def type_name(self) -> str:
+        """The name of the element's type; empty where it was not given."""
+        return self.__type_name or ""
 
     @property
     def parent(self) -> Entity | None:
@@ -45,7 +46,7 @@ class Entity(BaseEntity):
         return getattr(self.__element, "location", (None, None))
 
     @property
-    def children(self) -> list[Entity]:
+    def children(self) -> Sequence[Entity]:
         """The elements inside this one: the items of a list, or of a mapping's key `children`."""
         self.__children_read = True
         if isinstance(self.__element, dict):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import os
 from typing import TextIO
 
@@ -31,7 +30,7 @@ class Parser(BaseParser):
         LaunchFileError
             If it is malformed, or if it does not consist of one root element.
         """
-        if not isinstance(file, io.TextIOBase):
+        if isinstance(file, str | bytes | os.PathLike):
             with open(file, encoding="utf-8") as opened:
                 return cls.load(opened)
         cls.load_launch_extensions()

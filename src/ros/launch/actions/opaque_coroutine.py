@@ -58,7 +58,7 @@ class OpaqueCoroutine(Action):
     def execute(self, context: LaunchContext) -> list[LaunchDescriptionEntity] | None:
         """Start the coroutine."""
         args = self.__args if self.__ignore_context else [context, *self.__args]
-        self.__task = context._loop.create_task(self.__coroutine(*args, **self.__kwargs))
+        self.__task = context.running_loop.create_task(self.__coroutine(*args, **self.__kwargs))
         context.register_event_handler(OnShutdown(on_shutdown=self.__on_shutdown))
         return None
 

@@ -119,7 +119,7 @@ class TimerAction(Action):
         self.__context_locals = dict(context.get_locals_as_dict())
         self.__launch_configurations = dict(context.launch_configurations)
         self.__environment = dict(context.environment)
-        loop = context._loop
+        loop = context.running_loop
         self._completed_future = completed = loop.create_future()
         self._canceled_future = canceled = loop.create_future()
         if self.__canceled:

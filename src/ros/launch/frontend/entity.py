@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 
@@ -19,7 +20,7 @@ class Entity:
         raise NotImplementedError
 
     @property
-    def children(self) -> list[Entity]:
+    def children(self) -> Sequence[Entity]:
         """The elements inside this one."""
         raise NotImplementedError
 

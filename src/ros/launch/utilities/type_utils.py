@@ -68,9 +68,9 @@ ScalarValueType = int | float | bool | str
 Scalar = TypeVar("Scalar", bound=ScalarValueType)
 ListValueType = Sequence[int] | Sequence[float] | Sequence[bool] | Sequence[str]
 AllowedValueType = ScalarValueType | ListValueType
-SomeValueType = SomeSubstitutionsType | AllowedValueType
 NormalizedScalarType = ScalarValueType | list[Substitution]
 NormalizedValueType = NormalizedScalarType | list[NormalizedScalarType]
+SomeValueType = SomeSubstitutionsType | AllowedValueType | NormalizedValueType
 
 
 # Types --------------------------------------------------------------------------------------------

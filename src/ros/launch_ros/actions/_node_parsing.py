@@ -35,9 +35,10 @@ def parse_parameter(param: Entity, parser: Parser) -> Any:
         raise RuntimeError("a parameter must have either 'name' or 'from', and not both")
     if source is not None:
         allow_substs = param.get_attr("allow_substs", data_type=bool, optional=True, can_be_str=True)
-        kwargs = {} if allow_substs is None else {"allow_substs": parser.parse_if_substitutions(allow_substs)}
         param.assert_entity_completely_parsed()
-        return ParameterFile(parser.parse_substitution(source), **kwargs)
+        return ParameterFile(
+            parser.parse_substitution(source), allow_substs=parser.parse_if_substitutions(allow_substs or False)
+        )
     parsed_name = tuple(parser.parse_substitution(name))
     nested = param.get_attr("param", data_type=list[Entity], optional=True)
     identifier = param.get_attr("type", optional=True)

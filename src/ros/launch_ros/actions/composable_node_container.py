@@ -46,7 +46,9 @@ class ComposableNodeContainer(Node):
         self.__composable_node_descriptions = composable_node_descriptions
 
     @classmethod
-    def parse(cls, entity: Entity, parser: Parser) -> tuple[type[ComposableNodeContainer], dict[str, Any]]:
+    def parse(  # type: ignore[override]  # as in ROS 2, without `ignore`
+        cls, entity: Entity, parser: Parser
+    ) -> tuple[type[ComposableNodeContainer], dict[str, Any]]:
         """Read an element `node_container`."""
         _, kwargs = super().parse(entity, parser)
         kwargs["name"] = parser.parse_substitution(entity.get_attr("name"))

@@ -46,7 +46,9 @@ class LifecycleNode(Node):
         self.__autostart = normalize_typed_substitution(autostart, bool)
 
     @classmethod
-    def parse(cls, entity: Entity, parser: Parser) -> tuple[type[LifecycleNode], dict[str, Any]]:
+    def parse(  # type: ignore[override]  # as in ROS 2, without `ignore`
+        cls, entity: Entity, parser: Parser
+    ) -> tuple[type[LifecycleNode], dict[str, Any]]:
         """Read an element `lifecycle_node`."""
         _, kwargs = super().parse(entity, parser)
         kwargs["name"] = parser.parse_substitution(entity.get_attr("name"))

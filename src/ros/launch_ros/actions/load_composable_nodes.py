@@ -189,7 +189,7 @@ def _remappings(description: ComposableNode, context: LaunchContext) -> list[tup
 
 
 def _global_parameters(context: LaunchContext) -> list[Any]:
-    entries = context.launch_configurations.get("global_params", [])
+    entries: list[Any] = context.launch_configurations.get("global_params", [])
     return [dict([entry]) if isinstance(entry, tuple) else Path(entry).absolute() for entry in entries]
 
 

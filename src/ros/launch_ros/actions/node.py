@@ -117,7 +117,9 @@ class Node(ExecuteProcess):
     # Launch files in markup -------------------------------------------------------------------------
 
     @classmethod
-    def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Node], dict[str, Any]]:
+    def parse(  # type: ignore[override]  # as in ROS 2, without `ignore`
+        cls, entity: Entity, parser: Parser
+    ) -> tuple[type[Node], dict[str, Any]]:
         """Read an element `node`."""
         # The command line is the node's own business, and `name` is that of the node, not of the process.
         _, kwargs = super().parse(entity, parser, ["cmd", "name"])
@@ -255,7 +257,8 @@ class Node(ExecuteProcess):
         arguments: list[tuple[Any, bool]] = []
         for entry in context.launch_configurations.get("global_params", []):
             if isinstance(entry, tuple):
-                arguments.append(self.__rule_or_file(*entry, context))
+                name, value = entry
+                arguments.append(self.__rule_or_file(name, value, context))
             else:
                 arguments += self.__existing_file(os.path.abspath(entry))
         for parameters in evaluate_parameters(context, self.__parameters):
@@ -264,7 +267,8 @@ class Node(ExecuteProcess):
             elif isinstance(parameters, pathlib.Path):
                 arguments += self.__existing_file(str(parameters))
             else:
-                arguments.append(self.__rule_or_file(*parameters.evaluate(context), context))
+                name, value = parameters.evaluate(context)
+                arguments.append(self.__rule_or_file(name, value, context))
         return arguments
 
     def __rule_or_file(self, name: str, value: Any, context: LaunchContext) -> tuple[str, bool]:

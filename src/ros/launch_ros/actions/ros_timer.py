@@ -43,24 +43,30 @@ class ROSTimer(TimerAction):
         """Return the action in words."""
         return f"ROSTimer(period={self.period}, actions=<actions>)"
 
-    async def _wait_to_fire_event(self, context: LaunchContext, period: float) -> None:
-        loop = context.asyncio_loop
-        elapsed = loop.create_future()
+    async def _wait_to_fire_event(
+        self, context: LaunchContext, period: float, completed: asyncio.Future[None], canceled: asyncio.Future[bool]
+    ) -> None:
+        loop = context.running_loop
+        elapsed: asyncio.Future[bool] = loop.create_future()
+
+        def elapse() -> None:
+            if not elapsed.done():
+                elapsed.set_result(True)
 
         def on_timer() -> None:
             timer.cancel()
-            loop.call_soon_threadsafe(lambda: elapsed.done() or elapsed.set_result(None))
+            loop.call_soon_threadsafe(elapse)
 
         timer = get_ros_node(context).create_timer(period, on_timer)
         try:
-            await asyncio.wait([self._canceled_future, elapsed], return_when=asyncio.FIRST_COMPLETED)
-            if not self._canceled_future.done():
+            await asyncio.wait([canceled, elapsed], return_when=asyncio.FIRST_COMPLETED)
+            if not canceled.done():
                 await context.emit_event(TimerEvent(timer_action=self))
             # With the launch the node ends, and the timer with it.
             if not context.is_shutdown:
                 timer.cancel()
         finally:
-            self._completed_future.set_result(None)
+            completed.set_result(None)
 
 
 RosTimer = ROSTimer

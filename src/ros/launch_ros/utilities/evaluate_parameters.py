@@ -66,7 +66,8 @@ def _evaluate(context: LaunchContext, name: str, value: Any) -> EvaluatedParamet
         return value.evaluate(context)
     if not (isinstance(value, tuple) and value):
         ensure_argument_type(value, (bool, int, float, str, bytes, tuple), "value", f"the parameter {name}")
-        return value
+        plain: EvaluatedParameterValue = value
+        return plain
     if isinstance(value[0], Substitution):
         return _from_text(name, perform_substitutions(context, value))
     if isinstance(value[0], Sequence) and not isinstance(value[0], str | bytes):

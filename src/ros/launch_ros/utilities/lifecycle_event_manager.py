@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 
 import launch.logging
 from launch import EventHandler
-from launch.event import Event
 
 from ..events.lifecycle import ChangeState, StateTransition
 from ..ros_adapters import get_ros_node, run_with_ros_node
@@ -35,7 +34,8 @@ class LifecycleEventManager:
     @property
     def node_name(self) -> str:
         """The node's full name."""
-        return self.__action.node_name
+        name: str = self.__action.node_name
+        return name
 
     def setup_lifecycle_manager(self, context: LaunchContext) -> None:
         """Listen to the node and to the launch."""
@@ -60,7 +60,7 @@ class LifecycleEventManager:
         except RuntimeError as error:
             self.__logger.error(f"Exception in handling of 'lifecycle.StateTransition': {error}")
 
-    def on_change_state_event(self, context: LaunchContext, event: Event) -> None:
+    def on_change_state_event(self, context: LaunchContext, event: ChangeState) -> None:
         """Ask the node for a transition, if it is meant."""
         if not event.lifecycle_node_matcher(self.__action):
             return

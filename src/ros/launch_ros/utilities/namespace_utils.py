@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from typing import overload
 
 from launch.substitutions import SubstitutionFailure
 
@@ -17,6 +18,10 @@ def is_namespace_absolute(ns: str) -> bool:
     return ns.startswith("/")
 
 
+@overload
+def prefix_namespace(base_ns: str, ns: str | None) -> str: ...
+@overload
+def prefix_namespace(base_ns: str | None, ns: str | None) -> str | None: ...
 def prefix_namespace(base_ns: str | None, ns: str | None) -> str | None:
     """Return a namespace as it is seen from outside another one.
 

@@ -12,7 +12,7 @@ _KEY = "unique_ros_node_names"
 
 def add_node_name(context: LaunchContext, node_name: str) -> None:
     """Remember that a node of this name was started."""
-    counts = context.get_locals_as_dict().get(_KEY)
+    counts: dict[str, int] | None = context.get_locals_as_dict().get(_KEY)
     if counts is None:
         counts = {}
         context.extend_globals({_KEY: counts})
@@ -21,4 +21,5 @@ def add_node_name(context: LaunchContext, node_name: str) -> None:
 
 def get_node_name_count(context: LaunchContext, node_name: str) -> int:
     """Return how many nodes of this name were started."""
-    return context.get_locals_as_dict().get(_KEY, {}).get(node_name, 0)
+    counts: dict[str, int] = context.get_locals_as_dict().get(_KEY, {})
+    return counts.get(node_name, 0)

@@ -50,4 +50,5 @@ class Test(ExecuteProcess):
         context.emit_event_sync(ShutdownProcess(process_matcher=matches_action(self)))
 
     def __on_exit(self, event: Event, context: LaunchContext) -> None:
-        self.__timer.cancel()
+        if self.__timer is not None:
+            self.__timer.cancel()

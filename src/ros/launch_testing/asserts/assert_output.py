@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 from ..tools.output import expect_output
-from ..util.proc_lookup import resolveProcesses
+from ..util.proc_lookup import process_details, resolveProcesses
 
 
 def assertInStream(
@@ -55,7 +55,7 @@ def assertInStream(
         )
         if matches(text if output_filter is None else output_filter(text)):
             return
-    names = ", ".join(action.process_details["name"] for action in found)
+    names = ", ".join(process_details(action)["name"] for action in found)
     raise AssertionError(f"Did not find '{expected_output}' in the {stream} of any of the matching processes: {names}")
 
 

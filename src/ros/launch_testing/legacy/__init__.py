@@ -90,9 +90,11 @@ class LaunchTestService:
             if isinstance(action, ExecuteLocal):
                 failed = action.return_code != 0
                 reason = f"exit code {action.return_code}"
+            elif future is not None and future.cancelled():
+                failed, reason = True, "cancelled"
             else:
-                failed = future.cancelled() or future.exception() is not None
-                reason = "cancelled" if future.cancelled() else repr(future.exception())
+                error = None if future is None else future.exception()
+                failed, reason = error is not None, repr(error)
             self.__outcomes[test] = reason if failed else "ok"
             return self.__shutdown_if_done(failed)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 import inspect
 import pathlib
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Self
 
 import pytest
 
@@ -70,9 +70,9 @@ class LaunchTestItem(pytest.Item):
         self.runner_cls: type[Any] | None = None
 
     @classmethod
-    def from_parent(
+    def from_parent(  # type: ignore[override]  # as in ROS 2, with the runs
         cls, parent: Any, *, name: str, test_runs: list[TestRun], runner_cls: type[Any] | None = None
-    ) -> LaunchTestItem:
+    ) -> Self:
         """Return the item for some runs.
 
         Parameters
@@ -108,10 +108,10 @@ class LaunchTestItem(pytest.Item):
         if skipped and sum(result.testsRun for result in results.values()) == len(skipped):
             pytest.skip(skipped[0])
 
-    def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException]) -> Any:
+    def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None) -> Any:
         """Return what to show of a failure."""
         if not isinstance(excinfo.value, LaunchTestFailure):
-            return super().repr_failure(excinfo)
+            return super().repr_failure(excinfo, style)
         failures = [
             (f"{run}.{type(case).__name__}.{case._testMethodName}", message)
             for run, result in excinfo.value.results.items()

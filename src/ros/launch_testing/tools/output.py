@@ -100,10 +100,10 @@ def expect_output(
     if (expected_text is None) == (expected_lines is None):
         raise ValueError("either 'expected_text' or 'expected_lines' must be given")
     if expected_text is not None:
-        actual = "\n".join(lines) if text is None else text
+        actual = "\n".join(lines or []) if text is None else text
         actual = _ANSI.sub("", actual) if strip_ansi_escape_sequences else actual
         return build_text_match(expected_text, strict=strict)(actual) is not None
-    actual_lines = text.splitlines() if lines is None else lines
+    actual_lines = (text or "").splitlines() if lines is None else lines
     if strip_ansi_escape_sequences:
         actual_lines = [_ANSI.sub("", line) for line in actual_lines]
     return build_line_match(expected_lines, strict=strict)(actual_lines) is not None

@@ -43,13 +43,13 @@ class ProcessProxy:
     def wait_for_shutdown(self, timeout: float | None = None) -> bool:
         """Wait for its end, and tell whether it came in time."""
         with self._proc_info.proc_event:
-            return self._proc_info.proc_event.wait_for(lambda: self.terminated, timeout)
+            return bool(self._proc_info.proc_event.wait_for(lambda: self.terminated, timeout))
 
     def wait_for_output(self, condition: Callable[[str], bool] | None = None, timeout: float | None = None) -> bool:
         """Wait for any output, or for some of which `condition` is true, and tell whether it came in time."""
         is_enough = condition or bool
         with self._proc_output.io_event:
-            return self._proc_output.io_event.wait_for(lambda: is_enough(self.output), timeout)
+            return bool(self._proc_output.io_event.wait_for(lambda: is_enough(self.output), timeout))
 
     @property
     def target_process_action(self) -> ExecuteProcess:

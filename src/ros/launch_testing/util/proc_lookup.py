@@ -45,25 +45,44 @@ def resolveProcesses(
     if process is None:
         found = known
     elif isinstance(process, str):
-        found = [action for action in known if process in action.process_details["name"]]
+        found = [action for action in known if process in process_details(action)["name"]]
     elif isinstance(process, ExecuteProcess):
         found = [action for action in known if action is process]
     else:
         raise TypeError(f"a process is given by its name or its action, but this is {process!r}")
     found = [action for action in found if _has_arguments(action, cmd_args)]
     if not found and not (process is None and cmd_args is None):
-        names = ", ".join(action.process_details["name"] for action in known) or "none"
+        names = ", ".join(process_details(action)["name"] for action in known) or "none"
         raise NoMatchingProcessException(
             f"Did not find any process matching name '{process}' and args '{cmd_args}'. Procs: {names}"
         )
     if isinstance(process, str) and strict_proc_matching and len(found) > 1:
-        names = ", ".join(action.process_details["name"] for action in found)
+        names = ", ".join(process_details(action)["name"] for action in found)
         raise LookupError(f"Found multiple processes matching name '{process}' and cmd_args '{cmd_args}': {names}")
     return found
 
 
+def process_details(action: ExecuteProcess) -> dict[str, Any]:
+    """Return the details of an action's process.
+
+    Parameters
+    ----------
+    action
+        The action.
+
+    Raises
+    ------
+    RuntimeError
+        Before the process is started.
+    """
+    details = action.process_details
+    if details is None:
+        raise RuntimeError(f"the process of {action.describe()} was not started yet")
+    return details
+
+
 def _has_arguments(action: ExecuteProcess, cmd_args: Any) -> bool:
-    arguments = action.process_details["cmd"][1:]
+    arguments = process_details(action)["cmd"][1:]
     if cmd_args is None:
         return True
     if cmd_args is NO_CMD_ARGS:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Self
 
 import pytest
 from launch_testing.pytest.hooks import LaunchTestItem, LaunchTestModule
@@ -15,7 +15,7 @@ class LaunchROSTestItem(LaunchTestItem):
     """The runs of a launch that has a ROS node."""
 
     @classmethod
-    def from_parent(cls, *args: Any, **kwargs: Any) -> LaunchROSTestItem:
+    def from_parent(cls, *args: Any, **kwargs: Any) -> Self:
         """Return the item for some runs; see `LaunchTestItem.from_parent`."""
         from launch_testing_ros.test_runner import LaunchTestRunner
 

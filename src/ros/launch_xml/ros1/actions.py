@@ -19,6 +19,7 @@ from launch.substitution import Substitution
 from launch.substitutions import SubstitutionFailure
 from launch.utilities import normalize_to_list_of_substitutions, perform_substitutions
 
+from ..entity import Entity as XMLEntity
 from .parameters import Ros1Parameters
 
 if TYPE_CHECKING:
@@ -108,7 +109,7 @@ class _NodeWithConditions(Action):
         The parser of its file.
     """
 
-    def __init__(self, *, entity: Entity, parser: Parser) -> None:
+    def __init__(self, *, entity: XMLEntity, parser: Parser) -> None:
         super().__init__()
         self.__parser = parser
         self.__entity = entity.without_children(lambda child: False, ())
@@ -137,7 +138,7 @@ def parse_param(entity: Entity, parser: Parser) -> tuple[type[Action], dict[str,
 
     _, kwargs = Action.parse(entity, parser)
     kwargs["name"] = parser.parse_substitution(entity.get_attr("name"))
-    value = parser.parse_substitution(entity.get_attr("value"))
+    value: Any = parser.parse_substitution(entity.get_attr("value"))
     identifier = entity.get_attr("type", optional=True)
     if identifier is not None:
         value = ParameterValue(value, value_type=get_data_type_from_identifier(identifier))

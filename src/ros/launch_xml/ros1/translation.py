@@ -94,23 +94,20 @@ class _Translator:
         yield self.translate_children(old, group)
 
     def translate_include(self, old: LocatedElement) -> Iterator[LocatedElement]:
-        mapping = None
-        found = _FOUND_FILE.match(old.attrib["file"]) if "file" in old.attrib else None
-        if found is not None:
-            mapping = INCLUDES.get((found[1], found[2]))
+        found = _FOUND_FILE.match(old.attrib.get("file", ""))
+        mapping = None if found is None else INCLUDES.get((found[1], found[2]))
         attributes = self.conditions(old)
         if "file" in old.attrib:
             attributes["file"] = self.text(old.attrib["file"])
-        if mapping is not None:
+        if found is not None and mapping is not None:
             attributes["file"] = f"$(find-pkg-share {mapping.package})/{mapping.path}"
             self.changes.append(f"{found[1]}/{found[2]} -> {mapping.package}/{mapping.path}")
         if old.attrib.get("pass_all_args") in ("true", "1"):
             attributes["pass_all_args"] = "true"
         include = _like(old, "ros1:include", attributes)
         for argument in old.iter("arg"):
-            name: str | None = argument.attrib.get("name", "")
-            if mapping is not None:
-                name = mapping.arguments.get(name, name)
+            given = argument.attrib.get("name", "")
+            name = given if mapping is None else mapping.arguments.get(given, given)
             if name is not None:
                 value = argument.attrib.get("value", argument.attrib.get("default", ""))
                 include.append(_like(argument, "arg", {"name": name, "value": self.text(value)}))

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from launch.event import Event
 
 if TYPE_CHECKING:
+    from lifecycle_msgs.msg import TransitionEvent
+
     from ...actions import LifecycleNode
 
 
@@ -23,7 +25,7 @@ class StateTransition(Event):
 
     name = "launch_ros.events.lifecycle.StateTransition"
 
-    def __init__(self, *, action: LifecycleNode, msg: Any) -> None:
+    def __init__(self, *, action: LifecycleNode, msg: TransitionEvent) -> None:
         self.__action = action
         self.__msg = msg
 
@@ -33,7 +35,7 @@ class StateTransition(Event):
         return self.__action
 
     @property
-    def msg(self) -> Any:
+    def msg(self) -> TransitionEvent:
         """The message."""
         return self.__msg
 
