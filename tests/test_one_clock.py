@@ -1,0 +1,64 @@
+"""Code of robots reads the time of its node's clock only, so that simulated time can be stepped."""
+
+import ast
+from collections.abc import Iterator
+from pathlib import Path
+
+from places import REPOSITORY
+
+LAYERS = (
+    "description", "samples", "simulation", "control", "mapping", "localization", "navigation", "industry", "nodes",
+)  # fmt: skip
+OTHER_CLOCKS = {
+    "time": {"monotonic", "monotonic_ns", "perf_counter", "perf_counter_ns", "sleep", "time", "time_ns"},
+    "asyncio": {"sleep", "wait_for"},
+    "threading": {"Timer"},
+    "datetime": {"now", "today", "utcnow"},
+    "ClockType": {"STEADY_TIME", "SYSTEM_TIME"},
+}
+ALLOWED = {
+    "nodes/daidalos_demo/_measuring.py": "the computing time of other processes",
+    "nodes/daidalos_demo/_robot.py": "when to ask again whether other processes are up",
+    "nodes/gazebo_ros/_pacing.py": "the pace of simulated time in real time",
+    "nodes/gazebo_ros/gzserver.py": "the report of how fast simulated time passes, once a second of real time",
+    "nodes/gazebo_ros/spawn_entity.py": "how long a person waits for a simulator whose time may stand still",
+    "nodes/joy/_node.py": "when to look for a device again",
+    "nodes/keyboard.py": "how long a person has to press a key",
+    "nodes/nav2_planner/planner_server.py": "the computing time that the result of a plan reports",
+    "nodes/ros_gz_sim/create.py": "how long a person waits for a simulator whose time may stand still",
+    "nodes/tf2_tools/view_frames.py": "the name of a file",
+    "nodes/topic_tools/delay.py": "real time where the parameter use_wall_clock asks for it",
+    "nodes/topic_tools/throttle.py": "real time where the parameter use_wall_clock asks for it",
+    "nodes/warming.py": "how long a person waits for the compiler",
+}
+"""Files under `src/daidalos` that may read another clock, and what for."""
+
+
+def uses(source: str) -> Iterator[str]:
+    """Yield ``line: name`` of each use of another clock: its functions, and waits that end by themselves."""
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name):
+            if node.attr in OTHER_CLOCKS.get(node.value.id, ()):
+                yield f"{node.lineno}: {node.value.id}.{node.attr}"
+        elif isinstance(node, ast.ImportFrom):
+            for name in {alias.name for alias in node.names} & OTHER_CLOCKS.get(node.module or "", set()):
+                yield f"{node.lineno}: {node.module}.{name}"
+        elif isinstance(node, ast.Call) and getattr(node.func, "attr", "") == "wait" and (node.args or node.keywords):
+            yield f"{node.lineno}: wait with a timeout"
+
+
+def test_no_code_of_robots_reads_another_clock() -> None:
+    root = REPOSITORY / "src/daidalos"
+    found = {
+        path.relative_to(root).as_posix(): list(uses(path.read_text(encoding="utf-8")))
+        for layer in LAYERS
+        for path in Path(root / layer).rglob("*.py")
+    }
+    using = {name: lines for name, lines in found.items() if lines}
+    assert {name: lines for name, lines in using.items() if name not in ALLOWED} == {}
+    assert set(ALLOWED) == set(using), "these read no other clock any more"
+
+
+def test_uses_are_found() -> None:
+    source = "import time\nfrom time import sleep\ntime.monotonic()\nevent.wait(1.0)\nevent.wait()\nnode.time()\n"
+    assert sorted(uses(source)) == ["2: time.sleep", "3: time.monotonic", "4: wait with a timeout"]
