@@ -1,8 +1,10 @@
 import threading
 
 import rclpy
+from geometry_msgs.msg import PoseArray, TransformStamped, Twist, TwistStamped
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from std_msgs.msg import String
+from tf2_msgs.msg import TFMessage
 
 from daidalos.nodes.ros_gz_bridge.parameter_bridge import ParameterBridge
 from ros.graph import graph, node, spinning  # noqa: F401
@@ -54,3 +56,39 @@ def test_a_topic_of_the_same_name_needs_no_bridge(graph):  # noqa: F811
     bridge = ParameterBridge(["/word@std_msgs/msg/String@gz.msgs.StringMsg"])
     assert not rclpy.create_node("looker").get_publishers_info_by_topic("/word")
     bridge.destroy_node()
+
+
+def test_a_stamped_command_reaches_a_simulator_that_takes_it_unstamped(node):  # noqa: F811
+    received = threading.Event()
+    speeds = []
+
+    def on_twist(twist):
+        speeds.append(twist.linear.x)
+        received.set()
+
+    node.create_subscription(Twist, "/cmd_vel", on_twist, 10)
+    bridge = ParameterBridge(["/cmd_vel@geometry_msgs/msg/TwistStamped]gz.msgs.Twist"])
+    publisher = node.create_publisher(TwistStamped, "/cmd_vel", 10)
+    with spinning(node, bridge):
+        command = TwistStamped()
+        command.twist.linear.x = 0.25
+        _publish_when_matched(node, publisher, command)
+        assert received.wait(5.0)
+    assert speeds == [0.25]
+    bridge.destroy_node()
+
+
+def test_a_simulators_publisher_of_another_type_that_comes_later_is_converted(node):  # noqa: F811
+    bridge = ParameterBridge(["/model/m/pose@geometry_msgs/msg/PoseArray[gz.msgs.Pose_V"])
+    received = threading.Event()
+    node.create_subscription(PoseArray, "/model/m/pose", lambda poses: received.set(), 10)
+    publisher = node.create_publisher(TFMessage, "/model/m/pose", 10)
+    with spinning(node, bridge):
+        _publish_when_matched(node, publisher, TFMessage(transforms=[TransformStamped()]))
+        assert received.wait(5.0)
+    bridge.destroy_node()
+
+
+def _publish_when_matched(node, publisher, message):  # noqa: F811
+    assert node.handle.graph.wait_for(lambda: publisher.get_subscription_count() > 0, 5.0)
+    publisher.publish(message)

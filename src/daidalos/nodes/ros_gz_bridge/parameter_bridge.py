@@ -1,10 +1,10 @@
-"""`parameter_bridge`: checks that what is to be bridged can be, and renames topics where the sides differ."""
+"""`parameter_bridge`: connects topics whose names or types differ between the simulator's side and ROS's."""
 
 from __future__ import annotations
 
 import sys
+from collections import deque
 from collections.abc import Callable
-from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +15,7 @@ from rclpy.qos_overriding_options import QoSOverridingOptions
 from rclpy.utilities import remove_ros_args
 
 from daidalos.nodes.node_thread import NodeThread
+from daidalos.nodes.ros_gz_bridge._conversions import Converter, find_converter, message_class
 from daidalos.nodes.ros_gz_bridge._mapping import (
     Bridge,
     MappingError,
@@ -23,6 +24,7 @@ from daidalos.nodes.ros_gz_bridge._mapping import (
     simulator_topic,
 )
 from daidalos.nodes.runner import UserError, run
+from daidalos.transport.graph import EndpointInfo, EndpointKind
 
 _OVERRIDABLE = (QoSPolicyKind.DEPTH, QoSPolicyKind.DURABILITY, QoSPolicyKind.HISTORY, QoSPolicyKind.RELIABILITY)
 
@@ -30,8 +32,10 @@ _OVERRIDABLE = (QoSPolicyKind.DEPTH, QoSPolicyKind.DURABILITY, QoSPolicyKind.HIS
 class ParameterBridge(Node):
     """A bridge whose two sides are the same graph.
 
-    Topics of the simulator are topics of ROS already: where both sides have one name there is nothing to
-    do but to check types. Where a remapping or a file gives the ROS side another name, messages are passed on.
+    Topics of the simulator are topics of ROS already: where name and type are the same on both sides nothing is to
+    be done. Where a remapping or a file gives the ROS side another name, messages are forwarded. Where the simulator
+    publishes or subscribes another ROS type of the same type of gz (TwistStamped is bridged, and the simulator takes
+    Twist), messages are converted from the moment at which that endpoint appears in the graph.
 
     Parameters
     ----------
@@ -59,46 +63,96 @@ class ParameterBridge(Node):
         self._gz_side = rclpy.create_node(
             "ros_gz_bridge_gz", use_global_arguments=False, start_parameter_services=False
         )
-        for bridge in bridges:
-            self._connect(bridge)
+        self._found: deque[tuple[Bridge, EndpointInfo]] = deque()
+        self._connected: set[tuple[Bridge, str, EndpointKind]] = set()
+        self._own: set[bytes] = set()
+        self._connecting = self._gz_side.create_guard_condition(self._connect_found)
+        self._unwatch = [self._connect(bridge) for bridge in bridges]
         for service in services:
             self.get_logger().info(f"service {service} is in the graph already")
         self._gz_thread = NodeThread(self._gz_side)
 
-    def _connect(self, bridge: Bridge) -> None:
+    def _connect(self, bridge: Bridge) -> Callable[[], None]:
+        """Forward a topic between its two names, and watch for endpoints of other types; return what ends that."""
         ros = self.resolve_topic_name(bridge.ros_topic)
         gz = simulator_topic(bridge.gz_topic)
         if ros == gz:
-            self.get_logger().info(f"{gz} ({bridge.ros_type}) needs no bridge")
-            return
-        package, _, name = bridge.ros_type.partition("/msg/")
-        kind = getattr(import_module(f"{package}.msg"), name)
-        overrides = QoSOverridingOptions(_OVERRIDABLE)
-        own: set[bytes] = set()
-        if bridge.direction != "ROS_TO_GZ":
-            outward = self.create_publisher(kind, bridge.ros_topic, 10, qos_overriding_options=overrides)
-            own.add(outward.handle.endpoint.gid)
-            self._gz_side.create_subscription(kind, gz, _forwarding_callback(outward, own), 10)
-        if bridge.direction != "GZ_TO_ROS":
-            inward = self._gz_side.create_publisher(kind, gz, 10)
-            own.add(inward.handle.endpoint.gid)
-            take = _forwarding_callback(inward, own)
-            self.create_subscription(kind, bridge.ros_topic, take, 10, qos_overriding_options=overrides)
-        self.get_logger().info(f"{gz} is {ros} ({bridge.ros_type}, {bridge.direction})")
+            self.get_logger().info(f"{gz} ({bridge.ros_type}) has one name on both sides")
+        else:
+            if bridge.direction != "ROS_TO_GZ":
+                self._forward_to_ros(bridge, bridge.ros_type)
+            if bridge.direction != "GZ_TO_ROS":
+                self._forward_to_gz(bridge, bridge.ros_type)
+            self.get_logger().info(f"{gz} is {ros} ({bridge.ros_type}, {bridge.direction})")
+
+        def watch(added: bool, endpoint: EndpointInfo) -> None:
+            if added and endpoint.type_name != bridge.ros_type and endpoint.gid not in self._own:
+                self._found.append((bridge, endpoint))
+                self._connecting.trigger()
+
+        return self._gz_side.handle.session.watch(gz, watch)
+
+    def _connect_found(self) -> None:
+        """Convert for the endpoints of other types that appeared."""
+        while self._found:
+            bridge, endpoint = self._found.popleft()
+            key = (bridge, endpoint.type_name, endpoint.kind)
+            if key in self._connected or endpoint.gid in self._own:
+                continue
+            gz = simulator_topic(bridge.gz_topic)
+            if endpoint.kind is EndpointKind.PUBLISHER and bridge.direction != "ROS_TO_GZ":
+                convert = find_converter(endpoint.type_name, bridge.ros_type, self._now)
+                if convert is not None:
+                    self._connected.add(key)
+                    self._forward_to_ros(bridge, endpoint.type_name, convert)
+                    self.get_logger().info(f"{gz}: converting {endpoint.type_name} to {bridge.ros_type}")
+            elif endpoint.kind is EndpointKind.SUBSCRIPTION and bridge.direction != "GZ_TO_ROS":
+                convert = find_converter(bridge.ros_type, endpoint.type_name, self._now)
+                if convert is not None:
+                    self._connected.add(key)
+                    self._forward_to_gz(bridge, endpoint.type_name, convert)
+                    self.get_logger().info(f"{gz}: converting {bridge.ros_type} to {endpoint.type_name}")
+
+    def _now(self) -> Any:
+        return self.get_clock().now().to_msg()
+
+    def _forward_to_ros(self, bridge: Bridge, gz_side_type: str, convert: Converter | None = None) -> None:
+        overrides = QoSOverridingOptions(_OVERRIDABLE) if convert is None else None
+        publisher = self.create_publisher(
+            message_class(bridge.ros_type), bridge.ros_topic, 10, qos_overriding_options=overrides
+        )
+        self._own.add(publisher.handle.endpoint.gid)
+        take = _forwarding_callback(publisher, self._own, convert)
+        subscription = self._gz_side.create_subscription(
+            message_class(gz_side_type), simulator_topic(bridge.gz_topic), take, 10
+        )
+        self._own.add(subscription.handle.endpoint.gid)
+
+    def _forward_to_gz(self, bridge: Bridge, gz_side_type: str, convert: Converter | None = None) -> None:
+        overrides = QoSOverridingOptions(_OVERRIDABLE) if convert is None else None
+        publisher = self._gz_side.create_publisher(message_class(gz_side_type), simulator_topic(bridge.gz_topic), 10)
+        self._own.add(publisher.handle.endpoint.gid)
+        take = _forwarding_callback(publisher, self._own, convert)
+        subscription = self.create_subscription(
+            message_class(bridge.ros_type), bridge.ros_topic, take, 10, qos_overriding_options=overrides
+        )
+        self._own.add(subscription.handle.endpoint.gid)
 
     def destroy_node(self) -> None:
         """Leave the graph on both sides."""
+        for unwatch in self._unwatch:
+            unwatch()
         self._gz_thread.stop()
         self._gz_side.destroy_node()
         super().destroy_node()
 
 
-def _forwarding_callback(publisher: Any, own: set[bytes]) -> Callable[[Any, Any], None]:
-    """Return a callback that says on one side what it heard on the other, but for what this bridge said itself."""
+def _forwarding_callback(publisher: Any, own: set[bytes], convert: Converter | None) -> Callable[[Any, Any], None]:
+    """Return a callback that publishes on one side what came from the other, except for the bridge's own messages."""
 
     def take(message: Any, info: Any) -> None:
         if info["publisher_gid"]["data"] not in own:
-            publisher.publish(message)
+            publisher.publish(message if convert is None else convert(message))
 
     return take
 
