@@ -16,7 +16,7 @@ pytestmark = [pytest.mark.browser, pytest.mark.slow]
 WINDOW = (420, 720)
 _DOMAIN = 100 + os.getpid() % 100
 _JOINTS = "[...document.querySelectorAll('[data-joint]')]"
-_VALUES = f"{_JOINTS}.map((each) => Number(each.querySelector('.joint-value').value))"
+_VALUES = f"{_JOINTS}.map((each) => Number(each.querySelector('.range-value').value))"
 
 
 def _echo_position(wanted: str) -> None:

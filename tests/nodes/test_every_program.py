@@ -27,6 +27,7 @@ _PACKAGES = (
     "rqt_gui",
     "rqt_image_view",
     "rqt_plot",
+    "rqt_reconfigure",
     "rqt_topic",
     "rviz2",
     "teleop_twist_keyboard",

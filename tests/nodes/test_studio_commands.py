@@ -26,6 +26,7 @@ RVIZ = str(Path(daidalos.__file__).parent / "share/turtle_tf2_py/rviz/turtle_rvi
         (("rqt_console", "rqt_console"), "?panel=log", "/rqt_gui_py_node_\\d+"),
         (("rqt_plot", "rqt_plot"), "?panel=plot", "/rqt_gui_py_node_\\d+"),
         (("rqt_image_view", "rqt_image_view"), "?panel=image", "/rqt_gui_py_node_\\d+"),
+        (("rqt_reconfigure", "rqt_reconfigure"), "?panel=parameters", "/rqt_gui_py_node_\\d+"),
         (("rqt_topic", "rqt_topic"), "?panel=topics", "/rqt_gui_py_node_\\d+"),
         (("rqt_publisher", "rqt_publisher"), "?panel=publish", "/rqt_gui_py_node_\\d+"),
         (("rqt_service_caller", "rqt_service_caller"), "?panel=service", "/rqt_gui_py_node_\\d+"),

@@ -10,6 +10,7 @@ _PANELS = {
     "rqt_image_view": "image",
     "rqt_plot": "plot",
     "rqt_publisher": "publish",
+    "rqt_reconfigure": "parameters",
     "rqt_service_caller": "service",
     "rqt_topic": "topics",
 }

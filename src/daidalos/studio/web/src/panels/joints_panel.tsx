@@ -3,7 +3,7 @@ import { useSignal } from "@preact/signals";
 import { useEffect, useMemo } from "preact/hooks";
 import type { Studio } from "../app/studio";
 import type { ServiceInfo } from "../contract";
-import { Choice } from "../ui/editors";
+import { Choice, RangeField } from "../ui/editors";
 import { Empty } from "../ui/empty";
 import { Icon } from "../ui/icons";
 import { Joints, type Joint } from "./joints/joints";
@@ -48,7 +48,7 @@ function Sliders({ studio, node, isVisible }: { studio: Studio; node: string; is
   if (joints.length === 0) {
     return (
       <Empty icon="sliders" title="No joints yet">
-        {model.error.value || "They appear with the robot’s description."}
+        {model.error || "They appear with the robot’s description."}
       </Empty>
     );
   }
@@ -56,7 +56,7 @@ function Sliders({ studio, node, isVisible }: { studio: Studio; node: string; is
     <>
       <div class="scroll joints" data-test="joints">
         {joints.map((joint) => (
-          <Slider key={joint.name} joint={joint} onChange={(value) => model.set(joint.name, value)} />
+          <JointRow key={joint.name} joint={joint} onChange={(value) => model.set(joint.name, value)} />
         ))}
       </div>
       <footer class="bar">
@@ -66,52 +66,21 @@ function Sliders({ studio, node, isVisible }: { studio: Studio; node: string; is
         <button class="button" title="Put every joint back" data-test="center" onClick={() => model.center()}>
           <Icon name="focus" /> Center
         </button>
-        <span class="stretch error-text ellipsis">{model.error.value}</span>
+        <span class="stretch error-text ellipsis">{model.error}</span>
         <span class="faint figures">{joints.length}</span>
       </footer>
     </>
   );
 }
 
-function Slider({ joint, onChange }: { joint: Joint; onChange(value: number): void }) {
+function JointRow({ joint, onChange }: { joint: Joint; onChange(value: number): void }) {
   const { name, lower, upper, value, unit } = joint;
-  const limit = (typed: number) => Math.min(upper, Math.max(lower, typed));
-  const share = (at: number) => (upper > lower ? (100 * (limit(at) - lower)) / (upper - lower) : 0);
-  const ends = [share(0), share(value)].sort((a, b) => a - b);
   return (
     <label class="joint" data-joint={name}>
       <span class="joint-name ellipsis" title={name}>
         {name}
       </span>
-      <span class="field with-unit">
-        <input
-          class="joint-value figures"
-          type="number"
-          aria-label={`Position of ${name}`}
-          step={0.01}
-          min={lower}
-          max={upper}
-          value={value.toFixed(3)}
-          onChange={(event) => {
-            const typed = Number(event.currentTarget.value);
-            if (event.currentTarget.value.trim() && Number.isFinite(typed)) {
-              onChange(limit(typed));
-            }
-          }}
-        />
-        {unit && <span class="unit">{unit}</span>}
-      </span>
-      <input
-        class="slider"
-        type="range"
-        aria-label={name}
-        min={lower}
-        max={upper}
-        step="any"
-        style={`--from: ${ends[0]}%; --to: ${ends[1]}%`}
-        value={value}
-        onInput={(event) => onChange(limit(Number(event.currentTarget.value)))}
-      />
+      <RangeField label={`Position of ${name}`} min={lower} max={upper} {...{ value, unit, onChange }} />
       <span class="joint-limits faint figures">
         <span>{lower.toFixed(2)}</span>
         <span>{upper.toFixed(2)}</span>

@@ -1,5 +1,5 @@
 import { beforeEach, expect, it } from "vitest";
-import type { Session } from "../../connection/session";
+import type { Session } from "../../contract";
 import { Joints } from "./joints";
 
 let asked: [string, unknown][];
@@ -25,12 +25,17 @@ beforeEach(async () => {
         { floating_point_range: [] },
       ],
     },
-    "/gui/get_parameters": { values: [{ double_value: 0.5 }, { double_value: 0 }] },
+    "/gui/get_parameters": {
+      values: [
+        { type: 3, double_value: 0.5 },
+        { type: 3, double_value: 0 },
+      ],
+    },
   };
   const session = {
     call: (service: string, request: unknown) => {
       asked.push([service, request]);
-      return Promise.resolve(answers[service] ?? {});
+      return Promise.resolve(answers[service] ?? { results: [] });
     },
     subscribe: (_topic: string, _keep: number, received: typeof hear) => {
       hear = received;
@@ -64,11 +69,11 @@ it("sends the newest position only", async () => {
 });
 
 it("follows the node, and no other", async () => {
-  hear(event({ changed_parameters: [{ name: "joints.tilt", value: { double_value: 1 } }] }));
-  hear(event({ node: "/other", changed_parameters: [{ name: "joints.tilt", value: { double_value: 2 } }] }));
+  hear(event({ changed_parameters: [{ name: "joints.tilt", value: { type: 3, double_value: 1 } }] }));
+  hear(event({ node: "/other", changed_parameters: [{ name: "joints.tilt", value: { type: 3, double_value: 2 } }] }));
   expect(joints.joints.value[1]?.value).toBe(1);
   asked = [];
-  hear(event({ new_parameters: [{ name: "joints.roll", value: { double_value: 0 } }] }));
+  hear(event({ new_parameters: [{ name: "joints.roll", value: { type: 3, double_value: 0 } }] }));
   await settled();
   expect(asked[0]?.[0]).toBe("/gui/list_parameters");
 });
