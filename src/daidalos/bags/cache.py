@@ -1,4 +1,4 @@
-"""Between the threads that receive messages and the disk: a queue with a limit, or the last moments as a snapshot."""
+"""Buffers between receiving threads and the disk: a bounded queue, or a snapshot of the last messages."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _FLUSH_S = 1.0
 
 
 class WriterThread:
-    """Writes messages to a bag in a thread of its own.
+    """Thread that writes messages to a bag.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ class WriterThread:
             self._urgent.set()
 
     def call(self, work: Callable[[], None]) -> None:
-        """Have something done with the writer after what is queued, and wait until it is."""
+        """Call a function with the writer after everything queued before, and wait for it."""
         done = threading.Event()
 
         def item() -> None:
@@ -144,14 +144,14 @@ class WriterThread:
             self._fail(error)
 
     def _fail(self, error: BagError) -> None:
-        """Tell of what went wrong, once: from now on nothing is written."""
+        """Report an error once and discard all further messages."""
         if not self._failed:
             self._failed = True
             self._on_error(error)
 
 
 class SnapshotBuffer:
-    """Keeps the last messages in memory and writes them when asked to.
+    """Ring buffer of the last messages, written to a file on request.
 
     Parameters
     ----------
@@ -170,7 +170,7 @@ class SnapshotBuffer:
         self._lock = threading.Lock()
 
     def write(self, message: BagMessage) -> None:
-        """Keep a message, and forget the oldest ones that there is no room for."""
+        """Store a message, and drop the oldest ones that exceed the size."""
         with self._lock:
             self._kept.append(message)
             self._size += len(message.data) + _OVERHEAD
@@ -178,11 +178,11 @@ class SnapshotBuffer:
                 self._size -= len(self._kept.popleft().data) + _OVERHEAD
 
     def call(self, work: Callable[[], None]) -> None:
-        """Do something with the writer."""
+        """Call a function with the writer."""
         work()
 
     def take(self) -> bool:
-        """Write what is kept to a file of its own; False when there is nothing."""
+        """Write the stored messages to a file of its own; return False when there are none."""
         with self._lock:
             kept, self._kept, self._size = self._kept, deque(), 0
         if kept and not self.writer.is_file_empty:
@@ -193,5 +193,5 @@ class SnapshotBuffer:
         return bool(kept)
 
     def close(self) -> None:
-        """Forget what is kept."""
+        """Drop the stored messages."""
         self._kept.clear()

@@ -1,10 +1,10 @@
-"""The time of a bag that is played: it runs with the steady clock, faster or slower, stands still and jumps."""
+"""Clock of a bag that is played: follows the steady clock at a rate, pauses and jumps."""
 
 from __future__ import annotations
 
 
 class PlaybackClock:
-    """Maps steady time to the bag's time; both in nanoseconds.
+    """Mapping of steady time to the bag's time; both in nanoseconds.
 
     Parameters
     ----------
@@ -26,12 +26,12 @@ class PlaybackClock:
 
     @property
     def rate(self) -> float:
-        """How many nanoseconds of the bag pass in one."""
+        """Seconds of the bag per second of steady time."""
         return self._rate
 
     @property
     def paused(self) -> bool:
-        """Whether it stands still."""
+        """Whether the clock is paused."""
         return self._paused
 
     def now(self, steady_ns: int) -> int:
@@ -41,17 +41,17 @@ class PlaybackClock:
         return self._bag_ns + round((steady_ns - self._steady_ns) * self._rate)
 
     def due(self, bag_ns: int) -> int | None:
-        """Return when, in steady time, the bag's time will be this; None while it stands still."""
+        """Return the steady time at which the bag's time reaches `bag_ns`; None while paused."""
         if self._paused:
             return None
         return self._steady_ns + round((bag_ns - self._bag_ns) / self._rate)
 
     def jump(self, bag_ns: int, steady_ns: int) -> None:
-        """Go on from another time of the bag."""
+        """Continue from another time of the bag."""
         self._bag_ns, self._steady_ns = bag_ns, steady_ns
 
     def set_rate(self, rate: float, steady_ns: int) -> None:
-        """Run faster or slower from now on.
+        """Set the rate from now on.
 
         Raises
         ------
@@ -64,11 +64,11 @@ class PlaybackClock:
         self._rate = rate
 
     def pause(self, steady_ns: int) -> None:
-        """Stand still."""
+        """Pause the clock."""
         self.jump(self.now(steady_ns), steady_ns)
         self._paused = True
 
     def resume(self, steady_ns: int) -> None:
-        """Go on."""
+        """Resume the clock."""
         self.jump(self.now(steady_ns), steady_ns)
         self._paused = False

@@ -1,4 +1,4 @@
-"""rosbag2's own compression: of whole files once they are complete, or of every message."""
+"""rosbag2's compression of whole files or of single messages."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _LEVEL = 1
 
 @dataclass(frozen=True)
 class Compression:
-    """What is compressed, and how.
+    """Compression mode and format.
 
     Attributes
     ----------
@@ -34,7 +34,7 @@ class Compression:
     threads: int = 1
 
     def check(self, path: Path) -> None:
-        """Raise BagError when there is no such compression."""
+        """Raise BagError when the mode or format is not supported."""
         if self.mode not in ("", FILE, MESSAGE):
             raise BagError(path, f"unknown compression mode '{self.mode}'; there are: none, file, message")
         if self.mode and self.format not in FORMATS:
@@ -42,14 +42,14 @@ class Compression:
 
 
 def message_compressor() -> Callable[[bytes], bytes]:
-    """Return a function that compresses a message; for one thread."""
+    """Return a function that compresses a message; not safe to share between threads."""
     import zstandard
 
     return zstandard.ZstdCompressor(level=_LEVEL).compress
 
 
 def message_decompressor(path: Path) -> Callable[[bytes], bytes]:
-    """Return a function that decompresses a message of the file at `path`; for one thread."""
+    """Return a function that decompresses a message of the file at `path`; not safe to share between threads."""
     import zstandard
 
     decompress = zstandard.ZstdDecompressor().decompress
@@ -64,7 +64,7 @@ def message_decompressor(path: Path) -> Callable[[bytes], bytes]:
 
 
 def compress_file(path: Path) -> Path:
-    """Replace a file by its compressed form; returns the new path.
+    """Compress a file, delete the original and return the new path.
 
     Raises
     ------
@@ -85,7 +85,7 @@ def compress_file(path: Path) -> Path:
 
 
 def decompress_file(path: Path, folder: Path) -> Path:
-    """Decompress a file into a folder; returns the path of the result.
+    """Decompress a file into a folder and return the path of the result.
 
     Raises
     ------

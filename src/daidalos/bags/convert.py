@@ -1,4 +1,4 @@
-"""Writing bags anew: several into one, one into several, other storages, other compression, fewer topics."""
+"""Conversion of bags: merging, splitting, change of storage or compression, selection of topics."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from daidalos.bags.writer import BagWriter, WriterOptions
 
 @dataclass(frozen=True)
 class Output:
-    """A bag to be written.
+    """Bag to be written.
 
     Attributes
     ----------
@@ -42,7 +42,7 @@ def convert(
     outputs: Sequence[Output],
     progress: Callable[[int, int], None] | None = None,
 ) -> list[str]:
-    """Write the messages of some bags into others.
+    """Write the messages of input bags to output bags.
 
     Parameters
     ----------
@@ -82,7 +82,7 @@ def convert(
 
 
 def _begun(stack: ExitStack, output: Output) -> BagWriter:
-    """Begin an output; it is completed with the stack, or removed when something fails."""
+    """Start an output; it is completed when the stack closes, or removed on failure."""
     writer = BagWriter(output.folder, output.options)
 
     def end(kind: object, error: BaseException | None, trace: object) -> None:
@@ -110,7 +110,7 @@ def _taker(output: Output, writer: BagWriter, topics: dict[str, Topic]) -> Calla
 
 
 def _wants(selection: Selection, name: str, type_name: str) -> bool:
-    """Tell whether a topic is wanted; who asks for nothing in particular gets all that is not excluded."""
+    """Return whether a topic is selected; an empty selection includes all topics that are not excluded."""
     if selection.is_empty:
         selection = replace(selection, all_topics=True, all_services=True, hidden=True)
     return selection.wants(name, type_name)

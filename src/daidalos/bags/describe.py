@@ -1,4 +1,4 @@
-"""What a bag holds, read from its files: where there is no `metadata.yaml`, or to write it anew."""
+"""Description of a bag from its files, for bags without `metadata.yaml` or to rewrite it."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from daidalos.bags.storage import (
 
 
 def describe(path: str | Path, storage_id: str = "") -> tuple[BagMetadata, list[str]]:
-    """Read what a bag's files, or a single file of a bag, hold.
+    """Read the description of a bag from its files, or of a single file.
 
     Parameters
     ----------
@@ -92,7 +92,7 @@ def describe(path: str | Path, storage_id: str = "") -> tuple[BagMetadata, list[
 
 
 def reindex(folder: str | Path, storage_id: str = "") -> tuple[BagMetadata, list[str]]:
-    """Write a bag's `metadata.yaml` anew from its files, and end files whose writer was killed.
+    """Write a bag's `metadata.yaml` anew from its files, and complete files whose writer was killed.
 
     Returns what `describe` does; what is lost of a file that was cut off is told there.
 
@@ -109,7 +109,7 @@ def reindex(folder: str | Path, storage_id: str = "") -> tuple[BagMetadata, list
 
 
 def complete(path: Path, storage_id: str) -> None:
-    """End a file whose writer was killed, so that every program can read it; others stay as they are.
+    """Complete a file whose writer was killed so that every program can read it; leave other files unchanged.
 
     Raises
     ------
@@ -151,7 +151,7 @@ def bag_files(folder: Path, storage_id: str = "") -> list[Path]:
 
 @contextmanager
 def opened(path: Path, storage_id: str) -> Iterator[StorageReader]:
-    """Give a reader of a file, which may be compressed as a whole.
+    """Yield a reader of a file, which may be compressed as a whole.
 
     Raises
     ------
@@ -172,7 +172,7 @@ def opened(path: Path, storage_id: str) -> Iterator[StorageReader]:
 
 
 def _kept(reader: StorageReader, path: Path) -> BagMetadata | None:
-    """Return the description that a file keeps of its bag, None where it has none that can be read."""
+    """Return the description that a file holds of its bag, None without a readable one."""
     if not reader.metadata:
         return None
     try:
@@ -182,7 +182,7 @@ def _kept(reader: StorageReader, path: Path) -> BagMetadata | None:
 
 
 def _has_packed_messages(reader: StorageReader) -> bool:
-    """Tell whether messages are compressed one by one: none that is not begins with zstd's magic number."""
+    """Return whether messages are compressed one by one, which zstd's magic number at their start shows."""
     first: BagMessage | None = None
     for name, one in reader.topics.items():
         if one.count:

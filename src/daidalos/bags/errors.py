@@ -1,4 +1,4 @@
-"""What is wrong with a bag."""
+"""Error of bags."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from pathlib import Path
 
 
 class BagError(RuntimeError):
-    """A bag that can not be read or written.
+    """A bag that cannot be read or written.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Which format a file with messages is of, and who reads and writes it."""
+"""Storage formats: detection of a file's format, and its reader and writer."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _MAGIC = {b"\x89MCAP": MCAP, b"SQLite format 3\0": SQLITE3}
 
 
 def storage_of(path: Path) -> str:
-    """Return the format of a file by what it begins with, or by its name.
+    """Return the format of a file by its first bytes, else by its name.
 
     Raises
     ------
@@ -50,7 +50,7 @@ def storage_of(path: Path) -> str:
 
 
 def open_reader(path: Path, storage_id: str) -> StorageReader:
-    """Open a file to read.
+    """Open a file for reading.
 
     Raises
     ------
@@ -69,7 +69,7 @@ def open_reader(path: Path, storage_id: str) -> StorageReader:
 
 
 def open_writer(path: Path, storage_id: str, options: StorageOptions, ros_distro: str) -> StorageWriter:
-    """Begin a file.
+    """Create a file for writing.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Settings of MCAP files: presets, and files with the names of rosbag2's MCAP plugin."""
+"""Settings of MCAP files: presets, and files with the setting names of rosbag2's MCAP plugin."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ LZ4_LEVELS = {"Fastest": -9, "Fast": -3, "Default": 0, "Slow": 6, "Slowest": 12}
 
 @dataclass(frozen=True)
 class McapOptions:
-    """How an MCAP file is laid out; the settings' names in files are those of rosbag2's MCAP plugin."""
+    """Layout of an MCAP file; the setting names in files are those of rosbag2's MCAP plugin."""
 
     chunk_size: int = 768 * 1024
     compression: str = ""
@@ -60,7 +60,7 @@ _IGNORED = {"noAttachmentCRC", "noAttachmentIndex"}
 
 
 def writer_options(options: StorageOptions) -> McapOptions:
-    """Return the settings of a profile, with those of a file put over them.
+    """Return the settings of a profile, overridden by those of a file.
 
     Raises
     ------
@@ -80,7 +80,7 @@ def writer_options(options: StorageOptions) -> McapOptions:
 
 
 def _change(name: str, value: object) -> dict[str, Any] | None:
-    """Return what a setting changes, None where it is not understood."""
+    """Return the changes that a setting makes, None for an invalid value."""
     if name in _VALUES:
         field, convert = _VALUES[name]
         try:

@@ -1,4 +1,4 @@
-"""Reading MCAP files (mcap.dev/spec), also those that end in the middle because their writer was killed.
+"""Reader of MCAP files (mcap.dev/spec), including truncated ones whose writer was killed.
 
 A file's summary tells where its chunks are. Where it is missing, the records are walked through from the start up to
 the last whole one.
@@ -46,7 +46,7 @@ _in_order = itemgetter(0, 1)
 
 @dataclass(frozen=True)
 class _Chunk:
-    """Where some messages stand; `channels` are those with messages in it, None where that is not known."""
+    """Location of messages in the file; `channels` are those with messages in it, None if unknown."""
 
     start_ns: int
     end_ns: int
@@ -59,7 +59,7 @@ class _Chunk:
 
 
 class McapReader(StorageReader):
-    """Reads an MCAP file.
+    """Reader of an MCAP file.
 
     Raises
     ------
@@ -89,11 +89,11 @@ class McapReader(StorageReader):
         self._describe()
 
     def close(self) -> None:
-        """Let the file go."""
+        """Close the file."""
         self._data.close()
 
     def _describe(self) -> None:
-        """Fill what every reader tells."""
+        """Fill the attributes that every reader provides."""
         filled = [chunk for chunk in self._chunks if chunk.end_ns]
         self.start_ns = min((chunk.start_ns for chunk in filled), default=0)
         self.end_ns = max((chunk.end_ns for chunk in filled), default=0)
@@ -124,7 +124,7 @@ class McapReader(StorageReader):
     # The summary at the end.
 
     def _read_summary(self) -> bool:
-        """Learn from the summary what the file holds; False where it has none that says all."""
+        """Read the file's content from its summary; return False without a complete summary."""
         data = self._data
         footer = len(data) - len(MAGIC) - _FOOTER_LENGTH
         if footer < len(MAGIC) or data[-len(MAGIC) :] != MAGIC or data[footer] != Opcode.FOOTER:
@@ -164,13 +164,13 @@ class McapReader(StorageReader):
         return complete
 
     def _indexed(self, index: Any) -> _Chunk:
-        """Return the chunk that an index tells of."""
+        """Return the chunk that an index record describes."""
         start = index.chunk_start_offset + _RECORD.size
         channels = frozenset(index.message_index_offsets) or None
         return self._chunk_at(start, channels)
 
     def _chunk_at(self, position: int, channels: frozenset[int] | None = None) -> _Chunk:
-        """Return the chunk whose record's content begins at a position."""
+        """Return the chunk whose record's content starts at an offset."""
         start, end, size, crc, name = _CHUNK.unpack_from(self._data, position)
         position += _CHUNK.size
         compression = self._data[position : position + name].decode()
@@ -187,7 +187,7 @@ class McapReader(StorageReader):
     # Walking through the records.
 
     def _walk(self) -> None:
-        """Learn from the records themselves what the file holds, up to the first that is not whole."""
+        """Read the file's content from the records themselves, up to the first incomplete one."""
         data, position, size = self._data, len(MAGIC), len(self._data)
         loose: _UnchunkedMessages | None = None
         ended = False
@@ -243,7 +243,7 @@ class McapReader(StorageReader):
     def _add_unchunked(
         self, loose: _UnchunkedMessages | None, begin: int, length: int, position: int
     ) -> _UnchunkedMessages:
-        """Note a message that stands in no chunk."""
+        """Record a message outside of chunks."""
         channel, _, log, _ = struct.unpack_from("<HIQQ", self._data, begin)
         self._counts[channel] = self._counts.get(channel, 0) + 1
         if loose and (loose.end - loose.offset > _UNCHUNKED_SIZE):
@@ -259,7 +259,7 @@ class McapReader(StorageReader):
     def messages(
         self, topics: Collection[str], start_ns: int, stop_ns: int, *, reverse: bool = False, by_file: bool = False
     ) -> Iterator[BagMessage]:
-        """Give messages; see `StorageReader.messages`."""
+        """Yield messages; see `StorageReader.messages`."""
         names = {number: channel.topic for number, channel in self._channels.items() if channel.topic in topics}
         chunks = [
             chunk
@@ -279,7 +279,7 @@ class McapReader(StorageReader):
                 yield BagMessage(names[channel], data, received, sent)
 
     def _forward(self, chunks: list[_Chunk], names: Collection[int], start: int, stop: int) -> Iterator[list[Entry]]:
-        """Give messages by time; those of a chunk wait for chunks that overlap it."""
+        """Yield messages by time; messages of a chunk wait for overlapping chunks."""
         chunks.sort(key=lambda chunk: chunk.start_ns)
         waiting: list[Entry] = []
         for k, chunk in enumerate(chunks):
@@ -292,7 +292,7 @@ class McapReader(StorageReader):
         yield waiting
 
     def _backward(self, chunks: list[_Chunk], names: Collection[int], start: int, stop: int) -> Iterator[list[Entry]]:
-        """Give messages by time, the last ones first."""
+        """Yield messages by time, newest first."""
         chunks.sort(key=lambda chunk: -chunk.end_ns)
         waiting: list[Entry] = []
         for k, chunk in enumerate(chunks):
@@ -304,7 +304,7 @@ class McapReader(StorageReader):
         yield waiting[::-1]
 
     def _entries(self, chunk: _Chunk, names: Collection[int], start: int, stop: int) -> list[Entry]:
-        """Return the wanted messages of a chunk as they stand in it."""
+        """Return the selected messages of a chunk in file order."""
         try:
             content = self._content(chunk)
             return _entries(content, chunk.offset, names, start, stop)
@@ -338,7 +338,7 @@ class McapReader(StorageReader):
 
 @dataclass
 class _UnchunkedMessages:
-    """Messages one after the other that stand in no chunk."""
+    """Consecutive messages outside of chunks."""
 
     offset: int
     start_ns: int
@@ -354,7 +354,7 @@ class _UnchunkedMessages:
 
 
 def _entries(content: bytes, chunk: int, names: Collection[int], start: int, stop: int) -> list[Entry]:
-    """Take the wanted messages out of the records of the chunk at a place in the file."""
+    """Return the selected messages among the records of the chunk at an offset in the file."""
     found: list[Entry] = []
     append, unpack, header = found.append, MESSAGE_HEADER.unpack_from, MESSAGE_HEADER.size
     position, size = 0, len(content)
@@ -373,7 +373,7 @@ def _entries(content: bytes, chunk: int, names: Collection[int], start: int, sto
 
 
 def _records(content: bytes) -> Iterator[tuple[int, int, int]]:
-    """Give opcode, begin and end of every record in a chunk."""
+    """Yield opcode, start and end of every record in a chunk."""
     position = 0
     while position < len(content):
         opcode, length = _RECORD.unpack_from(content, position)
@@ -385,7 +385,7 @@ def _records(content: bytes) -> Iterator[tuple[int, int, int]]:
 
 
 def _full_type(name: str) -> str:
-    """Return a type's name with the ``msg`` of ``std_msgs/msg/String``, which some writers leave out."""
+    """Return a type's name with the ``msg`` of ``std_msgs/msg/String``, which some writers omit."""
     parts = name.split("/")
     return "/".join((parts[0], "msg", parts[1])) if len(parts) == 2 else name
 

@@ -1,4 +1,4 @@
-"""Writing MCAP files (mcap.dev/spec), with the profile ``ros2``.
+"""Writer of MCAP files (mcap.dev/spec) with the profile ``ros2``.
 
 Messages are gathered in chunks; a chunk goes to the file in one piece, so that a process that is killed leaves a
 file that is whole up to its last chunk. The records come from the library `mcap`; its writer gives no say over when
@@ -38,7 +38,7 @@ _LENGTH_BEFORE_DATA = 22
 
 
 class McapWriter(StorageWriter):
-    """Writes an MCAP file.
+    """Writer of an MCAP file.
 
     Raises
     ------
@@ -119,11 +119,11 @@ class McapWriter(StorageWriter):
 
     @property
     def size(self) -> int:
-        """How large the file is about to be [bytes]."""
+        """Expected size of the file [bytes]."""
         return self._position + self._length
 
     def flush(self) -> None:
-        """End the chunk: what was written outlives this process."""
+        """End the chunk; data written before survives the end of this process."""
         if not self._parts:
             return
         parts, length, index = self._parts, self._length, self._index
@@ -186,7 +186,7 @@ class McapWriter(StorageWriter):
         )
 
     def _put(self, data: bytes | bytearray, *, in_data: bool = True) -> None:
-        """Hand bytes to the operating system."""
+        """Write bytes to the operating system."""
         if in_data and self._options.data_crc:
             self._data_crc = zlib.crc32(data, self._data_crc)
         try:

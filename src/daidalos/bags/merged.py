@@ -1,4 +1,4 @@
-"""Reading several bags as if they were one: their messages come in one order by time."""
+"""Reader of several bags as one, with messages ordered by time."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from daidalos.bags.storage import FOREVER_NS
 
 
 class MergedBags:
-    """Reads some bags.
+    """Reader of several bags as one.
 
     Parameters
     ----------
@@ -74,13 +74,13 @@ class MergedBags:
         return joined
 
     def topics_with_definitions(self) -> dict[str, Topic]:
-        """Return the topics by name, with the definitions of their types as far as the files have them."""
+        """Return the topics by name, with the definitions of their types as far as the files contain them."""
         return self._joined([reader.topics_with_definitions() for reader in self._readers])
 
     def messages(
         self, topics: Collection[str] | None = None, *, start_ns: int = 0, stop_ns: int = FOREVER_NS
     ) -> Iterator[BagMessage]:
-        """Give messages by their times of reception, see `BagReader.messages`."""
+        """Yield messages by their times of reception; see `BagReader.messages`."""
         streams = []
         for reader in self._readers:
             wanted = None if topics is None else [name for name in topics if name in reader.topics]
@@ -88,7 +88,7 @@ class MergedBags:
         return streams[0] if len(streams) == 1 else heapq.merge(*streams, key=attrgetter("received_ns"))
 
     def close(self) -> None:
-        """Let the files go."""
+        """Close the files."""
         self._open.close()
 
     def __enter__(self) -> Self:

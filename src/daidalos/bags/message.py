@@ -1,4 +1,4 @@
-"""What bags hold: topics and serialised messages."""
+"""Content of bags: topics and serialized messages."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ SERVICE_EVENTS = "/_service_event"
 
 @dataclass(frozen=True)
 class Definition:
-    """The text that defines a message type, with all that it refers to, and how that text is written."""
+    """Text that defines a message type with all its dependencies, and the encoding of that text."""
 
     text: str
     encoding: str = "ros2msg"
@@ -20,7 +20,7 @@ class Definition:
 
 @dataclass(frozen=True)
 class Topic:
-    """A topic of a bag.
+    """Topic of a bag.
 
     Attributes
     ----------
@@ -45,27 +45,27 @@ class Topic:
 
     @property
     def is_service_event(self) -> bool:
-        """Whether its messages tell of the calls of a service."""
+        """Whether the topic carries service events."""
         return is_service_event(self.name, self.type)
 
     @property
     def service_name(self) -> str:
-        """The service whose calls its messages tell of."""
+        """Name of the service that the events belong to."""
         return self.name.removesuffix(SERVICE_EVENTS)
 
     @property
     def service_type(self) -> str:
-        """The type of that service."""
+        """Type of the service that the events belong to."""
         return self.type.removesuffix("_Event")
 
 
 def is_service_event(name: str, type_name: str) -> bool:
-    """Tell whether a topic's messages tell of the calls of a service."""
+    """Return whether a topic carries service events."""
     return name.endswith(SERVICE_EVENTS) and "/srv/" in type_name and type_name.endswith("_Event")
 
 
 class BagMessage(NamedTuple):
-    """A message as it was recorded; times are Unix time, or the robot's, in nanoseconds."""
+    """Message as recorded; times are Unix time or robot time in nanoseconds."""
 
     topic: str
     data: bytes

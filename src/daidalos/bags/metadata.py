@@ -1,4 +1,4 @@
-"""The description of a bag, `metadata.yaml`: its files, topics, counts and times."""
+"""Description of a bag, `metadata.yaml`: its files, topics, counts and times."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _ROOT = "rosbag2_bagfile_information"
 
 @dataclass(frozen=True)
 class BagFile:
-    """A file of a bag; `path` is relative to the bag."""
+    """File of a bag; `path` is relative to the bag."""
 
     path: str
     start_ns: int
@@ -30,7 +30,7 @@ class BagFile:
 
 @dataclass(frozen=True)
 class TopicCount:
-    """A topic and how many messages it has."""
+    """Topic and the number of its messages."""
 
     topic: Topic
     count: int
@@ -38,7 +38,7 @@ class TopicCount:
 
 @dataclass(frozen=True)
 class BagMetadata:
-    """What a bag consists of; times are in nanoseconds.
+    """Content of a bag; times are in nanoseconds.
 
     Attributes
     ----------
@@ -69,7 +69,7 @@ class BagMetadata:
 
 
 def total(storage_id: str, files: Iterable[BagFile], topics: Iterable[TopicCount], **others: Any) -> BagMetadata:
-    """Return the description of a bag that consists of these files."""
+    """Return the description of a bag with these files."""
     files = tuple(files)
     filled = [file for file in files if file.message_count]
     start = min((file.start_ns for file in filled), default=0)
@@ -97,7 +97,7 @@ def read_metadata(folder: str | Path) -> BagMetadata:
 
 
 def write_metadata(folder: str | Path, metadata: BagMetadata) -> None:
-    """Write the description of a bag; it is there as a whole or not at all.
+    """Write the description of a bag atomically.
 
     Raises
     ------
@@ -158,7 +158,7 @@ def _file_values(file: BagFile) -> dict[str, Any]:
 
 
 def parse_metadata(text: str, path: str | Path) -> BagMetadata:
-    """Return the description that a text holds; `path` is named in errors.
+    """Parse a description; `path` is named in errors.
 
     Raises
     ------
@@ -216,7 +216,7 @@ def _topic(values: _Values) -> TopicCount:
 
 
 def _files(reader: _Values, paths: list[str], start: int, duration: int, count: int) -> tuple[BagFile, ...]:
-    """Return the files; old versions tell nothing of each, so each may hold all of the time."""
+    """Return the files; old versions have no times per file, so each covers the whole duration."""
     described = {
         one.get("path", str): BagFile(
             one.get("path", str),
@@ -236,7 +236,7 @@ def _files(reader: _Values, paths: list[str], start: int, duration: int, count: 
 
 
 class _Values:
-    """A mapping of a YAML document that says where in it something is missing or of the wrong kind."""
+    """Mapping of a YAML document that reports missing and mistyped values with their location."""
 
     def __init__(self, path: str | Path, values: Any, where: str = "") -> None:
         self.path = path

@@ -1,4 +1,4 @@
-"""Quality of service as bags and override files write it: YAML with the policies' names or rmw's numbers."""
+"""Quality of service in bags and override files: YAML with policy names or rmw's numbers."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Policy = TypeVar("Policy", bound=IntEnum)
 
 
 def profiles_text(profiles: Iterable[Qos]) -> str:
-    """Return profiles as the text that storages keep beside a topic; empty where there are none."""
+    """Return profiles as the text that storages store with a topic; empty without profiles."""
     import yaml
 
     values = profile_values(profiles)

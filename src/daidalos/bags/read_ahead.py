@@ -1,4 +1,4 @@
-"""Reading messages before they are needed, in a thread of its own."""
+"""Prefetching of messages in a thread."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _POLL_S = 0.2
 
 
 class ReadAhead:
-    """Gives what an iterator gives; up to about `size` messages are read before they are asked for.
+    """Iterator that prefetches up to about `size` messages.
 
     Parameters
     ----------
@@ -34,7 +34,7 @@ class ReadAhead:
         self._thread.start()
 
     def next(self) -> BagMessage | None:
-        """Return the next message, None at the end; raises what the iterator raised."""
+        """Return the next message, None at the end; re-raise what the iterator raised."""
         while True:
             message = next(self._batch, None)
             if message is not None or self._ended:
@@ -47,7 +47,7 @@ class ReadAhead:
             self._batch = iter(item)
 
     def close(self) -> None:
-        """Read no more."""
+        """Stop reading."""
         self._closed.set()
         self._thread.join()
 

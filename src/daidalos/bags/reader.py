@@ -1,4 +1,4 @@
-"""Reading a bag: its description, and its messages by time across all of its files."""
+"""Reader of bags: description, and messages by time across all files."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _OPEN_FILES = 16
 
 
 class BagReader:
-    """Reads a bag: a folder, or a single file of one.
+    """Reader of a bag: a folder or a single file.
 
     A bag whose recording was cut off has no description; it is read from the files then.
 
@@ -81,7 +81,7 @@ class BagReader:
 
     @property
     def topics(self) -> dict[str, Topic]:
-        """The topics by name."""
+        """Topics by name."""
         return {one.topic.name: one.topic for one in self.metadata.topics}
 
     @property
@@ -90,7 +90,7 @@ class BagReader:
         return sum((self._folder / file.path).stat().st_size for file in self.metadata.files)
 
     def topics_with_definitions(self) -> dict[str, Topic]:
-        """Return the topics by name, with the definitions of their types as far as the files have them."""
+        """Return the topics by name, with the definitions of their types as far as the files contain them."""
         found = self.topics
         for file in self.metadata.files:
             for name, one in self._reader(file).topics.items():
@@ -109,7 +109,7 @@ class BagReader:
         reverse: bool = False,
         by_file: bool = False,
     ) -> Iterator[BagMessage]:
-        """Give messages by their times of reception.
+        """Yield messages by their times of reception.
 
         Parameters
         ----------
@@ -167,7 +167,7 @@ class BagReader:
             self._users[file.path] -= 1
 
     def _reader(self, file: BagFile) -> StorageReader:
-        """Return the reader of a file; some stay open, as seeking may come back to them."""
+        """Return the reader of a file; some stay open because seeking may return to them."""
         if file.path not in self._readers:
             idle = [path for path in self._readers if not self._users[path]]
             for path in idle[: max(len(self._readers) - _OPEN_FILES + 1, 0)]:
@@ -178,7 +178,7 @@ class BagReader:
         return self._readers[file.path][0]
 
     def close(self) -> None:
-        """Let the files go."""
+        """Close the files."""
         for _, stack in self._readers.values():
             stack.close()
         self._readers.clear()
@@ -193,7 +193,7 @@ class BagReader:
 
 
 def _groups(files: list[BagFile], by_file: bool) -> list[list[BagFile]]:
-    """Put files together whose times overlap; mostly each stands alone."""
+    """Group files with overlapping times; usually each is alone."""
     groups: list[list[BagFile]] = []
     low = high = 0
     for file in files:

@@ -1,4 +1,4 @@
-"""Which topics are meant: by name, by regular expression, by type, all, and all but some."""
+"""Selection of topics by name, regular expression or type."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from daidalos.bags.message import SERVICE_EVENTS, is_service_event
 
 @dataclass(frozen=True)
 class Selection:
-    """What is wanted of the topics and services that there are.
+    """Selection of topics and services.
 
     Attributes
     ----------
@@ -41,25 +41,25 @@ class Selection:
     hidden: bool = False
 
     def check(self) -> None:
-        """Raise ValueError, with the position, when something is no regular expression."""
+        """Raise ValueError, with the position, for invalid regular expressions."""
         for text in (self.regex, self.exclude_regex):
             compiled(text)
 
     @property
     def is_empty(self) -> bool:
-        """Whether nothing is asked for in particular."""
+        """Whether nothing is selected explicitly."""
         asked = (self.topics, self.services, self.types, self.all_topics, self.all_services, self.regex)
         return not any(asked)
 
     @property
     def names(self) -> tuple[str, ...] | None:
-        """The topics that are wanted where they are known beforehand, else None."""
+        """Names of the selected topics if they are known beforehand, else None."""
         if self.all_topics or self.all_services or self.regex or self.types:
             return None
         return (*self.topics, *(f"{name}{SERVICE_EVENTS}" for name in self.services))
 
     def wants(self, name: str, type_name: str) -> bool:
-        """Tell whether a topic is wanted; one that holds the events of a service counts as that service."""
+        """Return whether a topic is selected; a topic of service events counts as its service."""
         if is_service_event(name, type_name):
             return self._wants_service(name.removesuffix(SERVICE_EVENTS))
         if name in self.exclude_topics or type_name in self.exclude_types or self._excluded(name):
@@ -95,7 +95,7 @@ class Selection:
 
 
 def compiled(text: str) -> re.Pattern[str] | None:
-    """Return a regular expression, None where the text is empty.
+    """Return a compiled regular expression, None for an empty text.
 
     Raises
     ------
@@ -109,5 +109,5 @@ def compiled(text: str) -> re.Pattern[str] | None:
 
 
 def absolute(names: Iterable[str] | None) -> tuple[str, ...]:
-    """Return names with a slash before them."""
+    """Return names with a leading slash."""
     return tuple(name if name.startswith("/") else f"/{name}" for name in names or ())

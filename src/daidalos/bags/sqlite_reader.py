@@ -1,4 +1,4 @@
-"""Reading sqlite3 files with rosbag2's tables, of every version since Foxy."""
+"""Reader of sqlite3 files with rosbag2's tables, of every version since Foxy."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _FAULTS = (sqlite3.Error, UnicodeDecodeError)
 
 
 class SqliteReader(StorageReader):
-    """Reads an sqlite3 file.
+    """Reader of an sqlite3 file.
 
     Raises
     ------
@@ -46,7 +46,7 @@ class SqliteReader(StorageReader):
             raise
 
     def _connect(self) -> sqlite3.Connection:
-        """Open the file without changing it; where its folder can not be written, leave a journal aside."""
+        """Open the file without changing it; in read-only folders its journal is ignored."""
         for mode in ("mode=ro", "mode=ro&immutable=1"):
             uri = f"file:{quote(str(self.path.resolve()))}?{mode}"
             try:
@@ -60,7 +60,7 @@ class SqliteReader(StorageReader):
         raise BagError(self.path, "can not be opened as an sqlite3 file")
 
     def close(self) -> None:
-        """Let the file go."""
+        """Close the file."""
         self._database.close()
 
     def _describe(self) -> None:
@@ -118,7 +118,7 @@ class SqliteReader(StorageReader):
     def messages(
         self, topics: Collection[str], start_ns: int, stop_ns: int, *, reverse: bool = False, by_file: bool = False
     ) -> Iterator[BagMessage]:
-        """Give messages; see `StorageReader.messages`."""
+        """Yield messages; see `StorageReader.messages`."""
         names = {number: name for number, name in self._ids.items() if name in topics}
         which = ", ".join(map(str, names))
         direction = " DESC" if reverse else ""
@@ -132,5 +132,5 @@ class SqliteReader(StorageReader):
 
 
 def _line(error: Exception) -> str:
-    """Return what an error says as one line; some of sqlite's quote all that they stumbled over."""
+    """Return an error's message as one line; some of sqlite's messages quote whole statements."""
     return " ".join(str(error).split())[:_LONGEST]

@@ -1,4 +1,4 @@
-"""Writing sqlite3 files with rosbag2's tables (schema version 4).
+"""Writer of sqlite3 files with rosbag2's tables (schema version 4).
 
 The journal is written ahead and folded in at the end: a process that is killed loses at most the messages since the
 last `flush`, and whoever opens the file next, real ROS 2 included, gets the rest.
@@ -34,7 +34,7 @@ _FAULTS = (sqlite3.Error, OverflowError)
 
 
 def pragmas(options: StorageOptions) -> list[str]:
-    """Return the statements that set the database up.
+    """Return the statements that set up the database.
 
     Raises
     ------
@@ -52,7 +52,7 @@ def pragmas(options: StorageOptions) -> list[str]:
 
 
 def checkpoint_journal(path: Path) -> None:
-    """Take what a killed writer left in a file's journal into the file itself.
+    """Merge the journal of a killed writer into the file.
 
     Raises
     ------
@@ -72,7 +72,7 @@ def checkpoint_journal(path: Path) -> None:
 
 
 class SqliteWriter(StorageWriter):
-    """Writes an sqlite3 file.
+    """Writer of an sqlite3 file.
 
     Raises
     ------
@@ -128,7 +128,7 @@ class SqliteWriter(StorageWriter):
             self.flush()
 
     def flush(self) -> None:
-        """Commit: what was written outlives this process."""
+        """Commit; data written before survives the end of this process."""
         if not self._rows:
             return
         rows, self._rows = self._rows, []
@@ -145,7 +145,7 @@ class SqliteWriter(StorageWriter):
 
     @property
     def size(self) -> int:
-        """How large the file is about to be [bytes]."""
+        """Expected size of the file [bytes]."""
         return self._base + self._written + self._pending
 
     def close(self, metadata: str = "") -> None:

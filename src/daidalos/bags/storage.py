@@ -1,4 +1,4 @@
-"""Files that hold messages: the contract of the formats."""
+"""Contract of the storage formats of messages."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ ZSTD_MAGIC = b"\x28\xb5\x2f\xfd"
 
 @dataclass(frozen=True)
 class StorageOptions:
-    """How a file is written.
+    """Options of a file to be written.
 
     Attributes
     ----------
@@ -40,7 +40,7 @@ class StorageOptions:
 
 
 class StorageWriter(ABC):
-    """Writes one file; not safe to use from several threads at once."""
+    """Writer of one file; not thread-safe."""
 
     smallest_split: int
     """The least size [bytes] that files may be limited to."""
@@ -55,20 +55,20 @@ class StorageWriter(ABC):
 
     @abstractmethod
     def flush(self) -> None:
-        """Hand all that was written to the operating system: it outlives the end of this process."""
+        """Write all buffered data to the operating system; it survives the end of this process."""
 
     @property
     @abstractmethod
     def size(self) -> int:
-        """How large the file is about to be [bytes]."""
+        """Expected size of the file [bytes]."""
 
     @abstractmethod
     def close(self, metadata: str = "") -> None:
-        """Complete the file; `metadata` is the text of the bag's description, kept in the file as well."""
+        """Complete the file; `metadata` is the text of the bag's description, stored in the file as well."""
 
 
 class StorageReader(ABC):
-    """Reads one file.
+    """Reader of one file.
 
     Attributes
     ----------
@@ -96,7 +96,7 @@ class StorageReader(ABC):
 
     @property
     def message_count(self) -> int:
-        """How many messages it holds."""
+        """Number of messages in the file."""
         return sum(one.count for one in self.topics.values())
 
     def as_file(self, path: str) -> BagFile:
@@ -107,7 +107,7 @@ class StorageReader(ABC):
     def messages(
         self, topics: Collection[str], start_ns: int, stop_ns: int, *, reverse: bool = False, by_file: bool = False
     ) -> Iterator[BagMessage]:
-        """Give messages in the order of their times of reception.
+        """Yield messages in the order of their times of reception.
 
         Parameters
         ----------
@@ -128,7 +128,7 @@ class StorageReader(ABC):
 
     @abstractmethod
     def close(self) -> None:
-        """Let the file go."""
+        """Close the file."""
 
 
 def settings(config: Path) -> dict[str, object]:

@@ -1,4 +1,4 @@
-"""Writing a bag: a folder of files of one storage, split by size or duration, and their description."""
+"""Writer of bags: files of one storage, split by size or duration, with their description."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from daidalos.distribution import DISTRIBUTION
 
 @dataclass(frozen=True)
 class WriterOptions:
-    """How a bag is written.
+    """Options of a bag writer.
 
     Attributes
     ----------
@@ -46,7 +46,7 @@ class WriterOptions:
 
 
 class BagWriter:
-    """Writes a bag; from one thread at a time.
+    """Writer of a bag; not thread-safe.
 
     Parameters
     ----------
@@ -122,26 +122,26 @@ class BagWriter:
 
     @property
     def topics(self) -> dict[str, Topic]:
-        """The topics that were declared, by name."""
+        """Declared topics by name."""
         return self._topics
 
     @property
     def message_count(self) -> int:
-        """How many messages were written."""
+        """Number of messages written."""
         return sum(self._counts.values())
 
     @property
     def is_file_empty(self) -> bool:
-        """Whether the present file has no messages yet."""
+        """Whether the current file has no messages yet."""
         return self._count == 0
 
     @property
     def size(self) -> int:
-        """How large the present file is about to be [bytes]."""
+        """Expected size of the current file [bytes]."""
         return self._storage.size
 
     def add_topic(self, topic: Topic) -> None:
-        """Declare a topic; one that is there already stays as it is."""
+        """Declare a topic; a topic declared before is left unchanged."""
         if topic.name in self._topics:
             return
         self._topics[topic.name] = topic
@@ -149,7 +149,7 @@ class BagWriter:
         self._storage.add_topic(topic)
 
     def remove_topic(self, name: str) -> None:
-        """Forget a topic: files that are begun from now on do not have it."""
+        """Remove a topic; files started later do not declare it."""
         self._topics.pop(name, None)
 
     def write(self, message: BagMessage) -> None:
@@ -182,11 +182,11 @@ class BagWriter:
         return bool(options.max_duration_ns and time_ns - self._start > options.max_duration_ns)
 
     def flush(self) -> None:
-        """Hand all that was written to the operating system: it outlives the end of this process."""
+        """Write all buffered data to the operating system; it survives the end of this process."""
         self._storage.flush()
 
     def split(self) -> None:
-        """End the present file and begin the next."""
+        """End the current file and start the next."""
         closed = self._end_file()
         if self._pool:
             self._paths.append(self._pool.submit(compress_file, closed))
@@ -213,7 +213,7 @@ class BagWriter:
         )
 
     def close(self) -> BagMetadata:
-        """Complete the bag; returns its description."""
+        """Complete the bag and return its description."""
         if not self._closed:
             self._closed = True
             last = self._end_file()

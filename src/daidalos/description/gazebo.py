@@ -167,7 +167,7 @@ def _colored(visual: Visual, material: Material | None) -> Visual:
 
 
 def _number_name(collision: Collision, link: Link, index: int) -> Collision:
-    """Give a collision the name that Gazebo gives it, for contact messages."""
+    """Return a collision the name that Gazebo gives it, for contact messages."""
     if collision.name:
         return collision
     suffix = f"_{index}" if index else ""

@@ -64,7 +64,7 @@ def to_dot(robot: Robot | Model) -> str:
 
 
 def _place(tree: LinkTree) -> tuple[dict[str, _Node], float]:
-    """Give every link a place; returns them with the width of the drawing."""
+    """Return every link a place; returns them with the width of the drawing."""
     order = [(root, 0) for root in tree.roots]
     for name, depth in order:
         order += [(joint.child, depth + 1) for joint in tree.children.get(name, ())]

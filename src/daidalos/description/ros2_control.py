@@ -327,5 +327,5 @@ def _flag(element: Element, key: str, default: bool) -> bool:
 
 
 def is_endless(joint: Joint | None) -> bool:
-    """Tell whether a joint turns without end, so that its angles wrap around."""
+    """Return whether a joint turns without end, so that its angles wrap around."""
     return joint is not None and joint.type is JointType.CONTINUOUS

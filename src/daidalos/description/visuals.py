@@ -145,7 +145,7 @@ def _shaped(part: Part, mesh: Mesh) -> Part:
 
 
 def _flat(vertices: NDArray[np.float64], faces: NDArray[np.int32]) -> Part:
-    """Give each triangle corners of its own with smooth normals over edges of less than 40 degrees."""
+    """Return each triangle corners of its own with smooth normals over edges of less than 40 degrees."""
     corners = vertices[faces]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     areas = np.linalg.norm(normals, axis=1, keepdims=True)
@@ -180,7 +180,7 @@ def _pairs(place: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int6
 
 
 def _wrapped(part: Part, boxed: bool) -> Part:
-    """Give a shape texture coordinates: each side of a box a whole image, anything round one around its z axis.
+    """Return a shape texture coordinates: each side of a box a whole image, anything round one around its z axis.
 
     What points up or down is seen from above; images stand upright on the sides, seen from outside.
     """

@@ -159,7 +159,7 @@ def _define_m_pi(document: minidom.Document) -> None:
 
 
 def _error(problem: BaseException, xacro: Any, files: list[str]) -> DescriptionError:
-    """Say what went wrong, where, and in which macro."""
+    """Return what went wrong, where, and in which macro."""
     words = " ".join(str(problem).split()) or type(problem).__name__
     cause: BaseException | None = problem
     while cause is not None:

@@ -1,1 +1,1 @@
-"""From .msg, .srv and .action files to Python classes, CDR codecs and type hashes."""
+"""Conversion of .msg, .srv and .action files to Python classes, CDR codecs and type hashes."""

@@ -1,4 +1,4 @@
-"""Generate the Python classes of the built-in definitions; the build hook calls this."""
+"""Generator of the Python classes of the built-in definitions, run by the build hook."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from daidalos.interfaces.library import Library
 
 
 def write_built_in(share: Path, target: Path) -> list[Path]:
-    """Write every interface package under `share` into `target` and remove what is no longer defined.
+    """Write every interface package under `share` to `target` and remove what is no longer defined.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""What an interface file says, as data: fields, constants, messages, services, actions."""
+"""Data model of interface files: fields, constants, messages, services and actions."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ IDL_NAMES = {"bool": "boolean", "byte": "octet", "float32": "float", "float64": 
 
 
 class Kind(Enum):
-    """How many values a field holds."""
+    """Number of values of a field."""
 
     SINGLE = "single"
     ARRAY = "array"
@@ -36,7 +36,7 @@ class Kind(Enum):
 
 @dataclass(frozen=True)
 class FieldType:
-    """The type of a field.
+    """Type of a field.
 
     Attributes
     ----------
@@ -57,11 +57,11 @@ class FieldType:
 
     @property
     def is_primitive(self) -> bool:
-        """Whether the base is built in, not another interface."""
+        """Return whether the base is a primitive type instead of another interface."""
         return self.base in PRIMITIVES
 
     def idl(self) -> str:
-        """Spell the type as rosidl's Python classes do, e.g. ``sequence<double, 4>``."""
+        """Return the type in rosidl's notation, such as ``sequence<double, 4>``."""
         if self.is_primitive:
             name = IDL_NAMES.get(self.base, self.base)
         else:
@@ -84,7 +84,7 @@ Literal = bool | int | float | str | list[bool] | list[int] | list[float] | list
 
 @dataclass(frozen=True)
 class Field:
-    """One line of a message: its type, name, default value and the comment written at it."""
+    """Field of a message: type, name, default value and comment."""
 
     type: FieldType
     name: str
@@ -94,7 +94,7 @@ class Field:
 
 @dataclass(frozen=True)
 class Constant:
-    """A named value of a message."""
+    """Named value of a message."""
 
     type: FieldType
     name: str
@@ -104,7 +104,7 @@ class Constant:
 
 @dataclass(frozen=True)
 class Message:
-    """A message, or one of the messages that a service or an action consists of."""
+    """Message, or a message that is part of a service or an action."""
 
     name: str
     fields: tuple[Field, ...] = ()
@@ -112,7 +112,7 @@ class Message:
     comment: str = ""
 
     def nested(self) -> Iterator[str]:
-        """Yield the full names of the interfaces that the fields use."""
+        """Yield the full names of the interfaces that the fields refer to."""
         for field in self.fields:
             if not field.type.is_primitive:
                 yield field.type.base
@@ -120,7 +120,7 @@ class Message:
 
 @dataclass(frozen=True)
 class Service:
-    """A service: request and response; `event` is what introspection publishes."""
+    """Service: request and response; `event` is the message of service introspection."""
 
     name: str
     request: Message
@@ -128,7 +128,7 @@ class Service:
 
     @property
     def event(self) -> Message:
-        """The event message that service introspection publishes."""
+        """Event message of service introspection."""
         one = Kind.BOUNDED
         return Message(
             f"{self.name}_Event",
@@ -147,7 +147,7 @@ class Service:
 
 @dataclass(frozen=True)
 class Action:
-    """An action: goal, result, feedback, and the services and message built from them."""
+    """Action: goal, result and feedback, with the services and the message built from them."""
 
     name: str
     goal: Message
@@ -156,7 +156,7 @@ class Action:
 
     @property
     def send_goal(self) -> Service:
-        """The service by which a client offers a goal."""
+        """Service by which a client sends a goal."""
         return Service(
             f"{self.name}_SendGoal",
             Message(f"{self.name}_SendGoal_Request", (_GOAL_ID, Field(FieldType(self.goal.name), "goal"))),
@@ -171,7 +171,7 @@ class Action:
 
     @property
     def get_result(self) -> Service:
-        """The service by which a client asks for the result."""
+        """Service by which a client requests the result."""
         return Service(
             f"{self.name}_GetResult",
             Message(f"{self.name}_GetResult_Request", (_GOAL_ID,)),
@@ -183,12 +183,12 @@ class Action:
 
     @property
     def feedback_message(self) -> Message:
-        """The message on the feedback topic."""
+        """Message on the feedback topic."""
         return Message(f"{self.name}_FeedbackMessage", (_GOAL_ID, Field(FieldType(self.feedback.name), "feedback")))
 
     @property
     def messages(self) -> tuple[Message, ...]:
-        """Every message of the action, those of its services included."""
+        """All messages of the action, including those of its services."""
         return (
             self.goal, self.result, self.feedback,
             *self.send_goal.messages, *self.get_result.messages, self.feedback_message,
@@ -201,5 +201,5 @@ Interface = Message | Service | Action
 
 
 def messages_of(interface: Interface) -> tuple[Message, ...]:
-    """Return every message that the interface consists of, itself for a message."""
+    """Return every message of the interface; the interface itself if it is a message."""
     return (interface,) if isinstance(interface, Message) else interface.messages

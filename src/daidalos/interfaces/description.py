@@ -23,7 +23,7 @@ _KIND_OFFSET = {Kind.SINGLE: 0, Kind.ARRAY: 48, Kind.BOUNDED: 96, Kind.UNBOUNDED
 
 @dataclass(frozen=True)
 class FieldDescription:
-    """One field as ``type_description_interfaces/msg/Field`` has it."""
+    """Field as in ``type_description_interfaces/msg/Field``."""
 
     name: str
     type_id: int
@@ -35,7 +35,7 @@ class FieldDescription:
 
 @dataclass(frozen=True)
 class IndividualDescription:
-    """One type as ``type_description_interfaces/msg/IndividualTypeDescription`` has it."""
+    """Type as in ``type_description_interfaces/msg/IndividualTypeDescription``."""
 
     type_name: str
     fields: tuple[FieldDescription, ...]
@@ -43,7 +43,7 @@ class IndividualDescription:
 
 @dataclass(frozen=True)
 class Description:
-    """A type and every type that it refers to, the latter sorted by name."""
+    """Type with every type that it refers to, sorted by name."""
 
     type_description: IndividualDescription
     referenced: tuple[IndividualDescription, ...]
@@ -61,7 +61,7 @@ class Description:
 
 
 def describe(interface: Interface, lookup: Lookup) -> Description:
-    """Describe an interface, with all that it refers to.
+    """Return the description of an interface with all types that it refers to.
 
     Raises
     ------
@@ -93,7 +93,7 @@ def _parts(interface: Interface) -> Iterator[Interface]:
 
 
 def _members(interface: Interface) -> tuple[Field, ...]:
-    """Return the fields of a message, or the parts of a service or action as if they were fields."""
+    """Return the fields of a message, or the parts of a service or action as fields."""
     if isinstance(interface, Message):
         return interface.fields or (Field(FieldType("uint8"), "structure_needs_at_least_one_member"),)
     if isinstance(interface, Service):

@@ -1,4 +1,4 @@
-"""Write the Python package of an interface package: one module a definition, as rosidl lays them out.
+"""Generator of the Python package of an interface package, laid out as rosidl does.
 
 Runs when the project is built, and when `colcon` builds a user's package; needs the standard library only.
 """
@@ -15,7 +15,7 @@ from daidalos.interfaces.message_source import alias, message_source, short_name
 
 
 def write_package(package: str, interfaces: Iterable[Interface], lookup: Lookup, target: Path) -> list[Path]:
-    """Write `target`/`package` with a module for each interface.
+    """Write `target`/`package` with one module per interface.
 
     Parameters
     ----------
@@ -48,13 +48,13 @@ def write_package(package: str, interfaces: Iterable[Interface], lookup: Lookup,
 
 
 def module_name(name: str) -> str:
-    """Return the module of an interface as rosidl names it: ``TFMessage`` -> ``_tf_message``."""
+    """Return the module name that rosidl gives an interface: ``TFMessage`` -> ``_tf_message``."""
     name = re.sub(r"(.)([A-Z][a-z]+)", r"\1_\2", name)
     return "_" + re.sub(r"([a-z0-9])([A-Z])", r"\1_\2", name).lower()
 
 
 def module_source(interface: Interface, lookup: Lookup) -> str:
-    """Return the text of the module that holds the interface's classes."""
+    """Return the source text of the module with the interface's classes."""
     own = {message.name for message in messages_of(interface)}
     lines = [
         f'"""{interface.name}: generated from its definition; changes here are lost."""',
@@ -85,7 +85,7 @@ def _write(path: Path, text: str) -> Path:
 
 
 def _init_source(package: str, kind: str, members: list[Interface]) -> str:
-    """Return an `__init__` that imports each module when its class is first asked for."""
+    """Return an ``__init__`` that imports each module on first access to its class."""
     modules = {}
     for member in members:
         for name in _exports(member):
@@ -121,7 +121,7 @@ def _init_source(package: str, kind: str, members: list[Interface]) -> str:
 
 
 def _exports(interface: Interface) -> Iterator[str]:
-    """Yield the class names that ROS 2 offers in the package's `__init__`, and their parts."""
+    """Yield the class names that ROS 2 exports in the package's ``__init__``, with their parts."""
     yield short_name(interface.name)
     if isinstance(interface, Message):
         return

@@ -1,4 +1,4 @@
-"""Read .idl files as rosidl writes them for messages, services and actions, as .msg, .srv and .action text.
+"""Reader of .idl files that rosidl generates for messages, services and actions.
 
 The subset of OMG IDL 4.2 is that of https://design.ros2.org/articles/idl_interface_definition.html: modules, structs,
 constants, typedefs of arrays and sequences, and the annotations for comments and default values.
@@ -38,7 +38,7 @@ _PLACEHOLDER = "structure_needs_at_least_one_member"
 
 
 class IdlInterface(NamedTuple):
-    """An interface of an .idl file.
+    """Interface of an .idl file.
 
     Attributes
     ----------
@@ -113,14 +113,14 @@ def _tokens(text: str, source: str) -> list[_Token]:
 
 @dataclass
 class _Notes:
-    """What annotations say of what follows."""
+    """Annotations of the declaration that follows."""
 
     comment: list[str] = field(default_factory=list)
     default: str = ""
 
 
 class _Reader:
-    """Reads tokens; `structs` have comments and members by names by module, `constants` are lines by module."""
+    """Token reader; `structs` holds comments and members by name by module, `constants` lines by module."""
 
     def __init__(self, tokens: list[_Token], source: str) -> None:
         self._tokens = tokens
@@ -131,7 +131,7 @@ class _Reader:
         self.constants: dict[tuple[str, ...], list[str]] = {}
 
     def _take(self, *expected: str) -> str:
-        """Return the next token's text, which is one of these where some are named."""
+        """Return the text of the next token, which must be one of the given ones, if any."""
         token = self._tokens[self._place]
         if expected and token.text not in expected and token.kind not in expected:
             wanted = " or ".join(f"'{one}'" for one in expected)
@@ -205,7 +205,7 @@ class _Reader:
         return values
 
     def _constant(self) -> str:
-        """Return a value; texts beside each other are one."""
+        """Return a constant's value; adjacent texts are concatenated."""
         value = self._take("text", "number", "word")
         while value.startswith('"') and self._tokens[self._place].kind == "text":
             value = value[:-1] + self._take("text")[1:]
@@ -257,7 +257,7 @@ def _comment(notes: _Notes) -> list[str]:
 
 
 def _value(text: str) -> str:
-    """Return a value of IDL as .msg text; lists stand in texts, in round brackets."""
+    """Return an IDL value as .msg text; lists in texts are in round brackets."""
     if text in ("TRUE", "FALSE"):
         return text.lower()
     inner = _unquoted(text)

@@ -1,4 +1,4 @@
-"""Finding interface definitions by name in `share` folders."""
+"""Lookup of interface definitions by name in `share` folders."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ BUILT_IN = Path(__file__).resolve().parent.parent / "share"
 
 
 class InterfaceNotFound(LookupError):
-    """No definition has this name."""
+    """There is no definition with this name."""
 
 
 class Library:
-    """The interface definitions under some ``share`` folders, earlier folders first.
+    """Interface definitions below `share` folders; earlier folders take precedence.
 
     Parameters
     ----------

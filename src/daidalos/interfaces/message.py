@@ -1,4 +1,4 @@
-"""What every generated message class is built on: its metaclass, its base and the checks of its setters."""
+"""Base classes of generated messages, with their metaclass and the checks of their setters."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _FLOAT32_MAX = 3.4028234663852886e38
 
 
 class MessageType(type):
-    """Metaclass of message, service and action classes: constants and defaults cannot be changed."""
+    """Metaclass of message, service and action classes; constants and defaults are read-only."""
 
     _frozen: ClassVar[frozenset[str]] = frozenset()
     # rclpy's type checks look for these on the metaclass; ours need no C library behind them.
@@ -36,11 +36,11 @@ class MessageType(type):
 
     @classmethod
     def __import_type_support__(mcs) -> None:
-        """Do nothing: there is no C type support to import."""
+        """Do nothing; there is no C type support to import."""
 
 
 class SlotTypes:
-    """Computes `SLOT_TYPES` (rosidl_parser's description of the fields) when somebody asks."""
+    """Descriptor that computes `SLOT_TYPES` (rosidl_parser's types of the fields) on first access."""
 
     def __get__(self, instance: object, owner: type[Message]) -> tuple[Any, ...]:
         from rosidl_parser.definition import slot_types
@@ -50,7 +50,7 @@ class SlotTypes:
 
 
 class Message(metaclass=MessageType):
-    """Base of all messages: comparison, representation, copying."""
+    """Base of all messages: comparison, representation and copying."""
 
     __slots__ = ()
     SLOT_TYPES = SlotTypes()
@@ -62,7 +62,7 @@ class Message(metaclass=MessageType):
 
     @classmethod
     def get_fields_and_field_types(cls) -> dict[str, str]:
-        """Return the fields in their order, with their types as IDL spells them."""
+        """Return the fields in order, with their types in IDL notation."""
         return dict(cls._fields_and_field_types)
 
     def __repr__(self) -> str:
@@ -105,7 +105,7 @@ def _equal(a: Any, b: Any) -> bool:
 
 
 def reject(message: Message, unknown: Mapping[str, object]) -> None:
-    """Refuse constructor arguments that name no field.
+    """Raise an error for constructor arguments that are not fields.
 
     Raises
     ------
@@ -120,14 +120,14 @@ def reject(message: Message, unknown: Mapping[str, object]) -> None:
 
 
 def check_bool(name: str, value: object) -> bool:
-    """Return `value` when it is a bool."""
+    """Return `value` if it is a bool, else raise an error."""
     if not isinstance(value, bool):
         raise AssertionError(f"The '{name}' field must be of type 'bool', not {_kind(value)}")
     return value
 
 
 def check_int(name: str, value: object, base: str) -> int:
-    """Return `value` when it is an int in the range of the integer type `base`."""
+    """Return `value` if it is an int in the range of the integer type `base`, else raise an error."""
     if not isinstance(value, int):
         raise AssertionError(f"The '{name}' field must be of type 'int', not {_kind(value)}")
     low, high = INTEGER_RANGES[base]
@@ -137,14 +137,14 @@ def check_int(name: str, value: object, base: str) -> int:
 
 
 def check_byte(name: str, value: object) -> bytes:
-    """Return `value` when it is a bytes object of length 1."""
+    """Return `value` if it is a bytes object of length 1, else raise an error."""
     if not isinstance(value, (bytes, bytearray, memoryview)) or len(value) != 1:
         raise AssertionError(f"The '{name}' field must be of type 'bytes' with length 1, not {_kind(value)}")
     return bytes(value)
 
 
 def check_float(name: str, value: object, base: str) -> float:
-    """Return `value` when it is a float that `base` (float32 or float64) can hold."""
+    """Return `value` if it is a float that `base` (float32 or float64) can hold, else raise an error."""
     if not isinstance(value, float):
         hint = f": write {float(value)}" if isinstance(value, int) and not isinstance(value, bool) else ""
         raise AssertionError(f"The '{name}' field must be of type 'float', not {_kind(value)}{hint}")
@@ -154,7 +154,7 @@ def check_float(name: str, value: object, base: str) -> float:
 
 
 def check_string(name: str, value: object, bound: int | None = None) -> str:
-    """Return `value` when it is a str no longer than `bound`."""
+    """Return `value` if it is a str of at most `bound` characters, else raise an error."""
     if not isinstance(value, str):
         raise AssertionError(f"The '{name}' field must be of type 'str', not {_kind(value)}")
     if bound is not None and len(value) > bound:
@@ -163,7 +163,7 @@ def check_string(name: str, value: object, bound: int | None = None) -> str:
 
 
 def check_message(name: str, value: Any, kind: type[Message]) -> Any:
-    """Return `value` when it is a message of class `kind`, or of a class whose ``STANDS_FOR`` names that message.
+    """Return `value` if it is a message of class `kind` or its ``STANDS_FOR`` names that message, else raise an error.
 
     Such an object is kept as it is, for who reads the message in the same program; it cannot be serialised.
     """
@@ -173,7 +173,7 @@ def check_message(name: str, value: Any, kind: type[Message]) -> Any:
 
 
 def check_numbers(name: str, value: object, base: str, upto: int = 0) -> array[Any]:
-    """Return a sequence of numbers as `array.array` of the type `base`, at most `upto` of them (0: any)."""
+    """Return an `array.array` of the type `base` with the numbers of a sequence, at most `upto` of them (0: any)."""
     code = TYPECODES[base]
     if not (isinstance(value, array) and value.typecode == code):
         value = _to_array(name, value, base, code)
@@ -237,14 +237,14 @@ def _array_from(name: str, value: Any, base: str, dtype: numpy.dtype[Any]) -> nu
 
 
 def zeros(base: str, size: int) -> numpy.ndarray[Any, Any]:
-    """Return `size` zeros of the type `base`: the default of a fixed array."""
+    """Return `size` zeros of the type `base`, the default of a fixed array."""
     import numpy
 
     return numpy.zeros(size, _DTYPES[TYPECODES[base]])
 
 
 def check_list(name: str, value: Any, check: Any, kind: str, size: int) -> Any:
-    """Return `value`, made a list if it is none, when every item passes `check(name, item)`.
+    """Return `value` as a list in which every item passes `check(name, item)`.
 
     `kind` ("array", "bounded" or "unbounded") and `size` limit its length. A list is kept as it is, so that
     what the caller appends to it later is in the message, as in ROS 2.
@@ -262,7 +262,7 @@ def check_list(name: str, value: Any, check: Any, kind: str, size: int) -> Any:
 
 
 def check_iterable(name: str, value: object) -> None:
-    """Refuse what is no collection of values: scalars, strings, mappings."""
+    """Raise an error for values that are not collections: scalars, strings, mappings."""
     wrong = isinstance(value, (str, Mapping)) or not isinstance(value, (Sequence, AbstractSet, Iterable))
     if wrong:
         raise AssertionError(f"The '{name}' field must be a set or sequence, not {_kind(value)}")
@@ -281,7 +281,7 @@ class ActionType(MessageType):
 
 
 class Service(metaclass=ServiceType):
-    """Base of all service classes: a namespace that is never instantiated."""
+    """Base of all service classes; never instantiated."""
 
     _TYPE_NAME: ClassVar[str] = ""
     _TYPE_HASH: ClassVar[str] = ""
@@ -294,7 +294,7 @@ class Service(metaclass=ServiceType):
 
 
 class Action(metaclass=ActionType):
-    """Base of all action classes: a namespace that is never instantiated."""
+    """Base of all action classes; never instantiated."""
 
     _TYPE_NAME: ClassVar[str] = ""
     _TYPE_HASH: ClassVar[str] = ""

@@ -1,4 +1,4 @@
-"""The source of a message's class: its fields as properties that check what is assigned."""
+"""Source text of a message class: its fields as properties with checked setters."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _HINTS = {
 
 
 def message_source(message: Message, lookup: Lookup) -> Iterator[str]:
-    """Yield the lines of a message's class; its module imports nested classes of other modules by their `alias`."""
+    """Yield the lines of a message class; its module imports nested classes of other modules by their `alias`."""
     type_hash = describe(message, lookup).type_hash()
     message = replace(message, fields=tuple(_pythonic(field) for field in message.fields))
     short = short_name(message.name)
@@ -68,7 +68,7 @@ def message_source(message: Message, lookup: Lookup) -> Iterator[str]:
 
 
 def _pythonic(field: Field) -> Field:
-    """Return the field under a name that Python's grammar allows: `from` becomes `from_`."""
+    """Return the field with a valid Python name: `from` becomes `from_`."""
     return replace(field, name=f"{field.name}_") if keyword.iskeyword(field.name) else field
 
 
@@ -199,7 +199,7 @@ def _property(field: Field, message: Message) -> Iterator[str]:
 
 
 def _setter(field: Field, message: Message) -> Iterator[str]:
-    """Yield the setter's lines: the common right type costs one comparison, all else goes to a check."""
+    """Yield the lines of a setter; the correct type costs one comparison, everything else calls a check."""
     name, kind = field.name, field.type
     if kind.kind is not Kind.SINGLE:
         yield f"self._{name} = {_check_many(field, message)}"
@@ -260,7 +260,7 @@ def alias(base: str) -> str:
 
 
 def _class_of(base: str, owner: Message) -> str:
-    """Return how a module refers to the class `base`: by its plain name when it lives in the same module."""
+    """Return the expression by which a module refers to the class `base`."""
     package, kind, short = base.split("/")
     same = owner.name.split("/")[:2] == [package, kind] and kind != "msg"
     if same and short.partition("_")[0] == short_name(owner.name).partition("_")[0]:

@@ -1,4 +1,4 @@
-"""Read .msg, .srv and .action text (ROS 2's interface definition language)."""
+"""Parser of .msg, .srv and .action text (ROS 2's interface definition language)."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from daidalos.interfaces.definition import (
 
 
 class InterfaceError(ValueError):
-    """An interface file says something that it may not; the message names file and line."""
+    """Invalid interface file; the message names file and line."""
 
 
 _TYPE = re.compile(r"(?P<base>[A-Za-z][\w/]*)(?:<=(?P<bound>\d+))?(?P<array>\[(?P<upto><=)?(?P<size>\d*)\])?$")
@@ -34,7 +34,7 @@ _ESCAPES = {"n": "\n", "t": "\t", "r": "\r"}
 
 
 def parse_file(path: Path, package: str) -> Interface:
-    """Read an interface file; its suffix tells which kind it is.
+    """Read an interface file; the suffix determines its type.
 
     Raises
     ------
@@ -52,7 +52,7 @@ def parse_file(path: Path, package: str) -> Interface:
 
 
 def parse(text: str, package: str, kind: str, name: str, source: str = "<text>") -> Interface:
-    """Read the text of an interface called ``package/kind/name``.
+    """Parse the text of an interface called ``package/kind/name``.
 
     Raises
     ------
@@ -114,7 +114,7 @@ def _parse_message(name: str, lines: list[str], first: int, source: str, package
 
 
 def _split_comment(line: str) -> tuple[str, str | None]:
-    """Split a line into its code and its comment, minding quoted '#'; quotes within words are none."""
+    """Split a line into code and comment; a '#' within quotes does not start a comment."""
     quote, escaped = "", False
     for i, char in enumerate(line):
         if escaped:

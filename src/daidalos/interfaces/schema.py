@@ -1,4 +1,4 @@
-"""Definitions with all that they refer to, as one text: the ``ros2msg`` schemas of MCAP and Foxglove."""
+"""Definitions with all their dependencies as one text: the ``ros2msg`` schemas of MCAP and Foxglove."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def _text(name: str, library: Library) -> str:
 
 
 def _written_out(name: str, library: Library) -> str:
-    """Return a definition for a message that has no text of its own, such as an action's feedback message."""
+    """Return a definition for a message without a text of its own, such as an action's feedback message."""
     interface = library.get(name)
     fields = interface.fields if isinstance(interface, Message) else ()
     lines = []

@@ -79,7 +79,7 @@ class Forces:
         self._dirty = True
 
     def add(self, push: Push | JointPush) -> None:
-        """Begin to push."""
+        """Start to push."""
         self.pushes = (*self.pushes, push)
 
     def hold(self, key: str, body: int, force: Array, torque: Array) -> None:

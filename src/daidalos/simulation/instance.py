@@ -134,7 +134,7 @@ class Instance:
             component.bind(self)
 
     def has_subscribers(self, topic: str) -> bool:
-        """Tell whether anyone listens to a topic."""
+        """Return whether anyone listens to a topic."""
         return self.physics.has_subscribers(topic)
 
     def link(self, name: str) -> LinkView:
@@ -209,7 +209,7 @@ class Instance:
             data.qpos[address : address + 7] = (*moved.position, w, x, y, z)
 
     def set_velocity(self, linear: Array, angular: Array) -> None:
-        """Give every free link of the model a velocity of its origin and a turn rate, in world axes."""
+        """Return every free link of the model a velocity of its origin and a turn rate, in world axes."""
         data, model = self.physics.data, self.physics.model
         for link, joint in self.build.free.items():
             address = int(model.joint(joint).dofadr[0])

@@ -36,7 +36,7 @@ class PersistentForces(Component):
         self._forces = instance.physics.forces
 
     def start(self) -> None:
-        """Begin to push; a reset ended all pushes."""
+        """Start to push; a reset ended all pushes."""
         for push in self._pushes:
             self._forces.add(push)
 

@@ -90,7 +90,7 @@ class Physics:
         self.data.qvel[asleep[self.model.dof_treeid]] = 1e-9
 
     def changed(self) -> None:
-        """Note that the state changed: what derives from it is out of date."""
+        """Record that the state changed: what derives from it is out of date."""
         self._positions_fresh = self._all_fresh = False
 
     def refresh_positions(self) -> None:

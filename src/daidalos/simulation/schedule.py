@@ -38,7 +38,7 @@ class Schedule:
         heapq.heappush(self._entries, entry)
 
     def remove(self, components: list[Component]) -> None:
-        """Forget components."""
+        """Remove components."""
         gone = {id(component) for component in components}
         self._entries = [entry for entry in self._entries if id(entry.component) not in gone]
         heapq.heapify(self._entries)

@@ -128,7 +128,7 @@ class Stage:
                     yield name, self._switched.get(name, light), instance.link(link.name).pose @ light.pose
 
     def _warn(self, line: str) -> None:
-        """Say what can not be drawn once, however often the scene is made."""
+        """Return what can not be drawn once, however often the scene is made."""
         if line not in self._warned:
             self._warned.add(line)
             self._warn_user(line)

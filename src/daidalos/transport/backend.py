@@ -1,4 +1,4 @@
-"""What a middleware must do for a session: the contract of zenoh, DDS and in-process backends.
+"""Contract between sessions and middlewares, implemented by the zenoh, DDS and in-process backends.
 
 A backend carries bytes between processes and keeps the graph informed of what others declare. Delivery within
 the process, matching by QoS and decoding are the session's, so that they are alike everywhere.
@@ -15,7 +15,7 @@ from daidalos.transport.qos import Qos
 
 
 class SampleInfo(NamedTuple):
-    """What is known of a sample beside its data; stamps are Unix time in nanoseconds."""
+    """Metadata of a sample; stamps are Unix time in nanoseconds."""
 
     source_ns: int
     received_ns: int
@@ -24,14 +24,14 @@ class SampleInfo(NamedTuple):
 
 
 class RequestId(NamedTuple):
-    """Identifies a service request: the client's gid and its count of requests."""
+    """Identity of a service request: the client's gid and its request counter."""
 
     client: bytes
     sequence: int
 
 
 class BackendPublisher(ABC):
-    """Sends a topic's samples to other processes."""
+    """Sender of a topic's samples to other processes."""
 
     @abstractmethod
     def put(self, parts: list[Any], sequence: int, stamp_ns: int) -> None:
@@ -46,7 +46,7 @@ class BackendPublisher(ABC):
         """Call `on_change`, on any thread, when `has_readers` has changed."""
 
     def wait_for_acks(self, timeout_ns: int | None) -> bool:
-        """Wait until everyone has acknowledged what was sent; False when time ran out.
+        """Wait until all reliable subscribers have acknowledged every sample; return False on timeout.
 
         True at once where nobody acknowledges: that a sample was sent is all that there is to know.
         """
@@ -58,7 +58,7 @@ class BackendPublisher(ABC):
 
 
 class BackendSubscription(ABC):
-    """Receives a topic's samples from other processes.
+    """Receiver of a topic's samples from other processes.
 
     Samples are handed on as the backend's own objects, so that the receiving thread does next to nothing; the
     thread that takes them asks for their bytes.
@@ -70,7 +70,7 @@ class BackendSubscription(ABC):
 
     @abstractmethod
     def info(self, sample: Any, received_ns: int) -> SampleInfo:
-        """Return what is known of a sample."""
+        """Return the metadata of a sample."""
 
     @abstractmethod
     def close(self) -> None:
@@ -78,7 +78,7 @@ class BackendSubscription(ABC):
 
 
 class BackendService(ABC):
-    """Receives a service's requests from other processes and answers them."""
+    """Receiver of a service's requests from other processes, which it answers."""
 
     @abstractmethod
     def request(self, item: Any) -> tuple[bytes, RequestId, int]:
@@ -86,7 +86,7 @@ class BackendService(ABC):
 
     @abstractmethod
     def reply(self, request: RequestId, data: bytes) -> None:
-        """Answer a request; a client that is gone is ignored."""
+        """Answer a request; requests of a client that is gone are ignored."""
 
     @abstractmethod
     def close(self) -> None:
@@ -94,23 +94,23 @@ class BackendService(ABC):
 
 
 class BackendClient(ABC):
-    """Sends a service's requests to another process."""
+    """Sender of a service's requests to other processes."""
 
     @abstractmethod
     def send(self, data: bytes, sequence: int, stamp_ns: int) -> None:
-        """Send a request; the answer is handed to the callback given at declaration."""
+        """Send a request; the response goes to the callback given at declaration."""
 
     @abstractmethod
     def response(self, item: Any) -> tuple[bytes, int, int]:
-        """Return an answer's bytes, the sequence number of its request and its source stamp."""
+        """Return a response's bytes, the sequence number of its request and its source stamp."""
 
     @abstractmethod
     def close(self) -> None:
-        """Stop; answers still outstanding are dropped."""
+        """Stop; outstanding responses are dropped."""
 
 
 class Backend(ABC):
-    """One middleware's membership in a domain."""
+    """Membership in a domain through one middleware."""
 
     identifier: str
     """Such as ``rmw_zenoh_cpp``."""
@@ -119,15 +119,15 @@ class Backend(ABC):
 
     @abstractmethod
     def start(self, graph: Graph) -> None:
-        """Join; from now on tell `graph` of what other processes declare and undeclare."""
+        """Join the domain; report the declarations of other processes to `graph` from now on."""
 
     @abstractmethod
     def close(self) -> None:
-        """Leave; everything still declared is undeclared."""
+        """Leave the domain; everything still declared is undeclared."""
 
     @abstractmethod
     def settle(self, timeout_s: float) -> bool:
-        """Wait until every peer known to be there has told of itself; False when time ran out."""
+        """Wait until every known peer has declared its entities; return False on timeout."""
 
     @abstractmethod
     def identify(
@@ -137,11 +137,11 @@ class Backend(ABC):
 
     @abstractmethod
     def new_node(self, name: str, namespace: str, enclave: str) -> NodeInfo:
-        """Return the description of a new node of ours."""
+        """Return the description of a new local node."""
 
     @abstractmethod
     def declare_node(self, node: NodeInfo) -> Callable[[], None]:
-        """Tell others of a node of ours; the result undoes it."""
+        """Declare a local node to others; call the result to undeclare it."""
 
     @abstractmethod
     def declare_publisher(self, key: str, endpoint: EndpointInfo) -> BackendPublisher:

@@ -1,4 +1,4 @@
-"""Calling services: in this process directly, elsewhere through the middleware."""
+"""Service clients: direct calls within the process, others through the middleware."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from daidalos.transport.service_end import ServiceEnd
 
 
 class Client(ServiceEnd[BackendClient, int]):
-    """One client of a node; made by `Session.create_client`. Responses are known by their requests' numbers."""
+    """Client of a node, created by `Session.create_client`; responses carry the sequence numbers of their requests."""
 
     incoming = "response of"
 
@@ -26,7 +26,7 @@ class Client(ServiceEnd[BackendClient, int]):
 
     @property
     def has_local_server(self) -> bool:
-        """Whether this process serves the service."""
+        """Whether the service is served in this process."""
         return self._server is not None
 
     def send(self, request: Any) -> int:
@@ -58,10 +58,10 @@ class Client(ServiceEnd[BackendClient, int]):
     # The session's side.
 
     def set_server(self, server: Service | None) -> None:
-        """Note the service of this process that answers, if there is one."""
+        """Set the service of this process that answers, or None."""
         self._server = server
 
     def detach(self) -> None:
-        """Forget the middleware, the service of this process and the queue."""
+        """Drop the middleware, the local service and the queue."""
         self._server = None
         super().detach()

@@ -1,4 +1,4 @@
-"""What ROS 2's environment variables ask of the transport."""
+"""Transport settings in ROS 2's environment variables."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ MAX_DOMAIN = 232
 
 
 class EnvironmentVariableError(RuntimeError):
-    """An environment variable holds what it may not."""
+    """Invalid value of an environment variable."""
 
 
 class DiscoveryRange(Enum):
-    """How far to look for other nodes."""
+    """Range of the discovery of other nodes."""
 
     SUBNET = "SUBNET"
     LOCALHOST = "LOCALHOST"
@@ -46,7 +46,7 @@ class Environment:
 
 
 def read_environment(variables: Mapping[str, str] | None = None, domain: int | None = None) -> Environment:
-    """Read the variables; `domain` overrides ``ROS_DOMAIN_ID``.
+    """Read the environment variables; `domain` overrides ``ROS_DOMAIN_ID``.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Who is there: the nodes of a domain with their publishers, subscriptions, services and clients."""
+"""Graph of a domain: nodes with their publishers, subscriptions, services and clients."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from daidalos.transport.qos import Qos
 
 
 class EndpointKind(Enum):
-    """What an endpoint does."""
+    """Type of an endpoint."""
 
     PUBLISHER = "publisher"
     SUBSCRIPTION = "subscription"
@@ -22,7 +22,7 @@ class EndpointKind(Enum):
 
 @dataclass(frozen=True, slots=True)
 class NodeInfo:
-    """A node: `key` is unique in the domain, even when two nodes have one name."""
+    """Node; `key` is unique in the domain even if two nodes have the same name."""
 
     key: str
     name: str
@@ -31,13 +31,13 @@ class NodeInfo:
 
     @property
     def full_name(self) -> str:
-        """The name with its namespace, such as ``/lab/talker``."""
+        """Name with its namespace, such as ``/lab/talker``."""
         return f"{self.namespace.rstrip('/')}/{self.name}"
 
 
 @dataclass(frozen=True, slots=True)
 class EndpointInfo:
-    """An endpoint of a node.
+    """Endpoint of a node.
 
     Attributes
     ----------
@@ -63,7 +63,7 @@ Listener = Callable[[bool, NodeInfo | EndpointInfo], None]
 
 
 class Graph:
-    """Nodes and endpoints of a domain, kept up to date by the session; safe to use from any thread."""
+    """Nodes and endpoints of a domain, updated by the session; thread-safe."""
 
     def __init__(self) -> None:
         self._changed = threading.Condition()
@@ -76,7 +76,7 @@ class Graph:
         self._version = 0
 
     def add_node(self, node: NodeInfo) -> None:
-        """Note a node."""
+        """Add a node."""
         with self._changed:
             if node.key in self._nodes:
                 return
@@ -84,14 +84,14 @@ class Graph:
         self._tell(True, node)
 
     def remove_node(self, key: str) -> None:
-        """Forget a node; its endpoints are removed one by one as their own notices arrive."""
+        """Remove a node; its endpoints are removed one by one as their own notifications arrive."""
         with self._changed:
             node = self._nodes.pop(key, None)
         if node:
             self._tell(False, node)
 
     def add_endpoint(self, key: str, endpoint: EndpointInfo) -> None:
-        """Note an endpoint under a key that is unique in the domain."""
+        """Add an endpoint under a key that is unique in the domain."""
         with self._changed:
             if key in self._endpoints:
                 return
@@ -102,7 +102,7 @@ class Graph:
         self._tell(True, endpoint)
 
     def remove_endpoint(self, key: str) -> None:
-        """Forget an endpoint."""
+        """Remove an endpoint."""
         with self._changed:
             endpoint = self._endpoints.pop(key, None)
             if endpoint is None:
@@ -116,7 +116,7 @@ class Graph:
         self._tell(False, endpoint)
 
     def listen(self, listener: Listener) -> Callable[[], None]:
-        """Call `listener` at every change, on the thread that notes it; returns what ends that."""
+        """Call `listener` at every change, on the thread that reports it; call the result to stop."""
         with self._changed:
             self._listeners = (*self._listeners, listener)
 
@@ -158,17 +158,17 @@ class Graph:
             self._changed.notify_all()
 
     def nodes(self) -> list[NodeInfo]:
-        """Return every node, ordered by full name."""
+        """Return all nodes, sorted by full name."""
         with self._changed:
             found = list(self._nodes.values())
         return sorted(found, key=lambda node: (node.full_name, node.key))
 
     def find_nodes(self, name: str, namespace: str) -> list[NodeInfo]:
-        """Return the nodes of that name."""
+        """Return the nodes with that name."""
         return [node for node in self.nodes() if node.name == name and node.namespace == namespace]
 
     def endpoints(self, *kinds: EndpointKind, name: str | None = None) -> list[EndpointInfo]:
-        """Return the endpoints of the given kinds (all if none is given), perhaps only those of one name."""
+        """Return the endpoints of the given kinds (all if none is given), optionally only those of one name."""
         with self._changed:
             members = self._endpoints if name is None else self._by_name.get(name, {})
             found = list(members.values())
@@ -181,12 +181,12 @@ class Graph:
         return [endpoint for endpoint in found if not kinds or endpoint.kind in kinds]
 
     def find_gid(self, gid: bytes) -> EndpointInfo | None:
-        """Return the endpoint with that gid, if it is known."""
+        """Return the endpoint with that gid, None if unknown."""
         return self._by_gid.get(gid)
 
 
 def names_and_types(endpoints: Iterable[EndpointInfo]) -> list[tuple[str, list[str]]]:
-    """Group endpoints by name: [(name, sorted type names)], sorted."""
+    """Return endpoints grouped by name: [(name, sorted type names)], sorted."""
     found: dict[str, set[str]] = {}
     for endpoint in endpoints:
         found.setdefault(endpoint.name, set()).add(endpoint.type_name)

@@ -1,4 +1,4 @@
-"""The backend without a wire: everyone in the graph lives in this process."""
+"""In-process backend, for graphs within a single process."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from daidalos.transport.qos import Qos
 
 
 class _NullEndpoint(BackendPublisher, BackendSubscription, BackendService, BackendClient):
-    """Every kind of wire at once: nothing goes out and nothing comes in."""
+    """Null endpoint of every type: it neither sends nor receives."""
 
     def put(self, parts: list[Any], sequence: int, stamp_ns: int) -> None:
         """Send nothing."""
@@ -31,7 +31,7 @@ class _NullEndpoint(BackendPublisher, BackendSubscription, BackendService, Backe
         return b""
 
     def info(self, sample: Any, received_ns: int) -> SampleInfo:
-        """Return what is known of nothing."""
+        """Return empty metadata."""
         return SampleInfo(0, received_ns, 0, bytes(16))
 
     def request(self, item: Any) -> tuple[bytes, RequestId, int]:
@@ -39,10 +39,10 @@ class _NullEndpoint(BackendPublisher, BackendSubscription, BackendService, Backe
         return b"", RequestId(bytes(16), 0), 0
 
     def reply(self, request: RequestId, data: bytes) -> None:
-        """Answer nobody."""
+        """Do nothing."""
 
     def send(self, data: bytes, sequence: int, stamp_ns: int) -> None:
-        """Ask nobody."""
+        """Do nothing."""
 
     def response(self, item: Any) -> tuple[bytes, int, int]:
         """Return nothing."""
@@ -53,7 +53,7 @@ class _NullEndpoint(BackendPublisher, BackendSubscription, BackendService, Backe
 
 
 class InProcessBackend(Backend):
-    """Nodes of one process, cut off from all others: for tests and for lock-step runs."""
+    """Nodes of one process without connections to others, for tests and lock-step runs."""
 
     identifier = "rmw_daidalos_inprocess"
     wide = 4
@@ -63,7 +63,7 @@ class InProcessBackend(Backend):
         self._number = itertools.count().__next__
 
     def start(self, graph: Graph) -> None:
-        """Do nothing: nobody else is there."""
+        """Do nothing; there are no other processes."""
 
     def close(self) -> None:
         """Do nothing."""
@@ -75,32 +75,32 @@ class InProcessBackend(Backend):
     def identify(
         self, kind: EndpointKind, node: NodeInfo, name: str, type_name: str, type_hash: str, qos: Qos
     ) -> tuple[str, bytes]:
-        """Give the endpoint the next number."""
+        """Assign the next number to an endpoint."""
         number = self._number()
         return f"{self._session}/{number}", number.to_bytes(8, "little") + bytes.fromhex(self._session)
 
     def new_node(self, name: str, namespace: str, enclave: str) -> NodeInfo:
-        """Give the node the next number."""
+        """Assign the next number to a node."""
         return NodeInfo(f"{self._session}/{self._number()}", name, namespace, enclave)
 
     def declare_node(self, node: NodeInfo) -> Callable[[], None]:
-        """Tell nobody."""
+        """Do nothing."""
         return lambda: None
 
     def declare_publisher(self, key: str, endpoint: EndpointInfo) -> BackendPublisher:
-        """Return a wire to nowhere."""
+        """Return a null endpoint."""
         return _NullEndpoint()
 
     def declare_subscription(
         self, key: str, endpoint: EndpointInfo, on_sample: Callable[[Any], None]
     ) -> BackendSubscription:
-        """Return a wire from nowhere."""
+        """Return a null endpoint."""
         return _NullEndpoint()
 
     def declare_service(self, key: str, endpoint: EndpointInfo, on_request: Callable[[Any], None]) -> BackendService:
-        """Return a wire from nowhere."""
+        """Return a null endpoint."""
         return _NullEndpoint()
 
     def declare_client(self, key: str, endpoint: EndpointInfo, on_response: Callable[[Any], None]) -> BackendClient:
-        """Return a wire to nowhere."""
+        """Return a null endpoint."""
         return _NullEndpoint()

@@ -1,4 +1,4 @@
-"""Memory of large messages: what one leaves is kept for the next."""
+"""Reuse of the memory of large messages."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _MAX_KEPT = 32 * 2**20
 
 
 def keep_memory() -> None:
-    """Have the C library keep up to 64 MB that were freed.
+    """Configure the C library to keep up to 64 MB of freed memory.
 
     It gives blocks of the size of an image back to the system and asks for them again with every message, and the
     system clears every page of them: more work than all the rest of sending an image. Where the user tells the

@@ -1,4 +1,4 @@
-"""Publishing: to subscriptions of this process as snapshots, to others as bytes, and only to who listens."""
+"""Publishers: snapshots to subscriptions of the same process, bytes to others that are subscribed."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class Publisher:
-    """One publisher of a node; made by `Session.create_publisher`.
+    """Publisher of a node, created by `Session.create_publisher`.
 
     Attributes
     ----------
@@ -41,7 +41,7 @@ class Publisher:
         self._observers: tuple[Callable[[], None], ...] = ()
 
     def publish(self, message: Any) -> None:
-        """Send a message, or its CDR bytes, to everyone who listens.
+        """Publish a message, or its CDR bytes, to all subscriptions.
 
         Raises
         ------
@@ -79,16 +79,16 @@ class Publisher:
             self._wire.put([data], sequence, stamp)
 
     def observe(self, observer: Callable[[], None]) -> None:
-        """Call `observer` with every message, and with every `note`."""
+        """Call `observer` at every message and every `note`."""
         self._observers = (*self._observers, observer)
 
     def note(self) -> None:
-        """Note that the publisher shows that it is alive."""
+        """Assert the publisher's liveliness."""
         for observer in self._observers:
             observer()
 
     def wait_for_acks(self, timeout_ns: int | None) -> bool:
-        """Wait until every reliable subscription has acknowledged all messages; False when time ran out.
+        """Wait until every reliable subscription has acknowledged all messages; return False on timeout.
 
         Parameters
         ----------
@@ -105,16 +105,16 @@ class Publisher:
 
     @property
     def has_subscribers(self) -> bool:
-        """Whether a message would reach, or be kept for, anybody."""
+        """Whether a message would be delivered to, or kept for, any subscription."""
         return bool(self._targets) or self._has_remote_subscribers or self._latched
 
     def replay(self, subscription: Subscription) -> None:
-        """Give a subscription of this process the samples that were kept for late comers."""
+        """Deliver the kept samples to a new subscription of this process."""
         for message, *rest in list(self._history):
             subscription.accept_local((self._codec.snapshot(message), *rest))
 
     def close(self) -> None:
-        """Leave the graph; publishing afterwards reaches nobody."""
+        """Leave the graph; later messages are discarded."""
         undo, self._undo = self._undo, None
         if undo:
             undo()
@@ -122,21 +122,21 @@ class Publisher:
     # The session's side.
 
     def attach(self, wire: BackendPublisher, undo: Callable[[], None]) -> None:
-        """Connect to the middleware; `undo` ends that."""
+        """Connect to the middleware; `undo` disconnects."""
         self._wire, self._undo = wire, undo
         if self._latched:
             self._has_remote_subscribers = True  # the middleware keeps the samples for who comes later
 
     def set_remote_subscribers(self, present: bool) -> None:
-        """Note whether other processes have matching subscriptions."""
+        """Record whether other processes have matching subscriptions."""
         self._has_remote_subscribers = present or self._latched
 
     def set_targets(self, targets: tuple[Subscription, ...]) -> None:
-        """Note the subscriptions of this process that get every sample."""
+        """Set the subscriptions of this process that receive every sample."""
         self._targets = targets
 
     def detach(self) -> None:
-        """Forget the middleware and all listeners."""
+        """Drop the middleware and all subscriptions."""
         wire, self._wire, self._has_remote_subscribers, self._targets = self._wire, None, False, ()
         if wire:
             wire.close()

@@ -1,4 +1,4 @@
-"""Quality of service: policies, and which publisher satisfies which subscription."""
+"""Quality of service: policies, and their compatibility between publishers and subscriptions."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ DEFAULT_DEPTH = 42
 
 
 class Reliability(IntEnum):
-    """Whether samples may be lost; the values are rmw's."""
+    """Reliability policy, with the values of rmw."""
 
     SYSTEM_DEFAULT = 0
     RELIABLE = 1
@@ -22,7 +22,7 @@ class Reliability(IntEnum):
 
 
 class Durability(IntEnum):
-    """Whether late subscriptions get earlier samples; the values are rmw's."""
+    """Durability policy, with the values of rmw."""
 
     SYSTEM_DEFAULT = 0
     TRANSIENT_LOCAL = 1
@@ -32,7 +32,7 @@ class Durability(IntEnum):
 
 
 class History(IntEnum):
-    """How many samples are kept; the values are rmw's."""
+    """History policy, with the values of rmw."""
 
     SYSTEM_DEFAULT = 0
     KEEP_LAST = 1
@@ -41,7 +41,7 @@ class History(IntEnum):
 
 
 class Liveliness(IntEnum):
-    """How a publisher shows that it is alive; the values are rmw's."""
+    """Liveliness policy, with the values of rmw."""
 
     SYSTEM_DEFAULT = 0
     AUTOMATIC = 1
@@ -67,7 +67,7 @@ class Policy(IntEnum):
 
 @dataclass(frozen=True, slots=True)
 class Qos:
-    """A resolved profile: no "system default" is left. Durations are in nanoseconds."""
+    """Resolved profile without "system default" values; durations are in nanoseconds."""
 
     reliability: Reliability = Reliability.RELIABLE
     durability: Durability = Durability.VOLATILE
@@ -80,17 +80,17 @@ class Qos:
 
     @property
     def reliable(self) -> bool:
-        """Whether samples must not be lost."""
+        """Whether no samples may be lost."""
         return self.reliability is Reliability.RELIABLE
 
     @property
     def transient_local(self) -> bool:
-        """Whether late subscriptions get earlier samples."""
+        """Whether late subscriptions receive earlier samples."""
         return self.durability is Durability.TRANSIENT_LOCAL
 
     @property
     def limit(self) -> int | None:
-        """How many samples a queue holds, or None for any number."""
+        """Maximum number of samples in a queue, None for unlimited."""
         return None if self.history is History.KEEP_ALL else max(self.depth, 1)
 
 

@@ -1,4 +1,4 @@
-"""The sessions that are alive on this machine, as files in the user's runtime folder.
+"""Registry of the live sessions on this machine, as files in the user's runtime folder.
 
 A session holds a lock on its file for as long as its process lives, so the entries of processes that died, in
 whatever way, are known from those that live. A session opens under the registry's lock: of two that start at
@@ -22,14 +22,14 @@ _SOCKET_NAME_LENGTH = 16
 
 @dataclass(frozen=True)
 class Peer:
-    """A live session: its zenoh id and where it listens."""
+    """Live session: its zenoh id and its listening address."""
 
     session: str
     endpoints: tuple[str, ...]
 
 
 def runtime_folder() -> Path:
-    """Return the folder for files that live as long as processes do, made if it is missing; only we may read it."""
+    """Return the folder for files of running processes, created if missing and accessible only to the user."""
     base = os.environ.get("XDG_RUNTIME_DIR")
     if base and os.access(base, os.W_OK):
         folder = Path(base) / "daidalos"
@@ -41,7 +41,7 @@ def runtime_folder() -> Path:
 
 
 class Registry:
-    """The live sessions of one domain.
+    """Live sessions of one domain.
 
     Parameters
     ----------
@@ -61,13 +61,13 @@ class Registry:
 
     @contextmanager
     def locked(self) -> Iterator[None]:
-        """Hold the registry: nobody else reads or registers meanwhile."""
+        """Lock the registry against other readers and writers while the context lasts."""
         with (self.folder / "registry.lock").open("ab") as file:
             _lock(file, wait=True)
             yield
 
     def peers(self) -> list[Peer]:
-        """Return the live sessions, ours excepted, and remove what dead ones left; call while `locked`."""
+        """Return the other live sessions and remove files of dead ones; call while `locked`."""
         found = []
         for lock in sorted(self.folder.glob("*.alive")):
             data = lock.with_suffix(".json")
@@ -85,24 +85,24 @@ class Registry:
         return found
 
     def socket_of(self, session: str) -> Path:
-        """Return the path of a session's socket, short because sockets' paths may not be long."""
+        """Return the path of a session's socket, short because socket paths are limited."""
         return self.folder / f"{session[:_SOCKET_NAME_LENGTH]}.sock"
 
     def remove_socket(self, session: str) -> None:
-        """Remove a session's socket, and the lock that zenoh puts beside it."""
+        """Remove a session's socket with the lock that zenoh puts beside it."""
         path = self.socket_of(session)
         for leftover in (path, path.with_suffix(".sock.lock")):
             leftover.unlink(missing_ok=True)
 
     def register(self, peer: Peer) -> None:
-        """Enter our session; the entry lives as long as this process or until `unregister`."""
+        """Register this session until this process ends or `unregister` is called."""
         self._entry = (self.folder / f"{peer.session}.alive").open("ab")
         _lock(self._entry, wait=False)
         self._data = self.folder / f"{peer.session}.json"
         self._data.write_text(json.dumps(peer.endpoints), encoding="utf-8")
 
     def unregister(self) -> None:
-        """Remove our entry."""
+        """Remove the entry of this session."""
         entry, data, self._entry, self._data = self._entry, self._data, None, None
         if entry is None or data is None:
             return
@@ -114,7 +114,7 @@ class Registry:
 
 
 def _is_free(path: Path) -> bool:
-    """Tell whether nobody holds the lock on a file."""
+    """Return whether no process holds the lock on a file."""
     with path.open("ab") as file:
         try:
             _lock(file, wait=False)
@@ -124,7 +124,7 @@ def _is_free(path: Path) -> bool:
 
 
 def _lock(file: IO[bytes], *, wait: bool) -> None:
-    """Lock a file until it is closed; without `wait`, OSError when somebody else holds it."""
+    """Lock a file until it is closed; without `wait`, raise OSError if another process holds the lock."""
     if sys.platform == "win32":
         import msvcrt
 

@@ -1,4 +1,4 @@
-"""Serving requests: from clients of this process as objects, from others as bytes."""
+"""Service servers: requests of this process as objects, others as bytes."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Reply = Callable[[Any], None]
 
 
 class Service(ServiceEnd[BackendService, RequestId]):
-    """One service of a node; made by `Session.create_service`."""
+    """Service of a node, created by `Session.create_service`."""
 
     incoming = "request to"
 
@@ -37,7 +37,7 @@ class Service(ServiceEnd[BackendService, RequestId]):
             self._wire.reply(identity, self._response.encode(response))
 
     def accept_local(self, request: Any, identity: RequestId, answer: Reply) -> None:
-        """Queue a request of this process; `answer` takes the response."""
+        """Queue a request of this process; `answer` receives the response."""
         self._local[identity] = answer
         self._accept_local(self._request.snapshot(request), identity)
 
@@ -48,6 +48,6 @@ class Service(ServiceEnd[BackendService, RequestId]):
     # The session's side.
 
     def detach(self) -> None:
-        """Forget the middleware, the queue and whom of this process to answer."""
+        """Drop the middleware, the queue and the local requests."""
         super().detach()
         self._local.clear()

@@ -1,4 +1,4 @@
-"""What clients and services have in common: a queue that this process and the middleware fill."""
+"""Common base of clients and services: a queue filled by this process and the middleware."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ Identity = TypeVar("Identity")
 
 
 class ServiceEnd(Generic[Wire, Identity]):
-    """One end of a service: what comes in is queued until it is taken.
+    """Client or service whose incoming messages are queued until taken.
 
     Attributes
     ----------
@@ -45,7 +45,7 @@ class ServiceEnd(Generic[Wire, Identity]):
         return len(self._queue)
 
     def take(self) -> tuple[Any, Identity, int, int] | None:
-        """Return the oldest (message, identity, source stamp, reception stamp), or None when there is none.
+        """Return the oldest (message, identity, source stamp, reception stamp), None if the queue is empty.
 
         What cannot be decoded is logged and passed over.
         """
@@ -66,16 +66,16 @@ class ServiceEnd(Generic[Wire, Identity]):
                 return message, identity, stamp, received
 
     def _open(self, wire: Wire, item: Any) -> tuple[Any, Identity, int]:
-        """Return the message, its identity and its source stamp of what `accept` queued."""
+        """Return the message, its identity and its source stamp of a queued entry."""
         raise NotImplementedError
 
     def accept(self, item: Any) -> None:
-        """Queue what came from another process."""
+        """Queue a message of another process."""
         self._queue.append((None, item, time.time_ns()))
         self.on_ready()
 
     def _accept_local(self, message: Any, identity: Identity) -> None:
-        """Queue what came from this process."""
+        """Queue a message of this process."""
         self._queue.append((message, identity, time.time_ns()))
         self.on_ready()
 
@@ -88,11 +88,11 @@ class ServiceEnd(Generic[Wire, Identity]):
     # The session's side.
 
     def attach(self, wire: Wire, undo: Callable[[], None]) -> None:
-        """Connect to the middleware; `undo` ends that."""
+        """Connect to the middleware; `undo` disconnects."""
         self._wire, self._undo = wire, undo
 
     def detach(self) -> None:
-        """Forget the middleware and the queue."""
+        """Drop the middleware and the queue."""
         wire, self._wire = self._wire, None
         self._queue.clear()
         if wire:

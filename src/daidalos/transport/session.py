@@ -1,4 +1,4 @@
-"""A process's membership in a ROS graph: makes publishers, subscriptions, services and clients and matches them."""
+"""Session of a process in a ROS graph, which creates publishers, subscriptions, services and clients."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _CLOSING_S = 2.0
 
 
 def _nothing() -> None:
-    """Stand in for a callback that nobody gave."""
+    """Do nothing; the default callback."""
 
 
 class Session:
@@ -57,7 +57,7 @@ class Session:
         backend.start(self.graph)
 
     def close(self) -> None:
-        """Leave the graph with everything that was made here; further calls do nothing."""
+        """Leave the graph with all nodes and endpoints; further calls do nothing."""
         with self._lock:
             closed, self._closed = self._closed, True
         if closed:
@@ -72,7 +72,7 @@ class Session:
         self.backend.close()
 
     def abandon(self, close: Callable[[], None]) -> None:
-        """Have something closed that nobody refers to any more; `close` must not refer to it.
+        """Close something unreferenced in a thread; `close` must not refer to it.
 
         The garbage collector finds such things on any thread, with any lock held: they are closed on another.
         """
@@ -95,12 +95,12 @@ class Session:
             self._closing.remove(done)
 
     def _wait_for_abandoned(self) -> None:
-        """Wait for what is being closed: a thread in the middleware's hands must not outlive the interpreter."""
+        """Wait for pending closes; a thread inside the middleware must not outlive the interpreter."""
         for done in tuple(self._closing):
             done.acquire(timeout=_CLOSING_S)
 
     def create_node(self, name: str, namespace: str, enclave: str = "/") -> tuple[NodeInfo, Callable[[], None]]:
-        """Join as a node; returns its description and what removes it."""
+        """Create a node; return its description and a function that removes it."""
         node = self.backend.new_node(name, namespace, enclave)
         undeclare = self.backend.declare_node(node)
         self.graph.add_node(node)
@@ -114,7 +114,7 @@ class Session:
         return node, remove
 
     def create_publisher(self, node: NodeInfo, topic: str, message_type: Any, qos: Qos) -> Publisher:
-        """Publish messages of a class on a topic."""
+        """Create a publisher of messages of a class on a topic."""
         key, endpoint = self._endpoint(EndpointKind.PUBLISHER, node, topic, message_type, qos)
         publisher = Publisher(endpoint, codec_of(message_type, self.backend.wide))
         wire = self.backend.declare_publisher(key, endpoint)
@@ -129,7 +129,7 @@ class Session:
     def create_subscription(
         self, node: NodeInfo, topic: str, message_type: Any, qos: Qos, on_ready: Callable[[], None] = _nothing
     ) -> Subscription:
-        """Receive messages of a class from a topic; `on_ready` is called when one was queued."""
+        """Create a subscription to messages of a class on a topic; `on_ready` is called when one was queued."""
         key, endpoint = self._endpoint(EndpointKind.SUBSCRIPTION, node, topic, message_type, qos)
         subscription = Subscription(endpoint, codec_of(message_type, self.backend.wide), on_ready)
         self._refuse_incompatible(subscription)
@@ -148,7 +148,7 @@ class Session:
     def create_service(
         self, node: NodeInfo, name: str, service_type: Any, qos: Qos, on_ready: Callable[[], None] = _nothing
     ) -> Service:
-        """Serve a service; `on_ready` is called when a request was queued."""
+        """Create a service; `on_ready` is called when a request was queued."""
         key, endpoint = self._endpoint(EndpointKind.SERVICE, node, name, service_type, qos)
         wide = self.backend.wide
         request, response = codec_of(service_type.Request, wide), codec_of(service_type.Response, wide)
@@ -164,7 +164,7 @@ class Session:
     def create_client(
         self, node: NodeInfo, name: str, service_type: Any, qos: Qos, on_ready: Callable[[], None] = _nothing
     ) -> Client:
-        """Call a service; `on_ready` is called when a response was queued."""
+        """Create a client; `on_ready` is called when a response was queued."""
         key, endpoint = self._endpoint(EndpointKind.CLIENT, node, name, service_type, qos)
         wide = self.backend.wide
         request, response = codec_of(service_type.Request, wide), codec_of(service_type.Response, wide)
@@ -178,7 +178,7 @@ class Session:
         return client
 
     def server_is_ready(self, client: Client) -> bool:
-        """Tell whether somebody serves what the client calls."""
+        """Return whether a server of the client's service is available."""
         if client.has_local_server:
             return True
         mine = client.endpoint
@@ -193,7 +193,7 @@ class Session:
         return [other for other in others if _compatible(other, endpoint)]
 
     def watch(self, name: str, watcher: Watcher) -> Callable[[], None]:
-        """Call ``watcher(added, endpoint)`` when an endpoint of a topic or service comes or goes.
+        """Call ``watcher(added, endpoint)`` when an endpoint of a topic or service is added or removed.
 
         It is told of those that are there already, too. The result ends it.
         """
@@ -238,7 +238,7 @@ class Session:
         self._own.discard(member.endpoint.gid)
 
     def _match_topic(self, topic: str) -> None:
-        """Tell every publisher of ours which subscriptions of ours it serves, and whether others listen."""
+        """Match the publishers and subscriptions of a topic in this process, and update the remote subscribers."""
         subscriptions = self._subscriptions.get(topic, ())
         for publisher in self._publishers.get(topic, ()):
             self._note_listeners(publisher)
@@ -247,7 +247,7 @@ class Session:
             )
 
     def _match_service(self, name: str) -> None:
-        """Tell every client of ours which service of ours answers it."""
+        """Match the clients and the service in this process."""
         services = self._services.get(name, ())
         for client in self._clients.get(name, ()):
             matching = (one for one in services if _same_type(one.endpoint, client.endpoint))
@@ -268,7 +268,7 @@ class Session:
             watcher(added, what)
 
     def _note_listeners(self, publisher: Publisher) -> None:
-        """Tell a publisher whether anyone listens in another process; who listens may be laxer about QoS than we."""
+        """Update whether a publisher has remote subscribers, whose QoS may be laxer."""
         mine = publisher.endpoint
         subscriptions = self.graph.endpoints(EndpointKind.SUBSCRIPTION, name=mine.name)
         publisher.set_remote_subscribers(
@@ -277,14 +277,14 @@ class Session:
         )
 
     def _refuse_incompatible(self, subscription: Subscription) -> None:
-        """Keep out what publishers of other processes send against our QoS; the wire may not check it."""
+        """Reject samples of remote publishers with incompatible QoS; the middleware may not check it."""
         mine = subscription.endpoint
         publishers = self.graph.endpoints(EndpointKind.PUBLISHER, name=mine.name)
         subscription.refuse(frozenset(one.gid for one in publishers if incompatibilities(one.qos, mine.qos)))
 
 
 def _same_type(one: EndpointInfo, other: EndpointInfo) -> bool:
-    """Tell whether two endpoints mean the same type; a peer that states no hash is believed."""
+    """Return whether two endpoints have the same type; a missing hash matches any."""
     hashes = {one.type_hash, other.type_hash} - {""}
     return one.type_name == other.type_name and len(hashes) <= 1
 

@@ -1,4 +1,4 @@
-"""Sessions shared by everything in this process that is in the same domain of the same middleware."""
+"""Sessions shared within a process, one for each domain and middleware."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ MIDDLEWARES = ("rmw_zenoh_cpp", "rmw_cyclonedds_cpp", "rmw_daidalos_inprocess")
 
 
 def acquire(environment: Environment) -> Session:
-    """Return the process's session for this environment, opened if need be; `release` it once for each call.
+    """Return the process's session for this environment, opened if needed; `release` it once for each call.
 
     Raises
     ------
@@ -33,7 +33,7 @@ def acquire(environment: Environment) -> Session:
 
 
 def release(environment: Environment) -> None:
-    """Give a session back; the last one to do so closes it."""
+    """Release a session; the last release closes it."""
     key = (os.getpid(), environment)
     with _lock:
         session, users = _sessions.pop(key)
@@ -44,7 +44,7 @@ def release(environment: Environment) -> None:
 
 
 def make_backend(environment: Environment) -> Backend:
-    """Return a backend of the middleware that an environment names, for a session of one's own.
+    """Return a new backend of the middleware that an environment names.
 
     Raises
     ------
@@ -71,7 +71,7 @@ def make_backend(environment: Environment) -> Backend:
 
 @atexit.register
 def _close_all() -> None:
-    """Leave the graph in good order when the process ends without having done so."""
+    """Leave the graph when the process ends without having done so."""
     if threading.current_thread() is threading.main_thread():
         signal.signal(signal.SIGINT, signal.SIG_IGN)  # a second Ctrl-C must not leave it half done
     with _lock:

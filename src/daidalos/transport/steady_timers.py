@@ -1,4 +1,4 @@
-"""Timers: functions called at a time of the steady clock, by one thread that lives as long as any is set.
+"""Timers on the steady clock, run by one thread that lives as long as any is pending.
 
 For what must be noticed though nothing happens: a deadline missed, a publisher that shows no sign of life.
 """

@@ -1,4 +1,4 @@
-"""Subscribing: a queue that the receiving threads fill and the thread that runs callbacks empties."""
+"""Subscriptions: a queue that receiving threads fill and the executor empties."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _SLOW_NS = 10 * _FAST_NS
 
 
 class Subscription:
-    """One subscription of a node; made by `Session.create_subscription`.
+    """Subscription of a node, created by `Session.create_subscription`.
 
     The queue holds samples as they came: ``(message, stamp, sequence, gid)`` from this process, where the
     message is this subscription's own copy, or ``(None, sample, received_ns)`` from another, still encoded.
@@ -59,7 +59,7 @@ class Subscription:
         return len(self.queue)
 
     def take(self) -> tuple[Any, tuple[Any, ...]] | None:
-        """Return the oldest message, with the queue's entry that `info` understands; None when there is none.
+        """Return the oldest message with its queue entry for `info`; None if the queue is empty.
 
         A sample that cannot be decoded is logged and passed over.
         """
@@ -80,7 +80,7 @@ class Subscription:
                 _LOGGER.error("dropped a message on '%s': %s", self.endpoint.name, error)
 
     def take_raw(self) -> tuple[bytes, tuple[Any, ...]] | None:
-        """Return the oldest message as CDR bytes, with its entry; None when there is none."""
+        """Return the oldest message as CDR bytes with its queue entry; None if the queue is empty."""
         try:
             item = self.queue.popleft()
         except IndexError:
@@ -91,7 +91,7 @@ class Subscription:
         return (self._wire.data(item[1]), item) if self._wire else None
 
     def info(self, item: tuple[Any, ...]) -> SampleInfo:
-        """Return what is known of a taken sample beside its data."""
+        """Return the metadata of a taken sample."""
         if item[0] is not None or self._wire is None:
             _, stamp, sequence, gid = item
             return SampleInfo(stamp, stamp, sequence, gid)
@@ -130,7 +130,7 @@ class Subscription:
             observer(info)
 
     def _note_take(self) -> None:
-        """Measure how fast the queue is emptied while there is something in it, and let a waiting receiver go on."""
+        """Measure how fast the queue is emptied, and wake a waiting receiving thread."""
         if self._limit is None:
             return
         now = time.monotonic_ns()
@@ -142,7 +142,7 @@ class Subscription:
             self._space.set()
 
     def _wait_for_space(self) -> None:
-        """Hold the sender back for a moment when the queue is full but is being emptied fast.
+        """Block the sender briefly while the queue is full but is being emptied fast.
 
         This is what makes a reliable stream lose nothing at full speed, on a busy machine as well, where a thread may
         get no processor for a tenth of a second. A slow callback, however, must not hold up other topics of the same
@@ -168,15 +168,15 @@ class Subscription:
     # The session's side.
 
     def attach(self, wire: BackendSubscription, undo: Callable[[], None]) -> None:
-        """Connect to the middleware; `undo` ends that."""
+        """Connect to the middleware; `undo` disconnects."""
         self._wire, self._undo = wire, undo
 
     def refuse(self, gids: frozenset[bytes]) -> None:
-        """Note the publishers whose samples must not be delivered: their QoS does not satisfy ours."""
+        """Set the publishers with incompatible QoS, whose samples are rejected."""
         self._refused = gids
 
     def detach(self) -> None:
-        """Forget the middleware and the queue."""
+        """Drop the middleware and the queue."""
         wire, self._wire = self._wire, None
         self.queue.clear()
         if wire:

@@ -131,7 +131,7 @@ def _map(log: "Log", args: argparse.Namespace) -> tuple["LogMap", float]:
 
 @contextlib.contextmanager
 def _progress_bar(total: int) -> Iterator[tuple[Callable[[float, str], None], Callable[[int], None]]]:
-    """Give two functions that show the preparation and the scans done, if stderr is a terminal."""
+    """Return two functions that show the preparation and the scans done, if stderr is a terminal."""
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 

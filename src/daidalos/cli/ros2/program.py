@@ -36,7 +36,7 @@ def run(argv: list[str]) -> int:
 
 
 def _follows_interrupt(error: BaseException) -> bool:
-    """Tell whether an exception came up while what Ctrl-C had left half made was being cleared away."""
+    """Return whether an exception came up while what Ctrl-C had left half made was being cleared away."""
     context = error.__context__
     return context is not None and (isinstance(context, KeyboardInterrupt) or _follows_interrupt(context))
 

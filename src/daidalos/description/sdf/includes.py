@@ -156,7 +156,7 @@ def _read_file(
 
 
 def _cast(actor: Actor, element: Element) -> Actor:
-    """Give an actor the name and the plugins that are written in its ``<include>``."""
+    """Return an actor the name and the plugins that are written in its ``<include>``."""
     name = element.text_of("name", default=actor.name)
     plugins = (*actor.model.plugins, *(read_plugin(child) for child in element.all("plugin")))
     return replace(actor, name=name, model=replace(actor.model, name=name, plugins=plugins))

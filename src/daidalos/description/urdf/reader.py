@@ -154,7 +154,7 @@ def _loop(links: Iterable[str], above: Mapping[str, Joint]) -> list[Joint]:
 
 
 def _is_xacro(text: bytes) -> bool:
-    """Tell whether a file that is not called so has something that only xacro can work out."""
+    """Return whether a file that is not called so has something that only xacro can work out."""
     return b"xmlns:xacro" in text and any(word in text for word in (b"<xacro:", b"$(", b"${"))
 
 

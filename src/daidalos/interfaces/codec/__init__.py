@@ -1,4 +1,4 @@
-"""CDR codecs: for each message class, functions compiled from its fields the first time they are needed.
+"""CDR codecs, compiled from the fields of a message class on first use.
 
 The wire format is XCDR1 (OMG DDS-XTypes 1.3, 7.4.1): little-endian, alignment relative to the byte after the
 four-byte encapsulation header. Runs of fixed-size values become one `struct` call; where the run starts at an
@@ -23,15 +23,15 @@ BIG_ENDIAN = b"\x00\x00"
 
 
 class CdrError(ValueError):
-    """Bytes that are no serialised message of the type, or a message that cannot be serialised."""
+    """Bytes that are not a valid serialized message of the type, or a message that cannot be serialized."""
 
 
 class FieldError(CdrError, TypeError):
-    """A message that cannot be serialised or copied, as a field holds what its type cannot."""
+    """A message that cannot be serialized or copied because a field holds a value its type does not allow."""
 
 
 class Codec:
-    """Serialises and deserialises one message class.
+    """Serializer and deserializer of one message class.
 
     Attributes
     ----------
@@ -116,7 +116,7 @@ class Codec:
         return decode
 
     def _decode_other(self, data: bytes) -> Any:
-        """Decode big-endian data: rare, so compiled when it first arrives."""
+        """Decode big-endian data; compiled on first arrival since it is rare."""
         if data[:2] != BIG_ENDIAN or len(data) < 4:
             start = data[:4].hex(" ") or "nothing"
             raise CdrError(
@@ -130,7 +130,7 @@ class Codec:
             raise CdrError(_truncated(self.message_type, data, error)) from None
 
     def _decode_other_width(self, data: bytes) -> Any:
-        """Decode wide strings as the other family of middlewares writes them (2 or 4 bytes a character)."""
+        """Decode wide strings in the width of the other middlewares (2 or 4 bytes per character)."""
         decode = _compile("decode", Decoder(self.message_type, Variant(wide=6 - self._wide)).source())
         try:
             return decode(data)
@@ -138,7 +138,7 @@ class Codec:
             raise CdrError(_truncated(self.message_type, data, error)) from None
 
     def _unfit(self, message: Any, error: Exception) -> FieldError:
-        """Return an error that says which field of a message holds what its type cannot."""
+        """Return an error that names the field whose value its type does not allow."""
         return FieldError(_explain(message, error))
 
     def _first_snapshot(self, message: Any) -> Any:
@@ -193,7 +193,7 @@ def _truncated(kind: type[Message], data: bytes, error: Exception) -> str:
 
 
 def _explain(message: Any, error: Exception) -> str:
-    """Say which field holds what cannot be serialised."""
+    """Return a description of the field that cannot be serialized."""
     for name, base, kind, _, _ in message._FIELDS:
         value = getattr(message, name, None)
         try:

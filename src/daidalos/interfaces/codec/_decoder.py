@@ -1,4 +1,4 @@
-"""Source text of the function that deserialises a message class."""
+"""Source text of the function that deserializes a message class."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from daidalos.interfaces.message import TYPECODES, Message
 
 
 class Decoder(Generator):
-    """Writes ``decode(buf) -> message``.
+    """Generator of ``decode(buf) -> message``.
 
     Offsets count from the start of the buffer, so alignment is relative to offset 4.
     """
@@ -39,7 +39,7 @@ class Decoder(Generator):
         return self.finish([*text, *main])
 
     def needs_view(self, kind: type[Message]) -> bool:
-        """Tell whether reading the message slices arrays or calls functions."""
+        """Return whether reading the message slices arrays or calls functions."""
         return any(
             many != "single" or (not isinstance(base, str) and (not self.inlined(base) or self.needs_view(base)))
             for _, base, many, _, _ in kind._FIELDS
@@ -74,7 +74,7 @@ class Decoder(Generator):
             self.static = None
 
     def message(self, kind: type[Message]) -> str:
-        """Write the code that makes one message; its fields are set as their values are read."""
+        """Write the code that creates one message; its fields are set as their values are read."""
         name = self.fresh("m")
         self.emit(f"{name} = new({self.names.kind(kind)})")
         if not kind._FIELDS:
@@ -216,7 +216,7 @@ class Decoder(Generator):
         self.indent -= 1
 
     def strings(self, count: str, target: str) -> None:
-        """Read a list of strings; the block of the last message is compared before anything is decoded."""
+        """Write the code that reads a list of strings; the block of the last message is compared before decoding."""
         last, values = self.fresh("last"), self.fresh("v")
         self.names.scope[last] = [(-1, b"", [])]
         unpack = self.names.of("length", struct.Struct(self.variant.order + "I").unpack_from, "unpack")
@@ -242,7 +242,7 @@ class Decoder(Generator):
 
 
 def _smallest(base: Any) -> int:
-    """Return the least number of bytes that a value takes, so that absurd counts are refused at once."""
+    """Return the minimum number of bytes of a value, so that impossible counts are rejected at once."""
     if isinstance(base, str):
         return 4 if base in ("string", "wstring") else SIZES[base]
     total = 0

@@ -1,4 +1,4 @@
-"""Source text of the function that serialises a message class."""
+"""Source text of the function that serializes a message class."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from daidalos.interfaces.message import Message
 
 
 class Encoder(Generator):
-    """Writes ``parts(m) -> list of buffers``."""
+    """Generator of ``parts(m) -> list of buffers``."""
 
     def source(self) -> tuple[str, dict[str, Any]]:
         self.emit("out = []")
@@ -61,7 +61,7 @@ class Encoder(Generator):
         self.emit("p += s.size")
 
     def dynamic(self, step: str) -> None:
-        """Advance the offset by what only run time knows."""
+        """Advance the offset by an amount that is only known at run time."""
         if self.static is None:
             self.emit(f"p += {step}")
         else:
@@ -230,7 +230,7 @@ def _raw(base: str, values: str, to_bytes: str) -> str:
 
 
 def _flatten(kind: type[Message], owner: str, run: Run, expressions: list[str]) -> None:
-    """Collect the values of a message of fixed layout as one run."""
+    """Collect the values of a message of fixed layout in one run."""
     for name, base, many, size, _ in kind._FIELDS:
         expression = f"{owner}._{name}"
         if isinstance(base, str):

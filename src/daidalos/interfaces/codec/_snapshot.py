@@ -10,7 +10,7 @@ from daidalos.interfaces.message import TYPECODES, Message
 
 
 class Snapshot(Generator):
-    """Writes ``snapshot(m) -> message``: immutable values are shared, all else is made anew.
+    """Generator of ``snapshot(m) -> message``; immutable values are shared, all others are copied.
 
     Parameters
     ----------

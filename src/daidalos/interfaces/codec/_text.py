@@ -1,4 +1,4 @@
-"""Writing source text of codec functions: names, indentation, runs of fixed-size values.
+"""Text building blocks of codec functions: names, indentation and runs of fixed-size values.
 
 In the generated code ``m`` is the message, ``out`` the list of buffers being collected, ``p`` the current
 offset when it is known only at run time, ``buf`` the bytes being read and ``view`` their memoryview.
@@ -24,14 +24,14 @@ HEADER = 4
 
 @dataclass(frozen=True)
 class Variant:
-    """Byte order ('<' or '>') and bytes a character of wide strings takes."""
+    """Byte order ('<' or '>') and number of bytes per character of wide strings."""
 
     order: str = "<"
     wide: int = 4
 
 
 def fixed_size(kind: type[Message]) -> tuple[int, int] | None:
-    """Return (size, alignment) of a message whose instances all have one layout wherever they start, else None.
+    """Return (size, alignment) of a message with the same layout at every offset, None for others.
 
     CDR aligns values, not messages. The layout is the same everywhere only if the first value is among those
     of the greatest alignment and the size is a multiple of it, so that neighbours in an array repeat.
@@ -52,7 +52,7 @@ def fixed_size(kind: type[Message]) -> tuple[int, int] | None:
 
 
 def _weight(kind: type[Message]) -> int:
-    """Count the values that inlining the message would write out."""
+    """Return the number of values that inlining the message would write out."""
     return sum(1 if isinstance(base, str) else _weight(base) for _, base, *_ in kind._FIELDS)
 
 
@@ -77,14 +77,14 @@ class Names:
 
 @dataclass
 class Run:
-    """Consecutive values of fixed size that one struct call handles."""
+    """Consecutive values of fixed size that one struct call reads or writes."""
 
     items: list[tuple[str, int, int]] = field(default_factory=list)
     """(format, alignment, size) of each value."""
     expressions: list[str] = field(default_factory=list)
 
     def layout(self, order: str, start: int) -> tuple[str, int]:
-        """Return the struct format and the size when the run starts at offset `start`."""
+        """Return the struct format and the size of the run when it starts at offset `start`."""
         text, offset = order, start
         for code, alignment, size in self.items:
             pad = -offset % alignment
@@ -93,12 +93,12 @@ class Run:
         return text, offset - start
 
     def structs(self, order: str, shift: int = 0) -> tuple[struct.Struct, ...]:
-        """Return the eight structs for offsets 0 to 7; `shift` is what offsets are counted from."""
+        """Return the eight structs for offsets 0 to 7, counted from `shift`."""
         return tuple(struct.Struct(self.layout(order, start - shift)[0]) for start in range(8))
 
 
 class Generator:
-    """Text with indentation, fresh names, and the offset as far as it is known."""
+    """Generated text with indentation, unused names and the offset as far as it is known."""
 
     def __init__(self, root: type[Message], variant: Variant) -> None:
         self.root = root

@@ -180,7 +180,7 @@ class ModelBuild:
 
 
 def apply_inertia(body: Any, inertia: PrincipalInertia) -> None:
-    """Give a body (MjsBody) its mass and moments."""
+    """Return a body (MjsBody) its mass and moments."""
     x, y, z, w = inertia.orientation
     body.explicitinertial = True
     body.mass = inertia.mass

@@ -72,7 +72,7 @@ def wheel_disc(joint: Joint | None, collision: Collision) -> Disc | None:
 
 
 def is_caster(joint: Joint | None, link: Link) -> bool:
-    """Tell whether a link stands for a caster: fixed to the robot, it slides where a real one rolls."""
+    """Return whether a link stands for a caster: fixed to the robot, it slides where a real one rolls."""
     name = link.name.lower()
     return joint is not None and joint.type is JointType.FIXED and ("caster" in name or "castor" in name)
 

@@ -131,7 +131,7 @@ class Parameters:
         return absolute_topic(f"{own}/{bare}" if own else bare, self.namespace)
 
     def is_remapped(self, name: str) -> bool:
-        """Tell whether ``<ros><remapping>`` speaks of a name, private or not."""
+        """Return whether ``<ros><remapping>`` speaks of a name, private or not."""
         return any(written in self._remappings for written in (name, f"~/{name}"))
 
     def scoped(self, name: str) -> str:

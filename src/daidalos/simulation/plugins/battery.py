@@ -92,7 +92,7 @@ class LinearBattery(Plugin):
         return {name: Switch(self._recharge, on) for name, on in zip(self._services, (True, False), strict=True)}
 
     def start(self) -> Charge:
-        """Begin with the charge that it came with."""
+        """Start with the charge that it came with."""
         return Charge(self.initial, 0.0, self.starts)
 
     def update(self, now_ns: int) -> Iterable[Sample]:

@@ -63,7 +63,7 @@ class JointPoseTrajectory(Plugin):
         return self._initial
 
     def bind(self, instance: Instance) -> None:
-        """Note which joints move."""
+        """Record which joints move."""
         self._instance = instance
         self._joints = {name for name, added in instance.build.joints.items() if added}
 

@@ -79,7 +79,7 @@ class PlanarMove(Plugin):
         return Motion(np.zeros(3), np.zeros(3), self._base.pose)
 
     def update(self, now_ns: int) -> Iterable[Sample]:
-        """Give the base its velocity in the plane; it may fall and tilt as it likes."""
+        """Yield the base its velocity in the plane; it may fall and tilt as it likes."""
         motion = self.state
         self._move()
         if now_ns < motion.due_ns:
@@ -135,7 +135,7 @@ class VelocityControl(Plugin):
         return Motion(np.array(self._linear), np.array(self._angular), self._base.pose)
 
     def update(self, now_ns: int) -> Iterable[Sample]:
-        """Give the model its velocity."""
+        """Return the model its velocity."""
         turn = rotation_matrix(self._base.pose.orientation)
         self._instance.set_velocity(turn @ self.state.linear, turn @ self.state.angular)
         self._instance.physics.changed()

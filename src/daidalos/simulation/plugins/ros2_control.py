@@ -117,7 +117,7 @@ class Ros2Control(Plugin):
         return ()
 
     def has_sensor(self, name: str) -> bool:
-        """Tell whether the model has a sensor of that name."""
+        """Return whether the model has a sensor of that name."""
         return name in self._components
 
     def measure(self, sensor: str, now_ns: int) -> dict[str, float]:
@@ -195,7 +195,7 @@ def _update_rate(files: Iterable[Path], manager: str) -> float:
 
 
 def _matches(pattern: str, name: str) -> bool:
-    """Tell whether a node's name in a file, with ``*`` and ``**`` as wildcards, means a node."""
+    """Return whether a node's name in a file, with ``*`` and ``**`` as wildcards, means a node."""
     text = re.escape(pattern).replace(r"/\*\*", "(?:/[^/]+)*").replace(r"\*", "[^/]+")
     return re.fullmatch(text, name) is not None
 

@@ -314,7 +314,7 @@ def rows_of(slope_x: Any, slope_y: Any, offset: Any, first: Any, end: Any) -> An
 
 @compiled
 def outside(pose: Any, sphere: Any, left: Any, right: Any, top: Any, bottom: Any, near: Any, far: Any) -> Any:
-    """Tell whether a ball lies outside the view's frustum."""
+    """Return whether a ball lies outside the view's frustum."""
     x = pose[0, 0] * sphere[0] + pose[0, 1] * sphere[1] + pose[0, 2] * sphere[2] + pose[0, 3]
     y = pose[1, 0] * sphere[0] + pose[1, 1] * sphere[1] + pose[1, 2] * sphere[2] + pose[1, 3]
     z = pose[2, 0] * sphere[0] + pose[2, 1] * sphere[1] + pose[2, 2] * sphere[2] + pose[2, 3]

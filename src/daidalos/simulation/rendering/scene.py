@@ -173,13 +173,13 @@ def _merged(part: Part) -> Part:
 
 
 def _open(item: Item, part: Part) -> bool:
-    """Tell whether a part may be seen from behind: whoever made a mesh may have turned its triangles either way."""
+    """Return whether a part may be seen from behind: whoever made a mesh may have turned its triangles either way."""
     return isinstance(item.visual.geometry, Mesh) and not _is_closed(part)
 
 
 @lru_cache(maxsize=1024)
 def _is_closed(part: Part) -> bool:
-    """Tell whether every edge joins two triangles that run along it in opposite ways, with the inside inside."""
+    """Return whether every edge joins two triangles that run along it in opposite ways, with the inside inside."""
     _, place = np.unique(np.round(part.vertices, 6), axis=0, return_inverse=True)
     faces = place.ravel()[part.faces].astype(np.int64)
     faces = faces[(faces[:, 0] != faces[:, 1]) & (faces[:, 1] != faces[:, 2]) & (faces[:, 2] != faces[:, 0])]

@@ -285,7 +285,7 @@ def fill_background(line: Any, start: Any, stop: Any, dy: Any, fx: Any, cx: Any,
 
 @compiled(fastmath=True)
 def put(line: Any, start: Any, stop: Any, red: Any, green: Any, blue: Any, alpha: Any) -> None:
-    """Give a run of pixels one colour."""
+    """Return a run of pixels one colour."""
     if alpha >= 1.0:
         r, g, b = byte(red), byte(green), byte(blue)
         for x in range(start, stop):
@@ -297,7 +297,7 @@ def put(line: Any, start: Any, stop: Any, red: Any, green: Any, blue: Any, alpha
 
 @compiled(fastmath=True)
 def put_one(line: Any, x: Any, red: Any, green: Any, blue: Any, alpha: Any) -> None:
-    """Give one pixel a colour, mixed with what is there."""
+    """Return one pixel a colour, mixed with what is there."""
     if alpha < 1.0:
         rest = (np.float32(1.0) - alpha) / np.float32(255.0)
         red = alpha * red + rest * line[x, 0]

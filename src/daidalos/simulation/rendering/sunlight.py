@@ -41,7 +41,7 @@ def aim_at_shadow(to_shadow: Any, offset: Any, pose: Any, nx: Any, ny: Any, nz: 
 
 @compiled(fastmath=True)
 def clear(shadow: Any, coarse: Any, aim: Any, first: Any, inverse_first: Any, last: Any, inverse_last: Any) -> Any:
-    """Tell whether nothing can shade the pixels between two of a row that see one triangle.
+    """Return whether nothing can shade the pixels between two of a row that see one triangle.
 
     They lie on a line in the map, and so between the two in depth: the coarse copy tells.
     """

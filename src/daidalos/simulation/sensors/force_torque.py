@@ -44,7 +44,7 @@ class ForceTorque(NoisySensor):
         )
 
     def set_noise(self, noise: Noise) -> None:
-        """Give all six numbers the same noise."""
+        """Return all six numbers the same noise."""
         self._noises = (noise,) * 6
 
     @property

@@ -1,4 +1,4 @@
-"""The DDS backend: one participant, its entities, and what it tells others of its nodes."""
+"""DDS backend: one participant with its entities, and the discovery messages about its nodes."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ _INFO_READER_QOS = Qos(durability=Durability.TRANSIENT_LOCAL, history=History.KE
 
 @dataclass
 class _Entities:
-    """The writer and reader of an endpoint of ours; services and clients have both."""
+    """Writer and reader of a local endpoint; services and clients have both."""
 
     writer: int | None = None
     reader: int | None = None
@@ -80,7 +80,7 @@ class CycloneBackend(Backend):
         self._enclave = ""
 
     def start(self, graph: Graph) -> None:
-        """Make the participant and begin to watch the domain."""
+        """Create the participant and start to watch the domain."""
         library = self._library
         self._graph = graph
         with self._registry.locked():
@@ -105,7 +105,7 @@ class CycloneBackend(Backend):
         self._discovery = Discovery(library, self._participant, prefix, info_reader, graph, self._tell)
 
     def close(self) -> None:
-        """Delete the participant and all that is in it."""
+        """Delete the participant with all its entities."""
         self._registry.unregister()
         self._reception.close()
         self._discovery.close()
@@ -133,18 +133,18 @@ class CycloneBackend(Backend):
         return False
 
     def _alive(self) -> set[str]:
-        """Return which of the sessions known at our start still live."""
+        """Return the sessions known at startup that are still alive."""
         if not self._peers:
             return set()
         with self._registry.locked():
             return {peer.session for peer in self._peers} & {peer.session for peer in self._registry.peers()}
 
     def new_node(self, name: str, namespace: str, enclave: str) -> NodeInfo:
-        """Return the description of a new node of ours."""
+        """Return the description of a new local node."""
         return NodeInfo(node_key(self._gid[:PREFIX], namespace, name, self._number()), name, namespace, enclave)
 
     def declare_node(self, node: NodeInfo) -> Callable[[], None]:
-        """Tell others of a node of ours."""
+        """Announce a local node."""
         with self._lock:
             self._nodes[node.key] = (node, [])
             self._show_enclave(node.enclave)
@@ -160,7 +160,7 @@ class CycloneBackend(Backend):
     def identify(
         self, kind: EndpointKind, node: NodeInfo, name: str, type_name: str, type_hash: str, qos: Qos
     ) -> tuple[str, bytes]:
-        """Make an endpoint's writer or reader, whose gid is the endpoint's."""
+        """Create an endpoint's writer or reader, whose gid becomes the endpoint's."""
         with self._lock:
             if kind in (EndpointKind.PUBLISHER, EndpointKind.SUBSCRIPTION):
                 entities, gid = self._make_topic_end(kind, name, type_name, type_hash, qos)
@@ -170,7 +170,7 @@ class CycloneBackend(Backend):
         return gid.hex(), gid
 
     def declare_publisher(self, key: str, endpoint: EndpointInfo) -> BackendPublisher:
-        """Hand out the writer and tell others whose it is."""
+        """Return the writer and announce its node."""
         writer, _ = self._declare(key, endpoint)
         wire = Writer(self._library, writer, endpoint.name, endpoint.qos.limit)
         return DdsPublisher(self._library, self._reception, wire, self._closer(key, endpoint))
@@ -178,20 +178,20 @@ class CycloneBackend(Backend):
     def declare_subscription(
         self, key: str, endpoint: EndpointInfo, on_sample: Callable[[Any], None]
     ) -> BackendSubscription:
-        """Hand out the reader and tell others whose it is."""
+        """Return the reader and announce its node."""
         _, reader = self._declare(key, endpoint)
         close = self._closer(key, endpoint)
         return DdsSubscription(self._taker, self._reception, reader, on_sample, self._gid_of_writer, close)
 
     def declare_service(self, key: str, endpoint: EndpointInfo, on_request: Callable[[Any], None]) -> BackendService:
-        """Hand out reader and writer and tell others whose they are."""
+        """Return reader and writer and announce their node."""
         writer, reader = self._declare(key, endpoint)
         close = self._closer(key, endpoint)
         replies = Writer(self._library, writer, endpoint.name, endpoint.qos.limit)
         return DdsService(self._library, self._taker, self._reception, reader, replies, on_request, close)
 
     def declare_client(self, key: str, endpoint: EndpointInfo, on_response: Callable[[Any], None]) -> BackendClient:
-        """Hand out reader and writer and tell others whose they are."""
+        """Return reader and writer and announce their node."""
         writer, reader = self._declare(key, endpoint)
         handle = c.c_uint64()
         self._library.check(self._library.dds_get_instance_handle(writer, c.byref(handle)), "number a client")
@@ -200,7 +200,7 @@ class CycloneBackend(Backend):
         return DdsClient(self._taker, self._reception, reader, requests, handle.value, on_response, close)
 
     def _declare(self, key: str, endpoint: EndpointInfo) -> tuple[int, int]:
-        """Enter an endpoint under its node; return its writer and reader (0 where it has none)."""
+        """Add an endpoint to its node; return its writer and reader (0 for none)."""
         with self._lock:
             entities = self._entities[key]
             _, owned = self._nodes.get(endpoint.node.key, (None, []))
@@ -209,7 +209,7 @@ class CycloneBackend(Backend):
         return entities.writer or 0, entities.reader or 0
 
     def _closer(self, key: str, endpoint: EndpointInfo) -> Callable[[], None]:
-        """Return what takes an endpoint out of its node and deletes its reader."""
+        """Return a function that removes an endpoint from its node and deletes its reader."""
 
         def close() -> None:
             with self._lock:
@@ -238,7 +238,7 @@ class CycloneBackend(Backend):
         return _Entities(reader=entity, gids=([gid], [])), gid
 
     def _make_service_end(self, kind: EndpointKind, name: str, type_name: str, qos: Qos) -> tuple[_Entities, bytes]:
-        """Make the reader and the writer of a service or client, each with a mark that they belong together."""
+        """Create the reader and the writer of a service or client, marked as belonging together."""
         serves = kind is EndpointKind.SERVICE
         mark = {"serviceid" if serves else "clientid": names.dotted(self._gid[:PREFIX] + _four_bytes(self._number()))}
         request, response = (
@@ -256,7 +256,7 @@ class CycloneBackend(Backend):
         return _Entities(writer, reader, gids), gids[0][0] if serves else gids[1][0]
 
     def _make(self, topic: str, type_name: str, qos: Qos, user_data: bytes, *, writes: bool) -> int:
-        """Make a writer or reader."""
+        """Create a writer or reader."""
         library = self._library
         described = TopicDescriptor(
             size=1, align=1, type_name=names.dds_type(type_name).encode(), ops_count=2, ops=_ONE_OCTET, meta=b""
@@ -280,7 +280,7 @@ class CycloneBackend(Backend):
         return library.check(made, f"join domain {self._environment.domain}")
 
     def _show_enclave(self, enclave: str) -> None:
-        """Tell the enclave of our nodes: a process has one."""
+        """Announce the enclave of the local nodes; a process has one."""
         if enclave and enclave != self._enclave:
             self._enclave = enclave
             with _user_data(self._library, names.write_user_data(enclave=enclave)) as qos:
@@ -305,7 +305,7 @@ class CycloneBackend(Backend):
         return gid
 
     def _tell(self) -> None:
-        """Tell everyone our nodes and which writers and readers are whose."""
+        """Announce all local nodes with their writers and readers."""
         from rmw_dds_common.msg import Gid, NodeEntitiesInfo, ParticipantEntitiesInfo
 
         with self._lock:
@@ -328,7 +328,7 @@ def _four_bytes(number: int) -> bytes:
 
 @contextlib.contextmanager
 def _user_data(library: Library, data: bytes) -> Iterator[int]:
-    """Give a profile that holds user data only."""
+    """Return a profile that contains only user data."""
     qos = library.dds_create_qos()
     try:
         library.dds_qset_userdata(qos, data, len(data))
@@ -343,7 +343,7 @@ _domains: dict[int, tuple[int | None, int]] = {}
 
 
 def _join_domain(library: Library, environment: Environment) -> int:
-    """Configure the domain when nobody in this process has; return its number for `_leave_domain`."""
+    """Configure the domain unless this process already did; return its number for `_leave_domain`."""
     number = environment.domain
     with _domains_lock:
         entity, users = _domains.get(number, (None, 0))

@@ -1,4 +1,4 @@
-"""The configuration of a DDS domain, from the environment as rmw_cyclonedds reads it."""
+"""Configuration of a DDS domain from the environment variables of rmw_cyclonedds."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def domain_config(environment: Environment) -> str:
 
 
 def _reach(environment: Environment) -> str:
-    """Return how far to look for others."""
+    """Return the configuration of the discovery range."""
     match environment.discovery:
         case DiscoveryRange.OFF:
             return f"{_MULTICAST_OFF}<Discovery><Tag>ros_discovery_off_{os.getpid()}</Tag></Discovery>"
@@ -48,7 +48,7 @@ _LOOPBACK = (
 
 
 def _peers(environment: Environment) -> str:
-    """Return what makes participants reachable at ports that can be guessed, and whom to tell of us.
+    """Return the configuration of unicast peers and of the predictable ports that it needs.
 
     This machine is always among them, so that nodes of a wider range are found by those of a narrower one.
     """

@@ -1,4 +1,4 @@
-"""The graph, from what DDS tells of participants, writers and readers, and from `ros_discovery_info`.
+"""Graph of a DDS domain from built-in topics and `ros_discovery_info`.
 
 DDS knows who writes and reads what, `ros_discovery_info` which node that is. A ROS process's endpoints enter the
 graph when both are known; those of other DDS programs, which have no nodes, at once.
@@ -39,7 +39,7 @@ _UNKNOWN = ("_NODE_NAME_UNKNOWN_", "_NODE_NAMESPACE_UNKNOWN_")
 
 @dataclass(frozen=True, slots=True)
 class _Endpoint:
-    """A writer or reader of a topic, or of a service's requests."""
+    """Writer or reader of a topic or of a service's requests."""
 
     kind: EndpointKind
     name: str
@@ -50,7 +50,7 @@ class _Endpoint:
 
 @dataclass
 class _Participant:
-    """A process: what DDS tells of it, what it tells of its nodes, and what the graph has of it."""
+    """Remote process: its DDS data, its announced nodes, and its entries in the graph."""
 
     enclave: str | None = None
     """None where it is no ROS process."""
@@ -65,7 +65,7 @@ class _Participant:
 
 
 class Discovery:
-    """Keeps a graph up to date with what other processes of the domain declare.
+    """Updater of a graph with the declarations of other processes in the domain.
 
     Parameters
     ----------
@@ -123,11 +123,11 @@ class Discovery:
         self._reception.close()
 
     def gid_of(self, handle: int) -> bytes | None:
-        """Return the gid behind an instance handle of a writer or reader, None when it is not known."""
+        """Return the gid of the instance handle of a writer or reader, None if unknown."""
         return self._gids.get(handle)
 
     def is_discovered(self, prefix: bytes) -> bool:
-        """Tell whether a participant is known with all its nodes and their endpoints."""
+        """Return whether a participant is known with all its nodes and their endpoints."""
         participant = self._participants.get(prefix)
         if participant is None or participant.nodes is None:
             return False
@@ -139,7 +139,7 @@ class Discovery:
         return all(participant.enclave is None or self.is_discovered(prefix) for prefix, participant in known)
 
     def _taking(self, reader: int, handler: Callable[[int, SampleInfo], None]) -> Callable[[], None]:
-        """Return what takes all samples of a built-in reader and then brings the graph up to date."""
+        """Return a callback that takes all samples of a built-in reader and updates the graph."""
         library = self._library
         infos = (SampleInfo * _BATCH)()
 
@@ -221,7 +221,7 @@ class Discovery:
         return {topic for gid, topic in self._topics.items() if gid[:PREFIX] == prefix}
 
     def _forget(self, prefix: bytes) -> None:
-        """Drop a participant: what it told of its nodes goes with it."""
+        """Remove a participant with its nodes."""
         participant = self._participants.get(prefix)
         if participant is not None:
             participant.enclave = participant.nodes = None
@@ -243,7 +243,7 @@ class Discovery:
         self._dirty.add(prefix)
 
     def _update(self) -> None:
-        """Bring the graph up to date with the participants that changed."""
+        """Update the graph with the participants that changed."""
         dirty, self._dirty = self._dirty, set()
         for prefix in dirty:
             participant = self._participants[prefix]

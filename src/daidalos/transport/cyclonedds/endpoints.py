@@ -79,7 +79,7 @@ class DdsPublisher(BackendPublisher):
 
 
 class DdsSubscription(BackendSubscription):
-    """Takes samples on the receiving thread, which only queues them."""
+    """Subscription over DDS; the receiving thread only queues its samples."""
 
     def __init__(
         self,
@@ -101,7 +101,7 @@ class DdsSubscription(BackendSubscription):
         return data
 
     def info(self, sample: Any, received_ns: int) -> SampleInfo:
-        """Return what DDS tells; it counts no samples."""
+        """Return the metadata of a sample; DDS does not number samples."""
         return SampleInfo(sample.source_ns, received_ns, 0, self._gid_of(self._reader, sample.writer))
 
     def close(self) -> None:
@@ -110,7 +110,7 @@ class DdsSubscription(BackendSubscription):
 
 
 class DdsService(BackendService):
-    """Reads requests and writes replies; every client gets every reply and keeps its own."""
+    """Service over DDS; every client receives every reply and keeps its own."""
 
     def __init__(
         self,
@@ -136,7 +136,7 @@ class DdsService(BackendService):
         return data, RequestId(_REQUEST_ID.pack(client, item.writer), sequence), item.source_ns
 
     def reply(self, request: RequestId, data: bytes) -> None:
-        """Send the reply, once the client's reader is known; a reader that is not would miss it."""
+        """Send the reply once the client's reader is matched; an unmatched reader would miss it."""
         client, writer = _REQUEST_ID.unpack(request.client)
         with self._lock:
             if writer not in self._reachable and self._wait_for_reader(writer):
@@ -146,7 +146,7 @@ class DdsService(BackendService):
         self._writer.write(_joined(client, request.sequence, data))
 
     def _wait_for_reader(self, writer: int) -> bool:
-        """Wait a moment for the reader of the client that wrote a request; False when the client is gone."""
+        """Wait briefly for the reader of the client that wrote a request; return False if the client is gone."""
         library = self._library
         client = _client_of(library, library.dds_get_matched_publication_data(self._reader, writer))
         if client is None:
@@ -165,7 +165,7 @@ class DdsService(BackendService):
         return found
 
     def _matches(self, client: str) -> bool:
-        """Tell whether our writer serves a reader of that client."""
+        """Return whether the writer of this service is matched with a reader of that client."""
         library, writer = self._library, self._writer.entity
         count = library.dds_get_matched_subscriptions(writer, None, 0)
         handles = (c.c_uint64 * max(count, 1))()
@@ -182,7 +182,7 @@ class DdsService(BackendService):
 
 
 def _client_of(library: Library, endpoint: Any) -> str | None:
-    """Return what an endpoint's user data say of its client, empty where they do not; None where there is none."""
+    """Return the client in an endpoint's user data, empty if there is no client, None without user data."""
     if not endpoint:
         return None
     found: BuiltinEndpoint = endpoint.contents
@@ -192,7 +192,7 @@ def _client_of(library: Library, endpoint: Any) -> str | None:
 
 
 class DdsClient(BackendClient):
-    """Writes requests and reads replies."""
+    """Client over DDS."""
 
     def __init__(
         self,
@@ -220,7 +220,7 @@ class DdsClient(BackendClient):
         self._writer.write(_joined(self._number, sequence, data))
 
     def response(self, item: Any) -> tuple[bytes, int, int]:
-        """Return the answer's bytes, its request's sequence number and its source stamp."""
+        """Return the response's bytes, its request's sequence number and its source stamp."""
         _, sequence, data = _split(item.data)
         return data, sequence, item.source_ns
 

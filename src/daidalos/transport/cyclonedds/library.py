@@ -1,4 +1,4 @@
-"""The C library of the `cyclonedds` package: loading it, its functions and the structures they take.
+"""Bindings to the C library of the `cyclonedds` package.
 
 The package's own Python layer encodes messages itself and holds the interpreter's lock while a write is blocked;
 here messages are bytes already, so the library's functions for serialised samples are called directly.
@@ -33,7 +33,7 @@ BUILTIN_SUBSCRIPTION = 0x7FFF0004
 
 
 class DdsError(OSError):
-    """The library refused a call; the message says what was asked and what it answered."""
+    """Failed call of the library; the message names the call and its return code."""
 
 
 class SampleInfo(c.Structure):
@@ -114,13 +114,13 @@ def _vector(base: tuple[str, Any]) -> tuple[tuple[str, Any], ...]:
 
 
 class IoVector(c.Structure):
-    """``ddsrt_iovec_t``, which is the system's own: a buffer that the library gives out."""
+    """``ddsrt_iovec_t`` of the platform, for a buffer that the library returns."""
 
     _fields_ = _vector(("base", c.c_void_p))
 
 
 class Buffer(c.Structure):
-    """``ddsrt_iovec_t`` again: a buffer that is handed in, bytes or an address."""
+    """``ddsrt_iovec_t`` for a buffer that is passed in: bytes or an address."""
 
     _fields_ = _vector(("base", c.c_char_p))
 
@@ -209,7 +209,7 @@ _QUICK: dict[str, tuple[Any, tuple[Any, ...]]] = {
 
 
 class Library:
-    """The functions of the library, under their own names."""
+    """Functions of the library under their own names."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
@@ -224,7 +224,7 @@ class Library:
         raise AttributeError(f"{name} is not among the functions taken from {self.path.name}")
 
     def check(self, result: int, what: str) -> int:
-        """Return a call's result.
+        """Return a call's result; raise DdsError if it is an error code.
 
         Raises
         ------
@@ -240,7 +240,7 @@ _loaded: Library | None = None
 
 
 def load() -> Library:
-    """Return the library of the installed `cyclonedds` package, without importing that package.
+    """Return the library of the installed `cyclonedds` package without importing the package.
 
     Raises
     ------

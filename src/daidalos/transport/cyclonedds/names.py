@@ -1,4 +1,4 @@
-"""How rmw_cyclonedds writes names, types and what else it tells of an entity on the wire."""
+"""Names, types and user data in the notation of rmw_cyclonedds."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ _TOPIC, _REQUEST, _REPLY = "rt", "rq", "rr"
 
 
 def dds_type(type_name: str) -> str:
-    """``std_msgs/msg/String`` -> ``std_msgs::msg::dds_::String_``."""
+    """Return the DDS name of a type: ``std_msgs/msg/String`` -> ``std_msgs::msg::dds_::String_``."""
     package, kind, name = type_name.split("/")
     return f"{package}::{kind}::dds_::{name}_"
 
 
 def ros_type(text: str) -> str:
-    """``std_msgs::msg::dds_::String_`` -> ``std_msgs/msg/String``; anything else is kept."""
+    """Return the ROS name of a DDS type; anything else is returned unchanged."""
     parts = text.split("::")
     if len(parts) == 4 and parts[2] == "dds_":
         return f"{parts[0]}/{parts[1]}/{parts[3].removesuffix('_')}"
@@ -26,22 +26,22 @@ def ros_type(text: str) -> str:
 
 
 def topic_of(name: str) -> str:
-    """``/chatter`` -> ``rt/chatter``."""
+    """Return the DDS name of a topic: ``/chatter`` -> ``rt/chatter``."""
     return f"{_TOPIC}{name}"
 
 
 def request_topic_of(name: str) -> str:
-    """``/add`` -> ``rq/addRequest``."""
+    """Return the DDS topic of a service's requests: ``/add`` -> ``rq/addRequest``."""
     return f"{_REQUEST}{name}Request"
 
 
 def reply_topic_of(name: str) -> str:
-    """``/add`` -> ``rr/addReply``."""
+    """Return the DDS topic of a service's replies: ``/add`` -> ``rr/addReply``."""
     return f"{_REPLY}{name}Reply"
 
 
 def parse_endpoint(topic: str, type_name: str, writes: bool) -> tuple[EndpointKind, str, str] | None:
-    """Read what a writer's or reader's topic and type mean to ROS.
+    """Return the ROS endpoint of a DDS topic and type.
 
     Returns
     -------
@@ -59,7 +59,7 @@ def parse_endpoint(topic: str, type_name: str, writes: bool) -> tuple[EndpointKi
 
 
 def parts_of_service(type_name: str) -> tuple[tuple[str, str], tuple[str, str]]:
-    """Return (type, hash) of a service's request and response; the hashes are empty where its class is not found."""
+    """Return (type, hash) of a service's request and response; the hashes are empty if its class is not found."""
     package, kind, name = type_name.split("/")
     service = getattr(import_module(f"{package}.{kind}"), name, None)
     request, response = getattr(service, "Request", None), getattr(service, "Response", None)
@@ -78,16 +78,16 @@ def discovery_type_hash() -> str:
 
 
 def write_user_data(**values: str) -> bytes:
-    """Write ``key=value;`` pairs, those without a value left out."""
+    """Return ``key=value;`` pairs as text, without those that have no value."""
     return "".join(f"{key}={value};" for key, value in values.items() if value).encode()
 
 
 def read_user_data(data: bytes) -> dict[str, str]:
-    """Read ``key=value;`` pairs; what is none is passed over."""
+    """Return ``key=value;`` pairs as a dict; malformed pairs are ignored."""
     pairs = (part.partition("=") for part in data.decode("utf-8", "replace").split(";"))
     return {key.strip(): value.strip() for key, separator, value in pairs if separator}
 
 
 def dotted(identity: bytes) -> str:
-    """Write an identity as ``01.10.8c...``."""
+    """Return an identity as ``01.10.8c...``."""
     return ".".join(f"{byte:02x}" for byte in identity)

@@ -1,4 +1,4 @@
-"""Profiles as DDS has them, both ways."""
+"""Conversion of QoS profiles to and from DDS."""
 
 from __future__ import annotations
 
@@ -27,13 +27,13 @@ HISTORY_KEY = "history"
 
 
 def history_text(qos: Qos) -> str:
-    """Write the history as user data carry it: reliable writers and readers keep all, whatever was asked for."""
+    """Return the history for user data; DDS itself keeps all for reliable writers and readers."""
     return f"{int(qos.history)},{qos.depth}"
 
 
 @contextmanager
 def dds_qos(library: Library, qos: Qos, user_data: bytes, *, writes: bool) -> Iterator[int]:
-    """Give a profile for a writer or reader, freed afterwards.
+    """Yield a DDS profile for a writer or reader; it is freed afterwards.
 
     What is reliable keeps all until it was acknowledged, so that a writer waits instead of overwriting: the
     depth limits what late readers get and what waits for callbacks.
@@ -82,7 +82,7 @@ def user_data_of(library: Library, handle: int | None) -> dict[str, str]:
 
 
 def read_qos(library: Library, handle: int, user_data: dict[str, str]) -> Qos:
-    """Return the profile of somebody's writer or reader."""
+    """Return the profile of a remote writer or reader."""
     kind, number = c.c_int(), c.c_int32()
     duration, lease = c.c_int64(), c.c_int64()
     reliable = bool(library.dds_qget_reliability(handle, c.byref(kind), c.byref(duration))) and kind.value == _RELIABLE

@@ -1,4 +1,4 @@
-"""A thread that waits for readers and hands on what arrives."""
+"""Receiving thread that waits for readers and passes their samples on."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _JOIN_S = 2.0
 
 
 class Sample(NamedTuple):
-    """What arrived: CDR bytes, when they were written (Unix time, ns) and the writer's handle."""
+    """Received sample: CDR bytes, source stamp (Unix time, ns) and the writer's handle."""
 
     data: bytes
     source_ns: int
@@ -33,7 +33,7 @@ class Sample(NamedTuple):
 
 
 class Reception:
-    """Waits for data on any number of readers, in one thread.
+    """Thread that waits for data on any number of readers.
 
     Parameters
     ----------
@@ -86,7 +86,7 @@ class Reception:
             self._library.dds_waitset_detach(self._waitset, reader)
 
     def wake(self) -> None:
-        """Have `on_wake` called."""
+        """Call `on_wake` on the thread."""
         self._library.dds_set_guardcondition(self._guard, True)
 
     def close(self) -> None:
@@ -117,7 +117,7 @@ class Reception:
 
 
 class SampleReader:
-    """Takes samples from readers; belongs to one thread.
+    """Reader of samples for a single thread.
 
     Parameters
     ----------
@@ -134,7 +134,7 @@ class SampleReader:
         self._reference = c.byref(self._vector)
 
     def take_all(self, reader: int, accept: Callable[[Sample], None]) -> None:
-        """Hand every sample of a reader to `accept`; what carries no data, such as a farewell, is passed over."""
+        """Pass every sample of a reader to `accept`; samples without data, such as disposals, are skipped."""
         library, infos, buffers = self._library, self._infos, self._buffers
         while True:
             count: int = library.dds_takecdr(reader, self._pointer, _BATCH, infos, ANY_STATE)

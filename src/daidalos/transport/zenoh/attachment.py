@@ -1,4 +1,4 @@
-"""What rmw_zenoh attaches to every sample, request and reply: its number, its time and who sent it."""
+"""Attachment of rmw_zenoh to samples, requests and replies: sequence number, time and gid."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ def pack(sequence: int, stamp_ns: int, gid: bytes) -> bytes:
 
 
 def read(attachment: Any) -> tuple[int, int, bytes]:
-    """Return (sequence, source time, gid); zeros where a foreign sender attached none of ours."""
+    """Return (sequence, source time, gid); zeros for samples without a valid attachment."""
     data = attachment.to_bytes() if attachment is not None else b""
     if len(data) != _ATTACHMENT.size:
         return 0, 0, bytes(_GID_LENGTH)

@@ -1,4 +1,4 @@
-"""The zenoh backend: one session, its tokens in the graph, and the graph from others' tokens."""
+"""Zenoh backend: one session, its liveliness tokens, and the graph from the tokens of others."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ class ZenohBackend(Backend):
         self._lock = threading.Lock()
 
     def start(self, graph: Graph) -> None:
-        """Open the session, known to and connected with every other on this machine."""
+        """Open the session and connect it with every other session on this machine."""
         self._graph = graph
         with self._registry.locked():
             peers = [] if self._environment.discovery is DiscoveryRange.OFF else self._registry.peers()
@@ -108,7 +108,7 @@ class ZenohBackend(Backend):
             self._on_token(sample)
 
     def _listen_endpoints(self) -> list[str]:
-        """Return where peers of this machine find us: a socket file that no other process will ever have.
+        """Return the listening endpoints for peers on this machine: a socket file with a unique name.
 
         Where there are none, or its path would be too long, it is a port that is free now.
         """
@@ -120,7 +120,7 @@ class ZenohBackend(Backend):
             return [f"tcp/127.0.0.1:{probe.getsockname()[1]}"]
 
     def close(self) -> None:
-        """Close the session; its tokens go with it."""
+        """Close the session with its tokens."""
         self._registry.unregister()
         self._session.close()
         self._reader.join(_CLOSING_S)
@@ -128,7 +128,7 @@ class ZenohBackend(Backend):
         del self._session, self._tokens, self._links, self._caches  # zenoh keeps files open as long as these live
 
     def settle(self, timeout_s: float) -> bool:
-        """Wait until the sessions that were alive at our start are connected and have told of themselves."""
+        """Wait until the sessions that were alive at startup are connected and have declared their tokens."""
         deadline = time.monotonic() + timeout_s
         router = _is_port_open(ROUTER_PORT)
 
@@ -150,7 +150,7 @@ class ZenohBackend(Backend):
         return complete
 
     def _wait_for_answers(self, deadline: float) -> None:
-        """Wait until every peer that we knew of has answered: its answer comes after its tokens."""
+        """Wait until every peer known at startup has answered; its answer comes after its tokens."""
         silent = self._alive()
         while silent and (left := deadline - time.monotonic()) > 0:
             for peer in list(silent):
@@ -162,7 +162,7 @@ class ZenohBackend(Backend):
                 silent &= self._alive()
 
     def _alive(self) -> set[str]:
-        """Return which of the peers known at our start still live."""
+        """Return the peers known at startup that are still alive."""
         with self._registry.locked():
             return self._peers & {peer.session for peer in self._registry.peers()}
 
@@ -184,7 +184,7 @@ class ZenohBackend(Backend):
             self._graph.add_endpoint(token, what)
 
     def new_node(self, name: str, namespace: str, enclave: str) -> NodeInfo:
-        """Return the description of a new node of ours."""
+        """Return the description of a new local node."""
         number = self._entity_ids.acquire((name, namespace, enclave))
         token = keys.node_token(self._domain, self._session_id, number, name, namespace, enclave)
         return NodeInfo(token, name, namespace, enclave)
@@ -237,7 +237,7 @@ class ZenohBackend(Backend):
     def _declare_latched(
         self, key: str, endpoint: EndpointInfo, on_sample: Callable[[Any], None]
     ) -> LatchedSubscription:
-        """Declare a subscription that has every publisher's history, whichever of the two comes first."""
+        """Declare a subscription that receives the history of all publishers, whichever is declared first."""
         wire = LatchedSubscription(self._session, self._data_key(endpoint), endpoint, on_sample)
         forget = self._closer(key, endpoint)
         with self._lock:
@@ -258,7 +258,7 @@ class ZenohBackend(Backend):
         return wire
 
     def _on_graph_change(self, added: bool, what: NodeInfo | EndpointInfo) -> None:
-        """Have subscriptions ask who comes with a history."""
+        """Make subscriptions query publishers with a history that were added."""
         if not (added and isinstance(what, EndpointInfo) and what.qos.transient_local):
             return
         if what.kind is EndpointKind.PUBLISHER:
@@ -284,7 +284,7 @@ class ZenohBackend(Backend):
         return wire
 
     def _closer(self, key: str, endpoint: EndpointInfo) -> Callable[[], None]:
-        """Declare an endpoint's token; return what takes it back."""
+        """Declare an endpoint's token; return a function that undeclares it."""
         one = endpoint
         what = (one.kind, one.node.key, one.name, one.type_name, one.type_hash, one.qos)
         return self._declare_token(key, what)
@@ -302,13 +302,13 @@ def _open(config: zenoh.Config) -> zenoh.Session:
 
 
 def _new_session_id() -> str:
-    """Return a random zenoh id; zenoh writes none with a leading zero."""
+    """Return a random zenoh id without leading zero, which zenoh would not write."""
     first = "123456789abcdef"
     return secrets.choice(first) + secrets.token_hex(16)[1:]
 
 
 def _is_port_open(port: int) -> bool:
-    """Tell whether somebody listens on a port of this machine."""
+    """Return whether a port of this machine accepts connections."""
     with socket.socket() as probe:
         probe.settimeout(0.2)
         return probe.connect_ex(("127.0.0.1", port)) == 0

@@ -1,4 +1,4 @@
-"""The configuration of a zenoh session, from the environment as rmw_zenoh reads it."""
+"""Configuration of a zenoh session from the environment variables of rmw_zenoh."""
 
 from __future__ import annotations
 
@@ -84,7 +84,7 @@ def router_config() -> zenoh.Config:
 
 
 def meets_all(config: zenoh.Config, listen: Iterable[str]) -> bool:
-    """Tell whether a session listens where all others of this machine would look for it."""
+    """Return whether a session listens where all others on this machine look for it."""
     return config.get_json("mode") == '"peer"' and all(
         endpoint in config.get_json("listen/endpoints") for endpoint in listen
     )
@@ -98,7 +98,7 @@ def _from_file(variable: str, uri: str) -> zenoh.Config:
 
 
 def reason_of(error: Exception) -> str:
-    """Return what zenoh complains of, as one line, without where in its own code it noticed."""
+    """Return the reason of a zenoh error as one line, without the location in zenoh's code."""
     return " ".join(str(error).partition(" at /")[0].split())
 
 
@@ -123,7 +123,7 @@ def _network_settings(environment: Environment, listen: list[str], peers: list[s
 
 
 def _any_address() -> str:
-    """Return what stands for every address of this machine: IPv6's word for it covers both, where there is IPv6."""
+    """Return the wildcard address of this machine: IPv6's covers both families where IPv6 is available."""
     try:
         with socket.socket(socket.AF_INET6, socket.SOCK_STREAM) as probe:
             probe.bind(("::", 0))
@@ -133,7 +133,7 @@ def _any_address() -> str:
 
 
 def _peer_endpoint(peer: str) -> str:
-    """Return where a static peer's router listens: ``host`` or ``host:port``, IPv6 in brackets, or an endpoint."""
+    """Return the endpoint of a static peer: ``host``, ``host:port``, IPv6 in brackets, or an endpoint."""
     if "/" in peer:
         return peer
     has_port = peer.rpartition(":")[2].isdigit() and (peer.count(":") == 1 or "]:" in peer)
@@ -159,7 +159,7 @@ def _transport_settings() -> dict[str, Any]:
 
 
 def shared_memory_usable() -> bool:
-    """Tell whether large messages may go through shared memory here."""
+    """Return whether large messages can use shared memory on this machine."""
     if sys.platform == "win32":
         return False
     if not _SHM_FOLDER.is_dir():

@@ -28,7 +28,7 @@ _UNLIMITED_S = 10 * 365 * 86400.0
 
 
 class _Wire:
-    """What all wires share: the token to take back and the entity to undeclare."""
+    """Base of all endpoints: the liveliness token and the zenoh entity to undeclare."""
 
     on_close: Callable[[], None]
 
@@ -47,7 +47,7 @@ class _Wire:
 
 
 class ZenohPublisher(_Wire, BackendPublisher):
-    """Puts samples."""
+    """Publisher over zenoh."""
 
     def __init__(self, session: zenoh.Session, key: str, endpoint: EndpointInfo, pool: Pool) -> None:
         super().__init__()
@@ -76,7 +76,7 @@ class ZenohPublisher(_Wire, BackendPublisher):
 
 
 class ZenohSubscription(_Wire, BackendSubscription):
-    """Receives samples on zenoh's thread, which only queues them."""
+    """Subscription over zenoh; zenoh's thread only queues its samples."""
 
     def __init__(
         self, session: zenoh.Session, key: str, endpoint: EndpointInfo, on_sample: Callable[[Any], None]
@@ -95,7 +95,7 @@ class ZenohSubscription(_Wire, BackendSubscription):
         return data
 
     def info(self, sample: Any, received_ns: int) -> SampleInfo:
-        """Return what the attachment says."""
+        """Return the metadata from the attachment."""
         sequence, stamp, gid = attachment.read(sample.attachment)
         return SampleInfo(stamp, received_ns, sequence, gid)
 
@@ -105,7 +105,7 @@ class ZenohSubscription(_Wire, BackendSubscription):
 
 
 class ZenohService(_Wire, BackendService):
-    """Answers queries; a query is held until its reply is sent."""
+    """Service over zenoh; a query is held until its reply is sent."""
 
     def __init__(self, session: zenoh.Session, key: str, on_request: Callable[[Any], None]) -> None:
         super().__init__()
@@ -127,7 +127,7 @@ class ZenohService(_Wire, BackendService):
         return payload.to_bytes() if payload is not None else b"", identity, stamp
 
     def reply(self, request: RequestId, data: bytes) -> None:
-        """Send the reply and let go of the query, which tells the client that no more will come."""
+        """Send the reply and drop the query, which signals the end of replies to the client."""
         query = self._queries.pop(request, None)
         if query is None:
             return
@@ -136,13 +136,13 @@ class ZenohService(_Wire, BackendService):
             query.reply(self._key, data, attachment=attached)
 
     def close(self) -> None:
-        """Undeclare; requests that wait for an answer get none."""
+        """Undeclare; pending requests get no reply."""
         self._close(self._queryable)
         self._queries.clear()
 
 
 class ZenohClient(_Wire, BackendClient):
-    """Sends queries."""
+    """Client over zenoh."""
 
     def __init__(
         self,
@@ -172,7 +172,7 @@ class ZenohClient(_Wire, BackendClient):
                 self._querier.get(self._callback, payload=data, attachment=attached)
 
     def response(self, item: Any) -> tuple[bytes, int, int]:
-        """Return the answer's bytes, its request's sequence number and its source stamp."""
+        """Return the response's bytes, its request's sequence number and its source stamp."""
         sample = item.ok
         if sample is None:
             return b"", 0, 0

@@ -1,4 +1,4 @@
-"""Numbers of nodes and endpoints, given again to what is made again.
+"""Numbers of nodes and endpoints, reused for equal entities.
 
 zenoh never forgets a token's key once another process has heard of it, some kilobytes each. An entity that is made
 like one that is gone, as by who makes a client for every call, gets its number, and with it its token.
@@ -27,7 +27,7 @@ class EntityIds:
         self._free: dict[Hashable, deque[tuple[float, int]]] = {}
 
     def acquire(self, what: Hashable) -> int:
-        """Return a number for an entity; `what` says all that its token says beside the number."""
+        """Return a number for an entity; `what` is the content of its token apart from the number."""
         with self._lock:
             free = self._free.get(what)
             if free and time.monotonic() - free[0][0] >= _REST_S:

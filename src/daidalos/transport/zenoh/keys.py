@@ -1,4 +1,4 @@
-"""rmw_zenoh's key expressions and liveliness tokens: how names, types and QoS are written on the wire."""
+"""Key expressions and liveliness tokens of rmw_zenoh: names, types and QoS in their wire format."""
 
 from __future__ import annotations
 
@@ -37,23 +37,23 @@ def tokens(domain: int) -> str:
 
 
 def answers(session: str) -> str:
-    """Return the key on which a session of ours answers that it is there."""
+    """Return the key on which this session answers liveliness checks."""
     return f"@daidalos/{session}"
 
 
 def data_key(domain: int, name: str, type_name: str, type_hash: str) -> str:
-    """Return the key on which samples, requests and replies travel."""
+    """Return the key of samples, requests and replies."""
     return f"{domain}/{name.strip('/')}/{dds_type(type_name)}/{type_hash or _NO_HASH}"
 
 
 def dds_type(type_name: str) -> str:
-    """``std_msgs/msg/String`` -> ``std_msgs::msg::dds_::String_``."""
+    """Return the DDS name of a type: ``std_msgs/msg/String`` -> ``std_msgs::msg::dds_::String_``."""
     package, kind, name = type_name.split("/")
     return f"{package}::{kind}::dds_::{name}_"
 
 
 def ros_type(text: str) -> str:
-    """``std_msgs::msg::dds_::String_`` -> ``std_msgs/msg/String``; anything else is kept."""
+    """Return the ROS name of a DDS type; anything else is returned unchanged."""
     parts = text.split("::")
     if len(parts) == 4 and parts[2] == "dds_":
         return f"{parts[0]}/{parts[1]}/{parts[3].removesuffix('_')}"
@@ -61,7 +61,7 @@ def ros_type(text: str) -> str:
 
 
 def node_token(domain: int, session: str, number: int, name: str, namespace: str, enclave: str) -> str:
-    """Return the token by which a node shows that it is there."""
+    """Return the liveliness token of a node."""
     who = f"{_mangle(enclave)}/{_mangle(namespace)}/{name}"
     return f"{_ADMIN}/{domain}/{session}/{number}/{number}/{_NODE}/{who}"
 
@@ -69,7 +69,7 @@ def node_token(domain: int, session: str, number: int, name: str, namespace: str
 def endpoint_token(
     node: NodeInfo, number: int, kind: EndpointKind, name: str, type_name: str, type_hash: str, qos: Qos
 ) -> str:
-    """Return the token by which an endpoint of the node with the token `node.key` shows that it is there."""
+    """Return the liveliness token of an endpoint of the node with the token `node.key`."""
     admin, domain, session, node_number, *_ = node.key.split("/")
     who = f"{_mangle(node.enclave)}/{_mangle(node.namespace)}/{node.name}"
     what = f"{_mangle(name)}/{dds_type(type_name)}/{type_hash or _NO_HASH}/{qos_text(qos)}"
@@ -77,7 +77,7 @@ def endpoint_token(
 
 
 def parse_token(token: str) -> NodeInfo | EndpointInfo | None:
-    """Read a liveliness token; None when it is none of ROS 2's. Parts beyond the known ones are ignored."""
+    """Parse a liveliness token; return None for others than ROS 2's. Unknown trailing parts are ignored."""
     parts = token.split("/")
     if len(parts) < 9 or parts[0] != _ADMIN:
         return None
@@ -114,17 +114,17 @@ def session_of(token: str) -> str:
 
 
 def number_of(token: str) -> int:
-    """Return the number of the node or endpoint with that token."""
+    """Return the number of the node or endpoint of a token."""
     return int(token.split("/", 5)[4])
 
 
 def gid_of(token: str) -> bytes:
-    """Return the 16-byte gid of the endpoint with that token."""
+    """Return the 16-byte gid of the endpoint of a token."""
     return xxh3_128_intdigest(token.encode()).to_bytes(16, "little")
 
 
 def qos_text(qos: Qos) -> str:
-    """Write a profile as in a token: a field that has its default value stays empty."""
+    """Return a profile in token notation; fields with default values are empty."""
     reliability = "" if qos.reliable else str(int(qos.reliability))
     durability = str(int(qos.durability)) if qos.transient_local else ""
     history = str(int(qos.history)) if qos.history is History.KEEP_ALL else ""
@@ -138,7 +138,7 @@ def qos_text(qos: Qos) -> str:
 
 
 def parse_qos(text: str) -> Qos:
-    """Read what `qos_text` writes; fields that cannot be read take their defaults."""
+    """Parse the notation of `qos_text`; unreadable fields get their defaults."""
     fields = text.split(":") + [""] * 6
     history, _, depth = fields[2].partition(",")
     liveliness, _, lease = fields[5].partition(",")

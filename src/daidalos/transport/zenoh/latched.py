@@ -1,4 +1,4 @@
-"""Transient-local topics over zenoh: what publishers keep for who comes late, and asking for it.
+"""Transient-local topics over zenoh: caches of publishers and queries of late subscriptions.
 
 On the wire this is the protocol of zenoh's advanced publishers and subscribers, so that rmw_zenoh's nodes and ours
 have each other's histories. Zenoh's own leave something behind in every process, some kilobytes for each publisher
@@ -37,7 +37,7 @@ Identity = tuple[int, int, bytes]
 
 
 class Caches:
-    """The caches of a session, one for each topic."""
+    """Caches of a session, one for each topic."""
 
     def __init__(self, session: zenoh.Session) -> None:
         self._session = session
@@ -45,7 +45,7 @@ class Caches:
         self._caches: dict[str, Cache] = {}
 
     def enter(self, key: str, publisher: LatchedPublisher) -> Cache:
-        """Have a publisher's samples handed to who asks; returns the cache of its topic."""
+        """Add a publisher to the cache of its topic, and return the cache."""
         with self._lock:
             cache = self._caches.get(key)
             if cache is None:
@@ -54,7 +54,7 @@ class Caches:
             return cache
 
     def leave(self, key: str, publisher: LatchedPublisher) -> None:
-        """Forget a publisher's samples."""
+        """Remove a publisher's samples."""
         with self._lock:
             cache = self._caches[key]
             del cache.publishers[publisher]
@@ -64,7 +64,7 @@ class Caches:
 
 
 class Cache:
-    """Answers who asks what the publishers of a topic have kept.
+    """Queryable for the kept samples of a topic's publishers.
 
     Attributes
     ----------
@@ -92,14 +92,14 @@ class Cache:
                     query.reply(self._key, data, attachment=attached, timestamp=stamp)
 
     def close(self) -> None:
-        """Answer no more."""
+        """Stop answering queries."""
         with contextlib.suppress(zenoh.ZError):  # the session may have been closed before
             self._token.undeclare()
             self._queryable.undeclare()
 
 
 class LatchedPublisher(ZenohPublisher):
-    """Puts samples, and keeps the last ones for who comes later.
+    """Publisher that keeps its last samples for late subscriptions.
 
     Attributes
     ----------
@@ -126,13 +126,13 @@ class LatchedPublisher(ZenohPublisher):
                 self._publisher.put(self._pool.place(data), attachment=attached, timestamp=stamp)
 
     def close(self) -> None:
-        """Undeclare, and forget what was kept."""
+        """Undeclare, and remove the kept samples."""
         super().close()
         self._caches.leave(self._key, self)
 
 
 class LatchedSubscription(ZenohSubscription):
-    """Receives samples, those first that were sent before it came."""
+    """Subscription that receives earlier samples first."""
 
     def __init__(
         self, session: zenoh.Session, key: str, endpoint: EndpointInfo, on_sample: Callable[[Any], None]
@@ -141,7 +141,7 @@ class LatchedSubscription(ZenohSubscription):
         super().__init__(session, key, endpoint, self._history.accept)
 
     def ask(self, session: str) -> None:
-        """Ask a session for what its publishers of the topic have kept, now that it has one more of them."""
+        """Query a session for the kept samples of its publishers, after one of them was added."""
         self._history.ask(session)
 
     def close(self) -> None:
@@ -151,7 +151,7 @@ class LatchedSubscription(ZenohSubscription):
 
 
 class Question:
-    """One that was put to a session.
+    """Pending query of a session's cache.
 
     Attributes
     ----------
@@ -167,7 +167,7 @@ class Question:
 
 
 class History:
-    """Delivers what publishers have kept before what they send, and nothing twice.
+    """Merger of kept and new samples, in order and without duplicates.
 
     Parameters
     ----------
@@ -197,7 +197,7 @@ class History:
         self._delivering = False
 
     def ask(self, session: str) -> None:
-        """Ask a session for what its publishers have kept."""
+        """Query a session for the kept samples of its publishers."""
         with self._lock:
             question = self._questions.get(session)
             if question is not None:
@@ -207,7 +207,7 @@ class History:
         self._send(session, question)
 
     def accept(self, sample: zenoh.Sample) -> None:
-        """Take a sample as it is received."""
+        """Receive a sample."""
         stamp = sample.timestamp
         session = str(stamp.get_id()) if stamp is not None else ""
         unheard = None
@@ -225,7 +225,7 @@ class History:
         self._deliver_waiting()
 
     def close(self) -> None:
-        """Deliver no more."""
+        """Stop delivering."""
         with self._lock:
             self._closed = True
             self._waiting.clear()
@@ -254,7 +254,7 @@ class History:
             )
 
     def _merge_answers(self, session: str, question: Question) -> None:
-        """Put answers, and what came meanwhile, in order."""
+        """Merge the answers of a query, and the samples that arrived meanwhile, in order."""
         with self._lock:
             samples = {_identity(sample): sample for sample in question.samples}
             self._answered[session] = frozenset(samples)
@@ -267,7 +267,7 @@ class History:
             self._send(session, following)
 
     def _wanted(self, identities: Iterable[Identity]) -> list[Identity]:
-        """Return samples in the order in which they were sent, of those before our time only as many as are kept.
+        """Return samples in sending order, with at most as many from before the subscription as are kept.
 
         While a link is new, zenoh sends even what nobody has subscribed to yet.
         """
@@ -281,7 +281,7 @@ class History:
         return wanted
 
     def _is_news(self, identity: Identity) -> bool:
-        """Tell whether a sample is none that was delivered before the question, nor older than that."""
+        """Return whether a sample was not delivered before the query and is not older than that."""
         number, stamp, gid = identity
         last = self._last.get(gid)
         return last is None or number > last[0] or stamp > last[1]  # a publisher that is made again counts from 1
@@ -293,7 +293,7 @@ class History:
         self._last[gid] = (number, stamp)
 
     def _deliver_waiting(self) -> None:
-        """Deliver, one thread at a time and with no lock held, as who receives may do anything."""
+        """Deliver on one thread at a time without holding locks, since receivers may do anything."""
         while True:
             with self._lock:
                 if self._delivering or not self._waiting or self._closed:

@@ -1,4 +1,4 @@
-"""Zenoh's TCP links, made to close at once.
+"""Immediate closing of zenoh's TCP links.
 
 Zenoh asks the system to linger for ten seconds over what was not sent when a link closes. The other end of a link that
 is given up is usually gone, so that ten seconds it takes, on one of the few threads that serve all links: meanwhile
@@ -28,7 +28,7 @@ _NONE = struct.pack("ii", 0, 0)
 
 
 def disable_linger(session: Any) -> Any:
-    """Take the lingering from every TCP link of a session, now and whenever there is a new one.
+    """Disable lingering of every TCP link of a session, now and for new links.
 
     Returns what must be kept as long as the session; a thread of its own does the work, as zenoh's must never wait
     for Python's lock.
@@ -45,7 +45,7 @@ def _follow(events: Any) -> None:
 
 
 def clear_linger() -> None:
-    """Take the lingering from the sockets of this process that have zenoh's."""
+    """Disable lingering of the sockets of this process with zenoh's setting."""
     if sys.platform == "win32":
         return  # sockets cannot be listed there
     for number in map(int, os.listdir("/dev/fd")):

@@ -1,4 +1,4 @@
-"""Shared memory that large messages are written into at once, instead of by way of zenoh's own copy."""
+"""Shared memory for large messages, written without zenoh's intermediate copy."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _TIMEOUT_S = 1.0
 
 
 class Pool:
-    """Memory for the messages of a session that are under way, 16 MB in all; none is taken before it is needed.
+    """Shared memory of a session for messages in transit, 16 MB in all, allocated on first use.
 
     What a receiver holds when it is killed is never given back. Memory that was full for a while is therefore
     replaced; in case it is a receiver that lives and holds on, after twice as long each time.
@@ -37,7 +37,7 @@ class Pool:
         self._timeout = _TIMEOUT_S
 
     def place(self, data: bytes) -> Any:
-        """Return a large message in shared memory; any other, or one for which there is no room, as it is."""
+        """Return a large message in shared memory; return it unchanged if it is small or the pool is full."""
         size = len(data)
         if size < LARGE or size > _SIZE or not self._enabled:
             return data
@@ -65,7 +65,7 @@ class Pool:
         return self._enabled
 
     def _find(self, size: int) -> Any:
-        """Return free memory, None where there is none; pieces that lie side by side are joined if need be."""
+        """Return free memory, None if there is none; adjacent free blocks are merged if needed."""
         with contextlib.suppress(zenoh.ZError):
             return self._provider.alloc(size, self._policy)
         self._provider.defragment()

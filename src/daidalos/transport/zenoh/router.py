@@ -1,4 +1,4 @@
-"""A zenoh router: the meeting point of sessions that do not find each other by themselves."""
+"""Zenoh router, which connects sessions that cannot discover each other."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from daidalos.transport.zenoh.config import reason_of, router_config
 
 
 class Router:
-    """A router that runs from its construction until `close`.
+    """Router that runs from construction until `close`.
 
     Attributes
     ----------
@@ -38,5 +38,5 @@ class Router:
         self.identity = str(self._session.zid())
 
     def close(self) -> None:
-        """Stop; sessions that are connected with each other directly go on."""
+        """Stop the router; direct connections between sessions remain."""
         self._session.close()

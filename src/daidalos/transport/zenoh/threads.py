@@ -1,4 +1,4 @@
-"""Zenoh's threads in Python: which there are, and what keeps calls from them cheap."""
+"""Zenoh's threads in Python, and cheap callbacks from them."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _LAYOUT = "(rx: (handover: net), acc: (handover: net))"
 
 @contextmanager
 def limit_threads() -> Iterator[None]:
-    """Have zenoh, where it starts in here, read from a link on the thread that waits for it.
+    """Configure zenoh, if it starts in this process, to read each link on its waiting thread.
 
     It would hand every message to another thread first, which costs a quarter of a round trip. It reads its layout of
     threads once, from the environment, where a user's own stays.
@@ -31,7 +31,7 @@ def limit_threads() -> Iterator[None]:
 
 
 def on_lasting_thread(callback: Callable[[Any], None]) -> Callable[[Any], None]:
-    """Return what calls `callback` from a thread of zenoh's, at a fraction of the cost.
+    """Return a callback that calls `callback` from a thread of zenoh at a fraction of the cost.
 
     For a thread that it did not start, CPython makes a thread state at every call and drops it afterwards. With it
     go a mapping of memory and, on all cores, what they know of it: some 9 us a message. Here the first call keeps
@@ -49,7 +49,7 @@ def on_lasting_thread(callback: Callable[[Any], None]) -> Callable[[Any], None]:
 
 
 class _Local(threading.local):
-    """What is known of the present thread."""
+    """State of the current thread."""
 
     is_kept = False
 

@@ -34,10 +34,10 @@ class Scope(Protocol):
         """What relative paths start from."""
 
     def is_command(self, name: str) -> bool:
-        """Tell whether there is a command of this name."""
+        """Return whether there is a command of this name."""
 
     def is_target(self, name: str) -> bool:
-        """Tell whether there is a target of this name."""
+        """Return whether there is a target of this name."""
 
 
 def is_true(arguments: tuple[Argument, ...], scope: Scope) -> bool:

@@ -69,12 +69,12 @@ class Interpreter:
         return self._scopes[-2] if len(self._scopes) > 1 else self._scopes[-1]
 
     def is_command(self, name: str) -> bool:
-        """Tell whether there is a command of this name."""
+        """Return whether there is a command of this name."""
         name = name.lower()
         return name in self._handlers or name in self._ignored or name in self._defined
 
     def is_target(self, name: str) -> bool:
-        """Tell whether there is a target of this name."""
+        """Return whether there is a target of this name."""
         return name in self.contents.targets
 
     def path(self, value: str) -> Path:
@@ -82,7 +82,7 @@ class Interpreter:
         return self.folder / value
 
     def is_made_by_build(self, path: Path) -> bool:
-        """Tell whether only a program that is not run here would make a file."""
+        """Return whether only a program that is not run here would make a file."""
         return not path.exists() and path.is_relative_to(self.variables["CMAKE_BINARY_DIR"])
 
     def run_file(self, path: Path) -> None:

@@ -116,7 +116,7 @@ def _extend(run: Interpreter, variable: str, values: list[str]) -> None:
 
 
 def _register_component(run: Interpreter, call: Call) -> None:
-    """Note the executable that rclcpp_components_register_node makes; its library is left out as any other."""
+    """Record the executable that rclcpp_components_register_node makes; its library is left out as any other."""
     executable = keywords(call.values, (), ("EXECUTABLE", "PLUGIN", "EXECUTOR", "RESOURCE_INDEX"))[0].get("EXECUTABLE")
     if executable:
         target = Target(executable[0], "executable", call.where, links=["rclcpp_components"])

@@ -67,6 +67,6 @@ def _prepare_environment() -> None:
 
 
 def _has_ament_cmake() -> bool:
-    """Tell whether ROS 2 itself is there, with what compiles against it."""
+    """Return whether ROS 2 itself is there, with what compiles against it."""
     prefixes = os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)
     return any(prefix and os.path.isdir(os.path.join(prefix, "share", "ament_cmake", "cmake")) for prefix in prefixes)

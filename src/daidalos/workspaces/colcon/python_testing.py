@@ -18,6 +18,6 @@ class DeclaredPytestStep(PytestPythonTestingStep):  # type: ignore[misc]
         """Add no arguments: colcon's own step has them all."""
 
     def match(self, context: Any, env: dict[str, str], setup_py_data: dict[str, Any]) -> bool:
-        """Tell whether a file of the package asks for pytest."""
+        """Return whether a file of the package asks for pytest."""
         files = (Path(context.args.path) / name for name in ("setup.py", "setup.cfg", "package.xml"))
         return any("pytest" in path.read_text(encoding="utf-8", errors="replace") for path in files if path.is_file())

@@ -21,7 +21,7 @@ def fetch_graph() -> Graph | None:
 
 
 def is_running() -> bool:
-    """Tell whether the daemon runs."""
+    """Return whether the daemon runs."""
     return _ask("status") is not None
 
 

@@ -68,7 +68,7 @@ class Server:
         return self._stopping
 
     def _notice(self) -> None:
-        """Have `serve` look at the graph again; called on the transport's threads."""
+        """Call `serve` look at the graph again; on the transport's threads."""
         try:
             self._wake.send(b".")
         except BlockingIOError:

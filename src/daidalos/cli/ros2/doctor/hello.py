@@ -96,7 +96,7 @@ class Summary:
         return "\n".join(["", *lines, "-" * 60])
 
     def reset(self) -> None:
-        """Begin to count anew."""
+        """Start to count anew."""
         self.published = self.sent = 0
         self.subscribed.clear()
         self.received.clear()

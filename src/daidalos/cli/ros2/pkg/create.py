@@ -59,7 +59,7 @@ class CreateVerb(Verb):
         parser.add_argument("--library-name", help="name of the empty library")
 
     def main(self, *, args: Namespace) -> Status:
-        """Say what will be written, write it, and say what was written."""
+        """Return what will be written, write it, and say what was written."""
         if args.license == "?":
             print("\n".join(("Supported licenses:", *LICENSES)))
             return 0

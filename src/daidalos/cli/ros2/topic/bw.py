@@ -73,7 +73,7 @@ class BandwidthMeter:
         self._messages: deque[tuple[float, int]] = deque(maxlen=window_size)
 
     def add(self, now_s: float, size: int) -> None:
-        """Note a message of `size` bytes."""
+        """Record a message of `size` bytes."""
         self._messages.append((now_s, size))
 
     def report(self, now_s: float) -> str:

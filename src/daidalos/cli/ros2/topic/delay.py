@@ -72,7 +72,7 @@ class DelayMeter:
         self._new = False
 
     def add(self, now_ns: int, stamp_ns: int) -> None:
-        """Note a message."""
+        """Record a message."""
         self._delays.append((now_ns - stamp_ns) / _S)
         self._new = True
 

@@ -162,7 +162,7 @@ class Losses:
         self._total = 0
 
     def note(self, info: Any) -> int:
-        """Note a message's info; return how many are missing before it, and say so on standard error."""
+        """Record a message's info; return how many are missing before it, and say so on standard error."""
         number, publisher = info["publication_sequence_number"], info["publisher_gid"]
         if number is None or publisher is None:
             return 0

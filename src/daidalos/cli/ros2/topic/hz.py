@@ -105,7 +105,7 @@ class RateMeter:
         self._last: int | None = None
 
     def add(self, now_ns: int) -> bool:
-        """Note that it happened; False when the clock went back, so that everything begins anew."""
+        """Record that it happened; False when the clock went back, so that everything begins anew."""
         last, self._last = self._last, now_ns
         if last is not None and now_ns < last:
             self._intervals.clear()
