@@ -90,8 +90,8 @@ def test_a_file_that_is_missing(tmp_path):
     ("name", "content", "fault"),
     [
         ("a.mcap", b"", "the file is empty, expected a bag"),
-        ("a.mcap", b"hello, this is no bag", "no bag: it begins with 68 65 6c 6c 6f"),
-        ("a.mcap", b"\x89MCAP1\r\n", "no MCAP file: it begins with"),
+        ("a.mcap", b"hello, this is no bag", "not a bag: it begins with 68 65 6c 6c 6f"),
+        ("a.mcap", b"\x89MCAP1\r\n", "not an MCAP file: it begins with"),
         ("a.db3", b"SQLite format 3\0", "no sqlite3 file|damaged|can not be opened"),
         ("a.db3", b"SQLite format 3\0" + bytes(5000), "no sqlite3 file|damaged|can not be opened"),
         ("a.mcap.zstd", b"\x28\xb5\x2f\xfd" + bytes(30), "empty|can not be decompressed"),
@@ -109,7 +109,7 @@ def test_files_that_are_no_bags(tmp_path, name, content, fault):
 def test_places_where_there_is_no_bag(tmp_path):
     with pytest.raises(BagError, match="no such file or folder"):
         BagReader(tmp_path / "nowhere")
-    with pytest.raises(BagError, match=r"no bag: it holds no file that ends in \.mcap or \.db3"):
+    with pytest.raises(BagError, match=r"not a bag: it holds no file that ends in \.mcap or \.db3"):
         BagReader(tmp_path)
 
 
@@ -120,7 +120,7 @@ def test_an_sqlite_file_that_is_no_bag(tmp_path):
     database.execute("CREATE TABLE birds(name TEXT)")
     database.commit()
     database.close()
-    with pytest.raises(BagError, match="no bag: the database has no table 'messages'"):
+    with pytest.raises(BagError, match="not a bag: the database has no table 'messages'"):
         BagReader(tmp_path / "a.db3")
 
 

@@ -133,7 +133,7 @@ def test_a_setting_outweighs_the_profile(tmp_path):
 @pytest.mark.parametrize(
     ("storage", "text", "fault"),
     [
-        ("mcap", "chunksize: 3", "chunksize: 3 is no setting of MCAP files; there are: chunkSize"),
+        ("mcap", "chunksize: 3", "chunksize: 3 is not a setting of MCAP files; there are: chunkSize"),
         ("mcap", "chunkSize: -3", "chunkSize: -3"),
         ("mcap", "compression: Gzip", "compression: 'Gzip'"),
         ("mcap", "noChunking: maybe", "noChunking: 'maybe'"),

@@ -63,7 +63,7 @@ def packages(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
         "my_shapes/broken.py": "import nothing_that_is_there",
         "my_shapes-1.2.dist-info/METADATA": "Metadata-Version: 2.1\nName: my-shapes\nVersion: 1.2\n",
         "my_shapes-1.2.dist-info/entry_points.txt": ENTRY_POINTS,
-        "shapes_square/readme.txt": "a folder that is no package",
+        "shapes_square/readme.txt": "a folder that is not a package",
     }.items():
         (tmp_path / name).parent.mkdir(exist_ok=True)
         (tmp_path / name).write_text(text)

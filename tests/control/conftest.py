@@ -1,6 +1,6 @@
 """Makes the helpers of these tests importable.
 
-The folder is no package: its name would hide python-control from whatever imports that.
+The folder is not a package: its name would hide python-control from whatever imports that.
 """
 
 import sys

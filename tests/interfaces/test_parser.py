@@ -327,7 +327,7 @@ def test_number_of_parts(kind, text, words):
 
 
 def test_lines_are_counted_through_all_parts():
-    with pytest.raises(InterfaceError, match=r"^f\.action:6: 'BAD' is no field name"):
+    with pytest.raises(InterfaceError, match=r"^f\.action:6: 'BAD' is not a field name"):
         parse("int32 a\n---\n# b\nint32 b\n---\nint32 BAD", "pkg", "action", "Name", "f.action")
 
 
@@ -349,7 +349,7 @@ def test_errors_name_file_and_line(tmp_path):
     path.write_text("float64 x\n\nflot64 y\n")
     with pytest.raises(InterfaceError) as caught:
         parse_file(path, "my_pkg")
-    assert str(caught.value).startswith(f"{path}:3: 'flot64' is no type")
+    assert str(caught.value).startswith(f"{path}:3: 'flot64' is not a type")
     assert "\n" not in str(caught.value)
 
 
@@ -361,7 +361,7 @@ def test_files_of_other_kinds_are_refused(tmp_path):
 def test_a_file_that_is_no_text_is_refused(tmp_path):
     path = tmp_path / "Point.msg"
     path.write_bytes(b"float64 x # \xff\xfe")
-    with pytest.raises(InterfaceError, match="byte 12 is no UTF-8"):
+    with pytest.raises(InterfaceError, match="byte 12 is not valid UTF-8"):
         parse_file(path, "my_pkg")
 
 

@@ -148,7 +148,7 @@ def _parse_parameter(entry):
 
 
 def _refuse(constant):
-    raise AssertionError(f"{constant} is no JSON")
+    raise AssertionError(f"{constant} is not valid JSON")
 
 
 def test_a_value_that_is_not_a_number_survives():

@@ -68,8 +68,8 @@ def test_what_is_no_manifest_is_none(manifest):
     ("text", "line", "fault"),
     [
         ("", 1, "the file is empty"),
-        ("<package>\n<name>\n</package>", 3, "this is no XML: mismatched tag"),
-        ("not XML", 1, "this is no XML: syntax error"),
+        ("<package>\n<name>\n</package>", 3, "not valid XML: mismatched tag"),
+        ("not XML", 1, "not valid XML: syntax error"),
         (f'<package format="3">\n{HEAD.replace("1.2.3", "one")}\n</package>', 2, "version"),
         (f'<package format="3">{HEAD}\n<dependz>a</dependz></package>', 2, "dependz"),
         (f'<package format="3">\n\n{HEAD.replace("a@b.org", "nobody")}</package>', 3, "email"),

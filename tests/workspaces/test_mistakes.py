@@ -65,7 +65,7 @@ def test_a_tag_that_is_not_closed(workspace, terminal):
     try:
         printed = terminal().run("colcon list")
         fault = next(line for line in printed.splitlines() if "bad_xml" in line)
-        assert "src/bad_xml/package.xml:10: this is no XML: mismatched tag (column 3)" in fault
+        assert "src/bad_xml/package.xml:10: not valid XML: mismatched tag (column 3)" in fault
     finally:
         path.unlink()
 

@@ -119,4 +119,4 @@ def test_there_is_nothing_to_prepare(words, capsys):
 def test_a_faulty_manifest_is_named(source, capsys):
     Path("src/one/package.xml").write_text("<package>")
     assert rosdep.main(["keys", "--from-paths", "src"]) == 1
-    assert capsys.readouterr().err.startswith("ERROR: src/one/package.xml:1: this is no XML")
+    assert capsys.readouterr().err.startswith("ERROR: src/one/package.xml:1: not valid XML")

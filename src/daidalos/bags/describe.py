@@ -51,7 +51,7 @@ def describe(path: str | Path, storage_id: str = "") -> tuple[BagMetadata, list[
     paths = [place] if place.is_file() else bag_files(place, storage_id)
     folder = place if place.is_dir() else place.parent
     if not paths:
-        raise BagError(place, "no bag: it holds no file that ends in " + " or ".join(SUFFIXES.values()))
+        raise BagError(place, "not a bag: it holds no file that ends in " + " or ".join(SUFFIXES.values()))
     storages = {storage_id or storage_of(one) for one in paths if one.stat().st_size} or {""}
     if len(storages) > 1:
         raise BagError(place, f"it holds files of several storages: {', '.join(sorted(storages))}; choose one")

@@ -46,7 +46,7 @@ def storage_of(path: Path) -> str:
     if start.startswith(_ROS1_MAGIC):
         command = f"'rosbags-convert --src {path} --dst {path.with_suffix('')}'"
         raise BagError(path, f"is a bag of ROS 1; convert it with {command} (pip install 'daidalos[ros1]')")
-    raise BagError(path, f"no bag: it begins with {start[:8].hex(' ')}, expected an MCAP or sqlite3 file")
+    raise BagError(path, f"not a bag: it begins with {start[:8].hex(' ')}, expected an MCAP or sqlite3 file")
 
 
 def open_reader(path: Path, storage_id: str) -> StorageReader:

@@ -74,7 +74,7 @@ def writer_options(options: StorageOptions) -> McapOptions:
         change = _change(name, value)
         if change is None:
             known = ", ".join(sorted([*_SWITCHES, *_IGNORED, *_VALUES]))
-            raise BagError(options.config, f"{name}: {value!r} is no setting of MCAP files; there are: {known}")
+            raise BagError(options.config, f"{name}: {value!r} is not a setting of MCAP files; there are: {known}")
         chosen = replace(chosen, **change)
     return chosen
 

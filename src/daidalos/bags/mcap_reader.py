@@ -83,7 +83,7 @@ class McapReader(StorageReader):
         if self._data[: len(MAGIC)] != MAGIC:
             start = self._data[:8].hex(" ")
             self._data.close()
-            raise BagError(path, f"no MCAP file: it begins with {start}, expected {MAGIC.hex(' ')}")
+            raise BagError(path, f"not an MCAP file: it begins with {start}, expected {MAGIC.hex(' ')}")
         if not self._read_summary():
             self._walk()
         self._describe()

@@ -172,7 +172,7 @@ def parse_metadata(text: str, path: str | Path) -> BagMetadata:
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
         where = f"line {mark.line + 1}, column {mark.column + 1}: " if mark else ""
-        raise BagError(path, f"no YAML: {where}{getattr(error, 'problem', None) or error}") from None
+        raise BagError(path, f"not valid YAML: {where}{getattr(error, 'problem', None) or error}") from None
     reader = _Values(path, document).part(_ROOT)
     version = reader.get("version", int)
     if not 1 <= version <= VERSION:
@@ -243,14 +243,14 @@ class _Values:
         self.where = where
         if not isinstance(values, dict):
             found = "nothing" if values is None else type(values).__name__
-            raise BagError(path, f"no description of a bag: {where or 'the file'} holds {found}, expected a mapping")
+            raise BagError(path, f"not a description of a bag: {where or 'the file'} holds {found}, expected a mapping")
         self._values = values
 
     def get(self, name: str, kind: type, *default: Any) -> Any:
         if name not in self._values:
             if default:
                 return default[0]
-            raise BagError(self.path, f"no description of a bag: {self._at(name)} is missing")
+            raise BagError(self.path, f"not a description of a bag: {self._at(name)} is missing")
         value = self._values[name]
         optional = default and value is None
         if not optional and (not isinstance(value, kind) or (kind is int and isinstance(value, bool))):

@@ -55,7 +55,7 @@ def parse_profiles(value: Any) -> tuple[Qos, ...]:
         try:
             value = yaml.safe_load(value)
         except yaml.YAMLError as error:
-            raise ValueError(f"no YAML: {' '.join(str(error).split())}") from None
+            raise ValueError(f"not valid YAML: {' '.join(str(error).split())}") from None
     if value in (None, ""):
         return ()
     if not isinstance(value, list) or not all(isinstance(one, dict) for one in value):

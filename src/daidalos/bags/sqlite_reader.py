@@ -56,7 +56,7 @@ class SqliteReader(StorageReader):
             except sqlite3.OperationalError:
                 continue
             except _FAULTS as error:
-                raise BagError(self.path, f"no sqlite3 file: {_line(error)}") from None
+                raise BagError(self.path, f"not an sqlite3 file: {_line(error)}") from None
         raise BagError(self.path, "can not be opened as an sqlite3 file")
 
     def close(self) -> None:
@@ -66,7 +66,7 @@ class SqliteReader(StorageReader):
     def _describe(self) -> None:
         missing = {"topics", "messages"} - {name for (name,) in self._rows("SELECT name FROM sqlite_master")}
         if missing:
-            raise BagError(self.path, f"no bag: the database has no table '{min(missing)}'")
+            raise BagError(self.path, f"not a bag: the database has no table '{min(missing)}'")
         definitions = self._definitions()
         counts: dict[int, int] = dict(self._rows("SELECT topic_id, count(*) FROM messages GROUP BY topic_id"))
         columns = self._columns("topics")
@@ -127,7 +127,7 @@ class SqliteReader(StorageReader):
         query = f"SELECT topic_id, timestamp, data FROM messages WHERE topic_id IN ({which}) "
         for number, time, data in self._rows(f"{query} AND timestamp BETWEEN ? AND ? ORDER BY {order}", *limits):
             if data.__class__ is not bytes:
-                raise BagError(self.path, f"damaged: a message on {names[number]} is no bytes")
+                raise BagError(self.path, f"damaged: a message on {names[number]} is not bytes")
             yield BagMessage(names[number], data, time, time)
 
 

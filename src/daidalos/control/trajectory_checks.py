@@ -90,7 +90,7 @@ def _problem_with_point(point: TrajectoryPoint, command: TrajectoryCommand, rule
         if len(values) != count:
             return f"{at} has {len(values)} {name} for {count} joints"
         if not np.all(np.isfinite(values)):
-            return f"{at} has {name} that are no numbers"
+            return f"{at} has {name} that are not numbers"
     if point.efforts is not None:
         return f"{at} has efforts, which a trajectory can not be followed by"
     integrates = rules.allow_integration_in_goal_trajectories and point.velocities is not None

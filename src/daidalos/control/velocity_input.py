@@ -46,7 +46,7 @@ class VelocityInput:
         """Take a velocity that counts from its stamp, or from now where it has none."""
         now_ns = self._controller.now_ns
         if not (np.all(np.isfinite(command.linear)) and np.all(np.isfinite(command.angular))):
-            self._controller.context.warn("a velocity that is no number was ignored")
+            self._controller.context.warn("a velocity that is not a number was ignored")
             return
         stamp_ns = command.stamp_ns or now_ns
         if self._is_old(stamp_ns, now_ns):

@@ -84,7 +84,7 @@ def load_mesh(mesh: Mesh) -> TriangleMesh:
     Raises
     ------
     DescriptionError
-        When the file is not found, is no mesh or lacks the part.
+        When the file is not found, is not a mesh or lacks the part.
     """
     if mesh.path is None:
         raise DescriptionError(f"mesh {mesh.uri} not found", mesh.where)

@@ -245,7 +245,7 @@ def _mimic(
     if "mimic" in parameters:
         leader = parameters["mimic"].strip()
         if joints and leader not in joints:
-            raise element.error(f"it follows {leader!r}, which is no joint of the robot")
+            raise element.error(f"it follows {leader!r}, which is not a joint of the robot")
         return Mimic(
             leader, _number(element, parameters, "multiplier", 1.0), _number(element, parameters, "offset", 0.0)
         )

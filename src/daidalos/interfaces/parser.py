@@ -47,7 +47,7 @@ def parse_file(path: Path, package: str) -> Interface:
     try:
         text = path.read_text(encoding="utf-8-sig")
     except UnicodeDecodeError as error:
-        raise InterfaceError(f"{path}: byte {error.start} is no UTF-8") from None
+        raise InterfaceError(f"{path}: byte {error.start} is not valid UTF-8") from None
     return parse(text, package, kind, path.stem, str(path))
 
 
@@ -60,7 +60,7 @@ def parse(text: str, package: str, kind: str, name: str, source: str = "<text>")
         Naming `source` and the line that cannot be understood.
     """
     if not _NAME.match(name):
-        raise InterfaceError(f"{source}: '{name}' is no interface name; use CamelCase such as 'LaserScan'")
+        raise InterfaceError(f"{source}: '{name}' is not an interface name; use CamelCase such as 'LaserScan'")
     full = f"{package}/{kind}/{name}"
     lines = text.splitlines()
     if kind == "msg":
@@ -142,14 +142,14 @@ def _parse_line(code: str, comment: str, package: str) -> Field | Constant:
     if tail.startswith("=") and not tail.startswith("=="):
         return _parse_constant(field_type, name, tail[1:].strip(), comment)
     if not _FIELD_NAME.match(name):
-        raise InterfaceError(f"'{name}' is no field name; use lower case words joined by single underscores")
+        raise InterfaceError(f"'{name}' is not a field name; use lower case words joined by single underscores")
     default = _parse_default(field_type, tail) if tail else None
     return Field(field_type, name, default, comment)
 
 
 def _parse_constant(field_type: FieldType, name: str, text: str, comment: str) -> Constant:
     if not _CONSTANT_NAME.match(name):
-        raise InterfaceError(f"'{name}' is no constant name; use upper case words joined by underscores")
+        raise InterfaceError(f"'{name}' is not a constant name; use upper case words joined by underscores")
     if field_type.kind is not Kind.SINGLE or not field_type.is_primitive:
         raise InterfaceError(f"constant '{name}' must have a primitive type")
     return Constant(field_type, name, _parse_value(field_type, text), comment)
@@ -158,7 +158,7 @@ def _parse_constant(field_type: FieldType, name: str, text: str, comment: str) -
 def _parse_type(text: str, package: str) -> FieldType:
     match = _TYPE.match(text)
     if not match:
-        raise InterfaceError(f"'{text}' is no type")
+        raise InterfaceError(f"'{text}' is not a type")
     base, bound = match["base"], match["bound"]
     if base == "Header":
         base = "std_msgs/msg/Header"
@@ -180,7 +180,7 @@ def _full_name(base: str, package: str) -> str:
     if len(parts) == 1 and base in {"time", "duration"}:
         raise InterfaceError(f"'{base}' is ROS 1's: use builtin_interfaces/{base.capitalize()}")
     if len(parts) > 3 or not _NAME.match(parts[-1]):
-        raise InterfaceError(f"'{base}' is no type: expected a primitive, 'Name' or 'package/Name'")
+        raise InterfaceError(f"'{base}' is not a type: expected a primitive, 'Name' or 'package/Name'")
     if len(parts) == 3:
         return base
     return f"{parts[0] if len(parts) == 2 else package}/msg/{parts[-1]}"
@@ -213,20 +213,20 @@ def _parse_value(field_type: FieldType, text: str) -> bool | int | float | str:
     if base == "bool":
         truth = {"true": True, "false": False, "1": True, "0": False}.get(text.lower())
         if truth is None:
-            raise InterfaceError(f"'{text}' is no bool: expected true or false")
+            raise InterfaceError(f"'{text}' is not a bool: expected true or false")
         return truth
     if base in {"float32", "float64"}:
         try:
             value = float(text)
         except ValueError:
-            raise InterfaceError(f"'{text}' is no {base}") from None
+            raise InterfaceError(f"'{text}' is not a valid {base}") from None
         if base == "float32" and math.isfinite(value) and abs(value) > _FLOAT32_MAX:
             raise InterfaceError(f"{text} is out of range for float32")
         return value
     try:
         number = int(text) if text.lstrip("+-").isdigit() else int(text, 0)
     except ValueError:
-        raise InterfaceError(f"'{text}' is no {base}") from None
+        raise InterfaceError(f"'{text}' is not a valid {base}") from None
     low, high = INTEGER_RANGES[base]
     if not low <= number <= high:
         raise InterfaceError(f"{text} is out of range for {base} ({low} to {high})")

@@ -160,7 +160,7 @@ def _odometry(
     stamps = np.array([stamp for stamp, _ in stamped], dtype=np.int64)
     poses = np.array([pose for _, pose in stamped])
     if not np.isfinite(poses).all():
-        raise LogError(bag, f"odometry from {source} has poses that are no numbers")
+        raise LogError(bag, f"odometry from {source} has poses that are not numbers")
     return source, stamps, poses, _frame(base)
 
 

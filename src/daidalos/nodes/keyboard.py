@@ -27,12 +27,12 @@ class Keyboard:
     Raises
     ------
     UserError
-        When standard input is no terminal.
+        When standard input is not a terminal.
     """
 
     def __init__(self) -> None:
         if not sys.stdin.isatty():
-            raise UserError("the keys are read from standard input, and that is no terminal: start this in one")
+            raise UserError("the keys are read from standard input, which is not a terminal: run this in a terminal")
         self._before: Any = None
         self._continued: Any = None
         self._woken = threading.Event()

@@ -61,7 +61,7 @@ class AssetResolver:
         """
         path = self._locate(uri)
         if path.suffix.lower() not in EXTENSIONS:
-            raise AssetError(f"{uri}: {path.suffix or 'a file without extension'} is no mesh or texture")
+            raise AssetError(f"{uri}: {path.suffix or 'a file without extension'} is not a mesh or texture")
         try:
             if path.stat().st_size > LIMIT_BYTES:
                 raise AssetError(f"{uri}: larger than {LIMIT_BYTES >> 20} MiB")

@@ -74,7 +74,7 @@ def _read(path: Path, package: str) -> tuple[Interface, str | None]:
     try:
         text = path.read_text(encoding="utf-8-sig")
     except UnicodeDecodeError as error:
-        raise InterfaceError(f"{path}: byte {error.start} is no UTF-8") from None
+        raise InterfaceError(f"{path}: byte {error.start} is not valid UTF-8") from None
     found = read_idl(text, path.stem, str(path))
     if found.package != package:
         raise InterfaceError(f"{path}: its module is '{found.package}', expected '{package}' as the package is called")

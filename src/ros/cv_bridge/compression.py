@@ -36,7 +36,7 @@ def decompress(data: bytes) -> tuple[Image, str]:
     if cv2 is not None:
         image = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_UNCHANGED) if len(data) else None
         if image is None:
-            raise RuntimeError(f"the {len(data)} bytes of data are no compressed image that OpenCV knows")
+            raise RuntimeError(f"the {len(data)} bytes of data are not a compressed image that OpenCV knows")
     else:
         image = _read_by_pillow(data)
     channels = 1 if image.ndim == 2 else image.shape[2]
@@ -55,7 +55,7 @@ def _read_by_pillow(data: bytes) -> Image:
                 mode = "L"
             values = np.array(picture.convert(mode))
     except (OSError, SyntaxError) as error:
-        raise RuntimeError(f"the {len(data)} bytes of data are no compressed image: {error}") from None
+        raise RuntimeError(f"the {len(data)} bytes of data are not a compressed image: {error}") from None
     return values if values.ndim == 2 else values[..., [2, 1, 0, 3][: values.shape[2]]]
 
 

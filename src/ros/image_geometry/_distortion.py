@@ -45,7 +45,7 @@ def distortion(model: str, coefficients: Array) -> Callable[[Array], Array] | No
         return lambda rays: _distort_brown(rays, padded)
     known = ", ".join(f"'{name}'" for name in (*_BROWN, *_FISHEYE) if name)
     raise ValueError(
-        f"the distortion model '{model}' with {len(coefficients)} coefficients is none of {known}, "
+        f"the distortion model '{model}' with {len(coefficients)} coefficients is not one of {known}, "
         "with 4 to 12 coefficients"
     )
 

@@ -120,7 +120,7 @@ class WaitForTopics:
             If the topic is not one of those that are listened to.
         """
         if topic_name not in self._messages:
-            raise KeyError(f"'{topic_name}' is none of the topics {', '.join(map(repr, self._messages))}")
+            raise KeyError(f"'{topic_name}' is not one of the topics {', '.join(map(repr, self._messages))}")
         return list(self._messages[topic_name])
 
     def messages_received(self, topic_name: str) -> list[Any]:

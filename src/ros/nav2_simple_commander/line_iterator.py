@@ -18,7 +18,7 @@ class LineIterator:
     Raises
     ------
     TypeError
-        If one of them is no number.
+        If one of them is not a number.
     ValueError
         If the two points are one, or the step does not go forward.
     """

@@ -80,7 +80,7 @@ def get_logging_severity_from_string(log_severity: str) -> LoggingSeverity:
         return LoggingSeverity[log_severity.upper()]
     except KeyError:
         raise RuntimeError(
-            f"'{log_severity}' is no severity; expected one of {', '.join(LoggingSeverity.__members__)}"
+            f"'{log_severity}' is not a severity; expected one of {', '.join(LoggingSeverity.__members__)}"
         ) from None
 
 

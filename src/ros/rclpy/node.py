@@ -198,7 +198,7 @@ class Node(NodeEntities, NodeGraph):
             kind = type(self).__name__
             text = f"'{kind}' object has no attribute '{name}'"
             if "_default_callback_group" not in self.__dict__:
-                text = f"'{kind}' is no node yet: its __init__ has to call super().__init__('its_name') first"
+                text = f"'{kind}' is not a node yet: its __init__ has to call super().__init__('its_name') first"
             raise AttributeError(text, name=name, obj=self)
 
     def get_name(self) -> str:

@@ -104,7 +104,7 @@ class Parameter(Generic[T]):
     Raises
     ------
     TypeError
-        When `type_` is no type, or no parameter can hold the value.
+        When `type_` is not a type, or no parameter can hold the value.
     ValueError
         When type and value do not agree.
     """

@@ -23,7 +23,7 @@ def check_for_type_support(msg_or_srv_type: Any) -> None:
     except AttributeError as error:
         name = getattr(msg_or_srv_type, "__name__", msg_or_srv_type)
         raise AttributeError(
-            f"{error}. '{name}' is no ROS 2 message, service or action class; "
+            f"{error}. '{name}' is not a ROS 2 message, service or action class; "
             "import one such as 'from std_msgs.msg import String'"
         ) from None
     if support is None:

@@ -25,7 +25,7 @@ def satisfies_version(version: str, caret_range: str) -> None:
         When the version is not in the range.
     """
     if not caret_range.startswith("^"):
-        raise ValueError(f"'{caret_range}' is no caret range, such as '^0.1'")
+        raise ValueError(f"'{caret_range}' is not a caret range, such as '^0.1'")
     there, wanted = _numbers(version), _numbers(caret_range[1:])
     fixed = next((place for place, number in enumerate(wanted) if number), len(wanted) - 1) + 1
     if there < wanted or there[:fixed] != wanted[:fixed]:
@@ -34,5 +34,5 @@ def satisfies_version(version: str, caret_range: str) -> None:
 
 def _numbers(version: str) -> tuple[int, ...]:
     if not re.fullmatch(r"\d+(\.\d+)*", version):
-        raise ValueError(f"'{version}' is no version, such as '0.1'")
+        raise ValueError(f"'{version}' is not a version, such as '0.1'")
     return tuple(map(int, version.split(".")))

@@ -100,7 +100,7 @@ def _outputs(path: Path) -> list[Output]:
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
         where = f"line {mark.line + 1}, column {mark.column + 1}: " if mark else ""
-        raise BagError(path, f"no YAML: {where}{getattr(error, 'problem', None) or error}") from None
+        raise BagError(path, f"not valid YAML: {where}{getattr(error, 'problem', None) or error}") from None
     bags = document.get("output_bags") if isinstance(document, dict) else None
     if not isinstance(bags, list) or not bags or not all(isinstance(one, dict) for one in bags):
         raise BagError(path, "expected a list 'output_bags' with a mapping for every bag")

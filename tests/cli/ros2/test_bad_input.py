@@ -64,7 +64,11 @@ def test_mistakes_about_the_graph(env, talker):
         (["param", "get", "/taker", "speed"], 1, ["Node not found", "Did you mean '/talker'?"]),
         (["param", "describe", "/talker", "sped"], 0, ["Did you mean 'speed'?"]),
         (["param", "set", "/talker", "sped", "3"], 0, ["Setting parameter failed", "Did you mean 'speed'?"]),
-        (["param", "set", "/talker", "speed", "[1"], 0, ["Setting parameter failed", "no YAML: line 2, column 1"]),
+        (
+            ["param", "set", "/talker", "speed", "[1"],
+            0,
+            ["Setting parameter failed", "not valid YAML: line 2, column 1"],
+        ),
         (["param", "load", "/talker", "missing.yaml"], 1, ["missing.yaml: No such file or directory"]),
         (["service", "info", "/add_two_int"], 1, ["Unknown service", "Did you mean '/add_two_ints'?"]),
         ([*_BRIEFLY, "/cmd_vl", TWIST], 1, ["Did you mean '/cmd_vel'?"]),
@@ -76,7 +80,7 @@ def test_mistakes_about_the_graph(env, talker):
 @pytest.mark.parametrize(
     ("values", "fault"),
     [
-        ("{linear: [}", "The passed value is no YAML: line 1, column 11: "),
+        ("{linear: [}", "The passed value is not valid YAML: line 1, column 11: "),
         ("{lnear: {x: 1}}", "Did you mean 'linear'?"),
         ("{linear: {x:1.5}}", "Did you mean 'x: 1.5'? YAML wants a space after the colon"),
         ("{linear: {x: fast}}", "Failed to populate field: could not convert string to float: 'fast'"),

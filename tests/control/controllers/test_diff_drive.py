@@ -179,5 +179,5 @@ def test_velocities_that_are_no_numbers_are_ignored() -> None:
     rig = Rig()
     rig.run(0.05, 1.0)
     rig.send(math.nan, 0.0)
-    assert rig.warnings == ["a velocity that is no number was ignored"]
+    assert rig.warnings == ["a velocity that is not a number was ignored"]
     assert rig.run(0.05)[-1] == pytest.approx([10.0, 10.0])

@@ -341,7 +341,7 @@ def test_it_says_its_state_and_answers_what_it_will_want() -> None:
         (command((1.0, [0, 0, 0]), (1.0, [0, 0, 0])), "point 2 is not after the one before"),
         (command((-1.0, [0, 0, 0])), "is negative"),
         (command((1.0, [0, 0])), "has 2 positions for 3 joints"),
-        (command((1.0, [0, 0, np.nan])), "that are no numbers"),
+        (command((1.0, [0, 0, np.nan])), "that are not numbers"),
         (command((1.0, [0, 0, 0]), start_ns=1), "it ended 0.000 s ago|it ended 1.000 s ago"),
         (TrajectoryCommand(JOINTS, (TrajectoryPoint(1.0, velocities=np.zeros(3)),)), "has no positions"),
         (

@@ -64,7 +64,7 @@ def test_files_may_give_two_names(tmp_path: Path):
 @pytest.mark.parametrize(
     ("word", "words"),
     [
-        ("/scan", "'/scan' is no bridge"),
+        ("/scan", "'/scan' is not a bridge"),
         ("/scan@sensor_msgs/msg/LaserScan@gz.msgs.Image", "stands for gz.msgs.LaserScan, not for gz.msgs.Image"),
         (
             "/scan@sensor_msgs/msg/LaserScn@gz.msgs.LaserScan",

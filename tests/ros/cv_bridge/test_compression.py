@@ -79,7 +79,7 @@ def test_types_that_a_format_cannot_hold(codec: str) -> None:
 
 @pytest.mark.parametrize("data", [b"", b"no image at all", b"\x89PNG\r\n\x1a\n" + bytes(20)])
 def test_data_that_is_no_image(codec: str, data: bytes) -> None:
-    with pytest.raises(CvBridgeError, match=f"the {len(data)} bytes of data are no compressed image"):
+    with pytest.raises(CvBridgeError, match=f"the {len(data)} bytes of data are not a compressed image"):
         CvBridge().compressed_imgmsg_to_cv2(CompressedImage(format="png", data=data))
 
 

@@ -155,7 +155,7 @@ def test_two_cameras():
 def test_cameras_that_are_none():
     with pytest.raises(ValueError, match="not calibrated"):
         PinholeCameraModel().fromCameraInfo(CameraInfo())
-    with pytest.raises(ValueError, match="the distortion model 'jelly' with 5 coefficients is none of 'plumb_bob'"):
+    with pytest.raises(ValueError, match="the distortion model 'jelly' with 5 coefficients is not one of 'plumb_bob'"):
         camera(distortion_model="jelly")
     with pytest.raises(ValueError, match="with 3 coefficients"):
         camera(d=[0.1, 0.2, 0.3])

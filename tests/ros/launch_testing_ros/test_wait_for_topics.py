@@ -29,7 +29,7 @@ def test_topics_on_which_something_comes(node):
         assert waiting.topics_not_received() == set()
         assert [message.data for message in waiting.received_messages("right")] == ["d"]
         assert len(waiting.messages_received("left")) <= 2
-        with pytest.raises(KeyError, match="'middle' is none of the topics 'left', 'right'"):
+        with pytest.raises(KeyError, match="'middle' is not one of the topics 'left', 'right'"):
             waiting.received_messages("middle")
     waiting.shutdown()
 

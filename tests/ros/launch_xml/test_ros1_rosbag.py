@@ -79,7 +79,7 @@ def test_what_is_not_done_is_said(old, option):
     ("old", "reason"),
     [
         ("record -a --dance", "rosbag record: unrecognized arguments: --dance"),
-        ("record -a --duration=soon", "argument -d/--duration: 'soon' is no duration; expected such as 30s"),
+        ("record -a --duration=soon", "argument -d/--duration: 'soon' is not a duration; expected such as 30s"),
         ("play", "expected a bag to play, found none"),
     ],
 )

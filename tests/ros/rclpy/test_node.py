@@ -112,7 +112,7 @@ def test_a_class_that_forgot_its_nodes_init_is_told(node: Node) -> None:
         def __init__(self) -> None:
             self.create_publisher(String, "chatter", 10)
 
-    with pytest.raises(AttributeError, match=r"'Forgetful' is no node yet: its __init__ has to call super\(\)"):
+    with pytest.raises(AttributeError, match=r"'Forgetful' is not a node yet: its __init__ has to call super\(\)"):
         Forgetful()
     with pytest.raises(AttributeError, match="'Node' object has no attribute 'get_nam'"):
         node.get_nam()  # type: ignore[attr-defined]

@@ -298,7 +298,7 @@ def test_types_that_are_not_known(node, tmp_path, capfd):
 
 def test_options_that_make_no_sense(graph, tmp_path):
     uri = write_chatter(tmp_path / "bag", 1)
-    with pytest.raises(RuntimeError, match="'xxx' is no severity"):
+    with pytest.raises(RuntimeError, match="'xxx' is not a severity"):
         Player(StorageOptions(uri), PlayOptions(**QUIET), "xxx")
     with pytest.raises(RuntimeError, match="no such file or folder"):
         Player(StorageOptions(str(tmp_path / "nowhere")), PlayOptions(**QUIET))

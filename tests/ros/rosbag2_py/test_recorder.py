@@ -191,7 +191,7 @@ def test_recording_until_it_is_cancelled(node, tmp_path):
 
 
 def test_options_that_make_no_sense(graph, tmp_path):
-    with pytest.raises(RuntimeError, match="'xxx' is no severity"):
+    with pytest.raises(RuntimeError, match="'xxx' is not a severity"):
         Recorder(StorageOptions(str(tmp_path / "bag")), RecordOptions(), "xxx")
     with pytest.raises(ValueError, match="invalid regular expression"):
         Recorder(StorageOptions(str(tmp_path / "bag")), RecordOptions(regex="("))

@@ -47,7 +47,7 @@ output_bags:
     [
         ("", "expected a list 'output_bags'"),
         ("output_bags: []", "expected a list 'output_bags'"),
-        ("output_bags: [", "no YAML: line 1, column 15"),
+        ("output_bags: [", "not valid YAML: line 1, column 15"),
         ("output_bags: [{storage_id: mcap}]", r"output_bags\[0\]: uri is missing"),
         ("output_bags: [{uri: a, storage: mcap}]", r"output_bags\[0\].storage: unknown; there are: all"),
         ("output_bags: [{uri: a, topics: /b}]", r"output_bags\[0\].topics: expected a list, found '/b'"),

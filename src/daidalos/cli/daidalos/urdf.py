@@ -56,7 +56,7 @@ def _load(args: argparse.Namespace) -> "Robot | Model | World":
     for word in args.mappings:
         name, separator, value = word.partition(":=")
         if not separator:
-            raise ValueError(f"'{word}' is no argument; write name:=value")
+            raise ValueError(f"'{word}' is not an argument; write name:=value")
         mappings[name] = value
     if args.file.is_dir() or _is_sdf(args.file):
         return _load_sdf(args.file, mappings)

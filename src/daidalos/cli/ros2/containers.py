@@ -124,7 +124,7 @@ def _log_level(name: str) -> int:
     try:
         return levels[name.upper()]
     except KeyError:
-        raise CliError(f"'{name}' is no log level: use one of {', '.join(filter(None, levels))}") from None
+        raise CliError(f"'{name}' is not a log level: use one of {', '.join(filter(None, levels))}") from None
 
 
 def _parameter(text: str) -> Any:

@@ -68,7 +68,7 @@ def parse_yaml(text: str) -> Any:
     try:
         return yaml.load(text, getattr(yaml, "CSafeLoader", yaml.SafeLoader))
     except yaml.YAMLError as error:
-        raise CliError(f"The passed value is no YAML: {_yaml_error(error)}") from None
+        raise CliError(f"The passed value is not valid YAML: {_yaml_error(error)}") from None
 
 
 def _yaml_error(error: Exception) -> str:

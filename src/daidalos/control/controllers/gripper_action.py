@@ -85,7 +85,7 @@ class PositionGripperController(Controller):
 
     def _refuse(self, request: GripperRequest) -> str:
         if not math.isfinite(request.position):
-            return f"the position is no number: {request.position}"
+            return f"the position is not a number: {request.position}"
         named = request.joint if isinstance(request, ParallelGripperRequest) else ""
         return f"'{named}' is not the gripper's joint, '{self.p.joint}' is" if named not in ("", self.p.joint) else ""
 

@@ -133,7 +133,7 @@ class JointTrajectoryController(Controller):
     def _refuse(self, request: TrajectoryRequest) -> str:
         problem = problem_with(request.trajectory, self.p, self.now_ns)
         strange = next((name for name in (*request.path, *request.goal) if name not in self._joints), "")
-        return problem or (f"tolerance for '{strange}', which is no joint of the controller" if strange else "")
+        return problem or (f"tolerance for '{strange}', which is not a joint of the controller" if strange else "")
 
     def _start_goal(self, goal: Goal) -> None:
         self._replace(goal.request.trajectory, goal)

@@ -120,7 +120,7 @@ class Codec:
         if data[:2] != BIG_ENDIAN or len(data) < 4:
             start = data[:4].hex(" ") or "nothing"
             raise CdrError(
-                f"no CDR data for {self.message_type._TYPE_NAME}: it starts with {start}, "
+                f"invalid CDR data of {self.message_type._TYPE_NAME}: it starts with {start}, "
                 "expected 00 01 (little-endian CDR) or 00 00 (big-endian CDR)"
             )
         decode = _compile("decode", Decoder(self.message_type, Variant(">", self._wide)).source())
@@ -189,7 +189,7 @@ def _check_kind(message: object, kind: type[Message]) -> None:
 
 
 def _truncated(kind: type[Message], data: bytes, error: Exception) -> str:
-    return f"{len(data)} bytes are no {kind._TYPE_NAME}: {error}"
+    return f"{len(data)} bytes are not a valid {kind._TYPE_NAME}: {error}"
 
 
 def _explain(message: Any, error: Exception) -> str:

@@ -66,7 +66,7 @@ def _pattern(text: str) -> re.Pattern[str]:
     try:
         return re.compile(python)
     except re.error as error:
-        raise FilterError(f"{text!r} is no regular expression: {error}") from None
+        raise FilterError(f"{text!r} is not a regular expression: {error}") from None
 
 
 def _overlap(bounds: Any) -> Callable[[NDArray[np.float64], NDArray[np.float64]], bool]:
@@ -74,7 +74,7 @@ def _overlap(bounds: Any) -> Callable[[NDArray[np.float64], NDArray[np.float64]]
     if bounds.type == bounds.TYPE_EMPTY:
         return lambda low, high: True
     if bounds.type not in (bounds.TYPE_BOX, bounds.TYPE_SPHERE):
-        raise FilterError("bounds that are no box and no sphere are not supported")
+        raise FilterError("bounds that are neither a box nor a sphere are not supported")
     if len(bounds.points) != 2:
         raise FilterError(f"a box or a sphere has 2 points, got {len(bounds.points)}")
     first, second = (np.array(vector_of(point)) for point in bounds.points)

@@ -125,7 +125,7 @@ class StandardServices:
 
     def _spawned(self, request: Any) -> str:
         if request.name and not re.fullmatch(r"[\w.:/ -]+", request.name):
-            raise Failure(_NAME_INVALID, f"{request.name!r} is no name for an entity")
+            raise Failure(_NAME_INVALID, f"{request.name!r} is not a name for an entity")
         stamped = request.initial_pose
         try:
             return self._host.insert(

@@ -91,7 +91,7 @@ def parse_arguments(words: Sequence[str]) -> tuple[list[Bridge], list[str]]:
             continue
         match = _ARGUMENT.fullmatch(word)
         if match is None:
-            raise MappingError(f"'{word}' is no bridge; write topic@ros_type@gz_type, with [ or ] for one direction")
+            raise MappingError(f"'{word}' is not a bridge; write topic@ros_type@gz_type, with [ or ] for one direction")
         topic, direction = match["topic"], _DIRECTIONS[match["direction"]]
         bridges.append(_checked(Bridge(topic, topic, match["ros"], match["gz"], direction), word))
     return bridges, services

@@ -76,7 +76,7 @@ def parse(arguments: Sequence[str]) -> dict[str, Any]:
     Raises
     ------
     UserError
-        When the old style is used with words that are no numbers.
+        When the old style is used with words that are not numbers.
     """
     if len(arguments) in _OLD_ORDERS and not any(word.startswith("--") for word in arguments):
         print("[WARN] []: Old-style arguments are deprecated; see --help for new-style arguments", file=sys.stderr)

@@ -34,7 +34,7 @@ class Switch(Node):
         first = str(self.declare_parameter("initial_topic", "").value)
         self.chosen = first or (self.topics[0] if self.topics else NONE)
         if self.chosen != NONE and self.chosen not in self.topics:
-            raise RuntimeError(f"initial_topic '{self.chosen}' is none of {', '.join(self.topics) or 'no topics'}")
+            raise RuntimeError(f"initial_topic '{self.chosen}' is not one of {', '.join(self.topics) or 'no topics'}")
         latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
         self._selected = self.create_publisher(String, "~/selected", latched)
         handlers: tuple[Callable[[Any, Any], Any], ...] = (

@@ -81,7 +81,7 @@ def depths_of(inverse: Any, triangles: Any, near: Any, far: Any, depths: Any) ->
 
 @compiled
 def points_of(depths: Any, rays: Any, points: Any) -> None:
-    """Place each pixel's depth along its ray (rows, columns, 3); what is out of reach is no number."""
+    """Place each pixel's depth along its ray (rows, columns, 3); what is out of reach is not a number."""
     rows, columns = depths.shape
     none = np.float32(np.nan)
     for row in range(rows):

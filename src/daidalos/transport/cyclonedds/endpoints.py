@@ -237,6 +237,6 @@ def _joined(client: int, sequence: int, data: bytes) -> list[Any]:
 def _split(data: bytes) -> tuple[int, int, bytes]:
     """Return (client, sequence, message) of a request or reply."""
     if len(data) < _ENCAPSULATION + _HEADER.size:
-        raise CdrError(f"{len(data)} bytes are no request or reply: the header takes {_HEADER.size}")
+        raise CdrError(f"{len(data)} bytes are not a request or reply: the header takes {_HEADER.size}")
     client, sequence = _HEADER.unpack_from(data, _ENCAPSULATION)
     return client, sequence, data[:_ENCAPSULATION] + data[_ENCAPSULATION + _HEADER.size :]

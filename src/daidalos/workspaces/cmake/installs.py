@@ -195,7 +195,7 @@ def _generate_interfaces(run: Interpreter, call: Call) -> None:
         if not path.is_file():
             raise WorkspaceError(f"{call.where}: {call.name}(): there is no file '{name}'")
         if path.suffix not in (".msg", ".srv", ".action", ".idl"):
-            raise WorkspaceError(f"{call.where}: {call.name}(): '{name}' is no .msg, .srv, .action or .idl file")
+            raise WorkspaceError(f"{call.where}: {call.name}(): '{name}' is not an .msg, .srv, .action or .idl file")
         paths.append(path)
     before = run.contents.interfaces.files if run.contents.interfaces else []
     run.contents.interfaces = Interfaces(before + paths, call.where)

@@ -96,7 +96,7 @@ class Interpreter:
         try:
             text = path.read_text(encoding="utf-8-sig")
         except UnicodeDecodeError as error:
-            raise WorkspaceError(f"{path}: byte {error.start} is no UTF-8") from None
+            raise WorkspaceError(f"{path}: byte {error.start} is not valid UTF-8") from None
         outer, self.source = self.source, path
         self.variables["CMAKE_CURRENT_LIST_DIR"] = str(path.parent)
         self.variables["CMAKE_CURRENT_LIST_FILE"] = str(path)

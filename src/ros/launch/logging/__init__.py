@@ -194,7 +194,7 @@ def get_output_loggers(
     Raises
     ------
     ValueError
-        If it is none of these.
+        If it is not one of these.
     """
     destinations = _read_output_config(output_config)
     return (

@@ -27,7 +27,7 @@ def ensure_argument_type(
     Raises
     ------
     TypeError
-        If it is of none of them, or if `types` holds something that is no type.
+        If it is of none of them, or if `types` holds something that is not a type.
     """
     accepted = (types,) if isinstance(types, type) else tuple(types)
     for entry in accepted:

@@ -162,7 +162,7 @@ class _Parser(ArgumentParser):
 def _duration(text: str) -> float:
     match = re.fullmatch(r"(\d+(?:\.\d*)?)([smh]?)", text)
     if match is None:
-        raise ArgumentTypeError(f"'{text}' is no duration; expected such as 30s, 5m or 2h")
+        raise ArgumentTypeError(f"'{text}' is not a duration; expected such as 30s, 5m or 2h")
     return float(match[1]) * _UNITS_S[match[2]]
 
 

@@ -139,7 +139,7 @@ def parse_remap(text: str) -> RemapRule:
     Raises
     ------
     RCLInvalidROSArgsError
-        When it is none of these.
+        When it is not one of these.
     """
     match, separator, replacement = text.partition(":=")
     if not separator or not match or not replacement:

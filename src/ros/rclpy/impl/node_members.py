@@ -100,7 +100,7 @@ class NodeMembers:
         self._wake_executor()
 
     def destroy_publisher(self, publisher: Publisher) -> bool:
-        """Destroy a publisher; False when it is none of the node's."""
+        """Destroy a publisher; False when it is not one of the node's."""
         if publisher not in self._rcl_members["publisher"]:
             return False
         self._rcl_members["publisher"].remove(publisher)
@@ -110,7 +110,7 @@ class NodeMembers:
         return True
 
     def destroy_subscription(self, subscription: Subscription) -> bool:
-        """Destroy a subscription; False when it is none of the node's."""
+        """Destroy a subscription; False when it is not one of the node's."""
         if not self._rcl_remove("subscription", subscription):
             return False
         for handler in subscription.event_handlers:
@@ -119,23 +119,23 @@ class NodeMembers:
         return True
 
     def destroy_client(self, client: Client) -> bool:
-        """Destroy a client; False when it is none of the node's."""
+        """Destroy a client; False when it is not one of the node's."""
         return self._rcl_destroy_member("client", client)
 
     def destroy_service(self, service: Service) -> bool:
-        """Destroy a service; False when it is none of the node's."""
+        """Destroy a service; False when it is not one of the node's."""
         return self._rcl_destroy_member("service", service)
 
     def destroy_timer(self, timer: Timer) -> bool:
-        """Destroy a timer; False when it is none of the node's."""
+        """Destroy a timer; False when it is not one of the node's."""
         return self._rcl_destroy_member("timer", timer)
 
     def destroy_guard_condition(self, guard: GuardCondition) -> bool:
-        """Destroy a guard condition; False when it is none of the node's."""
+        """Destroy a guard condition; False when it is not one of the node's."""
         return self._rcl_destroy_member("guard", guard)
 
     def destroy_rate(self, rate: Rate) -> bool:
-        """Destroy a rate; False when it is none of the node's."""
+        """Destroy a rate; False when it is not one of the node's."""
         return self._rcl_destroy_member("rate", rate)
 
     def _rcl_destroy_member(self, kind: str, entity: Any) -> bool:

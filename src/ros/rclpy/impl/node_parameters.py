@@ -82,7 +82,7 @@ class NodeParameters(NodeParameterSetting):
         Raises
         ------
         TypeError
-            When an entry is none of these.
+            When an entry is not one of these.
         ValueError, ParameterException
             As in `declare_parameter`.
         """

@@ -148,7 +148,7 @@ class LifecycleNodeMixin(ManagedEntity):
         return publisher
 
     def destroy_lifecycle_publisher(self, publisher: LifecyclePublisher) -> bool:
-        """Destroy such a publisher; False when it is none of the node's."""
+        """Destroy such a publisher; False when it is not one of the node's."""
         self._rcl_managed_entities.discard(publisher)
         node: Any = self
         return bool(node.destroy_publisher(publisher))

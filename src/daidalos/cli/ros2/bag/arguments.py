@@ -136,7 +136,7 @@ def remapping_arguments(rules: list[str]) -> list[str]:
     for rule in rules:
         old, sign, new = rule.partition(":=")
         if not (old and sign and new):
-            raise error(f"--remap: '{rule}' is no remapping rule; expected such as /old:=/new")
+            raise error(f"--remap: '{rule}' is not a remapping rule; expected such as /old:=/new")
         words += ["--remap", rule]
     return ["--ros-args", *words] if words else []
 

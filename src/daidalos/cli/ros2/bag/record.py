@@ -241,7 +241,7 @@ def _storage_options(args: Namespace, uri: str) -> StorageOptions:
     for pair in args.custom_data:
         key, sign, value = pair.partition("=")
         if not key or not sign:
-            raise common.error(f"--custom-data: '{pair}' is no pair; expected such as key=value")
+            raise common.error(f"--custom-data: '{pair}' is not a pair; expected such as key=value")
         custom[key] = value
     return StorageOptions(
         uri,

@@ -42,7 +42,7 @@ class ListVerb(Verb):
         try:
             pattern = re.compile(args.filter[0] if args.filter else "")
         except re.error as error:
-            raise CliError(f"The filter '{args.filter[0]}' is no regular expression: {error}") from None
+            raise CliError(f"The filter '{args.filter[0]}' is not a regular expression: {error}") from None
         with direct_node(args) as node:
             names = [find_node(node, args)] if args.node_name else _with_parameters(node, args.include_hidden_nodes)
             for name in names:

@@ -33,7 +33,7 @@ class PointCloudDisplay extends PointsDisplay<PointCloud2> {
       const row = Math.floor(i / cloud.width);
       const offset = row * cloud.row_step + (i - row * cloud.width) * cloud.point_step;
       const [px, py, pz] = [x(offset), y(offset), z(offset)];
-      // What was not hit is no number in the clouds of cameras, and infinitely far in those of lidars.
+      // What was not hit is not a number in the clouds of cameras, and infinitely far in those of lidars.
       if (!Number.isFinite(px + py + pz)) {
         continue;
       }
