@@ -1,1 +1,1 @@
-"""Robots and worlds as data: URDF, xacro, SDF and meshes, and forward kinematics."""
+"""Data model of robots and worlds: URDF, xacro, SDF and meshes, and forward kinematics."""

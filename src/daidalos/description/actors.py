@@ -1,4 +1,4 @@
-"""Where an actor is at a time of its script."""
+"""Poses of actors over the time of their scripts."""
 
 from __future__ import annotations
 

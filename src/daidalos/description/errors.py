@@ -1,10 +1,10 @@
-"""The error that bad robot and world descriptions raise."""
+"""Error of robot and world descriptions."""
 
 from __future__ import annotations
 
 
 class DescriptionError(Exception):
-    """A description that can not be used, with the place that is wrong.
+    """Unusable description; the message names the location.
 
     Parameters
     ----------

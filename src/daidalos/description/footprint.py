@@ -1,4 +1,4 @@
-"""The true plan of a world: its static collision geometry cut at one height, as a raster."""
+"""Ground-truth map of a world: its static collision geometry cut at one height, as a raster."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Footprint:
-    """Which cells of the plane are inside something solid.
+    """Raster of the cells that are inside static collision geometry.
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ class Footprint:
         return int(np.floor((y - self.origin[1]) / self.resolution)), column
 
     def reachable(self, x: float, y: float) -> NDArray[np.bool_]:
-        """Return the free cells that are connected with a point, sideways and not over corners."""
+        """Return the free cells that are 4-connected with a point."""
         from scipy import ndimage
 
         row, column = self.cell(x, y)
@@ -52,7 +52,7 @@ class Footprint:
         return connected
 
     def visible_walls(self, x: float, y: float) -> NDArray[np.bool_]:
-        """Return the occupied cells that a sensor that starts at a point can ever see.
+        """Return the occupied cells that are visible from any cell reachable from a point.
 
         These are the cells of solids that touch the free space around the point, corners included;
         the inside of walls and what lies behind them is not among them.
@@ -65,7 +65,7 @@ class Footprint:
 
 
 def footprint(world: World, height: float, resolution: float = 0.05, margin: float = 0.5) -> Footprint:
-    """Cut the static models of a world at one height.
+    """Compute the raster of a world's static models at one height.
 
     Parameters
     ----------
@@ -110,7 +110,7 @@ def _cuts(world: World, height: float) -> list[Array]:
 
 
 def _outline(mesh: TriangleMesh, pose: Pose, height: float) -> Array:
-    """Intersect triangles with the horizontal plane; a vertex on the plane counts as above it."""
+    """Intersect triangles with the horizontal plane; vertices on the plane count as above it."""
     vertices = mesh.vertices @ rotation_matrix(pose.orientation).T + pose.position
     corners = vertices[mesh.faces]
     above = corners[:, :, 2] >= height
@@ -124,7 +124,7 @@ def _outline(mesh: TriangleMesh, pose: Pose, height: float) -> Array:
 
 
 def _at_height(a: Array, b: Array, height: float) -> Array:
-    """Return x and y where the lines from `a` to `b` pass the height."""
+    """Return x and y where the lines from `a` to `b` cross the height."""
     t = (height - a[:, 2]) / (b[:, 2] - a[:, 2])
     crossing: Array = a[:, :2] + t[:, None] * (b[:, :2] - a[:, :2])
     return crossing

@@ -1,4 +1,4 @@
-"""Finds models of Gazebo Fuel, by their address, among those that Gazebo's tools downloaded before."""
+"""Lookup of Gazebo Fuel models, by URI, among those that Gazebo's tools downloaded."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _SERVERS = ("fuel.gazebosim.org", "fuel.ignitionrobotics.org")
 
 
 def fuel_candidates(uri: str, model_path: Sequence[Path] = ()) -> Iterator[Path]:
-    """Yield where the model or file of an address can lie on this machine; nothing is downloaded.
+    """Yield the possible locations of a URI's model or file on this machine; nothing is downloaded.
 
     These are the cache of Fuel's tools, laid out as server, owner, ``models``, name and version, all in small
     letters; and the folders of models, where it goes by its name, or as Gazebo classic writes such a name:
@@ -50,7 +50,7 @@ def _caches() -> list[Path]:
 
 
 def _versions(folder: Path, wanted: str | None) -> list[Path]:
-    """Return the version wanted, or all of them, the newest first."""
+    """Return the requested version, or all of them, newest first."""
     if wanted is not None and wanted.isdigit():
         return [folder / wanted]
     found = [path for path in folder.iterdir() if path.name.isdigit()] if folder.is_dir() else []

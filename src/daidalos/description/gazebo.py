@@ -1,4 +1,4 @@
-"""Turns a URDF robot with its ``<gazebo>`` extensions into the model that a simulator runs.
+"""Conversion of URDF robots with ``<gazebo>`` extensions to models for the simulator.
 
 Does what Gazebo does when a URDF is spawned, except that links on fixed joints stay links of their
 own, so that every name of the description keeps its meaning in the simulation.
@@ -21,7 +21,7 @@ from daidalos.description.world import Model
 
 
 def model_from_robot(robot: Robot) -> Model:
-    """Turn a robot into a model.
+    """Convert a robot to a model.
 
     Parameters
     ----------
@@ -63,7 +63,7 @@ def model_from_robot(robot: Robot) -> Model:
 
 
 class _Extensions:
-    """The ``<gazebo>`` elements of a robot, sorted by what they refer to."""
+    """``<gazebo>`` elements of a robot by their references."""
 
     def __init__(self, robot: Robot) -> None:
         self._of_robot: list[Element] = []
@@ -136,7 +136,7 @@ def _surface(elements: list[Element]) -> Surface:
 
 
 def _number(elements: list[Element], *tags: str) -> float | None:
-    """Return the last value that was given; ``<mu1 value="0.2"/>`` is an old way to write it."""
+    """Return the last value given; ``<mu1 value="0.2"/>`` is an old notation."""
     value: float | None = None
     for element in elements:
         child = element.first(*tags)
@@ -146,7 +146,7 @@ def _number(elements: list[Element], *tags: str) -> float | None:
 
 
 def _flag(elements: list[Element], *tags: str) -> bool | None:
-    """Return the last value that was given."""
+    """Return the last value given."""
     value: bool | None = None
     for element in elements:
         if element.first(*tags) is not None:
@@ -167,7 +167,7 @@ def _colored(visual: Visual, material: Material | None) -> Visual:
 
 
 def _number_name(collision: Collision, link: Link, index: int) -> Collision:
-    """Return a collision the name that Gazebo gives it, for contact messages."""
+    """Name a collision as Gazebo does, for contact messages."""
     if collision.name:
         return collision
     suffix = f"_{index}" if index else ""

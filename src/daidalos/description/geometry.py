@@ -1,4 +1,4 @@
-"""The shapes that URDF and SDF know, all in metres and in their own frame."""
+"""Shapes of URDF and SDF, in metres and in their own frame."""
 
 from __future__ import annotations
 
@@ -11,21 +11,21 @@ from daidalos.description.errors import DescriptionError
 
 @dataclass(frozen=True)
 class Box:
-    """A box centred on its frame."""
+    """Box centred on its frame."""
 
     size: Vector
 
 
 @dataclass(frozen=True)
 class Sphere:
-    """A sphere centred on its frame."""
+    """Sphere centred on its frame."""
 
     radius: float
 
 
 @dataclass(frozen=True)
 class Cylinder:
-    """A cylinder along z, centred on its frame."""
+    """Cylinder along z, centred on its frame."""
 
     radius: float
     length: float
@@ -33,7 +33,7 @@ class Cylinder:
 
 @dataclass(frozen=True)
 class Capsule:
-    """A cylinder along z of `length` with a half sphere on each end, centred on its frame."""
+    """Cylinder along z of `length` with a half sphere on each end, centred on its frame."""
 
     radius: float
     length: float
@@ -41,7 +41,7 @@ class Capsule:
 
 @dataclass(frozen=True)
 class Ellipsoid:
-    """An ellipsoid centred on its frame, with its three half axes."""
+    """Ellipsoid centred on its frame, with its three half axes."""
 
     radii: Vector
 
@@ -56,7 +56,7 @@ class Cone:
 
 @dataclass(frozen=True)
 class Plane:
-    """A plane through its frame's origin; infinite for collision, `size` is what one sees of it."""
+    """Plane through its frame's origin; infinite for collision, `size` [m] for display."""
 
     normal: Vector = (0.0, 0.0, 1.0)
     size: tuple[float, float] = (1.0, 1.0)
@@ -64,7 +64,7 @@ class Plane:
 
 @dataclass(frozen=True)
 class Mesh:
-    """Triangles from a file.
+    """Triangles of a mesh file.
 
     Parameters
     ----------
@@ -96,7 +96,7 @@ class Mesh:
 
 @dataclass(frozen=True)
 class Heightmap:
-    """A terrain from a grey image or elevation file, centred on `position`.
+    """Terrain from a grey image or elevation file, centred on `position`.
 
     Parameters
     ----------
@@ -120,7 +120,7 @@ class Heightmap:
 
 @dataclass(frozen=True)
 class Polyline:
-    """Closed outlines in the x-y plane, filled by the even-odd rule and raised by `height` along z."""
+    """Closed outlines in the x-y plane, filled by the even-odd rule and extruded by `height` along z."""
 
     outlines: tuple[tuple[tuple[float, float], ...], ...]
     height: float
@@ -128,14 +128,14 @@ class Polyline:
 
 @dataclass(frozen=True)
 class Empty:
-    """No shape at all (SDF's ``<empty/>``)."""
+    """No shape (SDF's ``<empty/>``)."""
 
 
 Geometry = Box | Sphere | Cylinder | Capsule | Ellipsoid | Cone | Plane | Mesh | Heightmap | Polyline | Empty
 
 
 def require_size(geometry: Geometry) -> None:
-    """Check that a shape has an extent.
+    """Raise an error if a shape has no extent.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""The tree of a robot or a model as a drawing: an SVG of our own layout, and the same for Graphviz."""
+"""Drawings of the tree of a robot or a model, as SVG or for Graphviz."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class _Node:
 
 
 def to_svg(robot: Robot | Model) -> str:
-    """Draw links as boxes and joints as the arrows between them, roots on top.
+    """Draw links as boxes and joints as arrows between them, roots on top.
 
     Each parent stands over the middle of its children, and no two subtrees overlap. Joints that close loops
     are arrows as well.
@@ -53,7 +53,7 @@ def to_svg(robot: Robot | Model) -> str:
 
 
 def to_dot(robot: Robot | Model) -> str:
-    """Return the tree in Graphviz's language, as ``urdf_to_graphviz`` writes it."""
+    """Return the tree in Graphviz's language, in the style of ``urdf_to_graphviz``."""
     lines = ["digraph G {", "node [shape=box];"]
     lines += [f'"{link}" [label="{link}"];' for link in robot.links]
     lines.append("node [shape=ellipse, color=blue, fontcolor=blue];")
@@ -64,7 +64,7 @@ def to_dot(robot: Robot | Model) -> str:
 
 
 def _place(tree: LinkTree) -> tuple[dict[str, _Node], float]:
-    """Return every link a place; returns them with the width of the drawing."""
+    """Compute the position of every link; return the positions and the width of the drawing."""
     order = [(root, 0) for root in tree.roots]
     for name, depth in order:
         order += [(joint.child, depth + 1) for joint in tree.children.get(name, ())]
@@ -85,7 +85,7 @@ def _place(tree: LinkTree) -> tuple[dict[str, _Node], float]:
 
 
 def _side_by_side(names: Sequence[str], span: dict[str, float], start: float) -> dict[str, float]:
-    """Return the left edges of subtrees that stand in a row."""
+    """Return the left edges of subtrees in a row."""
     left = {}
     for name in names:
         left[name] = start
@@ -94,7 +94,7 @@ def _side_by_side(names: Sequence[str], span: dict[str, float], start: float) ->
 
 
 def _room(names: Sequence[str], span: dict[str, float]) -> float:
-    """Return the width that subtrees need side by side."""
+    """Return the total width of subtrees side by side."""
     return sum(span[name] for name in names) + _GAP * max(0, len(names) - 1)
 
 

@@ -1,4 +1,4 @@
-"""Images as arrays; read by Pillow, which only heightmaps and textures need."""
+"""Images as arrays, read by Pillow, which only heightmaps and textures need."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Mass properties of solids, and whether those of a link can belong to a real body."""
+"""Mass properties of solids, and plausibility checks of links' inertias."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def solid_properties(geometry: Geometry, density: float = WATER) -> MassProperti
 
 
 def combine(parts: Iterable[tuple[MassProperties, Pose]]) -> MassProperties:
-    """Return the mass properties of several bodies that are fixed to one frame, each in its pose."""
+    """Return the mass properties of several bodies fixed to one frame, each at its pose."""
     placed = [(p.mass, np.array(pose.transform(tuple(p.center))), _turn(p.inertia, pose)) for p, pose in parts]
     mass = sum(m for m, _, _ in placed)
     if mass <= 0:
@@ -71,7 +71,7 @@ def combine(parts: Iterable[tuple[MassProperties, Pose]]) -> MassProperties:
 
 
 def link_properties(link: Link, density: float = WATER, densities: Sequence[float] | None = None) -> Inertial:
-    """Return the inertial that a link's collisions have when they are solid.
+    """Return the inertial of a link whose collisions are homogeneous solids.
 
     Parameters
     ----------
@@ -95,7 +95,7 @@ def link_properties(link: Link, density: float = WATER, densities: Sequence[floa
 
 
 def implausibilities(link: Link) -> list[str]:
-    """Return what speaks against a link's mass properties, in plain words; nothing when they are plausible."""
+    """Return sentences about implausible mass properties of a link, none if they are plausible."""
     inertial = link.inertial
     if inertial is None:
         return ["no inertial"] if link.collisions else []
@@ -112,7 +112,7 @@ def implausibilities(link: Link) -> list[str]:
 
 
 def _compare_with_size(link: Link, inertial: Inertial, moments: Array) -> list[str]:
-    """Compare with what the link looks like and touches with."""
+    """Compare the mass properties with the link's visuals and collisions."""
     corners = _corners(link)
     if corners is None:
         return []
@@ -134,7 +134,7 @@ def _compare_with_size(link: Link, inertial: Inertial, moments: Array) -> list[s
 
 
 def _corners(link: Link) -> Array | None:
-    """Return corners (8 n, 3) of boxes around what is known of the link's shape."""
+    """Return corners (8 n, 3) of the bounding boxes of the link's shapes."""
     boxes = []
     parts: tuple[Collision | Visual, ...] = (*link.collisions, *link.visuals)
     for part in parts:
@@ -149,7 +149,7 @@ def _corners(link: Link) -> Array | None:
 
 
 def _closed_form(geometry: Geometry) -> tuple[float, Array] | None:
-    """Return volume and the mean squares of x, y and z over it; None where there is no simple form."""
+    """Return volume and the mean squares of x, y and z over it; None without a closed form."""
     if isinstance(geometry, Box):
         return float(np.prod(geometry.size)), np.square(geometry.size) / 12
     if isinstance(geometry, Sphere):

@@ -1,4 +1,4 @@
-"""Joints: how one link moves in another. Shared by URDF and SDF."""
+"""Joints of URDF and SDF."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from daidalos.description.link import Sensor
 
 
 class JointType(StrEnum):
-    """The joints of URDF (the first six) and those that SDF adds."""
+    """Joint types of URDF (the first six) and those that SDF adds."""
 
     REVOLUTE = "revolute"
     CONTINUOUS = "continuous"
@@ -28,7 +28,7 @@ class JointType(StrEnum):
 
 @dataclass(frozen=True)
 class Axis:
-    """One direction of motion; lengths in metres, angles in radians.
+    """Axis of motion; lengths in metres, angles in radians.
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ class Axis:
 
 @dataclass(frozen=True)
 class Mimic:
-    """Following another joint: position = multiplier * other's + offset."""
+    """Mimic joint: position = multiplier * position of the other joint + offset."""
 
     joint: str
     multiplier: float = 1.0
@@ -76,7 +76,7 @@ class Safety:
 
 @dataclass(frozen=True)
 class Calibration:
-    """URDF's ``<calibration>``: where the reference edges are."""
+    """URDF's ``<calibration>``: positions of the reference edges."""
 
     rising: float | None = None
     falling: float | None = None
@@ -84,7 +84,7 @@ class Calibration:
 
 @dataclass(frozen=True)
 class Joint:
-    """A connection of two links.
+    """Joint between two links.
 
     At position q the child's pose in its parent is ``origin @ motion(q) @ anchor.inverse``.
 
@@ -131,5 +131,5 @@ class Joint:
 
     @property
     def axis(self) -> Axis:
-        """The first axis; a neutral one for joints that have none."""
+        """First axis; a neutral one for joints without axes."""
         return self.axes[0] if self.axes else Axis()

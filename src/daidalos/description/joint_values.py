@@ -1,4 +1,4 @@
-"""Values for all joints of a robot from several sources: defaults, messages, sliders, and whom they follow."""
+"""Values of all joints of a robot from defaults, messages, sliders and mimic joints."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _VALUED = (JointType.REVOLUTE, JointType.CONTINUOUS, JointType.PRISMATIC)
 
 @dataclass(frozen=True)
 class JointRange:
-    """What a joint may do, in its `unit`, ``rad`` or ``m``; `zero` is where it begins."""
+    """Range of a joint in its `unit`, ``rad`` or ``m``; `zero` is its initial position."""
 
     name: str
     lower: float
@@ -71,7 +71,7 @@ class JointValues:
         velocities: Iterable[float] = (),
         efforts: Iterable[float] = (),
     ) -> None:
-        """Set the joints that are known among the named ones; a series that is too short sets the first ones."""
+        """Set the named joints, ignoring unknown names; a short series sets the first ones."""
         known = set(self.names)
         names = list(names)
         pairs = ((self.positions, positions), (self.velocities, velocities), (self.efforts, efforts))
@@ -79,7 +79,7 @@ class JointValues:
             target.update((name, value) for name, value in zip(names, values, strict=False) if name in known)
 
     def position(self, name: str) -> float:
-        """Return where a joint is, or should be by whom it follows."""
+        """Return the position of a joint; that of a mimic joint follows from its leader."""
         leader, factor, offset = self._followed(name)
         return factor * self.positions.get(leader, 0.0) + offset
 
@@ -88,16 +88,16 @@ class JointValues:
         return [self.position(name) for name in self.names]
 
     def all_velocities(self) -> list[float]:
-        """Return the speeds of all joints in the order of `names`; zero where nobody has told one."""
+        """Return the velocities of all joints in the order of `names`; unset ones are zero."""
         followed = map(self._followed, self.names)
         return [factor * self.velocities.get(leader, 0.0) for leader, factor, _ in followed]
 
     def all_efforts(self) -> list[float]:
-        """Return the efforts of all joints in the order of `names`; who follows has that of its leader, as in ROS."""
+        """Return the efforts of all joints in the order of `names`; mimic joints have their leader's, as in ROS."""
         return [self.efforts.get(self._followed(name)[0], 0.0) for name in self.names]
 
     def _followed(self, name: str) -> tuple[str, float, float]:
-        """Return the joint at the end of a chain of followers, with the factor and the offset to it."""
+        """Return the joint at the end of a chain of mimic joints, with the factor and the offset to it."""
         seen: set[str] = set()
         factor, offset = 1.0, 0.0
         while name in self._leaders and name not in seen:

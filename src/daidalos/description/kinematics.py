@@ -20,7 +20,7 @@ _SLIDING = (JointType.PRISMATIC,)
 
 
 class UnknownJointError(KeyError):
-    """A joint name that the robot does not have; says which it has."""
+    """Unknown joint name; the message lists the known ones."""
 
     def __init__(self, name: str, known: Sequence[str]) -> None:
         super().__init__(name)
@@ -33,7 +33,7 @@ class UnknownJointError(KeyError):
 
 @dataclass(frozen=True)
 class _Motion:
-    """Per joint k: which position moves it and how far it turns and slides per unit."""
+    """Index of the position that moves each joint k, with its rotation and translation per unit."""
 
     position_index: NDArray[np.intp]
     multiplier: Array
@@ -43,7 +43,7 @@ class _Motion:
 
 
 class KinematicTree:
-    """A robot's joints as arrays, ordered so that parents come before children.
+    """Joints of a robot as arrays, ordered so that parents come before children.
 
     Parameters
     ----------
@@ -97,7 +97,7 @@ class KinematicTree:
         self._root_count = len(roots)
 
     def index(self, joint: str) -> int:
-        """Return a joint's place in the positions.
+        """Return a joint's index in the positions.
 
         Raises
         ------
@@ -240,7 +240,7 @@ def _to_root(poses: _PoseArray, parents: NDArray[np.intp], roots: int) -> tuple[
 
 
 def _ordered(robot: Robot | Model) -> list[Joint]:
-    """Return the joints that form the tree, parents first; level by level, as the file has them."""
+    """Return the joints that form the tree, parents first, level by level in file order."""
     by_parent: dict[str, list[Joint]] = {}
     has_parent: set[str] = set()
     for joint in robot.joints.values():

@@ -1,4 +1,4 @@
-"""Links: what a rigid body weighs, looks like, touches with and carries. Shared by URDF and SDF."""
+"""Links of URDF and SDF: inertia, visuals, collisions and sensors."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Rgba = tuple[float, float, float, float]
 
 @dataclass(frozen=True)
 class Material:
-    """How a visual is coloured.
+    """Colours of a visual.
 
     Parameters
     ----------
@@ -41,7 +41,7 @@ class Material:
 
 @dataclass(frozen=True)
 class Surface:
-    """How a collision rubs, bounces and yields; None where the description leaves it to the simulator.
+    """Contact properties of a collision; None for values that the description leaves open.
 
     Parameters
     ----------
@@ -106,7 +106,7 @@ class Inertial:
 
 @dataclass(frozen=True)
 class Visual:
-    """Something to see, placed in its link."""
+    """Visual geometry, placed in its link."""
 
     geometry: Geometry
     pose: Pose = field(default_factory=Pose)
@@ -120,7 +120,7 @@ class Visual:
 
 @dataclass(frozen=True)
 class Collision:
-    """Something to touch, placed in its link."""
+    """Collision geometry, placed in its link."""
 
     geometry: Geometry
     pose: Pose = field(default_factory=Pose)
@@ -132,7 +132,7 @@ class Collision:
 
 @dataclass(frozen=True)
 class Plugin:
-    """A request for code to run beside a world, a model or a sensor.
+    """Plugin of a world, a model or a sensor.
 
     Parameters
     ----------
@@ -154,7 +154,7 @@ class Plugin:
 
 @dataclass(frozen=True)
 class Sensor:
-    """A sensor on a link or a joint; what is special to its type stays in `element`.
+    """Sensor on a link or a joint; the settings of its type stay in `element`.
 
     Parameters
     ----------
@@ -185,7 +185,7 @@ class Sensor:
 
 @dataclass(frozen=True)
 class Link:
-    """A rigid body.
+    """Rigid body.
 
     Parameters
     ----------
@@ -220,7 +220,7 @@ class Link:
 
 @dataclass(frozen=True)
 class Light:
-    """A light.
+    """Light source.
 
     Parameters
     ----------

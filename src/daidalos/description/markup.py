@@ -1,4 +1,4 @@
-"""XML elements that know their file and line, with typed access to what robot descriptions hold."""
+"""XML elements with file and line, and typed access to their values."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def _without_odd_declaration(body: bytes) -> bytes:
 
 
 class Element:
-    """One XML element: its tag, attributes, text, children and the place it came from.
+    """XML element: tag, attributes, text, children and location.
 
     Prefixes are kept as written (``sensor:camera``), since descriptions in the wild use undeclared ones.
     """
@@ -91,7 +91,7 @@ class Element:
 
     @property
     def label(self) -> str:
-        """The element as a reader recognises it: ``<joint name="elbow">``."""
+        """Element in short notation: ``<joint name="elbow">``."""
         name = self.attributes.get("name", "").strip()
         return f'<{self.tag} name="{name}">' if name else f"<{self.tag}>"
 
@@ -101,7 +101,7 @@ class Element:
         return f"{self.source}:{self.line}" if self.line else self.source
 
     def error(self, message: str) -> DescriptionError:
-        """Return an error that names this element and its place."""
+        """Return an error that names this element and its location."""
         return DescriptionError(message, self.source, self.line, self.label)
 
     # Children
@@ -134,28 +134,28 @@ class Element:
     # Attributes
 
     def name(self) -> str:
-        """Return the ``name`` attribute, which must be there and not empty."""
+        """Return the ``name`` attribute, which is required."""
         name = self.attribute("name")
         if not name:
             raise self.error('attribute "name" is empty')
         return name
 
     def attribute(self, key: str, default: str | None = None) -> str:
-        """Return an attribute without surrounding white space; without `default` it must exist."""
+        """Return an attribute without surrounding white space; it is required without `default`."""
         value = self.attributes.get(key, default)
         if value is None:
             raise self.error(f'attribute "{key}" is missing')
         return value.strip()
 
     def number_attribute(self, key: str, default: float | None = None, finite: bool = True) -> float:
-        """Return an attribute as a number; without `default` it must exist."""
+        """Return an attribute as a number; it is required without `default`."""
         value = self.attributes.get(key)
         if value is None and default is not None:
             return default
         return self._number(self.attribute(key), f'attribute "{key}"', finite)
 
     def vector_attribute(self, key: str, size: int, default: tuple[float, ...] | None = None) -> tuple[float, ...]:
-        """Return an attribute as `size` numbers; without `default` it must exist."""
+        """Return an attribute as `size` numbers; it is required without `default`."""
         value = self.attributes.get(key)
         if value is None and default is not None:
             return default
@@ -174,7 +174,7 @@ class Element:
         return default if child is None or not child.text.strip() else child.number()
 
     def integer_of(self, *tags: str, default: int) -> int:
-        """Return a child's text as an integer; ``640.0`` is one, ``0.5`` is not."""
+        """Return a child's text as an integer; ``640.0`` is valid, ``0.5`` is not."""
         value = self.number_of(*tags, default=default)
         if not math.isfinite(value) or value != int(value):
             child = self.first(*tags) or self
@@ -211,7 +211,7 @@ class Element:
         raise self.error(f"expected true or false, got {self.text.strip()!r}")
 
     def to_text(self, indent: int = 0) -> str:
-        """Write this element back as XML."""
+        """Return this element as XML text."""
         pad = "  " * indent
         attributes = "".join(f" {key}={quoteattr(value)}" for key, value in self.attributes.items())
         text = escape(self.text.strip())
@@ -239,7 +239,7 @@ class Element:
 
 
 class _TreeBuilder:
-    """Builds elements from expat's events, which carry the line."""
+    """Builder of elements from expat's events."""
 
     def __init__(self, source: str, skipped_lines: int, encoding: str | None) -> None:
         self._source = source

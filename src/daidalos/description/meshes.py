@@ -1,4 +1,4 @@
-"""Triangles: of mesh files (kept in memory once read) and of every other shape."""
+"""Triangles of mesh files (cached in memory) and of all other shapes."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ def triangles_of(geometry: Geometry, segments: int = 48) -> TriangleMesh:
 
 
 def load_mesh(mesh: Mesh) -> TriangleMesh:
-    """Read a mesh's file with its scale, part and centring applied.
+    """Read a mesh file with its scale, part and centring applied.
 
     A mirrored scale turns the triangles round, so that they still look outwards.
 
@@ -206,7 +206,7 @@ def _cone(shape: Cone, segments: int) -> Any:
 
 
 def _polyline(shape: Polyline, _: int) -> Any:
-    """Extrude the outlines; further outlines are holes where they lie inside an earlier one."""
+    """Extrude the outlines; further outlines are holes if they lie inside an earlier one."""
     import shapely
     import trimesh
 
@@ -219,7 +219,7 @@ def _polyline(shape: Polyline, _: int) -> Any:
 
 
 def _extrude(polygon: Any, height: float) -> Any:
-    """Raise a polygon with holes; the flat ends are its constrained triangulation."""
+    """Extrude a polygon with holes; the flat ends are its constrained triangulation."""
     import shapely
     import trimesh
 

@@ -1,4 +1,4 @@
-"""Colours for the materials that Gazebo names: our own values that look like their names."""
+"""Colours of Gazebo's named materials; the values are our own, chosen by their names."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ _COLORS: dict[str, tuple[float, ...]] = {
 
 
 def named_color(name: str) -> Rgba | None:
-    """Return the colour that ``Gazebo/Name`` stands for; None for a name without one."""
+    """Return the colour of ``Gazebo/Name``; None for an unknown name."""
     color = _COLORS.get(name.removeprefix("Gazebo/"))
     if color is None:
         return None

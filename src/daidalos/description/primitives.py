@@ -1,4 +1,4 @@
-"""Models of one simple shape, for those who put things into a world by hand."""
+"""Models of one simple shape, for insertion into a world by hand."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ SHAPES = ("box", "sphere", "cylinder")
 
 
 def primitive(shape: str, size: Vector, mass: float = 1.0, color: Rgba = (0.6, 0.6, 0.6, 1.0)) -> Model:
-    """Return a model of one link in the middle of its shape.
+    """Return a model with one link at the centre of its shape.
 
     Parameters
     ----------

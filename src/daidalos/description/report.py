@@ -1,4 +1,4 @@
-"""What there is to say about a robot, a model or a world: trees, masses, doubts about inertias, joints and limits."""
+"""Reports on robots, models and worlds: trees, masses, implausible inertias, joints and limits."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from daidalos.description.world import Model, World
 
 @dataclass(frozen=True)
 class LinkReport:
-    """A link's mass [kg], None without inertial, and what is doubtful about it."""
+    """Mass of a link [kg], None without inertial, and its implausible properties."""
 
     name: str
     mass: float | None
@@ -24,7 +24,7 @@ class LinkReport:
 
 @dataclass(frozen=True)
 class JointReport:
-    """A joint's type, ends and limits in words."""
+    """Type, ends and limits of a joint as text."""
 
     name: str
     type: str
@@ -35,7 +35,7 @@ class JointReport:
 
 @dataclass(frozen=True)
 class RobotReport:
-    """A robot or a model at a glance.
+    """Summary of a robot or a model.
 
     Parameters
     ----------
@@ -59,7 +59,7 @@ class RobotReport:
 
 @dataclass(frozen=True)
 class PlacedReport:
-    """A model in a world: where it is, whether it can move, and the model itself."""
+    """Model in a world: its pose, whether it can move, and its summary."""
 
     pose: Pose
     static: bool
@@ -68,7 +68,7 @@ class PlacedReport:
 
 @dataclass(frozen=True)
 class WorldReport:
-    """A world at a glance.
+    """Summary of a world.
 
     Parameters
     ----------
@@ -95,7 +95,7 @@ class WorldReport:
 
 
 def report_world(world: World) -> WorldReport:
-    """Return what there is to say about a world."""
+    """Return the summary of a world."""
     return WorldReport(
         name=world.name,
         step=world.physics.max_step_size,
@@ -109,7 +109,7 @@ def report_world(world: World) -> WorldReport:
 
 
 def report(robot: Robot | Model) -> RobotReport:
-    """Return what there is to say about a robot or a model."""
+    """Return the summary of a robot or a model."""
     links = tuple(
         LinkReport(link.name, None if link.inertial is None else link.inertial.mass, tuple(implausibilities(link)))
         for link in robot.links.values()
@@ -129,7 +129,7 @@ def report(robot: Robot | Model) -> RobotReport:
 
 
 def tree_text(robot: Robot | Model) -> str:
-    """Return the tree of links in the form of ``check_urdf``; a model of SDF may have several."""
+    """Return the tree of links in the format of ``check_urdf``; a model of SDF may have several trees."""
     tree = link_tree(robot)
     lines = [
         f"{'robot' if isinstance(robot, Robot) else 'model'} name is: {robot.name}",
@@ -147,7 +147,7 @@ def tree_text(robot: Robot | Model) -> str:
 
 
 def limits_in_words(joint: Joint) -> str:
-    """Return what bounds a joint: position, speed, effort, and whom it follows."""
+    """Return the limits of a joint as text: position, velocity, effort, and the joint that it mimics."""
     words = []
     if joint.axes and joint.type in (JointType.REVOLUTE, JointType.PRISMATIC) and _is_bounded(joint):
         words.append(f"{joint.axis.lower:g} .. {joint.axis.upper:g} {_unit(joint)}")

@@ -1,4 +1,4 @@
-"""What the addresses of meshes and models mean on this machine: package://, model://, file:// and paths."""
+"""Resolution of the URIs of meshes and models: package://, model://, file:// and paths."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def resolve_uri(
     packages: PackageResolver | None = None,
     model_path: Sequence[Path] = (),
 ) -> Path | None:
-    """Find the file or folder that an address means.
+    """Find the file or folder of a URI.
 
     Parameters
     ----------
@@ -65,7 +65,7 @@ def resolve_uri(
 
 
 def default_model_path() -> tuple[Path, ...]:
-    """Return the folders that Gazebo's environment variables name, and the user's own models."""
+    """Return the folders in Gazebo's environment variables, and the user's own models."""
     folders = [
         Path(folder)
         for variable in _MODEL_PATH_VARIABLES
@@ -76,7 +76,7 @@ def default_model_path() -> tuple[Path, ...]:
 
 
 def packages_near(name: str, folder: Path) -> Iterator[Path]:
-    """Yield the folders that could be a package or model which is not installed.
+    """Yield folders that may be an uninstalled package or model.
 
     These are the folders around `folder` that are called so or whose ``package.xml`` says so, and what lies
     beside one of them under that name, as in the source folder of a workspace, or in a folder of ``models``

@@ -1,4 +1,4 @@
-"""A robot as URDF describes it: a tree of links and joints, and what simulators and controllers add."""
+"""Data model of URDF robots: a tree of links and joints, with extensions of simulators and controllers."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from daidalos.description.markup import Element
 
 @dataclass(frozen=True)
 class Actuator:
-    """One motor of a transmission."""
+    """Motor of a transmission."""
 
     name: str
     mechanical_reduction: float = 1.0
@@ -21,7 +21,7 @@ class Actuator:
 
 @dataclass(frozen=True)
 class TransmissionJoint:
-    """One joint that a transmission drives."""
+    """Joint driven by a transmission."""
 
     name: str
     hardware_interfaces: tuple[str, ...] = ()
@@ -32,7 +32,7 @@ class TransmissionJoint:
 
 @dataclass(frozen=True)
 class Transmission:
-    """How motors drive joints."""
+    """Transmission between motors and joints."""
 
     name: str
     type: str
@@ -42,7 +42,7 @@ class Transmission:
 
 @dataclass(frozen=True)
 class GazeboExtension:
-    """A ``<gazebo>`` element: settings for the whole robot, or for the link or joint `reference`."""
+    """``<gazebo>`` element with settings for the robot, or for the link or joint `reference`."""
 
     reference: str
     element: Element = field(compare=False)
@@ -50,7 +50,7 @@ class GazeboExtension:
 
 @dataclass(frozen=True)
 class Robot:
-    """A robot.
+    """Robot of a URDF file.
 
     Parameters
     ----------

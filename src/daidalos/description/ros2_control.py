@@ -1,4 +1,4 @@
-"""What the ``<ros2_control>`` elements of a robot say: hardware, its interfaces and their limits."""
+"""``<ros2_control>`` elements of a robot: hardware, its interfaces and their limits."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ HARDWARE_TYPES = ("system", "actuator", "sensor")
 
 @dataclass(frozen=True)
 class InterfaceInfo:
-    """One value that hardware takes or tells.
+    """Command or state interface of hardware.
 
     Parameters
     ----------
@@ -45,7 +45,7 @@ class InterfaceInfo:
 
 @dataclass(frozen=True)
 class ComponentInfo:
-    """A joint, sensor or GPIO of some hardware.
+    """Joint, sensor or GPIO of hardware.
 
     Parameters
     ----------
@@ -84,7 +84,7 @@ class ComponentInfo:
 
 @dataclass(frozen=True)
 class TransmissionInfo:
-    """How actuators drive joints of some hardware; names and mechanical reductions by role."""
+    """Transmission between actuators and joints of hardware; names and mechanical reductions by role."""
 
     name: str
     plugin: str
@@ -94,7 +94,7 @@ class TransmissionInfo:
 
 @dataclass(frozen=True)
 class HardwareInfo:
-    """One ``<ros2_control>`` element.
+    """Content of a ``<ros2_control>`` element.
 
     Parameters
     ----------
@@ -128,17 +128,17 @@ class HardwareInfo:
 
     @property
     def joints(self) -> tuple[ComponentInfo, ...]:
-        """The joints among the components."""
+        """Joints among the components."""
         return self._of("joint")
 
     @property
     def sensors(self) -> tuple[ComponentInfo, ...]:
-        """The sensors among the components."""
+        """Sensors among the components."""
         return self._of("sensor")
 
     @property
     def gpios(self) -> tuple[ComponentInfo, ...]:
-        """The GPIOs among the components."""
+        """GPIOs among the components."""
         return self._of("gpio")
 
     @property
@@ -241,7 +241,7 @@ def _read_component(element: Element, joints: Mapping[str, Joint]) -> ComponentI
 def _mimic(
     element: Element, parameters: Mapping[str, str], joint: Joint | None, joints: Mapping[str, Joint]
 ) -> Mimic | None:
-    """Return what a joint follows: by parameters as of old, by ``mimic="true"`` or as the robot says."""
+    """Return the joint that a joint mimics: by old-style parameters, by ``mimic="true"`` or from the robot."""
     if "mimic" in parameters:
         leader = parameters["mimic"].strip()
         if joints and leader not in joints:
@@ -327,5 +327,5 @@ def _flag(element: Element, key: str, default: bool) -> bool:
 
 
 def is_endless(joint: Joint | None) -> bool:
-    """Return whether a joint turns without end, so that its angles wrap around."""
+    """Return whether a joint rotates without limits, so that its angles wrap around."""
     return joint is not None and joint.type is JointType.CONTINUOUS

@@ -1,4 +1,4 @@
-"""Models made larger or smaller."""
+"""Scaling of models and shapes."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ Part = TypeVar("Part", Visual, Collision)
 
 
 def scaled(model: Model, factor: float | Vector) -> Model:
-    """Return a model whose lengths are multiplied; it keeps its density.
+    """Return a model scaled in all lengths; it keeps its density.
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ def scaled(model: Model, factor: float | Vector) -> Model:
 
 
 def scaled_geometry(shape: Geometry, factor: float) -> Geometry:
-    """Return a shape that is larger by a factor."""
+    """Return a shape scaled by a factor."""
     match shape:
         case Box(size):
             return replace(shape, size=_vector(size, factor))
@@ -82,7 +82,7 @@ def scaled_geometry(shape: Geometry, factor: float) -> Geometry:
 
 
 def stretched_geometry(shape: Geometry, factors: Vector) -> Geometry:
-    """Return a shape that is larger by a factor along each of its axes.
+    """Return a shape scaled by a factor along each of its axes.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""URDF's ``<transmission>``: what lies between actuators and joints."""
+"""URDF's ``<transmission>``: transmissions between actuators and joints."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def read_transmissions(root: Element, warnings: list[str]) -> tuple[Transmission
 
 
 def control_from_transmissions(robot: Robot) -> tuple[Element, ...]:
-    """Return the ``<ros2_control>`` element that says what a robot's transmissions of ROS 1 say; none without them.
+    """Return the ``<ros2_control>`` element for a robot's ROS 1 transmissions; None without them.
 
     Parameters
     ----------

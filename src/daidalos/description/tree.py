@@ -1,4 +1,4 @@
-"""Which link hangs on which, in robots and in models, for those who print or draw it."""
+"""Tree of links of robots and models, for printing and drawing."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _WORLD = "world"
 
 @dataclass(frozen=True)
 class LinkTree:
-    """Links and what hangs on them.
+    """Links with their child links.
 
     Parameters
     ----------
@@ -32,7 +32,7 @@ class LinkTree:
 
 
 def link_tree(description: Robot | Model) -> LinkTree:
-    """Return the links as trees; of joints to the same link the first one counts."""
+    """Return the links as trees; if several joints have the same child, the first one counts."""
     above: dict[str, Joint] = {}
     for joint in description.joints.values():
         above.setdefault(joint.child, joint)
@@ -58,7 +58,7 @@ def link_tree(description: Robot | Model) -> LinkTree:
 
 
 def _reach(start: list[str], above: Mapping[str, Joint], reached: set[str]) -> None:
-    """Add what hangs on some links, near or far, to those that were reached."""
+    """Add the descendants of links to `reached`."""
     below: dict[str, list[str]] = {}
     for link, joint in above.items():
         below.setdefault(joint.parent, []).append(link)

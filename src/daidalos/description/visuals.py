@@ -1,4 +1,4 @@
-"""What a visual looks like: triangles with normals, colours and textures, for renderers."""
+"""Geometry of visuals for renderers: triangles with normals, colours and textures."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _MAX_CORNERS = 256
 
 @dataclass(frozen=True, eq=False)
 class Part:
-    """Triangles in one material.
+    """Triangles of one material.
 
     Parameters
     ----------
@@ -53,7 +53,7 @@ class Part:
 
 
 def visual_parts(visual: Visual, segments: int = 32) -> tuple[Part, ...]:
-    """Return what a visual shows.
+    """Return the parts of a visual.
 
     A mesh keeps the colours of its file unless the description's material overrides them, as SDF's
     and Gazebo's do and URDF's do not.
@@ -145,7 +145,7 @@ def _shaped(part: Part, mesh: Mesh) -> Part:
 
 
 def _flat(vertices: NDArray[np.float64], faces: NDArray[np.int32]) -> Part:
-    """Return each triangle corners of its own with smooth normals over edges of less than 40 degrees."""
+    """Return triangles with separate corners, whose normals are smooth over edges of less than 40 degrees."""
     corners = vertices[faces]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     areas = np.linalg.norm(normals, axis=1, keepdims=True)
@@ -164,7 +164,7 @@ def _flat(vertices: NDArray[np.float64], faces: NDArray[np.int32]) -> Part:
 
 
 def _pairs(place: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Return all pairs of corners (with themselves too) that are in one place.
+    """Return all pairs of corners, including equal ones, at the same position.
 
     Where very many meet, such as in the tip of a finely cut cone, each is paired with itself alone.
     """
@@ -180,7 +180,7 @@ def _pairs(place: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int6
 
 
 def _wrapped(part: Part, boxed: bool) -> Part:
-    """Return a shape texture coordinates: each side of a box a whole image, anything round one around its z axis.
+    """Return a shape's texture coordinates: an image per side of a box, wrapped around z on round shapes.
 
     What points up or down is seen from above; images stand upright on the sides, seen from outside.
     """
@@ -238,7 +238,7 @@ def _terrain(shape: Heightmap) -> Part:
 
 
 def _painted(part: Part, material: Material | None, transparency: float, is_mesh: bool) -> Part:
-    """Apply the description's material where it counts."""
+    """Apply the description's material where it takes precedence."""
     uncolored = part.color[0] < 0
     overrides = material is not None and (uncolored or not is_mesh or material.ambient is not None)
     color = part.color if not uncolored else GREY

@@ -1,4 +1,4 @@
-"""Models and worlds as SDF describes them, with every pose resolved."""
+"""Data model of SDF models and worlds, with all poses resolved."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ class Model:
 
 @dataclass(frozen=True)
 class Physics:
-    """How a world is stepped.
+    """Settings of a world's physics steps.
 
     Parameters
     ----------
@@ -83,7 +83,7 @@ class Physics:
 
 @dataclass(frozen=True)
 class Scene:
-    """What one sees of the world beside its models."""
+    """Visual settings of a world: background, ambient light and shadows."""
 
     ambient: Rgba = (0.4, 0.4, 0.4, 1.0)
     background: Rgba = (0.7, 0.7, 0.7, 1.0)
@@ -94,7 +94,7 @@ class Scene:
 
 @dataclass(frozen=True)
 class SphericalCoordinates:
-    """Where on Earth the world's origin is.
+    """Geographic position of the world's origin.
 
     Parameters
     ----------
@@ -123,7 +123,7 @@ class Atmosphere:
 
 @dataclass(frozen=True)
 class Waypoint:
-    """Where an actor is at a time [s] of its script."""
+    """Pose of an actor at a time [s] of its script."""
 
     time: float
     pose: Pose
@@ -131,7 +131,7 @@ class Waypoint:
 
 @dataclass(frozen=True)
 class Actor:
-    """A figure that follows a script and feels no force.
+    """Animated figure that follows a script and is not affected by forces.
 
     Parameters
     ----------
@@ -163,7 +163,7 @@ class Actor:
 
 @dataclass(frozen=True)
 class World:
-    """Everything in a world file.
+    """Content of a world file.
 
     Parameters
     ----------

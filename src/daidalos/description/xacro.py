@@ -1,4 +1,4 @@
-"""Xacro files, expanded by the `xacro` package itself, with each element's file and line kept.
+"""Expansion of xacro files by the `xacro` package, with file and line of each element.
 
 xacro offers no way to ask where an element came from and finds packages only through an installed
 ROS index. Both are supplied here while it runs: its parser marks every ordinary element with its
@@ -60,7 +60,7 @@ def expand(
     mappings: Mapping[str, str] | None = None,
     resolve: PackageResolver | None = None,
 ) -> Element:
-    """Expand a xacro file to elements that name the file and line they were written on.
+    """Expand a xacro file to elements with the file and line where they were written.
 
     Parameters, errors: as `load_xacro`.
     """
@@ -89,7 +89,7 @@ def expand(
 
 @contextmanager
 def _supplied(xacro: Any, resolve: PackageResolver | None, folder: Path) -> Iterator[list[str]]:
-    """Put our parser and package finder into xacro; yields the list of files that were read."""
+    """Replace xacro's parser and package lookup by ours; yield the list of files that were read."""
     from xacro import substitution_args
 
     from daidalos.description.resolve import packages_near
@@ -128,7 +128,7 @@ def _supplied(xacro: Any, resolve: PackageResolver | None, folder: Path) -> Iter
 
 
 def _parse_marked(body: bytes, file_index: int) -> minidom.Document:
-    """Read a document, each element with its origin.
+    """Parse a document, each element with its location.
 
     xacro takes an attribute on one of its own tags for a macro's parameter, and copies of elements
     lose what is not an attribute: hence both ways of keeping it.
@@ -149,7 +149,7 @@ def _parse_marked(body: bytes, file_index: int) -> minidom.Document:
 
 
 def _define_m_pi(document: minidom.Document) -> None:
-    """Let files use ``M_PI`` without defining it, as descriptions from ROS 1 do; their own value wins."""
+    """Define ``M_PI``, which descriptions from ROS 1 use, unless a file defines it."""
     root = document.documentElement
     assert root is not None
     definition = document.createElement("xacro:property")
@@ -159,7 +159,7 @@ def _define_m_pi(document: minidom.Document) -> None:
 
 
 def _error(problem: BaseException, xacro: Any, files: list[str]) -> DescriptionError:
-    """Return what went wrong, where, and in which macro."""
+    """Return the error's message with its location and its macro."""
     words = " ".join(str(problem).split()) or type(problem).__name__
     cause: BaseException | None = problem
     while cause is not None:
@@ -178,7 +178,7 @@ def _error(problem: BaseException, xacro: Any, files: list[str]) -> DescriptionE
 
 
 def _innermost_origin(trace: TracebackType | None, files: list[str]) -> tuple[str, int]:
-    """Return file and line of the last element that xacro had in hand."""
+    """Return file and line of the last element that xacro processed."""
     source, line = "", 0
     while trace is not None:
         for name in ("elt", "node"):
@@ -195,7 +195,7 @@ def _innermost_origin(trace: TracebackType | None, files: list[str]) -> tuple[st
 
 
 def _element(node: minidom.Element, files: list[str], source: str, line: int) -> Element:
-    """Turn xacro's result into our elements; what xacro made itself takes its parent's origin."""
+    """Convert xacro's result to our elements; elements created by xacro get their parent's location."""
     attributes = dict(node.attributes.items())
     origin = attributes.pop(_ORIGIN, "")
     if origin:

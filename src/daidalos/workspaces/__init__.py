@@ -1,1 +1,1 @@
-"""Workspaces: colcon packages that CMake would build, read without CMake, and the dependencies of packages."""
+"""Workspaces: builds of colcon packages without CMake, and dependencies of packages."""

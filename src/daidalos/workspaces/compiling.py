@@ -1,4 +1,4 @@
-"""Executables in C++ that need nothing but a compiler, and why others are left out."""
+"""Compilation of C++ executables that need only a compiler, and reasons why others are skipped."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _C = {".c"}
 
 @dataclass(frozen=True)
 class Compilation:
-    """A command that makes an executable, and where that is installed."""
+    """Command that compiles an executable, and its destination."""
 
     command: list[str]
     output: Path
@@ -28,7 +28,7 @@ class Compilation:
 
 @dataclass(frozen=True)
 class SkippedTarget:
-    """A target that is not built, why, and what it would need."""
+    """Target that is not built, with the reason and its missing dependencies."""
 
     name: str
     why: str
@@ -36,7 +36,7 @@ class SkippedTarget:
 
 
 def plan(targets: Mapping[str, Target], build: Path) -> tuple[list[Compilation], list[SkippedTarget]]:
-    """Tell how the executables of a package are built, and which of its targets can not be.
+    """Return the build commands of a package's executables, and the targets that cannot be built.
 
     Libraries are compiled into the executables that use them; nobody else can load them here.
 
@@ -65,7 +65,7 @@ def plan(targets: Mapping[str, Target], build: Path) -> tuple[list[Compilation],
 
 
 def summary(left_out: Iterable[SkippedTarget]) -> str:
-    """Return one line about the targets that are left out; empty when there are none."""
+    """Return one line about the skipped targets; empty if there are none."""
     by_reason: dict[str, list[SkippedTarget]] = {}
     for target in left_out:
         by_reason.setdefault(target.why, []).append(target)
@@ -82,7 +82,7 @@ def _reason(why: str, group: Iterable[SkippedTarget]) -> str:
 
 
 def _parts(target: Target, targets: Mapping[str, Target]) -> list[Target]:
-    """Return a target and the package's own libraries that it uses, directly or not."""
+    """Return a target with the package's own libraries that it links, directly or not."""
     found: dict[str, Target] = {}
     pending = [target]
     while pending:
@@ -94,7 +94,7 @@ def _parts(target: Target, targets: Mapping[str, Target]) -> list[Target]:
 
 
 def _foreign(target: Target, targets: Mapping[str, Target]) -> list[str]:
-    """Return the packages that a target needs from elsewhere.
+    """Return the external packages that a target needs.
 
     The library of the package's own messages is linked by a variable that nothing sets here.
     """

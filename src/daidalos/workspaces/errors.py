@@ -1,7 +1,7 @@
-"""What users' packages can have wrong with them."""
+"""Error of users' packages."""
 
 from __future__ import annotations
 
 
 class WorkspaceError(ValueError):
-    """A file of a package says something that it may not; the message names the file and the line."""
+    """Invalid file of a package; the message names file and line."""

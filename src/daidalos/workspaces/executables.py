@@ -1,4 +1,4 @@
-"""Which command starts an executable of a package."""
+"""Commands that start the executables of packages."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ _START = str(BUILT_IN / "start.py")
 
 
 class ExecutableNotFound(LookupError):
-    """No executable of that name; the message says which are near."""
+    """Unknown executable; the message lists similar names."""
 
 
 def find_executable(package: str, executable: str) -> list[str]:
-    """Return the beginning of the command that starts an executable; arguments are to follow.
+    """Return the start of an executable's command line, to be followed by its arguments.
 
     Packages of the user's workspaces come before the built-in ones.
 
@@ -47,7 +47,7 @@ def find_executable(package: str, executable: str) -> list[str]:
 
 @contextlib.contextmanager
 def interrupts_blocked(command: Sequence[str]) -> Iterator[None]:
-    """Keep Ctrl-C from a built-in executable while it is being started; it lets the signal in when it is ready.
+    """Block Ctrl-C for a built-in executable while it starts; it unblocks the signal itself.
 
     Any other command is left alone, as it would never unblock the signal.
     """
@@ -62,7 +62,7 @@ def interrupts_blocked(command: Sequence[str]) -> Iterator[None]:
 
 
 def executables(package: str) -> list[str]:
-    """Return the names of a package's executables, sorted."""
+    """Return the sorted names of a package's executables."""
     found = {path.name for folder in _folders(package) for path in _files(folder)}
     return sorted(found | _modules(package).keys())
 

@@ -1,4 +1,4 @@
-"""Files put under a prefix, and taken away again when a later build has them no more."""
+"""Files installed below a prefix, removed when a later build no longer installs them."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ _PLAIN = 0o644
 
 
 class Installation:
-    """The files of one package under a prefix.
+    """Files of one package below a prefix.
 
     Parameters
     ----------
@@ -30,7 +30,7 @@ class Installation:
         self._placed: dict[str, None] = {}
 
     def put(self, source: Path, destination: str, executable: bool = False) -> None:
-        """Install a file; one that must be executable and is not is copied, so that its source stays as it is."""
+        """Install a file; a file that lacks a required executable bit is copied instead of linked."""
         target = self._make_room(destination)
         source = source.resolve()
         if self._symlink and (not executable or source.stat().st_mode & 0o100):
@@ -41,17 +41,17 @@ class Installation:
         target.chmod(_EXECUTABLE if executable else _PLAIN)
 
     def write(self, destination: str, text: str, executable: bool = False) -> None:
-        """Install a file with this text."""
+        """Install a file with a text."""
         target = self._make_room(destination)
         target.write_text(text, encoding="utf-8", newline="\n")
         target.chmod(_EXECUTABLE if executable else _PLAIN)
 
     def register_installed(self, path: Path) -> None:
-        """Count a file that something else has put under the prefix as installed."""
+        """Record a file that was put below the prefix by other means as installed."""
         self._placed[path.relative_to(self.prefix).as_posix()] = None
 
     def finish(self) -> None:
-        """Remove what an earlier build installed and this one did not."""
+        """Remove files that the last build installed and this one did not."""
         before = self._record.read_text(encoding="utf-8").splitlines() if self._record.is_file() else []
         for name in before:
             if name not in self._placed:

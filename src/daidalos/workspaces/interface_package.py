@@ -1,4 +1,4 @@
-"""The Python modules and share files of a package with its own messages, services and actions."""
+"""Python modules and share files of a package with its own messages, services and actions."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ def install_interfaces(
 
 
 def _read(path: Path, package: str) -> tuple[Interface, str | None]:
-    """Return the interface of a file, and its text as .msg, .srv or .action where the file is of another kind."""
+    """Return the interface of a file, and its text as .msg, .srv or .action."""
     if path.suffix != ".idl":
         return parse_file(path, package), None
     try:
@@ -113,7 +113,7 @@ def _line(path: Path, short: str) -> int:
 
 
 def _described(description: Description) -> dict[str, object]:
-    """Return the description of a type as rosidl writes it to a .json file, with all hashes."""
+    """Return the description of a type as in rosidl's .json files, with all hashes."""
     hashes = {description.type_description.type_name: description.type_hash()}
     for other in description.referenced:
         hashes[other.type_name] = _hash(other, description)
@@ -127,7 +127,7 @@ def _described(description: Description) -> dict[str, object]:
 
 
 def _hash(individual: IndividualDescription, whole: Description) -> str:
-    """Return the hash of a type that another one refers to, described with the part of it that it needs."""
+    """Return the hash of a type from the part of the description that it needs."""
     by_name = {other.type_name: other for other in whole.referenced}
     needed: set[str] = set()
     pending = [individual]

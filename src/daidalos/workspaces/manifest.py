@@ -1,4 +1,4 @@
-"""Reading package.xml, formats 1 to 3."""
+"""Reader of package.xml, formats 1 to 3."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from daidalos.workspaces.errors import WorkspaceError
 
 
 def read(path: Path) -> Any:
-    """Return a manifest as `catkin_pkg.package.Package`, conditions evaluated; None for what is no ROS manifest.
+    """Return a manifest as `catkin_pkg.package.Package`, conditions evaluated; None for other files.
 
     Raises
     ------
@@ -54,7 +54,7 @@ def _root(path: Path, text: str) -> str:
 
 
 def _located(path: Path, text: str, message: str) -> str:
-    """Return one line about a fault, with the line of the element or value that it names."""
+    """Return one line about an error, with the line of the element or value that it names."""
     lines = [line.strip(" -") for line in message.splitlines()]
     faults = [line for line in lines if line and not line.startswith("Error(s)")]
     fault = "; ".join(faults).rstrip(".") or message.replace("\n", " ")
@@ -62,7 +62,7 @@ def _located(path: Path, text: str, message: str) -> str:
 
 
 def _line(text: str, fault: str) -> int:
-    """Return the line of the first thing that the message quotes, or of the tag that it names; else the first."""
+    """Return the line of the first quoted text in the message, or of the tag that it names; else the first."""
     lines = text.splitlines()
     named = re.findall(r"[\"'<]([^\"'<>]+)[\"'>]", fault) + re.findall(r"tags: (\w+)", fault)
     quoted = [re.escape(word) for word in named]

@@ -1,4 +1,4 @@
-"""Building a package of build type ament_cmake without CMake."""
+"""Builds of packages of build type ament_cmake without CMake."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _RECORD = "installed_files.txt"
 
 @dataclass(frozen=True)
 class Place:
-    """Where a package is, where it is built, and where it is installed."""
+    """Source, build and install folders of a package."""
 
     source: Path
     build: Path
@@ -34,7 +34,7 @@ class Place:
 
 @dataclass
 class Build:
-    """What has been read, what is to be compiled, and what can not be."""
+    """Contents of a package, its compilations, and its targets that cannot be built."""
 
     contents: Contents
     compilations: list[Compilation]
@@ -43,7 +43,7 @@ class Build:
 
 
 def begin(place: Place, cmake_arguments: Iterable[str] = ()) -> Build:
-    """Read a package's CMakeLists.txt and plan what is compiled.
+    """Read a package's CMakeLists.txt and plan the compilation.
 
     Raises
     ------
@@ -62,7 +62,7 @@ def begin(place: Place, cmake_arguments: Iterable[str] = ()) -> Build:
 def finish(
     build: Build, place: Place, name: str, run_dependencies: Sequence[str], environment: Mapping[str, str]
 ) -> None:
-    """Install the package, after what had to be compiled has been.
+    """Install the package after compilation.
 
     Raises
     ------
@@ -92,7 +92,7 @@ def finish(
 
 
 def definitions(cmake_arguments: Iterable[str]) -> dict[str, str]:
-    """Return the variables that ``-DNAME=value`` and ``-DNAME:TYPE=value`` set."""
+    """Return the variables set by ``-DNAME=value`` and ``-DNAME:TYPE=value``."""
     found = {}
     for argument in cmake_arguments:
         if argument.startswith("-D"):
@@ -102,7 +102,7 @@ def definitions(cmake_arguments: Iterable[str]) -> dict[str, str]:
 
 
 def _make_script(installation: Installation, destination: str, name: str, function: str) -> None:
-    """Install a program that calls ``module:function``, as the system needs it."""
+    """Install a script that calls ``module:function``, in the form that the system needs."""
     from distlib.scripts import ScriptMaker
 
     folder = installation.prefix / destination

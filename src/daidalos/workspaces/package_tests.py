@@ -1,4 +1,4 @@
-"""The tests of a package of build type ament_cmake, and the commands that run them."""
+"""Tests of a package of build type ament_cmake, and their commands."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ _FILE = "tests.json"
 
 
 def write_tests(tests: Sequence[Test], build: Path) -> None:
-    """Write down in the build folder which tests there are."""
+    """Write the list of tests to the build folder."""
     rows = [{**asdict(test), "path": str(test.path)} for test in tests]
     (build / _FILE).write_text(json.dumps(rows, indent=2) + "\n", encoding="utf-8")
 
 
 def read_tests(build: Path) -> list[Test]:
-    """Return the tests that were written down when the package was built.
+    """Return the tests that the build wrote to the build folder.
 
     Raises
     ------
@@ -46,7 +46,7 @@ def read_tests(build: Path) -> list[Test]:
 
 
 def command(test: Test, package: str, result: Path, build: Path) -> list[str]:
-    """Return the command that runs a test, no longer than it may, and writes its result as JUnit's XML."""
+    """Return the command that runs a test with a timeout and writes its result as JUnit XML."""
     timed = [sys.executable, "-m", "daidalos.workspaces.timed", f"{test.timeout:g}"]
     if test.kind == "pytest":
         return [
@@ -63,7 +63,7 @@ def command(test: Test, package: str, result: Path, build: Path) -> list[str]:
 
 
 def complete_result(result: Path, package: str, test: Test, status: int) -> None:
-    """Write the result of a test that has failed, or was ended, without saying so itself."""
+    """Write the result of a test that failed or was stopped without writing one."""
     if status in (0, NO_TESTS):
         return
     written = result.read_text(encoding="utf-8") if result.is_file() else ""

@@ -1,4 +1,4 @@
-"""Run a command, and end it with all that it has started when its time is over: ``timed <seconds> <command>...``."""
+"""Program that runs a command with a timeout, including its children: ``timed <seconds> <command>...``."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""SDF 1.4 to 1.11: worlds and models with every include read and every pose resolved."""
+"""Reader of SDF 1.4 to 1.11: worlds and models with all includes read and all poses resolved."""
 
 from daidalos.description.sdf.reader import load, load_model, parse, parse_any, parse_model
 

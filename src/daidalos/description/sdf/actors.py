@@ -1,4 +1,4 @@
-"""SDF's ``<actor>``: a figure that follows a script."""
+"""SDF's ``<actor>``: an animated figure that follows a script."""
 
 from __future__ import annotations
 

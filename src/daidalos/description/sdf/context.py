@@ -1,4 +1,4 @@
-"""What every part of the SDF reader needs to know while it reads a file."""
+"""Context of the parts of the SDF reader."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ BUILT_IN_MODELS = Path(__file__).parent / "models"
 
 @dataclass(frozen=True)
 class Context:
-    """Where names lead to, and what was odd so far.
+    """Resolution of names, and warnings so far.
 
     Parameters
     ----------
@@ -51,5 +51,5 @@ class Context:
         return replace(self, folder=file.parent, version=version, including=(*self.including, file))
 
     def warn(self, element: Element, message: str) -> None:
-        """Note something odd about an element."""
+        """Add a warning about an element."""
         self.warnings.append(f"{element.where}: {element.label}: {message}")

@@ -13,7 +13,7 @@ from daidalos.description.markup import Element
 
 @dataclass(frozen=True)
 class RelativePose:
-    """A pose as written: `relative_to` is empty when the file leaves it to the default."""
+    """Pose as written; `relative_to` is empty if the file does not name a frame."""
 
     pose: Pose = field(default_factory=Pose)
     relative_to: str = ""
@@ -38,7 +38,7 @@ def read_pose(parent: Element, tag: str = "pose") -> RelativePose:
 
 
 class FrameGraph:
-    """Named frames, each placed in another one; answers where each is in the root.
+    """Named frames, each placed in another one, resolved to the root.
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ class FrameGraph:
         return name == self.root or name in self._placed
 
     def add(self, name: str, pose: RelativePose, default: str, element: Element) -> None:
-        """Place a frame; `default` is its parent where the file names none.
+        """Add a frame; `default` is its parent if the file names none.
 
         Raises
         ------
@@ -90,11 +90,11 @@ class FrameGraph:
         return self._resolved[chain[0] if chain else name]
 
     def place(self, relative: RelativePose, default: str, element: Element) -> Pose:
-        """Return a pose that is no frame itself in the frame `default`."""
+        """Return a pose, relative to any frame, in the frame `default`."""
         if not relative.relative_to or relative.relative_to == default:
             return relative.pose
         return self.pose(default, element).inverse @ self.pose(relative.relative_to, element) @ relative.pose
 
     def names(self) -> list[str]:
-        """Return all names that were placed, in the order of the file."""
+        """Return all frame names in file order."""
         return list(self._placed)

@@ -1,4 +1,4 @@
-"""SDF's ``<geometry>``: one small reader per shape."""
+"""SDF's ``<geometry>``, with one reader per shape."""
 
 from __future__ import annotations
 

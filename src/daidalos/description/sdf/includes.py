@@ -1,4 +1,4 @@
-"""SDF's ``<include>``: finds the model that an address means and reads it with the include's changes."""
+"""SDF's ``<include>``: reads the model of a URI and applies the include's changes."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ NEWEST = (1, 11)
 
 @dataclass(frozen=True)
 class Included:
-    """What an include brought, and where its pose puts it.
+    """Included model, and the frame that its pose refers to.
 
     Parameters
     ----------
@@ -39,7 +39,7 @@ class Included:
 
 
 def read_include(element: Element, context: Context, read_model: Callable[[Element, Context], Model]) -> Included:
-    """Read ``<include>``; name, pose, static and plugins written in it win over those of the file."""
+    """Read ``<include>``; its name, pose, static flag and plugins override those of the file."""
     uri = element.text_of("uri")
     if not uri:
         raise element.error("<uri> is missing or empty")
@@ -74,7 +74,7 @@ def read_include(element: Element, context: Context, read_model: Callable[[Eleme
 def resolve_missing(
     missing: Mapping[str, tuple[RelativePose, Element]], graph: FrameGraph, joints: list[Element], context: Context
 ) -> list[Element]:
-    """Keep the places of models that were not found, and return the joints that are not tied to one.
+    """Keep the frames of models that were not found, and return the joints that do not refer to one.
 
     Parameters
     ----------
@@ -101,7 +101,7 @@ def resolve_missing(
 
 
 def model_file(found: Path, element: Element) -> Path:
-    """Return the file to read: `found` itself, or what its ``model.config`` names for the newest SDF."""
+    """Return the file to read: `found` itself, or the newest SDF that its ``model.config`` names."""
     if not found.is_dir():
         return found
     config = found / "model.config"
@@ -122,7 +122,7 @@ def model_file(found: Path, element: Element) -> Path:
 
 
 def read_version(element: Element) -> tuple[int, int]:
-    """Return the ``version`` attribute as two numbers; the newest when there is none."""
+    """Return the ``version`` attribute as two numbers; the newest without one."""
     words = element.attribute("version", "").split(".")
     if len(words) < 2 or not all(word.isdigit() for word in words[:2]):
         return NEWEST
@@ -156,7 +156,7 @@ def _read_file(
 
 
 def _cast(actor: Actor, element: Element) -> Actor:
-    """Return an actor the name and the plugins that are written in its ``<include>``."""
+    """Apply the name and the plugins of an ``<include>`` to an actor."""
     name = element.text_of("name", default=actor.name)
     plugins = (*actor.model.plugins, *(read_plugin(child) for child in element.all("plugin")))
     return replace(actor, name=name, model=replace(actor.model, name=name, plugins=plugins))

@@ -1,4 +1,4 @@
-"""SDF's ``<joint>``: types, axes, limits, dynamics and the frames that axes are written in."""
+"""SDF's ``<joint>``: types, axes, limits, dynamics and the frames of axes."""
 
 from __future__ import annotations
 
@@ -143,12 +143,12 @@ def _axis(element: Element, here: Pose, frame: FramePose, context: Context, root
 
 
 def _limit(value: float) -> float:
-    """SDF writes "no limit" as a huge number."""
+    """Return a limit, infinite for the huge numbers that mean "no limit" in SDF."""
     return math.copysign(math.inf, value) if abs(value) >= _UNLIMITED else value
 
 
 def _bound(value: float) -> float:
-    """SDF writes "no bound" as a negative number."""
+    """Return a bound, infinite for the negative numbers that mean "no bound" in SDF."""
     return math.inf if value < 0 or value >= _UNLIMITED else value
 
 

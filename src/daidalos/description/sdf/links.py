@@ -1,4 +1,4 @@
-"""SDF's ``<link>`` and what is on it: inertial, collisions with their surface, visuals, sensors, lights."""
+"""SDF's ``<link>``: inertial, collisions, visuals, sensors and lights."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def read_link(element: Element, context: Context, pose: Pose, place: PoseResolve
 
 
 def read_sensor(element: Element, place: PoseResolver) -> Sensor:
-    """Read what all sensors share; the rest stays in `Sensor.element`."""
+    """Read the common part of all sensors; the rest stays in `Sensor.element`."""
     rate = element.number_of("update_rate", default=0.0)
     if rate < 0:
         raise element.error(f"<update_rate> should not be negative, got {rate:g}")
@@ -89,13 +89,13 @@ def read_plugin(element: Element) -> Plugin:
 
 
 def read_label(element: Element) -> int | None:
-    """Return the class that a segmentation camera sees: gz's Label system of a visual, a model or an include."""
+    """Read the class for segmentation cameras: gz's Label system of a visual, a model or an include."""
     labels = (plugin.integer_of("label", default=0) for plugin in element.all("plugin") if _is_label(plugin))
     return next(labels, None)
 
 
 def labelled(links: Mapping[str, Link], label: int | None) -> dict[str, Link]:
-    """Return links whose visuals have a label, their own or else this one."""
+    """Return links whose visuals have a label: their own, else this one."""
     if label is None:
         return dict(links)
     return {
@@ -105,7 +105,7 @@ def labelled(links: Mapping[str, Link], label: int | None) -> dict[str, Link]:
 
 
 def read_light(element: Element, pose: Pose) -> Light:
-    """Read a light that stands in the world or on a link."""
+    """Read a light of the world or of a link."""
     fade = element.first("attenuation") or Element("attenuation")
     spot = element.first("spot") or Element("spot")
     x, y, z = element.vector_of("direction", size=3, default=(0.0, 0.0, -1.0))
@@ -130,7 +130,7 @@ def read_light(element: Element, pose: Pose) -> Light:
 
 
 def _inertial(element: Element, place: PoseResolver) -> Inertial:
-    """Read mass properties; what is missing is one, as SDF says."""
+    """Read mass properties; missing values are one, as in SDF."""
     mass = element.number_of("mass", default=1.0)
     if mass < 0:
         raise element.error(f"mass should not be negative, got {mass:g}")
@@ -170,7 +170,7 @@ def _visual(element: Element, context: Context, place: PoseResolver) -> Visual:
 
 
 def _warn_of_unused(element: Element, context: Context) -> None:
-    """Name what a link can have in Gazebo and has no effect here."""
+    """Warn about elements of a link that have no effect here."""
     for child in element.all(*_UNUSED):
         context.warn(child, "has no effect, left out")
     for visual in element.all("visual"):
@@ -223,7 +223,7 @@ def _surface(element: Element) -> Surface:
 
 
 def read_direction(element: Element | None) -> tuple[Vector, str]:
-    """Read the first direction of friction and the frame that it is in; zero and nothing where there is none."""
+    """Read the first direction of friction and its frame; zero and an empty name without one."""
     if element is None or not element.text.strip():
         return (0.0, 0.0, 0.0), ""
     x, y, z = element.vector(3)
@@ -242,7 +242,7 @@ def _bitmask(contact: Element) -> int:
 
 
 def _below(element: Element, *tags: str) -> Element:
-    """Return the element at the end of a path of tags; an empty one when it is not there."""
+    """Return the element at the end of a path of tags; an empty element if it does not exist."""
     for tag in tags:
         element = element.first(tag) or Element(tag, source=element.source, line=element.line)
     return element

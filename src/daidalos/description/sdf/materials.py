@@ -10,7 +10,7 @@ from daidalos.description.sdf.ogre_materials import OgreMaterial, find_material
 
 
 def read_material(element: Element | None, context: Context) -> Material | None:
-    """Read a material; None when there is none."""
+    """Read a material; return None without one."""
     if element is None:
         return None
     script = element.first("script") or Element("script")
@@ -30,7 +30,7 @@ def read_material(element: Element | None, context: Context) -> Material | None:
 
 
 def read_color(element: Element, tag: str) -> Rgba | None:
-    """Read a colour of three or four numbers; None when there is none."""
+    """Read a colour of three or four numbers; return None without one."""
     child = element.first(tag)
     if child is None or not child.text.strip():
         return None
@@ -42,7 +42,7 @@ def read_color(element: Element, tag: str) -> Rgba | None:
 
 
 def _scripted(script: Element, name: str, context: Context) -> OgreMaterial:
-    """Look a material up in the scripts that the element names."""
+    """Find a material in the scripts that the element names."""
     found = [path for uri in script.all("uri") if (path := context.find(uri.text.strip())) is not None]
     return find_material(name, found) or OgreMaterial()
 

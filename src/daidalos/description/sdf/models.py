@@ -1,4 +1,4 @@
-"""SDF's ``<model>``: reads a model with its nested ones and flattens them into it."""
+"""SDF's ``<model>``: reads a model and merges its nested models into it."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ ROOT = "__model__"
 
 
 def read_model(element: Element, context: Context) -> Model:
-    """Read a ``<model>``; its pose is as written, for the scope around it to resolve.
+    """Read a ``<model>``; its pose stays as written, to be resolved in the outer scope.
 
     Raises
     ------
@@ -30,7 +30,7 @@ def read_model(element: Element, context: Context) -> Model:
 
 
 def place_nested(graph: FrameGraph, model: Model, pose: RelativePose, element: Element) -> None:
-    """Add a model and everything named in it to the frames of the scope that holds it."""
+    """Add a model and its named elements to the frames of the outer scope."""
     if model.placement_frame:
         if model.placement_frame not in model.frames:
             raise element.error(f"placement_frame {model.placement_frame!r} is not in the model")
@@ -42,7 +42,7 @@ def place_nested(graph: FrameGraph, model: Model, pose: RelativePose, element: E
 
 
 def link_names(model: Model, prefix: str) -> dict[str, str]:
-    """Return what a scope can call the links of a model in it, its frames and the model itself, with the link of each.
+    """Return the names by which a scope can refer to the links of a model, its frames and the model itself.
 
     Parameters
     ----------
@@ -140,7 +140,7 @@ class _ModelReader:
             self._attached[ROOT] = canonical
 
     def _joint_frame(self, element: Element) -> str:
-        """Return what a joint's frame is called: as the joint, unless a link is called so, as SDF below 1.7 allows."""
+        """Return the name of a joint's frame: the joint's, unless a link has it, as SDF below 1.7 allows."""
         name = element.name()
         if any(link.name() == name for link in self._element.all("link")):
             self._context.warn(element, f"a link is called {name!r} as well, which is what poses and joints mean")
@@ -148,7 +148,7 @@ class _ModelReader:
         return self._joint_frames.get(name, name)
 
     def _settle_world(self) -> set[str]:
-        """Return the links to leave out, since they are but another word for the world; rename others called so."""
+        """Return the links that are aliases of the world and are skipped; rename others with such a name."""
         for link in self._element.all("link"):
             if link.name() != "world":
                 continue
@@ -163,7 +163,7 @@ class _ModelReader:
         return set()
 
     def _link_of(self, name: str, element: Element) -> str:
-        """Follow frames and joints to the link that carries them."""
+        """Follow frames and joints to their link."""
         seen: list[str] = []
         while self._attached.get(name, "") != name:
             if name in seen:
@@ -176,7 +176,7 @@ class _ModelReader:
         return name
 
     def _carriers(self) -> dict[str, str]:
-        """Return the links that carry what is not a link; frames of a model without links have none."""
+        """Return the links of frames and joints; frames of a model without links have none."""
         carriers = {}
         for name in self._attached:
             link, steps = name, 0

@@ -1,4 +1,4 @@
-"""Material scripts of the OGRE engine, as far as Gazebo classic's models use them: colours and one texture."""
+"""Material scripts of the OGRE engine, as used by Gazebo classic's models: colours and one texture."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _COLORS = ("ambient", "diffuse", "emissive")
 
 @dataclass(frozen=True)
 class OgreMaterial:
-    """What a script says of a material; None where it says nothing."""
+    """Material of a script; None for values that it does not set."""
 
     ambient: Rgba | None = None
     diffuse: Rgba | None = None
@@ -24,7 +24,7 @@ class OgreMaterial:
 
 
 def find_material(name: str, places: Sequence[Path]) -> OgreMaterial | None:
-    """Return the material of a name.
+    """Return the material with a name.
 
     Parameters
     ----------
@@ -48,7 +48,7 @@ def _files(places: Iterable[Path], pattern: str) -> list[Path]:
 
 @lru_cache(maxsize=64)
 def _materials(script: Path, _modified: int) -> dict[str, dict[str, list[str]]]:
-    """Return the properties of each material; the first of a name wins, which is that of the first pass."""
+    """Return the properties of each material; the first value of a property is that of the first pass."""
     text = re.sub(r"//.*|/\*[\s\S]*?\*/", "", script.read_text(encoding="utf-8", errors="replace"))
     found: dict[str, dict[str, list[str]]] = {}
     bases: dict[str, str] = {}

@@ -1,4 +1,4 @@
-"""SDF's ``<population>``: many models of one kind, spread over a region."""
+"""SDF's ``<population>``: many copies of a model, distributed over a region."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Places = Callable[[int, Vector, np.random.Generator], Iterator[Vector]]
 
 
 def population_poses(element: Element, pose: Pose) -> list[Pose]:
-    """Return where the models of a population stand.
+    """Return the poses of the models of a population.
 
     Parameters
     ----------
@@ -81,7 +81,7 @@ def _random(count: int, size: Vector, random: np.random.Generator) -> Iterator[V
 
 
 def _uniform(count: int, size: Vector, _: np.random.Generator) -> Iterator[Vector]:
-    """Spread over a lattice with cells as square as can be."""
+    """Return positions on a lattice with nearly square cells."""
     columns = max(1, math.ceil(math.sqrt(count * size[0] / max(size[1], 1e-9))))
     rows = math.ceil(count / columns)
     for number in range(count):

@@ -1,4 +1,4 @@
-"""Opens SDF files and hands their root to the reader of worlds or of models."""
+"""Reader of SDF files; passes their root to the reader of worlds or of models."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def parse(
     model_path: Sequence[Path] | None = None,
     strict: bool = False,
 ) -> World:
-    """Read a world from text; relative addresses start at the folder of `source`. See `load`."""
+    """Read a world from text; relative paths start at the folder of `source`. See `load`."""
     root, context = _open(text, source, resolve, model_path, strict)
     element = root.first("world")
     if element is not None:
@@ -82,7 +82,7 @@ def parse_model(
     resolve: PackageResolver | None = None,
     model_path: Sequence[Path] | None = None,
 ) -> Model:
-    """Read a model from text; relative addresses start at the folder of `source`. See `load`."""
+    """Read a model from text; relative paths start at the folder of `source`. See `load`."""
     root, context = _open(text, source, resolve, model_path)
     element = root.first("model")
     if element is None:
@@ -96,7 +96,7 @@ def parse_any(
     resolve: PackageResolver | None = None,
     model_path: Sequence[Path] | None = None,
 ) -> Model | World:
-    """Read what a document holds: a model when it is nothing but one, or else a world, strictly. See `load`."""
+    """Read a model from a document with a single model, else a world. See `load`."""
     tags = [child.tag for child in parse_markup(text, source).children]
     if tags == ["model"]:
         return parse_model(text, source, resolve, model_path)

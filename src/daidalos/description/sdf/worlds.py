@@ -1,4 +1,4 @@
-"""SDF's ``<world>``: models, lights, physics, scene and what else a world holds."""
+"""SDF's ``<world>``: models, lights, physics and scene."""
 
 from __future__ import annotations
 
@@ -139,7 +139,7 @@ class _WorldReader:
             self._add_model(replace(included, name=name), RelativePose(pose @ included.pose), element)
 
     def _add_model(self, model: Model, pose: RelativePose, element: Element) -> None:
-        """Add a model; as in Gazebo, a second one of the same name gets a number."""
+        """Add a model; as in Gazebo, a duplicate name gets a number."""
         taken = {other.name for other, _ in self._models}
         if model.name in taken:
             number = next(i for i in range(len(taken) + 1) if f"{model.name}_{i}" not in taken)
@@ -161,7 +161,7 @@ class _WorldReader:
         return read_joint(element, self._context, element.name(), self._graph.pose, self._link_of, ROOT)
 
     def _link_of(self, name: str, element: Element) -> str:
-        """Follow the world's frames and joints to the link that carries them."""
+        """Follow the world's frames and joints to their link."""
         seen: list[str] = []
         while name in self._attached:
             if name in seen:
@@ -178,7 +178,7 @@ class _WorldReader:
 
 
 def _saved_poses(state: Element | None) -> dict[str, RelativePose]:
-    """Return where ``<state>`` says that models and lights are: Gazebo classic writes it when it saves a world."""
+    """Return the poses of models and lights in ``<state>``, which Gazebo classic writes when it saves a world."""
     if state is None:
         return {}
     placed = [child for child in state.all("model", "light") if child.first("pose") is not None]

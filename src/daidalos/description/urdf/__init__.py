@@ -1,4 +1,4 @@
-"""URDF and xacro: robots with every joint, mesh and extension read."""
+"""Reader of URDF and xacro: robots with all joints, meshes and extensions."""
 
 from daidalos.description.urdf.reader import load, parse, read_robot
 

@@ -1,4 +1,4 @@
-"""URDF's joints: their types, axes, limits, and what follows or guards them."""
+"""URDF's joints: types, axes, limits, mimic joints and safety controllers."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _AXIS_TYPES = (JointType.REVOLUTE, JointType.CONTINUOUS, JointType.PRISMATIC, Jo
 
 
 def read_joints(root: Element, warnings: list[str]) -> dict[str, Joint]:
-    """Return the joints by name; `warnings` gets a line for what is left out or is not of the standard."""
+    """Return the joints by name; `warnings` gets a line for each skipped or non-standard element."""
     joints: dict[str, Joint] = {}
     for element in root.all("joint"):
         name = element.name()

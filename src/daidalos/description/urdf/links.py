@@ -1,4 +1,4 @@
-"""URDF's links: what they weigh, what one sees of them and what they touch with."""
+"""URDF's links: inertials, visuals and collisions."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from daidalos.description.resolve import PackageResolver, default_model_path, re
 
 
 def read_materials(root: Element, resolve: PackageResolver | None) -> dict[str, Material]:
-    """Return named materials: the robot's own first, then those that a visual defines on the spot."""
+    """Return named materials: the robot's own first, then those defined inside visuals."""
     visuals = [visual for link in root.all("link") for visual in link.all("visual")]
     elements = root.all("material") + [m for visual in visuals for m in visual.all("material")]
     materials: dict[str, Material] = {}
@@ -27,7 +27,7 @@ def read_materials(root: Element, resolve: PackageResolver | None) -> dict[str, 
 def read_links(
     root: Element, materials: Mapping[str, Material], resolve: PackageResolver | None, warnings: list[str]
 ) -> dict[str, Link]:
-    """Return the links by name; `warnings` gets a line for what is left out or is not of the standard."""
+    """Return the links by name; `warnings` gets a line for each skipped or non-standard element."""
     links: dict[str, Link] = {}
     for element in root.all("link"):
         name = element.name()
@@ -165,7 +165,7 @@ _SHAPES: dict[str, Callable[[Element, PackageResolver | None], Geometry]] = {
 
 
 def read_origin(element: Element) -> Pose:
-    """Return the pose in an element's ``<origin>``; identity where it has none."""
+    """Return the pose of an element's ``<origin>``; identity without one."""
     origin = element.first("origin")
     if origin is None:
         return Pose()

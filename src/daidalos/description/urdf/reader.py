@@ -1,4 +1,4 @@
-"""URDF: reads a robot from text or a file (through xacro where that is written for it).
+"""Reader of URDF robots from text or files, through xacro for xacro files.
 
 The elements and their rules are those of the ROS documentation's URDF/XML pages; what the reference
 parser refuses is refused here, except what only controllers need, an inertial without mass, a joint to the
@@ -106,7 +106,7 @@ def read_robot(root: Element, resolve: PackageResolver | None = None) -> Robot:
 
 
 def _world(links: Mapping[str, Link], joints: Mapping[str, Joint], warnings: list[str]) -> dict[str, Link]:
-    """Return the link ``world`` where joints hang on it although the robot has none, as some simulators allow."""
+    """Return the implicit link ``world`` if joints refer to it, as some simulators allow."""
     first = next((joint for joint in joints.values() if joint.parent == "world"), None)
     if first is None or "world" in links:
         return {}
@@ -115,7 +115,7 @@ def _world(links: Mapping[str, Link], joints: Mapping[str, Joint], warnings: lis
 
 
 def _check_tree(root: Element, links: Mapping[str, Link], joints: Mapping[str, Joint]) -> str:
-    """Return the one root link; raise when links and joints are no tree."""
+    """Return the root link; raise an error if links and joints are not a tree."""
     above: dict[str, Joint] = {}
     elements = {element.name(): element for element in root.all("joint")}
     for joint in joints.values():
@@ -138,7 +138,7 @@ def _check_tree(root: Element, links: Mapping[str, Link], joints: Mapping[str, J
 
 
 def _loop(links: Iterable[str], above: Mapping[str, Joint]) -> list[Joint]:
-    """Return joints that go round in a circle, from below upwards; none when every way up ends."""
+    """Return joints that form a loop, from child to parent; none without a loop."""
     ended: set[str] = set()
     for link in links:
         way: list[Joint] = []
@@ -154,7 +154,7 @@ def _loop(links: Iterable[str], above: Mapping[str, Joint]) -> list[Joint]:
 
 
 def _is_xacro(text: bytes) -> bool:
-    """Return whether a file that is not called so has something that only xacro can work out."""
+    """Return whether a file without xacro's extension has elements that only xacro can expand."""
     return b"xmlns:xacro" in text and any(word in text for word in (b"<xacro:", b"$(", b"${"))
 
 

@@ -1,1 +1,1 @@
-"""A reader of CMakeLists.txt: what a package would install, found without running CMake."""
+"""Interpreter of CMakeLists.txt that determines what a package installs without running CMake."""

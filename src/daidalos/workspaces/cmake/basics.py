@@ -1,4 +1,4 @@
-"""CMake's own commands for variables, lists, texts and files."""
+"""CMake commands for variables, lists, strings and files."""
 
 from __future__ import annotations
 

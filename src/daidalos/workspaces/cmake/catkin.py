@@ -1,4 +1,4 @@
-"""The commands of catkin, by which packages of ROS 1 say what they consist of."""
+"""Commands of catkin, ROS 1's build system."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _SKIPPED_FOLDERS = {"build", "devel", "install", "log", ".git"}
 
 
 def install_remaining(folder: Path, contents: Contents) -> None:
-    """Install what nothing else installs: a catkin package was used from its own folder before it was installed.
+    """Install files that no other command installs; catkin packages may be used from their source folder.
 
     Launch files, descriptions and the like go to the package's share folder, scripts to its executables.
     """
@@ -52,7 +52,7 @@ def _find_package(run: Interpreter, call: Call) -> None:
 
 
 def _destinations(project: str, python_folder: str) -> dict[str, str]:
-    """Return the variables with the places that catkin packages install to."""
+    """Return the variables with the destinations of catkin packages."""
     package = {
         "SHARE": f"share/{project}",
         "BIN": f"lib/{project}",
@@ -69,7 +69,7 @@ def _destinations(project: str, python_folder: str) -> dict[str, str]:
 
 
 def _python_setup(run: Interpreter, call: Call) -> None:
-    """Install the Python packages below src, where the setup.py of a catkin package has them."""
+    """Install the Python packages below src that the setup.py of a catkin package lists."""
     for start in sorted(run.path("src").glob("*/__init__.py")):
         for path in files_below(start.parent):
             place = f"{run.variables['PYTHON_INSTALL_DIR']}/{path.relative_to(run.path('src')).as_posix()}"

@@ -1,4 +1,4 @@
-"""The conditions of if() and while()."""
+"""Conditions of if() and while()."""
 
 from __future__ import annotations
 
@@ -23,15 +23,15 @@ _COMPARISONS: dict[str, Callable[[Any, Any], bool]] = {
 
 
 class Scope(Protocol):
-    """What conditions ask about."""
+    """Names that conditions refer to."""
 
     @property
     def variables(self) -> Mapping[str, str]:
-        """The variables that are set."""
+        """Variables that are set."""
 
     @property
     def folder(self) -> Path:
-        """What relative paths start from."""
+        """Base folder of relative paths."""
 
     def is_command(self, name: str) -> bool:
         """Return whether there is a command of this name."""
@@ -61,14 +61,14 @@ def is_true(arguments: tuple[Argument, ...], scope: Scope) -> bool:
 
 
 class _Reader:
-    """Reads a condition from left to right; a word is its text and whether it stands without quotes."""
+    """Parser of conditions; a word is its text and whether it is unquoted."""
 
     def __init__(self, words: list[tuple[str, bool]], scope: Scope) -> None:
         self.rest = words
         self._scope = scope
 
     def any(self) -> bool:
-        """Read tests with AND and OR between them, neither of which binds closer than the other."""
+        """Parse tests joined by AND and OR, which have the same precedence."""
         result = self._not()
         while True:
             if self._skip("AND"):

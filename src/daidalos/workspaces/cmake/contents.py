@@ -1,4 +1,4 @@
-"""What a CMakeLists.txt says that the package consists of."""
+"""Contents of a package according to its CMakeLists.txt."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from pathlib import Path
 
 @dataclass(frozen=True)
 class InstalledFile:
-    """A file and where it goes, relative to the prefix; `executable` where it must be so."""
+    """Installed file and its destination relative to the prefix; `executable` if it must be executable."""
 
     source: Path
     destination: str
@@ -17,7 +17,7 @@ class InstalledFile:
 
 @dataclass(frozen=True)
 class Resource:
-    """An entry of the ament index."""
+    """Entry of the ament index."""
 
     type: str
     name: str
@@ -26,7 +26,7 @@ class Resource:
 
 @dataclass(frozen=True)
 class PythonPackage:
-    """A Python package with the executables of its setup.cfg (name, ``module:function``) and where these go."""
+    """Python package, with the executables of its setup.cfg (name, ``module:function``) and their destination."""
 
     name: str
     scripts_destination: str
@@ -35,7 +35,7 @@ class PythonPackage:
 
 @dataclass
 class Interfaces:
-    """The files given to rosidl_generate_interfaces, and where that is said."""
+    """Files of rosidl_generate_interfaces and the location of that call."""
 
     files: list[Path]
     where: str
@@ -43,7 +43,7 @@ class Interfaces:
 
 @dataclass
 class Target:
-    """An executable or library in C++: its files, what it links, and where it is installed if it is."""
+    """C++ executable or library: sources, linked libraries and destination, if any."""
 
     name: str
     kind: str
@@ -60,7 +60,7 @@ class Target:
 
 @dataclass(frozen=True)
 class Test:
-    """A test of Python files; `kind` is ``pytest`` or ``launch``, and it runs in `folder`, or the build folder."""
+    """Python test; `kind` is ``pytest`` or ``launch``, and it runs in `folder` or the build folder."""
 
     name: str
     kind: str
@@ -73,7 +73,7 @@ class Test:
 
 @dataclass
 class Contents:
-    """All that a package would install, and what was not understood."""
+    """Everything that a package installs, and what was not understood."""
 
     project: str = ""
     files: list[InstalledFile] = field(default_factory=list)

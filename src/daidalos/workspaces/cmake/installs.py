@@ -1,4 +1,4 @@
-"""install() and the commands of ament, rosidl and catkin that install or register something."""
+"""install() and the commands of ament, rosidl and catkin that install or register files."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ def _install_directories(run: Interpreter, call: Call, values: list[str]) -> Non
 
 
 def files_below(folder: Path) -> Iterator[Path]:
-    """Yield the files of a folder and of those in it, without what only tools put there."""
+    """Yield the files of a folder and its subfolders, without files of tools."""
     for root, folders, files in os.walk(folder):
         folders[:] = sorted(name for name in folders if name not in ("__pycache__", ".git", ".svn"))
         for name in sorted(files):
@@ -78,7 +78,7 @@ def files_below(folder: Path) -> Iterator[Path]:
 
 
 class _FileFilter:
-    """Tells which files of a folder are installed, from PATTERN and REGEX with their EXCLUDE."""
+    """Filter of a folder's installed files by PATTERN and REGEX with EXCLUDE."""
 
     def __init__(self, values: list[str], only_matching: bool) -> None:
         self._only_matching = only_matching

@@ -1,4 +1,4 @@
-"""Runs the commands of a CMakeLists.txt as far as they say what is installed."""
+"""Interpreter of the commands of a CMakeLists.txt that determine what is installed."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _MAX_ROUNDS = 10_000
 
 @dataclass(frozen=True)
 class Call:
-    """One command being run: its name in lower case, its values, and where it stands."""
+    """Command being run: its name in lower case, its values and its location."""
 
     name: str
     values: list[str]
@@ -29,11 +29,11 @@ Handler = Callable[["Interpreter", Call], None]
 
 
 class _Left(Exception):
-    """A function, file or loop is left: by ``return``, ``break`` or ``continue``."""
+    """Exit from a function, file or loop by ``return``, ``break`` or ``continue``."""
 
 
 class Interpreter:
-    """Runs commands; what they install is gathered in `contents`.
+    """Interpreter of commands; installed files are collected in `contents`.
 
     Parameters
     ----------
@@ -60,12 +60,12 @@ class Interpreter:
 
     @property
     def variables(self) -> dict[str, str]:
-        """The variables that are set here."""
+        """Variables of the current scope."""
         return self._scopes[-1]
 
     @property
     def parent_variables(self) -> dict[str, str]:
-        """The variables of the caller of this function."""
+        """Variables of the caller of this function."""
         return self._scopes[-2] if len(self._scopes) > 1 else self._scopes[-1]
 
     def is_command(self, name: str) -> bool:
@@ -82,7 +82,7 @@ class Interpreter:
         return self.folder / value
 
     def is_made_by_build(self, path: Path) -> bool:
-        """Return whether only a program that is not run here would make a file."""
+        """Return whether a file is created only by a program of the build, which is not run here."""
         return not path.exists() and path.is_relative_to(self.variables["CMAKE_BINARY_DIR"])
 
     def run_file(self, path: Path) -> None:
@@ -108,7 +108,7 @@ class Interpreter:
             self.variables["CMAKE_CURRENT_LIST_FILE"] = str(outer)
 
     def run_folder(self, folder: Path) -> None:
-        """Run the CMakeLists.txt of a folder below, with variables of its own; see `run_file`."""
+        """Run the CMakeLists.txt of a subfolder with its own variables; see `run_file`."""
         outer, self.folder = self.folder, folder
         self._scopes.append({**self.variables, "CMAKE_CURRENT_SOURCE_DIR": str(folder)})
         try:
@@ -260,7 +260,7 @@ class Interpreter:
 def keywords(
     values: Sequence[str], options: Sequence[str] = (), single: Sequence[str] = (), many: Sequence[str] = ()
 ) -> tuple[dict[str, list[str]], list[str]]:
-    """Sort values by the keywords before them, as cmake_parse_arguments does.
+    """Sort values by the keywords before them, as in cmake_parse_arguments.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""Reading the CMakeLists.txt of a package."""
+"""Reader of a package's CMakeLists.txt."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _IGNORED = basics.IGNORED | installs.IGNORED | targets.IGNORED | catkin.IGNORED
 def read_package(
     folder: Path, build: Path, prefix: Path, python_folder: str, definitions: Mapping[str, str] | None = None
 ) -> Contents:
-    """Find out what a package would install.
+    """Return what a package installs.
 
     Parameters
     ----------

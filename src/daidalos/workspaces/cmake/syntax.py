@@ -1,4 +1,4 @@
-"""The text of a CMakeLists.txt as commands and blocks of commands."""
+"""Parser of CMakeLists.txt into commands and blocks of commands."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ _STARTS = {end: start for start, end in _ENDS.items()}
 
 @dataclass(frozen=True)
 class Argument:
-    """One argument as it is written; `kind` is ``bare``, ``quoted`` or ``bracket``."""
+    """Argument as written; `kind` is ``bare``, ``quoted`` or ``bracket``."""
 
     text: str
     kind: str = "bare"
@@ -42,7 +42,7 @@ class Argument:
 
 @dataclass(frozen=True)
 class Command:
-    """One command with its arguments; parentheses within them are arguments of their own."""
+    """Command with its arguments; nested parentheses are arguments of their own."""
 
     name: str
     arguments: tuple[Argument, ...]

@@ -1,4 +1,4 @@
-"""The commands that say what is compiled, linked and tested."""
+"""Commands that define what is compiled, linked and tested."""
 
 from __future__ import annotations
 
@@ -116,7 +116,7 @@ def _extend(run: Interpreter, variable: str, values: list[str]) -> None:
 
 
 def _register_component(run: Interpreter, call: Call) -> None:
-    """Record the executable that rclcpp_components_register_node makes; its library is left out as any other."""
+    """Record the executable of rclcpp_components_register_node; its library is skipped like any other."""
     executable = keywords(call.values, (), ("EXECUTABLE", "PLUGIN", "EXECUTOR", "RESOURCE_INDEX"))[0].get("EXECUTABLE")
     if executable:
         target = Target(executable[0], "executable", call.where, links=["rclcpp_components"])

@@ -1,4 +1,4 @@
-"""Arguments with their variables filled in."""
+"""Expansion of variables in arguments."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _ESCAPES = {"n": "\n", "t": "\t", "r": "\r", ";": "\\;"}
 
 
 def expand(arguments: Iterable[Argument], variables: Mapping[str, str]) -> list[str]:
-    """Return the values that a command sees: variables filled in, bare lists split into their items."""
+    """Return the values of an argument: variables expanded, unquoted lists split into their items."""
     values: list[str] = []
     for argument in arguments:
         if argument.kind == "bracket":
@@ -26,7 +26,7 @@ def expand(arguments: Iterable[Argument], variables: Mapping[str, str]) -> list[
 
 
 def substitute(text: str, variables: Mapping[str, str]) -> str:
-    """Fill in ``${NAME}`` and ``$ENV{NAME}``, also within one another, and backslashes; what is not set is empty."""
+    """Expand ``${NAME}``, ``$ENV{NAME}`` (also nested) and backslashes; unset variables are empty."""
     return _Scanner(text, variables).run()
 
 
@@ -36,7 +36,7 @@ def split(text: str) -> list[str]:
 
 
 class _Scanner:
-    """Goes through a text once, so that what a variable holds is not looked into again."""
+    """Single-pass scanner of a text; expanded values are not scanned again."""
 
     def __init__(self, text: str, variables: Mapping[str, str]) -> None:
         self._text = text

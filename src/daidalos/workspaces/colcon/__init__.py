@@ -1,1 +1,1 @@
-"""The extension of colcon: packages of build type ament_cmake, where there is no ament_cmake."""
+"""colcon extension that builds packages of build type ament_cmake where ament_cmake is not installed."""

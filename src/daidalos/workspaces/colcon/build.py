@@ -1,4 +1,4 @@
-"""The build task for packages of build type ament_cmake."""
+"""Build task of packages of build type ament_cmake."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _logger = colcon_logger.getChild(__name__)
 
 
 class CmakePackageBuildTask(TaskExtensionPoint):  # type: ignore[misc]
-    """Builds a package of build type ament_cmake, or one of ROS 1, without CMake."""
+    """Build task of a package of build type ament_cmake, or of ROS 1, without CMake."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -74,7 +74,7 @@ class CmakePackageBuildTask(TaskExtensionPoint):  # type: ignore[misc]
 
 
 def arguments(args: Any) -> list[str]:
-    """Return what the command line hands to CMake."""
+    """Return the command line's arguments for CMake."""
     return [*(getattr(args, "cmake_args", None) or []), *(getattr(args, "ament_cmake_args", None) or [])]
 
 

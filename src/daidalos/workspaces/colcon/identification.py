@@ -1,4 +1,4 @@
-"""Which packages are ours to build."""
+"""Identification of the packages that this extension builds."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _logger = colcon_logger.getChild(__name__)
 
 
 class CmakePackageIdentification(PackageIdentificationExtensionPoint):  # type: ignore[misc]
-    """Claims packages of build type ament_cmake and those of ROS 1, unless ament_cmake itself is installed."""
+    """Identification of packages of build type ament_cmake and of ROS 1, unless ament_cmake is installed."""
 
     # Before the extension that knows all ROS packages.
     PRIORITY = RosPackageIdentification.PRIORITY + 10
@@ -32,7 +32,7 @@ class CmakePackageIdentification(PackageIdentificationExtensionPoint):  # type: 
         _prepare_environment()
 
     def identify(self, desc: Any) -> None:
-        """Fill in name and type of a package that is ours."""
+        """Fill in name and type of a package that this extension builds."""
         if desc.type is not None or any((desc.path / name).exists() for name in ("AMENT_IGNORE", "CATKIN_IGNORE")):
             return
         self._check_manifest(desc.path)
@@ -43,7 +43,7 @@ class CmakePackageIdentification(PackageIdentificationExtensionPoint):  # type: 
         desc.name = desc.name or package.name
 
     def _check_manifest(self, folder: Path) -> None:
-        """Say in one line what is wrong with a package.xml, and leave its package out."""
+        """Report what is wrong with a package.xml in one line, and skip its package."""
         path = folder / "package.xml"
         if not path.is_file():
             return
@@ -55,7 +55,7 @@ class CmakePackageIdentification(PackageIdentificationExtensionPoint):  # type: 
 
 
 def _prepare_environment() -> None:
-    """Set what ROS 2's own setup files would, for the conditions in manifests and for the programs of the build.
+    """Set the variables of ROS 2's setup files, for conditions in manifests and for programs of the build.
 
     The packages of today's courses tell setuptools of their tests as an older one understood; that is no news.
     """
@@ -67,6 +67,6 @@ def _prepare_environment() -> None:
 
 
 def _has_ament_cmake() -> bool:
-    """Return whether ROS 2 itself is there, with what compiles against it."""
+    """Return whether ROS 2 itself is installed with its build tools."""
     prefixes = os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)
     return any(prefix and os.path.isdir(os.path.join(prefix, "share", "ament_cmake", "cmake")) for prefix in prefixes)

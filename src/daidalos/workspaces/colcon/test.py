@@ -1,4 +1,4 @@
-"""The test task for packages of build type ament_cmake."""
+"""Test task of packages of build type ament_cmake."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ _logger = colcon_logger.getChild(__name__)
 
 
 class CmakePackageTestTask(TaskExtensionPoint):  # type: ignore[misc]
-    """Runs the Python tests of a package of build type ament_cmake."""
+    """Test task that runs the Python tests of a package of build type ament_cmake."""
 
     def __init__(self) -> None:
         super().__init__()
         satisfies_version(TaskExtensionPoint.EXTENSION_POINT_VERSION, "^1.0")
 
     async def test(self) -> int:
-        """Run the tests; returns the exit status, which failed tests leave at 0."""
+        """Run the tests; return the exit status, which is 0 even if tests failed."""
         from daidalos.workspaces.package_tests import NO_TESTS, read_tests
 
         args = self.context.args

@@ -1,1 +1,1 @@
-"""What packages depend on: which of it is here, and which can be had from the Python package index."""
+"""Dependencies of packages: which are available, and which the Python package index provides."""

@@ -1,4 +1,4 @@
-"""What a dependency named in a package.xml means here."""
+"""Resolution of dependencies named in package.xml."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ _DISTRIBUTIONS = {
 
 
 class Answer(Enum):
-    """What can be said of a dependency."""
+    """Outcome of the resolution of a dependency."""
 
     HERE = "here"
     """It is installed, or a build does without it."""
@@ -86,14 +86,14 @@ class Answer(Enum):
 
 @dataclass(frozen=True)
 class Resolution:
-    """What a dependency is; `distribution` is what the package index calls it."""
+    """Resolved dependency; `distribution` is its name in the package index."""
 
     answer: Answer
     distribution: str = ""
 
 
 def resolve(key: str) -> Resolution:
-    """Tell what a dependency of a package is here."""
+    """Return the resolution of a package's dependency."""
     key = _OF_ROS1.get(key, key)
     if _is_package(key) or _BUILD.fullmatch(key):
         return Resolution(Answer.HERE)
@@ -118,7 +118,7 @@ def _is_package(key: str) -> bool:
 
 
 def _distribution(key: str) -> str:
-    """Return what the package index calls a key such as ``python3-opencv`` or ``python3-ruckig-pip``."""
+    """Return the package index's name of a key such as ``python3-opencv`` or ``python3-ruckig-pip``."""
     name = key.partition("-")[2].removesuffix("-pip")
     return _DISTRIBUTIONS.get(name, name)
 

@@ -1,4 +1,4 @@
-"""The dependencies of the packages below some folders."""
+"""Dependencies of the packages below folders."""
 
 from __future__ import annotations
 
@@ -25,14 +25,14 @@ TYPES = tuple(_ATTRIBUTES)
 
 @dataclass(frozen=True)
 class PackageDependencies:
-    """A package and the names of what it depends on."""
+    """Package and the names of its dependencies."""
 
     package: str
     keys: tuple[str, ...]
 
 
 def find(folders: Iterable[Path], types: Iterable[str] = TYPES) -> list[PackageDependencies]:
-    """Return the packages below some folders with their dependencies of some kinds, in the order of their folders.
+    """Return the packages below folders with their dependencies of some types, in the order of the folders.
 
     Raises
     ------
