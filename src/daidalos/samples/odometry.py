@@ -14,7 +14,7 @@ _UNKNOWN = 1e12
 
 
 def planar_covariance(x: float, y: float, yaw: float) -> Array:
-    """Return a (36,) covariance of a pose or twist in the plane; what is out of the plane is unknown."""
+    """Return a (36,) covariance of a planar pose or twist; components out of the plane are unknown."""
     return np.diag((x, y, _UNKNOWN, _UNKNOWN, _UNKNOWN, yaw)).ravel()
 
 
@@ -26,7 +26,7 @@ def wheel_odometry(
     velocity: tuple[float, float, float],
     covariance: tuple[float, float, float] = (1e-5, 1e-5, 1e-3),
 ) -> OdometrySample:
-    """Return what a base says of itself by its wheels.
+    """Return a base's odometry from its wheels.
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ def wheel_odometry(
 
 
 def transform_of(odometry: OdometrySample, topic: str) -> TransformSample:
-    """Return the transform that an odometry says."""
+    """Return the transform of an odometry sample."""
     return TransformSample(
         stamp_ns=odometry.stamp_ns,
         topic=topic,

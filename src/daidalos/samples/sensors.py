@@ -38,7 +38,7 @@ class Sample:
 
 @dataclass(frozen=True, eq=False)
 class LaserScanSample(Sample):
-    """One turn of a planar lidar.
+    """Scan of a planar lidar.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ class LaserScanSample(Sample):
 
 @dataclass(frozen=True, eq=False)
 class PointCloudSample(Sample):
-    """Points in space, in rows (rings of a lidar, lines of a camera).
+    """Points in rows (rings of a lidar, lines of a camera).
 
     Parameters
     ----------
@@ -86,7 +86,7 @@ class PointCloudSample(Sample):
 
 @dataclass(frozen=True, eq=False)
 class ImageSample(Sample):
-    """A picture.
+    """Camera image.
 
     Parameters
     ----------
@@ -101,7 +101,7 @@ class ImageSample(Sample):
 
 @dataclass(frozen=True, eq=False)
 class CameraInfoSample(Sample):
-    """The calibration of a camera.
+    """Calibration of a camera.
 
     Parameters
     ----------
@@ -124,7 +124,7 @@ class CameraInfoSample(Sample):
 
 @dataclass(frozen=True, eq=False)
 class LogicalImageSample(Sample):
-    """The models that a logical camera sees.
+    """Models visible to a logical camera.
 
     Parameters
     ----------
@@ -140,7 +140,7 @@ class LogicalImageSample(Sample):
 
 @dataclass(frozen=True, eq=False)
 class ImuSample(Sample):
-    """An inertial measurement.
+    """Inertial measurement.
 
     Parameters
     ----------
@@ -164,7 +164,7 @@ class ImuSample(Sample):
 
 @dataclass(frozen=True, eq=False)
 class RangeSample(Sample):
-    """The distance to the nearest thing in a cone along x.
+    """Distance to the nearest object in a cone along x.
 
     Parameters
     ----------
@@ -187,7 +187,7 @@ class RangeSample(Sample):
 
 @dataclass(frozen=True, eq=False)
 class NavSatSample(Sample):
-    """A place on Earth.
+    """Geographic position.
 
     Parameters
     ----------
@@ -210,7 +210,7 @@ class NavSatSample(Sample):
 
 @dataclass(frozen=True, eq=False)
 class MagneticFieldSample(Sample):
-    """A magnetic field (3,) in the frame [T], with its covariance (9,)."""
+    """Magnetic field (3,) in the frame [T], with its covariance (9,)."""
 
     field: Array
     covariance: Array
@@ -218,7 +218,7 @@ class MagneticFieldSample(Sample):
 
 @dataclass(frozen=True, eq=False)
 class AltimeterSample(Sample):
-    """Height over a reference [m], its change [m/s], and the reference's height in the world [m]."""
+    """Height over a reference [m], its rate [m/s], and the reference's height in the world [m]."""
 
     position: float
     velocity: float
@@ -284,19 +284,19 @@ class Contact:
 
 @dataclass(frozen=True, eq=False)
 class ContactsSample(Sample):
-    """What touches a link, pair by pair; the link's collision is the first of each."""
+    """Contacts of a link, pair by pair; the link's collision is the first of each."""
 
     contacts: tuple[Contact, ...]
 
 
 @dataclass(frozen=True, eq=False)
 class BumperSample(ContactsSample):
-    """The same, for those who know Gazebo classic's bumper."""
+    """Contacts of a link, in the form of Gazebo classic's bumper."""
 
 
 @dataclass(frozen=True, eq=False)
 class OdometrySample(Sample):
-    """Pose and speed of a base in `frame_id`.
+    """Pose and velocity of a base in `frame_id`.
 
     Parameters
     ----------
@@ -360,28 +360,28 @@ class JointStateSample(Sample):
 
 @dataclass(frozen=True, eq=False)
 class FlagSample(Sample):
-    """Whether something holds."""
+    """Boolean value."""
 
     value: bool
 
 
 @dataclass(frozen=True, eq=False)
 class NumberSample(Sample):
-    """A number in its own unit."""
+    """Number in the unit of its topic."""
 
     value: float
 
 
 @dataclass(frozen=True, eq=False)
 class TextSample(Sample):
-    """A word or two."""
+    """Text."""
 
     text: str
 
 
 @dataclass(frozen=True, eq=False)
 class BatterySample(Sample):
-    """A battery.
+    """State of a battery.
 
     Parameters
     ----------
@@ -399,7 +399,7 @@ class BatterySample(Sample):
 
 @dataclass(frozen=True, eq=False)
 class WheelSlipSample(Sample):
-    """How wheels slip, arrays (n,).
+    """Slip of wheels, arrays (n,).
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The world on MuJoCo, with its sensors and plugins.
+"""Simulator based on MuJoCo, with sensors and plugins.
 
 `Simulation` is the entrance; `samples` lists everything that goes in and out of it.
 """
@@ -14,7 +14,7 @@ __all__ = ["Simulation"]
 
 
 def __getattr__(name: str) -> Any:
-    """Import MuJoCo only when the simulation is used."""
+    """Import MuJoCo on first use of the simulator."""
     if name == "Simulation":
         from daidalos.simulation.simulation import Simulation
 

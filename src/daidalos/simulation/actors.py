@@ -1,4 +1,4 @@
-"""Actors: figures that follow a script and push what stands in their way."""
+"""Actors: figures that follow a script and push obstacles."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from daidalos.simulation.instance import Instance
 
 
 class ActorMotion(Component):
-    """Moves an actor along its script.
+    """Component that moves an actor along its script.
 
     Parameters
     ----------
@@ -27,12 +27,12 @@ class ActorMotion(Component):
         self._actor = actor
 
     def bind(self, instance: Instance) -> None:
-        """Find the body that the script moves."""
+        """Find the actor's body."""
         self._data = instance.physics.data
         self._mocap = int(instance.physics.model.body(instance.name).mocapid[0])
 
     def update(self, now_ns: int) -> Iterable[Sample]:
-        """Go to where the script is now."""
+        """Move the actor to its pose at the current time."""
         pose = actor_pose(self._actor, now_ns * 1e-9)
         x, y, z, w = pose.orientation
         self._data.mocap_pos[self._mocap] = pose.position

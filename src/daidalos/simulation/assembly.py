@@ -1,4 +1,4 @@
-"""Makes the sensors and plugins that a model's description asks for."""
+"""Factory of the sensors and plugins in a model's description."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from daidalos.simulation.wind import Wind, windy_links
 
 
 def make_components(model: Model, context: Callable[[str], ComponentContext]) -> list[Component]:
-    """Make a model's components: plugins first, so that sensors see what they did.
+    """Create a model's components, plugins before sensors.
 
     Parameters
     ----------
@@ -66,7 +66,7 @@ def make_components(model: Model, context: Callable[[str], ComponentContext]) ->
 
 
 def check_world_plugins(world: World, warn: Callable[[str], None]) -> None:
-    """Warn of a world's plugins that do nothing there; those that do something are built in."""
+    """Warn of a world's plugins that have no effect there; supported ones are built in."""
     check_persistent_forces(world, warn)
     for plugin in world.plugins:
         if is_built_in(plugin) or library_of(plugin) in WIND_LIBRARIES:
@@ -92,7 +92,7 @@ def _plugin(plugin: PluginDescription, context: ComponentContext) -> Iterator[Co
 
 
 def _sensors(model: Model) -> Iterator[tuple[str, str, SensorDescription]]:
-    """Yield each sensor with the link that carries it and the joint that it sits in."""
+    """Yield each sensor with its link and its joint."""
     for link in model.links.values():
         for sensor in link.sensors:
             yield link.name, "", sensor
@@ -113,7 +113,7 @@ def _sensor(description: SensorDescription, link: str, joint: str, context: Comp
 
 
 def _spoken_for(make: Callable[[], Sensor], plugin: PluginDescription, context: ComponentContext) -> Iterator[Sensor]:
-    """Make a sensor that speaks as a plugin says: each of a sensor's plugins tells of the same measurement."""
+    """Create a sensor configured by a plugin; all plugins of a sensor publish the same measurement."""
     if is_built_in(plugin):
         return
     cls = _plugin_class(plugin, context.warn)
@@ -132,7 +132,7 @@ def _spoken_for(make: Callable[[], Sensor], plugin: PluginDescription, context: 
 def _warn_of_unread(
     plugin: PluginDescription, element: ReadElement, cls: type[LibraryPlugin], context: ComponentContext
 ) -> None:
-    """Name the parameters that nobody read; a plugin of the user's may read its own whenever it likes."""
+    """Warn of parameters that no code reads; user-defined plugins may read theirs at any time."""
     unread = element.unread((*COMMON_PARAMETERS, *cls.unused)) if cls.names else ()
     if unread:
         where = f"{plugin.element.where}: plugin {plugin.name!r} ({plugin.filename})"
@@ -140,7 +140,7 @@ def _warn_of_unread(
 
 
 def _plugin_class(plugin: PluginDescription, warn: Callable[[str], None]) -> type[LibraryPlugin] | None:
-    """Return the class for a plugin; None, with a warning, where there is none that can be used."""
+    """Return the class of a plugin; warn and return None if none is available."""
     try:
         return find(PLUGINS, library_of(plugin), asked_by=_location(plugin))
     except ExtensionError as error:

@@ -1,4 +1,4 @@
-"""The models of a world as MuJoCo compiles them together: they come and go, and what stays keeps its state."""
+"""Compilation of a world's models into one MuJoCo model, which keeps the state of unchanged models."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from daidalos.simulation.stage import Stage
 
 
 class Compilation:
-    """MuJoCo's specification of a world, and what it was last compiled to.
+    """MuJoCo specification of a world, and the model last compiled from it.
 
     What is added or removed counts from the next `compile` or `recompile` on.
 
@@ -70,13 +70,13 @@ class Compilation:
 
     @property
     def physics(self) -> Physics:
-        """MuJoCo's model and data; replaced with every compilation."""
+        """MuJoCo's model and data, replaced by every compilation."""
         if self._physics is None:
             raise SimulationError("the world is not compiled yet")
         return self._physics
 
     def add(self, model: Model, pose: Pose, namespace: str, components: list[Component]) -> Instance:
-        """Add a model, whose name is still free, with what acts in it.
+        """Add a model, whose name must be free, with its components.
 
         Raises
         ------
@@ -97,7 +97,7 @@ class Compilation:
         return instance
 
     def attach(self, component: Component, instance: Instance) -> None:
-        """Let a component act in a model that is compiled already."""
+        """Add a component to a model that is compiled already."""
         self.number += 1
         instance.components.append(component)
         component.bind(instance)
@@ -108,7 +108,7 @@ class Compilation:
         close_loop(self.spec, parent, self.spec.body(joint.child), joint, joint.name)
 
     def remove(self, instance: Instance) -> None:
-        """Take a model out."""
+        """Remove a model."""
         del self.instances[instance.name]
         instance.build.remove()
         self._assets.release(instance.build.assets)
@@ -128,7 +128,7 @@ class Compilation:
         self._bind(model, mujoco.MjData(model))
 
     def recompile(self) -> None:
-        """Compile after something changed; everything that stays keeps its state.
+        """Compile after changes; unchanged models keep their state.
 
         Raises
         ------
@@ -159,11 +159,11 @@ class Compilation:
 
 
 def _layout(model: Any) -> bytes:
-    """Return what tells whether a state of one model fits another: names, sizes, and where parts are attached."""
+    """Return a key that is equal for models with compatible states: names, sizes and attachments."""
     sizes = np.array((model.nq, model.nv, model.na, model.nu, model.nmocap, model.ngeom, model.nsensor, model.narena))
     return b"".join((model.names, sizes.tobytes(), model.body_pos.tobytes(), model.body_quat.tobytes()))
 
 
 def _one_line(problem: ValueError) -> str:
-    """Return the words of MuJoCo's error in one line."""
+    """Return the message of MuJoCo's error in one line."""
     return " ".join(str(problem).split()).removeprefix("Error: ")

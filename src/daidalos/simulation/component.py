@@ -1,4 +1,4 @@
-"""The contract of everything that acts in the simulation at its own rate: sensors and plugins."""
+"""Contract of sensors and plugins, which act in the simulation at their own rate."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class ComponentContext:
-    """Where a component finds itself when it is made.
+    """Context in which a component is created.
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ class ComponentContext:
 
 
 def random_stream(seed: int, name: str) -> np.random.Generator:
-    """Return random numbers that depend on a seed and a name alone."""
+    """Return a random generator that depends only on a seed and a name."""
     digest = hashlib.sha256(name.encode()).digest()
     key = [int.from_bytes(digest[i : i + 4], "little") for i in range(0, 16, 4)]
     return np.random.default_rng(np.random.SeedSequence(seed, spawn_key=key))
@@ -55,7 +55,7 @@ def random_stream(seed: int, name: str) -> np.random.Generator:
 
 @dataclass(frozen=True)
 class Switch:
-    """A service that turns something on or off.
+    """Service that switches something on or off.
 
     Parameters
     ----------
@@ -70,7 +70,7 @@ class Switch:
 
 
 class Component(Endpoint):
-    """Something that acts when it is due and may say something then.
+    """Sensor or plugin that is updated at its period and returns samples.
 
     Attributes
     ----------
@@ -91,20 +91,20 @@ class Component(Endpoint):
         self.random = context.stream()
 
     def start(self) -> Any:
-        """Return the state that it starts with; called once it is bound, and on reset."""
+        """Return the initial state; called after `bind` and on reset."""
         return None
 
     def prepare(self, build: ModelBuild) -> None:
-        """Add what it needs to the model before that is compiled: actuators, kinds of wheels."""
+        """Add what the component needs to the model before compilation, such as actuators."""
 
     def bind(self, instance: Instance) -> None:
-        """Look up what it needs in the compiled model; called again whenever models come or go."""
+        """Look up what the component needs in the compiled model; called again after models were added or removed."""
 
     def update(self, now_ns: int) -> Iterable[Sample]:
-        """Act, at a simulated time in nanoseconds, and return what there is to say."""
+        """Act at a simulated time [ns] and return the samples to publish."""
         raise NotImplementedError
 
     @property
     def switches(self) -> Mapping[str, Switch]:
-        """Services that it offers, by absolute name."""
+        """Services of the component, by absolute name."""
         return {}

@@ -1,4 +1,4 @@
-"""What touches what: a reading of all contacts now, and a watch over one model."""
+"""Contacts: a snapshot of all contacts, and a monitor of one model."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Touch:
-    """Something that a watched model has touched.
+    """Contact partner of a monitored model.
 
     Parameters
     ----------
@@ -38,7 +38,7 @@ class Touch:
 
 
 def read_contacts(physics: Physics, wanted: NDArray[np.bool_] | None = None) -> list[Contact]:
-    """Return the contacts now, grouped by pairs of collisions.
+    """Return the current contacts, grouped by pairs of collisions.
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ def read_contacts(physics: Physics, wanted: NDArray[np.bool_] | None = None) -> 
 
 
 class ContactMonitor:
-    """Remembers what a model touches.
+    """Recorder of the contacts of a model.
 
     Parameters
     ----------
@@ -74,11 +74,11 @@ class ContactMonitor:
 
     @property
     def touches(self) -> tuple[Touch, ...]:
-        """What was touched so far, in the order of first contact."""
+        """Contact partners so far, in the order of first contact."""
         return tuple(self._touches.values())
 
     def bind(self, physics: Physics) -> None:
-        """Take the geoms of a newly compiled model."""
+        """Update the geoms after a compilation."""
         self._geoms = physics.geoms
         self._mine = np.zeros(physics.model.ngeom, dtype=bool)
         self._counts = np.zeros(physics.model.ngeom, dtype=bool)
@@ -101,7 +101,7 @@ class ContactMonitor:
 
 
 def _wake_all(physics: Physics) -> Any:
-    """Return up to date data with the contacts of sleeping models as well, without waking them."""
+    """Return data with the contacts of sleeping models included, without waking them."""
     model, data = physics.model, physics.data
     if data.ntree_awake == model.ntree:
         physics.refresh()

@@ -1,4 +1,4 @@
-"""Friction along one direction alone, as mecanum wheels have it: SDF's ``<fdir1>`` in a frame that does not roll."""
+"""Friction along a single direction for mecanum wheels: SDF's ``<fdir1>`` in a frame that does not roll."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ Array = NDArray[np.float64]
 
 
 class DirectionalFriction(Component):
-    """Holds links against slipping along a direction of another link.
+    """Friction of links along a direction of another link.
 
     MuJoCo's contacts rub the same in all directions, so they keep the smaller coefficient. The rest is a force
     against the slip of the contact along the direction, up to Coulomb's limit. It is as stiff as a step can
@@ -39,7 +39,7 @@ class DirectionalFriction(Component):
         self._surfaces = directed_surfaces(context.model)
 
     def prepare(self, build: ModelBuild) -> None:
-        """Leave the smaller friction to the contacts."""
+        """Set the smaller friction coefficient on the contacts."""
         for name, info in build.geoms.items():
             surface = self._surfaces.get(info.link)
             if surface is not None:
@@ -47,7 +47,7 @@ class DirectionalFriction(Component):
                 set_friction(build.spec.geom(name), replace(surface, mu=least, mu2=least))
 
     def bind(self, instance: Instance) -> None:
-        """Find the links, and how heavy each is where it grips."""
+        """Find the links and their effective masses."""
         self._instance = instance
         compiled = instance.physics.model
         self._keys = [f"{instance.name}::{name}/friction" for name in self._surfaces]
@@ -71,7 +71,7 @@ class DirectionalFriction(Component):
                 self._row_of[geom] = rows.get(info.link, -1)
 
     def update(self, now_ns: int) -> Iterable[Sample]:
-        """Push each link that touches something against its slip."""
+        """Apply forces against the slip of each link in contact."""
         physics = self._instance.physics
         points, normals, loads = self._touching()
         grips = self._friction_forces(points, normals, loads)
@@ -85,7 +85,7 @@ class DirectionalFriction(Component):
         return ()
 
     def _touching(self) -> tuple[Array, Array, Array]:
-        """Return the middle (n, 3) of each link's contacts, their normal (n, 3) and the force (n,) in them [N]."""
+        """Return the mean position (n, 3) of each link's contacts, their normals (n, 3) and normal forces (n,) [N]."""
         data = self._instance.physics.data
         contact = data.contact
         rows = self._row_of[contact.geom].max(axis=1, initial=-1)
@@ -116,7 +116,7 @@ class DirectionalFriction(Component):
 
 
 def directed_surfaces(model: Model) -> dict[str, Surface]:
-    """Return the surfaces that rub differently along a direction of another link, by the link that has them."""
+    """Return the surfaces with a friction direction in another link, by link."""
     found = {}
     for link in model.links.values():
         for surface in (collision.surface for collision in link.collisions if any(collision.surface.direction)):
@@ -127,7 +127,7 @@ def directed_surfaces(model: Model) -> dict[str, Surface]:
 
 
 def _frame(model: Model, link: str, frame: str) -> str:
-    """Return the link whose axes a frame means, for a link that may be in a nested model; empty for none."""
+    """Return the link of a frame name, for a link that may be in a nested model; empty for none."""
     scope = link.rpartition("::")[0]
     if frame == "__model__":
         return next(name for name in model.links if name.rpartition("::")[0] == scope)
@@ -136,6 +136,6 @@ def _frame(model: Model, link: str, frame: str) -> str:
 
 
 def _pair(surface: Surface) -> tuple[float, float]:
-    """Return the coefficients along the direction and across it."""
+    """Return the friction coefficients along the direction and across it."""
     along, across = (friction_of(replace(surface, mu=value, mu2=value)) for value in (surface.mu, surface.mu2))
     return min(along, MAX_FRICTION), min(across, MAX_FRICTION)

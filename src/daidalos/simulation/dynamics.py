@@ -1,4 +1,4 @@
-"""What a robot's joints have to do with forces: Jacobians, masses, gravity; by MuJoCo, without a world."""
+"""Robot dynamics by MuJoCo: Jacobians, mass matrix, bias forces and inverse dynamics."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _SIMPLE = (*_TURNING, JointType.PRISMATIC, JointType.FIXED, JointType.FLOATING)
 
 
 class Dynamics:
-    """Rigid-body dynamics of a robot whose root stands still.
+    """Rigid-body dynamics of a robot with a fixed root.
 
     All coordinates are those of its movable joints; friction, damping, limits and whom joints mimic do not
     count. Not made for use from several threads at once.
@@ -108,7 +108,7 @@ class Dynamics:
         return jacobian
 
     def mass_matrix(self, positions: Array) -> Array:
-        """Return the inertia (n, n) that the joints feel [kg m^2, kg]."""
+        """Return the joint-space mass matrix (n, n) [kg m^2, kg]."""
         self._set(positions)
         mujoco.mj_crb(self._model, self._data)
         matrix = np.zeros((self._model.nv, self._model.nv))
@@ -116,11 +116,11 @@ class Dynamics:
         return matrix
 
     def bias(self, positions: Array, velocities: Array) -> Array:
-        """Return the efforts (n,) that keep the velocities as they are: gravity, Coriolis, centrifugal [N m, N]."""
+        """Return the bias efforts (n,) of gravity, Coriolis and centrifugal forces [N m, N]."""
         return self.inverse(positions, velocities, np.zeros(len(self.joint_names)))
 
     def inverse(self, positions: Array, velocities: Array, accelerations: Array) -> Array:
-        """Return the efforts (n,) that make the joints accelerate so: M a + bias [N m, N]."""
+        """Return the efforts (n,) for joint accelerations: M a + bias [N m, N]."""
         self._set(positions, velocities)
         self._data.qacc[:] = accelerations
         efforts = np.zeros(self._model.nv)
@@ -128,7 +128,7 @@ class Dynamics:
         return efforts
 
     def forward(self, positions: Array, velocities: Array, efforts: Array) -> Array:
-        """Return the accelerations (n,) that efforts cause [rad/s^2, m/s^2]."""
+        """Return the accelerations (n,) caused by efforts [rad/s^2, m/s^2]."""
         rest: Array = np.asarray(efforts, dtype=np.float64) - self.bias(positions, velocities)
         return np.asarray(np.linalg.solve(self.mass_matrix(positions), rest), dtype=np.float64)
 
@@ -141,7 +141,7 @@ class Dynamics:
 
 
 def _held(model: Model) -> Model:
-    """Fix every root of a model to the world."""
+    """Fix all roots of a model to the world."""
     held = {joint.child for joint in model.joints.values()}
     roots = [name for name in model.links if name not in held]
     fixed = {

@@ -1,4 +1,4 @@
-"""A world that runs: compiled, stepped by its caller, listened to, commanded, saved and restored."""
+"""Engine of a running world: compilation, steps, topics, and saving and restoring of its state."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ _MONITOR_PERIOD_NS = 10_000_000
 
 
 class Engine:
-    """A world that runs: its time, its topics and its state.
+    """Running world: its time, topics and state.
 
     Its parameters are those of `Simulation`, which adds what users do to models.
     """
@@ -69,22 +69,22 @@ class Engine:
 
     @property
     def physics(self) -> Physics:
-        """MuJoCo's model and data; replaced whenever models come or go."""
+        """MuJoCo's model and data, replaced whenever models are added or removed."""
         return self._compilation.physics
 
     @property
     def stage(self) -> Stage:
-        """What cameras see: the models, the lights and the sky."""
+        """Visible content for cameras: models, lights and sky."""
         return self._compilation.stage
 
     @property
     def forces(self) -> Forces:
-        """What pushes from outside."""
+        """External forces."""
         return self._compilation.forces
 
     @property
     def models(self) -> tuple[str, ...]:
-        """Names of the models in the world, in the order in which they came."""
+        """Names of the models in the world, in the order of insertion."""
         return tuple(self._compilation.instances)
 
     def instance(self, name: str) -> Instance:
@@ -102,11 +102,11 @@ class Engine:
     # Time
 
     def step(self, count: int = 1) -> list[Sample]:
-        """Run a number of steps of `step_ns` and return what was said, ordered by stamp."""
+        """Run a number of steps of `step_ns` and return the samples, sorted by stamp."""
         return self._run(self.time_ns + count * self.step_ns)
 
     def advance(self, duration_ns: int) -> list[Sample]:
-        """Run for a time and return what was said, ordered by stamp.
+        """Run for a time and return the samples, sorted by stamp.
 
         Parameters
         ----------
@@ -123,7 +123,7 @@ class Engine:
 
     @property
     def gravity(self) -> Vector:
-        """[m/s^2]."""
+        """Gravity [m/s^2]."""
         x, y, z = (float(value) for value in self.physics.model.opt.gravity)
         return x, y, z
 
@@ -135,7 +135,7 @@ class Engine:
         self.physics.changed()
 
     def set_step(self, seconds: float) -> None:
-        """Change the length of a step.
+        """Set the length of a step.
 
         Raises
         ------
@@ -150,7 +150,7 @@ class Engine:
     # Topics and services
 
     def command(self, topic: str, command: Any) -> int:
-        """Hand a command to whoever subscribes to a topic; return how many did.
+        """Pass a command to the subscribers of a topic; return their number.
 
         Raises
         ------
@@ -166,27 +166,27 @@ class Engine:
 
     @property
     def publications(self) -> dict[str, type[Sample]]:
-        """Topics that samples may have, with their classes."""
+        """Topics of samples, with their classes."""
         return {topic: cls for c in self._components() for topic, cls in c.publications.items()}
 
     @property
     def subscriptions(self) -> dict[str, type]:
-        """Topics that commands are taken from, with their classes."""
+        """Topics of commands, with their classes."""
         return {topic: sub.type for c in self._components() for topic, sub in c.subscriptions.items()}
 
     @property
     def switches(self) -> dict[str, Switch]:
-        """Services that plugins offer."""
+        """Services of plugins."""
         return {name: switch for c in self._components() for name, switch in c.switches.items()}
 
     # State
 
     def contacts(self) -> list[Contact]:
-        """Return what touches now, one entry for each pair of collisions."""
+        """Return the current contacts, one entry for each pair of collisions."""
         return read_contacts(self.physics)
 
     def monitor_contacts(self, model: str, ignore: Iterable[str] = ()) -> ContactMonitor:
-        """Watch from now on what a model touches, however briefly.
+        """Start to record the contacts of a model, however brief.
 
         Parameters
         ----------
@@ -200,7 +200,7 @@ class Engine:
         return monitor
 
     def save(self) -> State:
-        """Return the state; it can be restored as long as the same models are there."""
+        """Return the state; it can be restored as long as the same models exist."""
         component_states = copy_states(self._components())
         # All of MuJoCo's data, since sleeping models are no part of its smaller states.
         physics = copy.copy(self.physics.data)
@@ -209,7 +209,7 @@ class Engine:
         )
 
     def restore(self, state: State) -> None:
-        """Go back to a saved state, bit for bit.
+        """Restore a saved state, bit for bit.
 
         Raises
         ------
@@ -226,7 +226,7 @@ class Engine:
         self.physics.changed()
 
     def reset(self, keep_time: bool = False) -> None:
-        """Put every model back to where it came in, with fresh sensors and plugins.
+        """Reset all models to their initial poses, with newly started sensors and plugins.
 
         Parameters
         ----------
@@ -274,7 +274,7 @@ class Engine:
         return self._compilation.add(model, pose, namespace, components)
 
     def _recompile(self) -> None:
-        """Compile after models came or went; everything that stays keeps its state."""
+        """Compile after models were added or removed; all others keep their state."""
         self._compilation.recompile()
         for monitor in self._monitors:
             monitor.bind(self.physics)
@@ -304,7 +304,7 @@ class Engine:
 
     @property
     def _timestep(self) -> float:
-        """MuJoCo's [s]."""
+        """MuJoCo's time step [s]."""
         return self.step_ns / self._substeps * 1e-9
 
     def _run(self, goal_ns: int) -> list[Sample]:

@@ -1,4 +1,4 @@
-"""The errors of the simulator."""
+"""Errors of the simulator."""
 
 from __future__ import annotations
 
@@ -6,11 +6,11 @@ from collections.abc import Iterable
 
 
 class SimulationError(Exception):
-    """Something can not be simulated; the message says what and why."""
+    """Content that cannot be simulated; the message gives the reason."""
 
 
 class UnknownNameError(SimulationError):
-    """There is no model, link or joint of this name; says which there are.
+    """Unknown model, link or joint; the message lists the known ones.
 
     Parameters
     ----------
@@ -28,7 +28,7 @@ class UnknownNameError(SimulationError):
 
 
 class NameTakenError(SimulationError):
-    """A model of this name is there already.
+    """Duplicate model name.
 
     Parameters
     ----------

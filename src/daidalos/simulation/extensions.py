@@ -1,4 +1,4 @@
-"""Sensors and plugins of the simulator that users add, and the names by which files ask for them."""
+"""Registry of sensors and plugins, with the names by which files refer to them."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _BUILT_IN = re.compile(
 
 
 def library_name(filename: str) -> str:
-    """Return the name of a library without what platforms and versions add to it.
+    """Return the name of a library without platform-specific prefixes, suffixes and versions.
 
     ``libgazebo_ros_imu.so`` becomes ``gazebo_ros_imu``; ``libignition-gazebo6-imu-system.so``,
     ``gz-sim8-imu-system`` and gz's class name ``gz::sim::systems::Imu`` become ``gz-sim-imu-system``.
@@ -36,14 +36,14 @@ def library_name(filename: str) -> str:
 
 
 def library_of(plugin: Description) -> str:
-    """Return the name of a plugin's library; gz's name of a class counts where the file is of no system of gz's."""
+    """Return the name of a plugin's library; gz's class name takes precedence for non-gz libraries."""
     library = library_name(plugin.filename)
     is_class = "::systems::" in plugin.name and not re.fullmatch("gz-sim-.*-system", library)
     return library_name(plugin.name) if is_class else library
 
 
 def is_built_in(plugin: Description) -> bool:
-    """Return whether a plugin asks for what the simulator does anyway."""
+    """Return whether a plugin requests something that is built into the simulator."""
     return _BUILT_IN.fullmatch(library_of(plugin)) is not None
 
 

@@ -1,4 +1,4 @@
-"""Forces from outside: pushes that last for a time, and those that plugins hold."""
+"""External forces: timed pushes, and forces held by plugins."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Push:
-    """A force on a link that lasts for a time.
+    """Force on a link for a time.
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ class Push:
 
 @dataclass(frozen=True)
 class JointPush:
-    """An effort [N m, N] on a joint that lasts for a time."""
+    """Effort [N m, N] on a joint for a time."""
 
     model: str
     joint: str
@@ -58,7 +58,7 @@ class JointPush:
 
 @dataclass
 class Forces:
-    """All forces from outside, and their places in the arrays.
+    """All external forces, and their indices in the arrays.
 
     Attributes
     ----------
@@ -72,38 +72,38 @@ class Forces:
     _dirty: bool = False
 
     def bind(self, instances: Mapping[str, Instance]) -> None:
-        """Take the models of a newly compiled world; plugins hold their forces again when they are next due."""
+        """Update the models after a compilation; plugins set their forces again at their next update."""
         self._instances = instances
         self._held.clear()
         self.pushes = tuple(push for push in self.pushes if push.model in instances)
         self._dirty = True
 
     def add(self, push: Push | JointPush) -> None:
-        """Start to push."""
+        """Add a push."""
         self.pushes = (*self.pushes, push)
 
     def hold(self, key: str, body: int, force: Array, torque: Array) -> None:
-        """Push a body at its centre of mass, in world axes, until the same holder says otherwise."""
+        """Set the force of a holder on a body's centre of mass, in world axes, until its next call."""
         self._held[key] = body, force, torque
         self._dirty = True
 
     def release(self, key: str) -> None:
-        """Hold no longer."""
+        """Remove the force of a holder."""
         self._dirty |= self._held.pop(key, None) is not None
 
     def clear(self, keep: Iterable[Push | JointPush] = ()) -> None:
-        """Let go of everything except some pushes."""
+        """Remove all forces except some pushes."""
         self.pushes = tuple(keep)
         self._held.clear()
         self._dirty = True
 
     def next_change(self, now_ns: int) -> float:
-        """Return when a push next begins or ends."""
+        """Return the time at which the next push starts or ends."""
         times = (time for push in self.pushes for time in (push.start_ns, push.end_ns))
         return min((time for time in times if time > now_ns), default=math.inf)
 
     def apply(self, physics: Physics, now_ns: int) -> None:
-        """Write the forces of the step to come."""
+        """Write the forces of the next step."""
         if not (self.pushes or self._dirty):
             return
         if self.pushes:

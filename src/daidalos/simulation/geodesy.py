@@ -1,4 +1,4 @@
-"""From the plane that a world lies in to places on Earth (WGS 84)."""
+"""Conversion of world coordinates to geographic ones (WGS 84)."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _ECCENTRICITY_2 = _FLATTENING * (2 - _FLATTENING)
 
 @dataclass(frozen=True)
 class Geodetic:
-    """A place: latitude and longitude [deg], height above the ellipsoid [m]."""
+    """Geographic position: latitude and longitude [deg], height above the ellipsoid [m]."""
 
     latitude: float
     longitude: float
@@ -27,14 +27,14 @@ class Geodetic:
 
 
 def to_east_north_up(vector: Array, origin: SphericalCoordinates) -> Array:
-    """Turn a vector (3,) of the world into east, north, up at its origin."""
+    """Rotate a world vector (3,) to east, north, up at the world's origin."""
     heading = math.radians(origin.heading)
     x, y, z = (float(value) for value in vector)
     return np.array((x * math.cos(heading) - y * math.sin(heading), x * math.sin(heading) + y * math.cos(heading), z))
 
 
 def to_geodetic(position: Array, origin: SphericalCoordinates) -> Geodetic:
-    """Return where a position (3,) [m] of the world is on Earth."""
+    """Return the geographic position of a world position (3,) [m]."""
     latitude, longitude = math.radians(origin.latitude), math.radians(origin.longitude)
     east, north, up = to_east_north_up(position, origin)
     sp, cp, sl, cl = math.sin(latitude), math.cos(latitude), math.sin(longitude), math.cos(longitude)
@@ -50,7 +50,7 @@ def _cartesian(latitude: float, longitude: float, height: float) -> Array:
 
 
 def _geodetic(point: Array) -> Geodetic:
-    """Invert `_cartesian` by fixed-point iteration, which near the surface gains three digits a turn."""
+    """Invert `_cartesian` by fixed-point iteration, which near the surface gains three digits per iteration."""
     x, y, z = (float(value) for value in point)
     flat = math.hypot(x, y)
     latitude, height = math.atan2(z, flat * (1 - _ECCENTRICITY_2)), 0.0

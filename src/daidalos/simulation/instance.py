@@ -1,4 +1,4 @@
-"""A model in the running simulation: names of its links and joints as places in MuJoCo's arrays."""
+"""Model in a running simulation: its links and joints as indices of MuJoCo's arrays."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class LinkView:
-    """A link in the arrays."""
+    """View of a link in the arrays."""
 
     physics: Physics
     body: int
 
     @property
     def pose(self) -> Pose:
-        """The link in the world, now."""
+        """Current pose of the link in the world."""
         self.physics.refresh_positions()
         data = self.physics.data
         x, y, z = (float(value) for value in data.xpos[self.body])
@@ -39,7 +39,7 @@ class LinkView:
 
     @property
     def rotation(self) -> Array:
-        """Rotation (3, 3) of the link in the world, now."""
+        """Current rotation (3, 3) of the link in the world."""
         self.physics.refresh_positions()
         rotation: Array = self.physics.data.xmat[self.body].reshape(3, 3)
         return rotation
@@ -52,7 +52,7 @@ class LinkView:
         return motion[3:], motion[:3]
 
     def inertial_motion(self) -> tuple[Array, Array, Array]:
-        """Return what an inertial sensor at the link's origin feels, in the link's axes.
+        """Return angular velocity and specific force at the link's origin, in the link's axes.
 
         Returns
         -------
@@ -74,7 +74,7 @@ class LinkView:
 
 @dataclass(frozen=True)
 class JointView:
-    """A joint's first degree of freedom in the arrays."""
+    """View of a joint's first degree of freedom in the arrays."""
 
     physics: Physics
     name: str
@@ -83,22 +83,22 @@ class JointView:
 
     @property
     def position(self) -> float:
-        """[rad] or [m]; turns are counted on."""
+        """Position [rad] or [m]; full turns are counted."""
         return float(self.physics.data.qpos[self.qpos])
 
     @property
     def velocity(self) -> float:
-        """[rad/s] or [m/s]."""
+        """Velocity [rad/s] or [m/s]."""
         return float(self.physics.data.qvel[self.dof])
 
     @property
     def effort(self) -> float:
-        """Of the joint's actuators, in the last step [N m] or [N]."""
+        """Effort of the joint's actuators in the last step [N m] or [N]."""
         return float(self.physics.data.qfrc_actuator[self.dof])
 
 
 class Instance:
-    """A model in the simulation.
+    """Model in the simulation.
 
     Parameters
     ----------
@@ -117,7 +117,7 @@ class Instance:
 
     @property
     def model(self) -> Model:
-        """Its description."""
+        """Description of the model."""
         return self.build.model
 
     @property
@@ -128,7 +128,7 @@ class Instance:
         return self._physics
 
     def bind(self, physics: Physics) -> None:
-        """Take the arrays of a newly compiled model; places in them may have changed."""
+        """Update the indices after a compilation."""
         self._physics = physics
         for component in self.components:
             component.bind(self)
@@ -161,12 +161,12 @@ class Instance:
         return JointView(self.physics, name, int(joint.qposadr[0]), int(joint.dofadr[0]))
 
     def actuator(self, name: str) -> int:
-        """Return the place of an actuator in MuJoCo's controls."""
+        """Return the index of an actuator in MuJoCo's controls."""
         return int(self.physics.model.actuator(name).id)
 
     @property
     def pose(self) -> Pose:
-        """The model's frame in the world, now; it moves with its first free link."""
+        """Current pose of the model's frame in the world; it moves with its first free link."""
         root = next(iter(self.build.free), None)
         if root is not None:
             return self.link(root).pose @ self.model.links[root].pose.inverse
@@ -177,7 +177,7 @@ class Instance:
 
     @property
     def bounds(self) -> tuple[Array, Array]:
-        """The least and the greatest corner (3,) in the world, now, of what is solid of the model [m].
+        """Lower and upper corner (3,) of the model's collisions in the world [m].
 
         Infinite shapes do not count; without any other the corners are the model's origin.
         """
@@ -194,7 +194,7 @@ class Instance:
         return np.min(corners, axis=0), np.max(corners, axis=0)
 
     def place_joints(self) -> None:
-        """Put joints whose zero is outside their limits to where they start."""
+        """Set joints whose limits exclude zero to their initial positions."""
         for name, position in self.build.start.items():
             self.physics.data.qpos[int(self.physics.model.joint(name).qposadr[0])] = position
 
@@ -209,7 +209,7 @@ class Instance:
             data.qpos[address : address + 7] = (*moved.position, w, x, y, z)
 
     def set_velocity(self, linear: Array, angular: Array) -> None:
-        """Return every free link of the model a velocity of its origin and a turn rate, in world axes."""
+        """Set the linear and angular velocity of the model as a rigid body, in world axes."""
         data, model = self.physics.data, self.physics.model
         for link, joint in self.build.free.items():
             address = int(model.joint(joint).dofadr[0])

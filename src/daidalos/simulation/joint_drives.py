@@ -1,4 +1,4 @@
-"""Motors of joints that follow commanded positions, speeds or efforts, as controllers want them."""
+"""Joint motors that follow commanded positions, velocities or efforts of controllers."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ LEAD = 0.05
 
 
 class Mode(IntEnum):
-    """What a joint's motor does."""
+    """Control mode of a joint's motor."""
 
     FREE = 0
     HOLD = 1
@@ -43,7 +43,7 @@ class Mode(IntEnum):
 
 @dataclass
 class DriveState:
-    """All that changes of n drives.
+    """State of n drives.
 
     Parameters
     ----------
@@ -85,12 +85,12 @@ class JointDrives:
         self._applied: NDArray[np.int8] | None = None
 
     def start(self, hold: bool) -> DriveState:
-        """Return the state in which nobody commands: hold the joints or leave them free."""
+        """Return the state without commands: joints held or free."""
         mode = Mode.HOLD if hold else Mode.FREE
         return DriveState(np.full(len(self.driven), mode, dtype=np.int8), np.full(len(self.driven), np.nan))
 
     def prepare(self, build: ModelBuild) -> None:
-        """Add a servo for positions and one for speeds and efforts to each joint."""
+        """Add a position servo and a servo for velocities and efforts to each joint."""
         wheels = {joint: radius for joint in self._spinning if (radius := _wheel_radius(build, joint)) > 0.0}
         mass = sum(link.inertial.mass for link in build.model.links.values() if link.inertial)
         self._wheels = np.array([joint in wheels for joint in self.driven], dtype=bool)
@@ -147,21 +147,21 @@ class JointDrives:
 
     @property
     def positions(self) -> Array:
-        """Of all `names` [rad, m]."""
+        """Positions of all `names` [rad, m]."""
         return np.array(self._instance.physics.data.qpos[self._qpos])
 
     @property
     def velocities(self) -> Array:
-        """Of all `names` [rad/s, m/s]."""
+        """Velocities of all `names` [rad/s, m/s]."""
         return np.array(self._instance.physics.data.qvel[self._dof])
 
     @property
     def efforts_now(self) -> Array:
-        """Of the motors of all `names`, in the last step [N m, N]."""
+        """Motor efforts of all `names` in the last step [N m, N]."""
         return np.array(self._instance.physics.data.qfrc_actuator[self._dof])
 
     def place(self, positions: Mapping[str, float]) -> None:
-        """Put joints somewhere, at rest; the motors go on from there."""
+        """Set joints to positions at rest; the motors continue from there."""
         self._applied = None
         data = self._instance.physics.data
         for name, position in positions.items():
@@ -172,7 +172,7 @@ class JointDrives:
     # What is commanded.
 
     def command(self, state: DriveState, period: float) -> None:
-        """Tell the motors what to do for a period.
+        """Apply the commands for a period.
 
         Parameters
         ----------
@@ -201,14 +201,14 @@ class JointDrives:
         data.ctrl[self._motor] = np.where(modes >= Mode.VELOCITY, values, 0.0)
 
     def _uses_reference(self, modes: NDArray[np.int8]) -> NDArray[np.bool_]:
-        """Tell for which joints the servo with a reference works."""
+        """Return for which joints the servo with a reference is active."""
         result: NDArray[np.bool_] = (modes == Mode.POSITION) | (
             ~self._wheels & ((modes == Mode.HOLD) | (modes == Mode.VELOCITY))
         )
         return result
 
     def _apply(self, modes: NDArray[np.int8], at: Array) -> None:
-        """Set the gains for the modes; a reference that comes into use starts where the joint is."""
+        """Set the gains of the modes; a newly used reference starts at the joint's position."""
         physics = self._instance.physics
         model, data = physics.model, physics.data
         servo = self._uses_reference(modes)
@@ -225,7 +225,7 @@ class JointDrives:
 
 
 def _wheel_radius(build: ModelBuild, name: str) -> float:
-    """Return the radius of the wheel that a joint turns without end, 0 where it turns none.
+    """Return the radius of the wheel that a continuous joint turns, 0 without a wheel.
 
     A wheel is what lies evenly about its axle, whatever shape it is described by.
     """

@@ -1,4 +1,4 @@
-"""Noise on a sensor's numbers, as SDF's ``<noise>`` describes it."""
+"""Sensor noise of SDF's ``<noise>``."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Noise:
-    """Gaussian noise with a bias that is drawn once and may wander.
+    """Gaussian noise with a constant bias and an optional random walk.
 
     Parameters
     ----------
@@ -38,7 +38,7 @@ class Noise:
     precision: float = 0.0
 
     def apply(self, values: Array, random: np.random.Generator) -> Array:
-        """Return the values with noise, without bias; infinite ones stay."""
+        """Return the values with noise but without bias; infinite values stay."""
         noisy = values
         if self.mean or self.stddev:
             noisy = noisy + random.normal(self.mean, self.stddev, len(values))
@@ -51,7 +51,7 @@ SILENT = Noise()
 
 
 class NoiseVector:
-    """The noise of n numbers that are measured together, each with its own settings.
+    """Noise of n values that are measured together, each with its own settings.
 
     Parameters
     ----------
@@ -72,17 +72,17 @@ class NoiseVector:
 
     @property
     def variance(self) -> Array:
-        """Of what is added at random (n,)."""
+        """Variance of the white noise (n,)."""
         variance: Array = np.square(self._stddev)
         return variance
 
     def draw_bias(self, random: np.random.Generator) -> Array:
-        """Draw the constant errors (n,), their signs too."""
+        """Draw the constant errors (n,) with random signs."""
         signs: Array = random.choice((-1.0, 1.0), len(self._mean))
         return random.normal(self._bias_mean, self._bias_stddev) * signs
 
     def wander(self, bias: Array, elapsed: float, random: np.random.Generator) -> Array:
-        """Return the wandering errors (n,) after `elapsed` seconds.
+        """Return the drifting errors (n,) after `elapsed` seconds.
 
         Exact discretisation of a Gauss-Markov process whose stationary standard deviation is
         ``dynamic_bias_stddev`` (Crassidis, "Sigma-point Kalman filtering for integrated GPS and inertial
@@ -104,7 +104,7 @@ class NoiseVector:
 
 
 def read_noise(element: Element | None) -> Noise:
-    """Read ``<noise>``, or the ``<rate>`` and ``<accel>`` of an older IMU; None gives silence."""
+    """Read ``<noise>``, or ``<rate>`` and ``<accel>`` of an older IMU; None yields no noise."""
     if element is None or element.attribute("type", element.text_of("type", default="gaussian")) == "none":
         return Noise()
     for tag in ("stddev", "bias_stddev", "dynamic_bias_stddev"):

@@ -1,4 +1,4 @@
-"""Pushes that a world describes: the ``<persistent>`` wrenches of gz's ApplyLinkWrench system."""
+"""Persistent forces of a world: the ``<persistent>`` wrenches of gz's ApplyLinkWrench system."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _NEVER = 1e6  # seconds between two updates, in which there is nothing to do
 
 
 class PersistentForces(Component):
-    """Begins to push the links of its model when the simulation starts.
+    """Component that applies the persistent forces of its model.
 
     Parameters
     ----------
@@ -32,21 +32,21 @@ class PersistentForces(Component):
         self._pushes = persistent_forces(context.model, context.world)
 
     def bind(self, instance: Instance) -> None:
-        """Find where pushes are kept."""
+        """Find the external forces."""
         self._forces = instance.physics.forces
 
     def start(self) -> None:
-        """Start to push; a reset ended all pushes."""
+        """Add the forces, since a reset removed them."""
         for push in self._pushes:
             self._forces.add(push)
 
     def update(self, now_ns: int) -> Iterable[Sample]:
-        """Leave that to the pushes."""
+        """Do nothing; the forces act by themselves."""
         return ()
 
 
 def persistent_forces(model: Model, world: World) -> list[Push]:
-    """Return what a world pushes a model's links with; a push on the model is one on its first link.
+    """Return the persistent forces on a model's links; one on the model acts on its first link.
 
     Raises
     ------
@@ -60,7 +60,7 @@ def persistent_forces(model: Model, world: World) -> list[Push]:
 
 
 def check_persistent_forces(world: World, warn: Callable[[str], None]) -> None:
-    """Warn of pushes on what is not in the world."""
+    """Warn of forces on models and links that are not in the world."""
     known = {name for model in world.models for name in (model.name, *(f"{model.name}::{li}" for li in model.links))}
     for element in _persistent(world):
         if _name(element) not in known:

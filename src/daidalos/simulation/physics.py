@@ -1,4 +1,4 @@
-"""MuJoCo's model and data, stepped, and brought up to date with the state when somebody asks."""
+"""MuJoCo's model and data: steps, and lazy updates of derived quantities."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _DIVERGED = (
 
 
 def _note(message: str) -> None:
-    """Log a warning of MuJoCo's; numbers that diverge are raised as an error anyway."""
+    """Log a warning of MuJoCo; diverged states raise an error later."""
     _log.log(logging.DEBUG if "unstable" in message else logging.WARNING, message)
 
 
@@ -32,7 +32,7 @@ mujoco.set_mju_user_warning(_note)
 
 
 class Physics:
-    """One compiled world.
+    """Compiled world.
 
     Parameters
     ----------
@@ -65,7 +65,7 @@ class Physics:
         self.changed()
 
     def step(self, count: int) -> None:
-        """Make steps, all in one call.
+        """Run steps in one call.
 
         Raises
         ------
@@ -85,23 +85,23 @@ class Physics:
                 )
 
     def wake(self) -> None:
-        """Wake everything that sleeps: MuJoCo wakes what is given a speed."""
+        """Wake all sleeping bodies by setting a velocity."""
         asleep = self.data.tree_asleep >= 0
         self.data.qvel[asleep[self.model.dof_treeid]] = 1e-9
 
     def changed(self) -> None:
-        """Record that the state changed: what derives from it is out of date."""
+        """Mark everything derived from the state as out of date."""
         self._positions_fresh = self._all_fresh = False
 
     def refresh_positions(self) -> None:
-        """Bring the poses of bodies and geoms up to date."""
+        """Update the poses of bodies and geoms."""
         if not self._positions_fresh:
             mujoco.mj_kinematics(self.model, self.data)
             mujoco.mj_comPos(self.model, self.data)
             self._positions_fresh = True
 
     def refresh(self) -> None:
-        """Bring everything up to date: velocities, accelerations, contacts and their forces."""
+        """Update everything: velocities, accelerations, contacts and their forces."""
         if not self._all_fresh:
             mujoco.mj_forward(self.model, self.data)
             self._positions_fresh = self._all_fresh = True

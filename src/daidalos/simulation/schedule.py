@@ -1,4 +1,4 @@
-"""When each component is due, in whole nanoseconds that do not drift."""
+"""Schedule of the components' updates, in integer nanoseconds without drift."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class _Entry:
 
 
 class Schedule:
-    """Keeps components in the order in which they are due; ties go by the order of adding.
+    """Queue of components by their next update; ties are resolved by the order of insertion.
 
     A component with a period is due at its start plus 1, 2, 3 ... periods, each rounded by itself, so
     that 15 Hz stays 15 Hz. Without a period, or with one shorter than a step, it is due after every step.
@@ -31,7 +31,7 @@ class Schedule:
         self._order = 0
 
     def add(self, component: Component, now_ns: int) -> None:
-        """Start a component's clock."""
+        """Add a component."""
         entry = _Entry(0, self._order, now_ns, 0, component.period, component)
         self._order += 1
         _advance(entry, now_ns)
@@ -44,18 +44,18 @@ class Schedule:
         heapq.heapify(self._entries)
 
     def restart(self, now_ns: int) -> None:
-        """Start every component's clock again."""
+        """Restart the clocks of all components."""
         for entry in self._entries:
             entry.start_ns, entry.count = now_ns, 0
             _advance(entry, now_ns)
         heapq.heapify(self._entries)
 
     def next_due(self) -> int | None:
-        """Return when the next component is due; None when there is none."""
+        """Return the time of the next update; None without components."""
         return self._entries[0].due_ns if self._entries else None
 
     def due(self, now_ns: int) -> Iterator[Component]:
-        """Yield each component that is due by now and set its next time."""
+        """Yield each component that is due and set its next update."""
         while self._entries and self._entries[0].due_ns <= now_ns:
             entry = self._entries[0]
             _advance(entry, now_ns)
@@ -63,11 +63,11 @@ class Schedule:
             yield entry.component
 
     def save(self) -> dict[int, tuple[int, int, int]]:
-        """Return each component's clock, by identity of the component."""
+        """Return the clocks of the components, by identity."""
         return {id(e.component): (e.due_ns, e.start_ns, e.count) for e in self._entries}
 
     def restore(self, clocks: dict[int, tuple[int, int, int]]) -> None:
-        """Set the clocks of the components that `save` knew."""
+        """Restore the clocks of the components that `save` returned."""
         for entry in self._entries:
             if id(entry.component) in clocks:
                 entry.due_ns, entry.start_ns, entry.count = clocks[id(entry.component)]
@@ -75,7 +75,7 @@ class Schedule:
 
 
 def _advance(entry: _Entry, now_ns: int) -> None:
-    """Set the next time after `now_ns`; times that fall between two steps are one."""
+    """Set the next time after `now_ns`; missed periods within a step are merged."""
     period_ns = entry.period * 1e9
     if period_ns <= 1:
         entry.due_ns = now_ns + 1

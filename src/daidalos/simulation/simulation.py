@@ -1,4 +1,4 @@
-"""The simulation as its users have it: models come and go, and are moved, pushed and changed while it runs."""
+"""Public interface of the simulator: models are added, removed, moved and changed while it runs."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ Array = NDArray[np.float64]
 
 
 class Simulation(Engine):
-    """A world with its models, sensors and plugins, stepped by its caller.
+    """World with its models, sensors and plugins, stepped by its caller.
 
     It never sleeps and never looks at the wall clock: pacing belongs to the caller. The same seed and
     the same calls give the same numbers. It is not made for use from several threads at once.
@@ -58,7 +58,7 @@ class Simulation(Engine):
         pose: Pose | None = None,
         namespace: str = "",
     ) -> str:
-        """Put a model into the running world.
+        """Add a model to the running world.
 
         Parameters
         ----------
@@ -95,7 +95,7 @@ class Simulation(Engine):
         return name
 
     def delete(self, name: str) -> None:
-        """Take a model out of the world.
+        """Remove a model from the world.
 
         Raises
         ------
@@ -144,7 +144,7 @@ class Simulation(Engine):
         self.physics.changed()
 
     def set_joint(self, model: str, joint: str, position: float, velocity: float = 0.0) -> None:
-        """Put a joint somewhere [rad, m], with a speed."""
+        """Set a joint's position [rad, m] and velocity."""
         view = self.joint(model, joint)
         self.physics.data.qpos[view.qpos] = position
         self.physics.data.qvel[view.dof] = velocity
@@ -183,7 +183,7 @@ class Simulation(Engine):
         self._recompile()
 
     def set_link_properties(self, model: str, link: str, inertial: Inertial, gravity: bool) -> None:
-        """Change what a link weighs, and whether gravity pulls at it, while the world runs.
+        """Change a link's mass properties, and whether gravity acts on it, while the world runs.
 
         Raises
         ------
@@ -199,14 +199,14 @@ class Simulation(Engine):
         self._recompile()
 
     def bounds(self, model: str) -> tuple[Array, Array]:
-        """Return the least and the greatest corner (3,) in the world of what is solid of a model [m].
+        """Return the lower and upper corner (3,) of a model's collisions in the world [m].
 
         Infinite shapes do not count; without any other the corners are the model's origin.
         """
         return self.instance(model).bounds
 
     def scale(self, model: str, factor: float | Vector) -> None:
-        """Make a model larger or smaller where it stands: its lowest point stays at its height.
+        """Scale a model in place; its lowest point keeps its height.
 
         Parameters
         ----------
@@ -261,7 +261,7 @@ class Simulation(Engine):
         duration_ns: int | None = None,
         follows: bool = False,
     ) -> None:
-        """Push a link for a time.
+        """Apply a force to a link for a time.
 
         Parameters
         ----------
@@ -290,12 +290,12 @@ class Simulation(Engine):
     def push_joint(
         self, model: str, joint: str, effort: float, delay_ns: int = 0, duration_ns: int | None = None
     ) -> None:
-        """Put an effort [N m, N] on a joint for a time; see `push`."""
+        """Apply an effort [N m, N] to a joint for a time; see `push`."""
         self.joint(model, joint)
         self.forces.add(JointPush(model, joint, effort, *self._span(delay_ns, duration_ns)))
 
     def stop_pushing(self, model: str, part: str) -> None:
-        """End all pushes on a link or joint of a model."""
+        """Remove all pushes on a link or joint of a model."""
         mine = (model, part)
         kept = [p for p in self.forces.pushes if (p.model, p.joint if isinstance(p, JointPush) else p.link) != mine]
         self.forces.clear(keep=kept)

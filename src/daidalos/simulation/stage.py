@@ -1,4 +1,4 @@
-"""All that cameras see: what the models look like, the lights, and the sky."""
+"""Visible content for cameras: models, lights and sky."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class Stage:
-    """What is to be seen in a simulation; its scene is made when the first camera looks.
+    """Visible content of a simulation; its scene is created on first use by a camera.
 
     Parameters
     ----------
@@ -37,18 +37,18 @@ class Stage:
         self._scene: Scene | None = None
 
     def bind(self, instances: Iterable[Instance]) -> None:
-        """Take the models of a newly compiled world."""
+        """Update the models after a compilation."""
         self._instances = tuple(instances)
         self._scene = None
 
     @property
     def owners(self) -> tuple[str, ...]:
-        """Names of the models; their places are the scene's `owners`."""
+        """Names of the models, indexed by the scene's `owners`."""
         return tuple(instance.name for instance in self._instances)
 
     @property
     def scene(self) -> Scene:
-        """All triangles."""
+        """Triangles of all visuals."""
         if self._scene is None:
             from daidalos.simulation.rendering.scene import make_scene
 
@@ -57,7 +57,7 @@ class Stage:
 
     @property
     def lighting(self) -> Lighting:
-        """What shines now."""
+        """Current lights and background."""
         look = self._look
         return Lighting(
             [(light, pose) for _, light, pose in self._shining()],
@@ -71,7 +71,7 @@ class Stage:
 
     @property
     def lights(self) -> dict[str, Light]:
-        """The lights by name, those on links as ``model::link::name``, with their poses in the world."""
+        """Lights by name, those on links as ``model::link::name``, with their poses in the world."""
         return {name: replace(light, pose=pose) for name, light, pose in self._shining()}
 
     def light(self, name: str) -> Light:
@@ -87,7 +87,7 @@ class Stage:
         return lights[name]
 
     def add_light(self, light: Light) -> None:
-        """Put a light into the world.
+        """Add a light to the world.
 
         Raises
         ------
@@ -98,7 +98,7 @@ class Stage:
         self._lamps[light.name] = light
 
     def set_light(self, name: str, light: Light) -> None:
-        """Change a light; one on a link stays where it is.
+        """Change a light; one on a link keeps its pose.
 
         Raises
         ------
@@ -108,7 +108,7 @@ class Stage:
         (self._lamps if name in self._lamps else self._switched)[name] = light
 
     def remove_light(self, name: str) -> None:
-        """Take a light of the world away.
+        """Remove a light of the world.
 
         Raises
         ------
@@ -128,7 +128,7 @@ class Stage:
                     yield name, self._switched.get(name, light), instance.link(link.name).pose @ light.pose
 
     def _warn(self, line: str) -> None:
-        """Return what can not be drawn once, however often the scene is made."""
+        """Warn once of something that cannot be drawn, however often the scene is created."""
         if line not in self._warned:
             self._warned.add(line)
             self._warn_user(line)

@@ -1,4 +1,4 @@
-"""All that a simulation needs to go on from an instant."""
+"""Complete state of a simulation at an instant."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from daidalos.simulation.forces import JointPush, Push
 
 @dataclass(frozen=True, eq=False)
 class State:
-    """All that a simulation needs to go on from an instant; made by `Simulation.save`."""
+    """Complete state of a simulation, returned by `Simulation.save`."""
 
     time_ns: int
     physics: Any

@@ -1,4 +1,4 @@
-"""Names of topics and frames as the plugins' parameters write them."""
+"""Names of topics and frames in plugins' parameters."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ def absolute_topic(name: str, namespace: str = "") -> str:
 
 
 def join_namespaces(outer: str, inner: str) -> str:
-    """Return the namespace that `inner` means inside `outer`; an inner one with a slash in front wins."""
+    """Return the namespace `inner` resolved in `outer`; a leading slash makes it absolute."""
     return absolute_topic(inner, outer).rstrip("/") if inner else outer
 
 
 def frame(name: str) -> str:
-    """Return a frame's name without a leading slash, as tf2 wants it."""
+    """Return a frame's name without a leading slash, as tf2 requires."""
     return name.lstrip("/")

@@ -1,4 +1,4 @@
-"""Joints that are put where a trajectory says, without any force."""
+"""Joints that follow a trajectory without forces."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from daidalos.simulation.instance import Instance
 
 @dataclass
 class ActiveTrajectory:
-    """A trajectory that is being followed since a time."""
+    """Trajectory with its start time."""
 
     command: PositionTrajectoryCommand
     start_ns: int
 
 
 class TrajectoryFollower(Component):
-    """Puts the joints of a model where a course has them, in every step until its end.
+    """Component that sets the joints of a model to the positions of a trajectory in every step until its end.
 
     Parameters
     ----------
@@ -36,11 +36,11 @@ class TrajectoryFollower(Component):
         self.period = 0.0
 
     def bind(self, instance: Instance) -> None:
-        """Note whose joints move."""
+        """Record the model whose joints move."""
         self._instance = instance
 
     def update(self, now_ns: int) -> Iterable[Sample]:
-        """Put the joints where they should be now."""
+        """Set the joints to their positions at the current time."""
         if self.state is not None and place_joints(self._instance, self.state, now_ns):
             self.state = None
         return ()
@@ -49,7 +49,7 @@ class TrajectoryFollower(Component):
 def place_joints(
     instance: Instance, course: ActiveTrajectory, now_ns: int, joint_of: Callable[[str], str] = lambda name: name
 ) -> bool:
-    """Put joints where a course has them: between two points in proportion to time.
+    """Set joints to the interpolated positions of a trajectory.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Wind on the links that are open to it: gz's WindEffects system and Gazebo classic's wind plugin."""
+"""Wind on links: gz's WindEffects system and Gazebo classic's wind plugin."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ LIBRARIES = ("gz-sim-wind-effects-system", "WindPlugin")
 
 @dataclass(frozen=True)
 class Gust:
-    """How a component of the wind changes: it rises to its value, swings about it and trembles.
+    """Variation of a wind component: rise, oscillation and noise.
 
     Parameters
     ----------
@@ -47,14 +47,14 @@ class Gust:
     noise: Noise = SILENT
 
     def at(self, value: float, time: float, random: np.random.Generator) -> float:
-        """Return the component at a time [s] since the wind began to blow."""
+        """Return the component at a time [s] since the start of the wind."""
         mean = value * (1 - math.exp(-time / self.rise)) if self.rise > 0 else value
         wave = math.sin(2 * math.pi * time / self.period)
         return float(self.noise.apply(np.array([mean + (self.share * mean + self.swing) * wave]), random)[0])
 
 
 class Wind(Component):
-    """Pulls links along with the wind: mass times what it is faster than they, times the plugin's factor.
+    """Wind forces on links: mass times relative wind velocity times the plugin's factor.
 
     Parameters
     ----------
@@ -72,11 +72,11 @@ class Wind(Component):
         self._links = windy_links(context.model, context.world)
 
     def prepare(self, build: ModelBuild) -> None:
-        """Let nothing rest that the wind may move."""
+        """Disable sleeping of models that the wind may move."""
         build.keep_awake()
 
     def bind(self, instance: Instance) -> None:
-        """Find the links and what they weigh."""
+        """Find the links and their masses."""
         self._physics = instance.physics
         self._keys = [f"{instance.name}::{link}/wind" for link in self._links]
         self._bodies = [instance.link(link).body for link in self._links]
@@ -90,7 +90,7 @@ class Wind(Component):
         return np.array((speed * math.cos(angle), speed * math.sin(angle), self.climb.at(z, time, self.random)))
 
     def update(self, now_ns: int) -> Iterable[Sample]:
-        """Blow for the step to come."""
+        """Apply the wind forces for the next step."""
         linear, _ = velocities(self._physics, self._bodies)
         forces = self.factor * self._masses[:, None] * (self.wind_velocity(now_ns * 1e-9) - linear)
         for key, body, force in zip(self._keys, self._bodies, forces, strict=True):
@@ -99,7 +99,7 @@ class Wind(Component):
 
 
 def windy_links(model: Model, world: World) -> list[str]:
-    """Return the links of a model that a world's wind moves; none where no plugin makes it blow."""
+    """Return the links of a model that a world's wind acts on; none without a wind plugin."""
     if model.static or model.scripted or _plugin(world) is None:
         return []
     return [link.name for link in model.links.values() if link.wind or model.wind]
@@ -110,7 +110,7 @@ def _plugin(world: World) -> Element | None:
 
 
 def _gust(element: Element, tag: str = "") -> Gust:
-    """Read one component's changes; the direction's swing is in degrees."""
+    """Read the variation of one component; the oscillation of the direction is in degrees."""
     own = element.first(tag) if tag else element
     if own is None:
         return Gust()

@@ -1,1 +1,1 @@
-"""From descriptions of models to MuJoCo's model specification, one subject a file."""
+"""Conversion of model descriptions to MuJoCo's model specification."""

@@ -1,4 +1,4 @@
-"""Meshes and terrains inside MuJoCo's specification: shared between models, removed when nobody uses them."""
+"""Meshes and terrains in MuJoCo's specification, shared between models and reference-counted."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _TERRAIN_THICKNESS = 1.0
 
 @dataclass(frozen=True)
 class Solid:
-    """A mesh as the simulation holds it.
+    """Mesh assets of a solid.
 
     Parameters
     ----------
@@ -37,7 +37,7 @@ class Solid:
 
 
 class Assets:
-    """Adds meshes to a specification, each content once.
+    """Store of meshes in a specification, without duplicates.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ class Assets:
         self._taken: list[str] = []
 
     def solid(self, mesh: TriangleMesh, decompose: bool) -> Solid:
-        """Return a mesh's convex parts and, where they differ from it, its true surface.
+        """Return the names of a mesh's convex parts and, where it differs from them, its surface.
 
         Parameters
         ----------
@@ -65,7 +65,7 @@ class Assets:
         return Solid(names, self._take(key, mesh) if concave else "")
 
     def terrain(self, heights: NDArray[np.float64], size: Vector) -> tuple[str, float]:
-        """Take a heightmap.
+        """Return the name of a heightmap.
 
         Parameters
         ----------
@@ -96,12 +96,12 @@ class Assets:
         return name, lowest * size[2]
 
     def taken(self) -> tuple[str, ...]:
-        """Return what was taken since the last call; to be released together."""
+        """Return the assets used since the last call, to be released together."""
         taken, self._taken = tuple(self._taken), []
         return taken
 
     def release(self, names: Iterable[str]) -> None:
-        """Remove what nobody else uses."""
+        """Remove assets that are no longer used."""
         self._users.subtract(names)
         for name in [name for name, users in self._users.items() if users <= 0]:
             del self._users[name]

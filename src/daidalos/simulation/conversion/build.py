@@ -1,4 +1,4 @@
-"""Puts a described model into MuJoCo's specification: bodies, joints, geoms, couplings."""
+"""Conversion of a model to MuJoCo's specification: bodies, joints, geoms and couplings."""
 
 from __future__ import annotations
 
@@ -116,7 +116,7 @@ class _Builder:
         return joint_above is None or joint_above.type is JointType.FLOATING
 
     def _base(self) -> Any:
-        """Add the body that a static model, or one that is fixed to the world, stands on."""
+        """Add the root body of a static model or of one that is fixed to the world."""
         self._build.base = self._body(self._build.spec.worldbody, self._build.name, self._pose)
         self._build.base.mocap = self._model.scripted
         self._build.roots.append(self._build.base)
@@ -133,7 +133,7 @@ class _Builder:
         self._add_children(link, moves=True)
 
     def _add_branches(self, branches: list[tuple[Any, Joint, bool]]) -> None:
-        """Add the links at joints and all that hangs on them: of each joint the body above, and whether that moves.
+        """Add the links at joints and their descendants; each joint comes with its parent body and whether that moves.
 
         Each link is followed by what hangs on it. Arms may have any number of links: this does not recur.
         """
@@ -145,7 +145,7 @@ class _Builder:
                 waiting += [(body, below, moves) for below in reversed(self._below.get(joint.child, []))]
 
     def _add_branch(self, parent: Any, joint: Joint, moves: bool) -> tuple[Any, bool]:
-        """Add the link at a joint; return its body, and whether it moves."""
+        """Add the link at a joint; return its body and whether it moves."""
         link = self._model.links[joint.child]
         body = self._add_link(parent, link, joint.origin @ joint.anchor.inverse)
         added = add_joints(body, joint, self._build.scoped(joint.name))
@@ -175,7 +175,7 @@ class _Builder:
         return body
 
     def _warn_of_unseen(self, link: Link) -> None:
-        """Say which files of visuals are missing, though perhaps no camera will ever look."""
+        """Warn of missing files of visuals at once, since no camera may ever render them."""
         for visual in link.visuals:
             shape = visual.geometry
             if isinstance(shape, Mesh | Heightmap) and shape.path is None:
@@ -200,7 +200,7 @@ class _Builder:
         apply_inertia(body, inertia)
 
     def _find_weightless(self) -> None:
-        """Find the links that move although neither they nor what is fixed to them has any mass."""
+        """Find moving links without mass, including everything fixed to them."""
         for link in self._model.links.values():
             above = self._above.get(link.name)
             if self._model.static or link in self._held or (above is not None and above.type is JointType.FIXED):
@@ -219,7 +219,7 @@ class _Builder:
                 self._empty_without_mass.add(link.name)
 
     def _fixed_group(self, link: Link) -> list[Link]:
-        """Return a link with all that is fixed to it, directly or through others."""
+        """Return a link with all links fixed to it, directly or indirectly."""
         group = [link]
         for member in group:
             below = self._below.get(member.name, [])
@@ -254,7 +254,7 @@ class _Builder:
         self._build.geoms[geom.name] = GeomInfo(link.name, name, collision.laser_retro)
 
     def _exclude_self_collisions(self) -> None:
-        """Keep links of the model from touching each other unless both are told to."""
+        """Exclude contacts between links of the model unless both enable self-collision."""
         solid = [link for link in self._model.links.values() if link.collisions]
         for link, other in itertools.combinations(solid, 2):
             if not (self._touches_own(link) and self._touches_own(other)):
@@ -267,7 +267,7 @@ class _Builder:
     # Couplings
 
     def _couple_joints(self) -> None:
-        """Add what the tree of bodies does not hold."""
+        """Add the couplings that the tree of bodies does not represent."""
         for joint in self._model.joints.values():
             if joint.type is JointType.GEARBOX:
                 self._mesh_gears(joint)
@@ -285,7 +285,7 @@ class _Builder:
                 self._build.start[added[0]] = mimicked_start(joint, self._model.joints)
 
     def _mesh_gears(self, joint: Joint) -> None:
-        """Tie the joints of two gears to each other: theta_2 = -ratio * theta_1 (SDF)."""
+        """Couple the joints of two gears: theta_2 = -ratio * theta_1 (SDF)."""
         wheels = [self._above.get(link) for link in (joint.parent, joint.child)]
         first, second = ([] if wheel is None else self._build.joints.get(wheel.name, []) for wheel in wheels)
         if first and second:

@@ -1,4 +1,4 @@
-"""Friction and stiffness of contacts: from SDF's surfaces to MuJoCo's geoms.
+"""Contact friction and stiffness: conversion of SDF surfaces to MuJoCo geoms.
 
 ODE, which SDF's numbers are written for, takes the smaller friction of two surfaces; MuJoCo takes the
 larger one, or that of the geom with the higher priority. Giving a geom the higher priority the less
@@ -29,7 +29,7 @@ _FRICTIONLESS = 1e-3
 
 
 def set_surface(geom: Any, surface: Surface) -> None:
-    """Set friction, stiffness and what a geom collides with.
+    """Set friction, stiffness and collision bits of a geom.
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ def set_surface(geom: Any, surface: Surface) -> None:
 
 
 def set_friction(geom: Any, surface: Surface) -> None:
-    """Set a geom's friction alone."""
+    """Set only a geom's friction."""
     friction = friction_of(surface)
     geom.priority = round(1000 * (MAX_FRICTION - friction))
     if friction < _FRICTIONLESS:
@@ -56,7 +56,7 @@ def set_friction(geom: Any, surface: Surface) -> None:
 
 
 def _bouncing(restitution: float) -> tuple[float, float]:
-    """Return time constant and damping ratio of a contact that gives back a share of the speed.
+    """Return time constant and damping ratio of a contact with a restitution coefficient.
 
     A spring and damper with damping ratio z let go with exp(-pi z / sqrt(1 - z^2)) of the speed.
     """
@@ -66,7 +66,7 @@ def _bouncing(restitution: float) -> tuple[float, float]:
 
 
 def friction_of(surface: Surface) -> float:
-    """Return the Coulomb coefficient that the simulator uses for a surface."""
+    """Return the Coulomb friction coefficient of a surface."""
     mu = DEFAULT_FRICTION if surface.mu is None else surface.mu
     mu2 = mu if surface.mu2 is None else surface.mu2
     return max(0.0, (min(mu, MAX_FRICTION) + min(mu2, MAX_FRICTION)) / 2)

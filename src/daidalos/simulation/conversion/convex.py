@@ -1,4 +1,4 @@
-"""Convex parts of meshes: MuJoCo collides with convex shapes only. Results are kept on disk."""
+"""Convex decomposition of meshes, which MuJoCo needs for collisions; results are cached on disk."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def convex_parts(mesh: TriangleMesh, key: str, decompose: bool) -> tuple[list[Tr
 
 
 def connected_pieces(mesh: TriangleMesh) -> list[TriangleMesh]:
-    """Return the parts of a mesh that share no vertex with each other."""
+    """Return the parts of a mesh that share no vertex."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
@@ -92,20 +92,20 @@ def _is_convex(piece: TriangleMesh, hull: TriangleMesh) -> bool:
 
 
 def _volume(mesh: TriangleMesh) -> float:
-    """Return the volume inside a closed surface (divergence theorem)."""
+    """Return the volume inside a closed surface by the divergence theorem."""
     a, b, c = mesh.vertices[mesh.faces].transpose(1, 0, 2)
     return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6)
 
 
 def content_key(mesh: TriangleMesh) -> str:
-    """Return a short name for the content of a mesh."""
+    """Return a short key of a mesh's content."""
     digest = hashlib.sha256(np.ascontiguousarray(mesh.vertices, dtype=np.float32).tobytes())
     digest.update(np.ascontiguousarray(mesh.faces, dtype=np.int32).tobytes())
     return digest.hexdigest()[:24]
 
 
 def cache_folder() -> Path:
-    """Return the folder for what can be made again: ``DAIDALOS_CACHE``, else the system's."""
+    """Return the cache folder: ``DAIDALOS_CACHE``, else the system's."""
     chosen = os.environ.get("DAIDALOS_CACHE")
     if chosen:
         return Path(chosen)
@@ -117,7 +117,7 @@ def cache_folder() -> Path:
 
 
 def _hull(vertices: np.ndarray) -> TriangleMesh:
-    """Return the convex hull; what is flat is given the thickness that a solid needs."""
+    """Return the convex hull; flat meshes are thickened to the minimum that a solid needs."""
     from scipy.spatial import ConvexHull
 
     center = vertices.mean(axis=0)
@@ -139,7 +139,7 @@ def _hull(vertices: np.ndarray) -> TriangleMesh:
 
 
 def _decompose(piece: TriangleMesh) -> list[TriangleMesh]:
-    """Run CoACD with a search that is coarse enough for seconds instead of minutes."""
+    """Run CoACD with a search coarse enough to take seconds instead of minutes."""
     import coacd
 
     coacd.set_log_level("error")
@@ -171,7 +171,7 @@ def _load(file: Path) -> list[TriangleMesh] | None:
 
 
 def _save(file: Path, parts: list[TriangleMesh]) -> None:
-    """Write the parts; a reader never sees half a file. A folder that can not be written is no harm."""
+    """Write the parts atomically; an unwritable folder is ignored."""
     arrays: dict[str, Any] = {f"vertices{i}": part.vertices for i, part in enumerate(parts)}
     arrays |= {f"faces{i}": part.faces for i, part in enumerate(parts)}
     try:

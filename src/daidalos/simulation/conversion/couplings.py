@@ -1,4 +1,4 @@
-"""What holds joints together beyond the tree of bodies: mimics, gears, screws and closed loops."""
+"""Couplings beyond the tree of bodies: mimic joints, gears, screws and closed loops."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _MIN_MASS = 1e-4
 
 
 def couple(spec: Any, follower: str, leader: str, offset: float, multiplier: float) -> None:
-    """Hold follower = offset + multiplier * leader.
+    """Constrain follower = offset + multiplier * leader.
 
     Parameters
     ----------
@@ -38,7 +38,7 @@ def couple(spec: Any, follower: str, leader: str, offset: float, multiplier: flo
 
 
 def close_loop(spec: Any, parent: Any, child: Any, joint: Joint, name: str) -> list[str]:
-    """Add a joint to a child that hangs on another joint already.
+    """Add a joint to a link that already has a parent joint.
 
     A ghost of the child, light against it, takes the joint and is welded to the child. So every type
     works, with its limits and friction, and actuators find it.

@@ -1,4 +1,4 @@
-"""From the shapes of descriptions to MuJoCo's geoms: one small function per shape.
+"""Conversion of shapes to MuJoCo's geoms.
 
 Geoms are sorted into groups: those of `SOLID` collide and are seen by rays, those of `SEEN` are only
 seen, those of `TOUCHED` only collide.
@@ -80,7 +80,7 @@ def add_geoms(body: Any, geometry: Geometry, pose: Pose, assets: Assets, static:
 
 
 def add_rolling(body: Any, radius: float, width: float, pose: Pose) -> Any:
-    """Add what a wheel along z rolls on: an ellipsoid, which touches the ground in one point.
+    """Add the rolling surface of a wheel along z: an ellipsoid, which touches the ground in one point.
 
     A cylinder touches with a line of points that rub against each other in a turn.
     """
@@ -90,7 +90,7 @@ def add_rolling(body: Any, radius: float, width: float, pose: Pose) -> Any:
 
 
 def only_seen(spec: Any, geoms: list[Any]) -> list[Any]:
-    """Leave of a collision's geoms what rays see, which no longer collides; the others are deleted."""
+    """Make a collision's geoms visible to rays only; the others are deleted."""
     for geom in geoms:
         if geom.group == TOUCHED:
             spec.delete(geom)
@@ -136,7 +136,7 @@ def _plane(body: Any, shape: Plane, pose: Pose) -> list[Any]:
 
 
 def _add_solid(body: Any, solid: Solid, pose: Pose) -> list[Any]:
-    """Add a mesh: convex parts that collide, and the true triangles that rays hit where they differ."""
+    """Add a mesh: convex parts that collide, and its triangles for rays where they differ."""
     geoms = []
     for name in solid.parts:
         geom = _add(body, _Type.mjGEOM_MESH, (0.0, 0.0, 0.0), pose)
@@ -153,7 +153,7 @@ def _add_solid(body: Any, solid: Solid, pose: Pose) -> list[Any]:
 
 
 def _add_terrain(body: Any, shape: Heightmap, pose: Pose, assets: Assets) -> list[Any]:
-    """Add a heightmap; images have their top row first, which is the one with the largest y."""
+    """Add a heightmap; the top row of images has the largest y."""
     if shape.path is None:
         raise DescriptionError(f"heightmap {shape.uri} not found", shape.where)
     name, bottom = assets.terrain(read_grey(shape.path, shape.where)[::-1], shape.size)

@@ -1,4 +1,4 @@
-"""Mass properties that a rigid body can really have, for MuJoCo."""
+"""Physically valid mass properties for MuJoCo."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ MIN_INERTIA = 1e-9
 
 @dataclass(frozen=True)
 class PrincipalInertia:
-    """Mass, centre of mass and inertia about its principal axes.
+    """Mass, centre of mass and inertia about the principal axes.
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ class PrincipalInertia:
 
 
 def principal_inertia(inertial: Inertial) -> PrincipalInertia:
-    """Return mass properties in principal axes, repaired where no body could have them.
+    """Return mass properties in principal axes, corrected where they are physically impossible.
 
     Moments are raised until each is positive and none is larger than the other two together.
     """
@@ -63,7 +63,7 @@ def principal_inertia(inertial: Inertial) -> PrincipalInertia:
 
 
 def min_inertia() -> PrincipalInertia:
-    """Return what a moving part without mass gets."""
+    """Return the mass properties of a moving link without mass."""
     pose = Pose()
     return PrincipalInertia(MIN_MASS, pose.position, pose.orientation, np.full(3, 1e-6))
 

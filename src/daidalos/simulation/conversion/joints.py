@@ -1,4 +1,4 @@
-"""From the joints of descriptions to MuJoCo's: one small function per type.
+"""Conversion of joints to MuJoCo's.
 
 MuJoCo's joints live in the child body, so that each is written in the child link's frame.
 """
@@ -40,19 +40,19 @@ def add_joints(body: Any, joint: Joint, name: str) -> list[str]:
 
 
 def limits_of(axis: Axis) -> tuple[float, float]:
-    """Return the limits of a joint in order, with some room between them where there is none."""
+    """Return the limits of a joint in ascending order, widened if they coincide."""
     lower, upper = sorted((axis.lower, axis.upper))
     return (lower - _LOCKED, upper + _LOCKED) if upper - lower < _LOCKED else (lower, upper)
 
 
 def start_position(axis: Axis) -> float:
-    """Return the position nearest to zero that the limits allow."""
+    """Return the position within the limits that is nearest to zero."""
     lower, upper = limits_of(axis)
     return min(max(0.0, lower), upper)
 
 
 def mimicked_start(joint: Joint, joints: Mapping[str, Joint]) -> float:
-    """Return where a joint starts that follows another: else its coupling would begin with a blow."""
+    """Return the initial position of a mimic joint, so that its coupling starts without an error."""
     scale, offset, seen = 1.0, 0.0, {joint.name}
     while joint.mimic is not None and joint.mimic.joint not in seen:
         offset += scale * joint.mimic.offset
@@ -106,14 +106,14 @@ def _two_hinges(body: Any, joint: Joint, name: str) -> list[str]:
 
 
 def _screw(body: Any, joint: Joint, name: str) -> list[str]:
-    """Add a turning and a sliding degree of freedom; a coupling ties the second to the first."""
+    """Add a rotational and a translational degree of freedom, coupled by the screw's pitch."""
     free = Axis(xyz=joint.axis.xyz)
     turn = _add(body, _Type.mjJNT_HINGE, joint.axis, joint, name)
     return [turn, _add(body, _Type.mjJNT_SLIDE, free, joint, f"{name}#2")]
 
 
 def _planar(body: Any, joint: Joint, name: str) -> list[str]:
-    """Add two sliding directions in the plane and a turn about its normal."""
+    """Add two translations in the plane and a rotation about its normal."""
     first, second = _in_plane(joint.axis.xyz)
     names = (name, f"{name}#2", f"{name}#3")
     _add(body, _Type.mjJNT_SLIDE, Axis(xyz=first), joint, names[0])

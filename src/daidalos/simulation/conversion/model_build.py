@@ -1,4 +1,4 @@
-"""A model while it is put together, with all that the simulation finds it by afterwards."""
+"""Model under construction, with the names by which the simulation finds its parts."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from daidalos.simulation.errors import UnknownNameError
 
 @dataclass(frozen=True)
 class GeomInfo:
-    """What a geom stands for."""
+    """Link and collision of a geom."""
 
     link: str
     collision: str
@@ -26,7 +26,7 @@ class GeomInfo:
 
 @dataclass(eq=False)
 class ModelBuild:
-    """A model while it is put together; plugins add what they need to it.
+    """Model under construction, to which plugins can add.
 
     Attributes
     ----------
@@ -68,11 +68,11 @@ class ModelBuild:
     assets: tuple[str, ...] = ()
 
     def scoped(self, name: str) -> str:
-        """Return the simulation's name for a link or joint of the model."""
+        """Return the name of a link or joint of the model in the simulation."""
         return f"{self.name}::{name}"
 
     def add_velocity_servo(self, joint: str, gain: float, torque: float, rotor: float = 0.0) -> str:
-        """Add an actuator that holds a joint's speed, and return its name.
+        """Add an actuator that controls a joint's velocity, and return its name.
 
         Parameters
         ----------
@@ -101,7 +101,7 @@ class ModelBuild:
         return str(actuator.name)
 
     def add_motor(self, joint: str) -> str:
-        """Add an actuator whose control is the effort on a joint, and return its name."""
+        """Add an actuator that applies an effort to a joint, and return its name."""
         if not self.joints.get(joint):
             raise UnknownNameError("movable joint", joint, [n for n, added in self.joints.items() if added])
         actuator = self.spec.add_actuator(
@@ -113,7 +113,7 @@ class ModelBuild:
         return str(actuator.name)
 
     def add_position_servo(self, joint: str, stiffness: float, damping: float, effort: float) -> str:
-        """Add an actuator that holds a joint's position, and return its name.
+        """Add an actuator that controls a joint's position, and return its name.
 
         Parameters
         ----------
@@ -137,12 +137,12 @@ class ModelBuild:
         return str(actuator.name)
 
     def keep_awake(self) -> None:
-        """Simulate the model even while it rests, since somebody measures it."""
+        """Disable sleeping of the model."""
         for body in self.trees:
             body.sleep = mujoco.mjtSleepPolicy.mjSLEEP_NEVER
 
     def set_inertial(self, link: str, inertial: Inertial, gravity: bool) -> None:
-        """Change what a link weighs, for the next compilation."""
+        """Change a link's mass properties for the next compilation."""
         apply_inertia(self.bodies[link], principal_inertia(inertial))
         self.bodies[link].gravcomp = 0.0 if gravity else 1.0
         self.model = replace(
@@ -151,7 +151,7 @@ class ModelBuild:
         )
 
     def set_joint(self, joint: str, damping: float | None, limits: tuple[float, float] | None) -> None:
-        """Change a joint's damping and limits, for the next compilation; None leaves them."""
+        """Change a joint's damping and limits for the next compilation; None keeps them."""
         described = self.spec.joint(self.joints[joint][0])
         if damping is not None:
             described.damping = [damping, 0.0, 0.0]
@@ -160,27 +160,27 @@ class ModelBuild:
             described.range = sorted(limits)
 
     def set_friction(self, friction: float, link: str | None) -> None:
-        """Change the friction of collisions, of one link or of all, for the next compilation."""
+        """Change the friction of the collisions of one link, or of all, for the next compilation."""
         surface = Surface(mu=friction, mu2=friction)
         for name, info in self.geoms.items():
             if link is None or info.link == link:
                 set_friction(self.spec.geom(name), surface)
 
     def place_base(self, pose: Pose) -> None:
-        """Put the part that does not move somewhere else, for the next compilation."""
+        """Move the static part of the model, for the next compilation."""
         if self.base is not None:
             x, y, z, w = pose.orientation
             self.base.pos, self.base.quat = list(pose.position), [w, x, y, z]
 
     def remove(self) -> None:
-        """Take the model out of the specification; what refers to its bodies goes with them."""
+        """Remove the model from the specification, with everything that refers to its bodies."""
         for body in self.roots:
             self.spec.delete(body)
         self.roots.clear()
 
 
 def apply_inertia(body: Any, inertia: PrincipalInertia) -> None:
-    """Return a body (MjsBody) its mass and moments."""
+    """Set mass and inertia of a body (MjsBody)."""
     x, y, z, w = inertia.orientation
     body.explicitinertial = True
     body.mass = inertia.mass

@@ -1,4 +1,4 @@
-"""From a world's physics to MuJoCo's options."""
+"""Conversion of a world's physics settings to MuJoCo's options."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ MAX_STEP_NS = 1_000_000
 
 
 def physics_step(physics: Physics) -> tuple[int, int]:
-    """Return the world's step in nanoseconds and how many parts of it are simulated one by one."""
+    """Return the world's step in nanoseconds and its number of substeps."""
     step_ns = max(1000, round(physics.max_step_size * 1e9))
     parts = math.ceil(step_ns / MAX_STEP_NS)
     return step_ns // parts * parts, parts
 
 
 def set_options(spec: Any, world: World, timestep: float) -> None:
-    """Set how the world is integrated.
+    """Set the integration options of a world.
 
     With implicit integration of velocity servos, elliptic friction cones and a high ratio of friction
     to normal impedance, wheels roll true; see the tests for how true.

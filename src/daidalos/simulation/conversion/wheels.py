@@ -1,4 +1,4 @@
-"""Recognises wheels and casters, whose contacts need care so that they roll true."""
+"""Detection of wheels and casters, whose contacts need special geometry to roll smoothly."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _DIRECTIONS = 48
 
 @dataclass(frozen=True)
 class Disc:
-    """The round thing that a wheel rolls on.
+    """Disc on which a wheel rolls.
 
     Parameters
     ----------
@@ -42,7 +42,7 @@ class Disc:
 
 
 def wheel_disc(joint: Joint | None, collision: Collision) -> Disc | None:
-    """Return the disc of a collision that turns about its own axis without end; None when it is something else.
+    """Return the disc of a collision that rotates about its own axis without limits; None for other collisions.
 
     Parameters
     ----------
@@ -72,7 +72,7 @@ def wheel_disc(joint: Joint | None, collision: Collision) -> Disc | None:
 
 
 def is_caster(joint: Joint | None, link: Link) -> bool:
-    """Return whether a link stands for a caster: fixed to the robot, it slides where a real one rolls."""
+    """Return whether a link is a caster: fixed to the robot, it slides where a real one rolls."""
     name = link.name.lower()
     return joint is not None and joint.type is JointType.FIXED and ("caster" in name or "castor" in name)
 
@@ -89,7 +89,7 @@ def _of_cylinder(cylinder: Cylinder, pose: Pose, centre: NDArray[np.float64], ax
 def _of_points(
     points: NDArray[np.floating], pose: Pose, centre: NDArray[np.float64], axle: NDArray[np.float64]
 ) -> Disc | None:
-    """Return the disc around points that reach equally far in all directions across the axle."""
+    """Return the disc around points that extend equally far in all directions across the axle."""
     matrix = pose.matrix
     placed = points @ matrix[:3, :3].T + matrix[:3, 3] - centre
     upright = quaternion_between((0.0, 0.0, 1.0), (float(axle[0]), float(axle[1]), float(axle[2])))

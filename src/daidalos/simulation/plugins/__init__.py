@@ -1,1 +1,1 @@
-"""One file for each plugin; `base` holds their contract."""
+"""Plugins of the simulator, one file each; `base` defines their contract."""

@@ -1,4 +1,4 @@
-"""Ackermann drive: steered front wheels that turn about the same point as the driven ones."""
+"""Ackermann drive: steered front wheels that share their turning centre with the driven wheels."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ _STEERING_BANDWIDTH = 60.0
 
 @dataclass
 class Motion:
-    """Command, speed and steering that are held, and the odometry."""
+    """Current command, speed and steering, and the odometry."""
 
     command: Array
     speed: float
@@ -69,7 +69,7 @@ class AckermannDrive(Plugin):
         self.period = self.settings.period
 
     def prepare(self, build: ModelBuild) -> None:
-        """Add speed servos to the wheels and position servos to the steering."""
+        """Add velocity servos to the wheels and position servos to the steering joints."""
         s = self.settings
         mass = sum(link.inertial.mass for link in build.model.links.values() if link.inertial)
         wheels = [joint for joint in (*s.left, *s.right) if joint]
@@ -96,12 +96,12 @@ class AckermannDrive(Plugin):
         self._base = instance.link(base if base in instance.build.bodies else next(iter(instance.build.bodies)))
 
     def start(self) -> Motion:
-        """Stand still."""
+        """Return the state at rest."""
         return Motion(np.zeros(2), 0.0, 0.0, self._angles(), np.zeros(3), self._place())
 
     @property
     def publications(self) -> Mapping[str, type[Sample]]:
-        """Odometry and its transform, as far as they are wanted."""
+        """Odometry and its transform, if enabled."""
         topics: dict[str, type[Sample]] = {
             self.settings.odometry_topic: OdometrySample,
             self.settings.tf_topic or ("/tf" if self.settings.publish_wheels else ""): TransformSample,
@@ -111,7 +111,7 @@ class AckermannDrive(Plugin):
 
     @property
     def subscriptions(self) -> Mapping[str, Subscription]:
-        """The commanded velocity."""
+        """Topic of the commanded velocity."""
         return {self.settings.command_topic: Subscription(TwistCommand, self._command)}
 
     def update(self, now_ns: int) -> Iterable[Sample]:
@@ -157,7 +157,7 @@ class AckermannDrive(Plugin):
         ctrl[self._drives] = motion.speed / s.wheel_radius * self._factors(curvature)
 
     def _factors(self, curvature: float) -> Array:
-        """Return how much faster than the base each wheel goes on a curve; steered wheels go the longer way."""
+        """Return each wheel's speed relative to the base in a curve; steered wheels travel the longer way."""
         s = self.settings
         factors = []
         for side, joints in ((1.0, s.left), (-1.0, s.right)):
@@ -189,7 +189,7 @@ class AckermannDrive(Plugin):
 
 
 def _measured(settings: Settings, model: Model) -> Settings:
-    """Fill in what the parameters leave to the model: radius, wheel base and tracks."""
+    """Return the settings with missing values measured from the model: radius, wheel base and tracks."""
     joints = model.joints
 
     def place(joint: str) -> Array:

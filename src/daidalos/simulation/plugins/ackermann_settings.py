@@ -1,4 +1,4 @@
-"""What an Ackermann drive's parameters say, in Gazebo classic's and gz's names."""
+"""Parameters of Ackermann drives in the notations of Gazebo classic and gz."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from daidalos.simulation.topics import absolute_topic, frame
 
 @dataclass(frozen=True)
 class Settings:
-    """What the plugin's parameters say.
+    """Parameters of an Ackermann drive.
 
     Parameters
     ----------
@@ -65,7 +65,7 @@ class Settings:
 
 
 def read_settings(parameters: Parameters, context: ComponentContext) -> Settings:
-    """Read an Ackermann drive's parameters.
+    """Read the parameters of an Ackermann drive.
 
     Raises
     ------

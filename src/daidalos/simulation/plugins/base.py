@@ -1,4 +1,4 @@
-"""The contracts of plugins: those of a model or a world, and those inside a sensor."""
+"""Contracts of model and world plugins, and of plugins inside sensors."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ COMMON_PARAMETERS = ("alwaysOn", "always_on", "rosDebugLevel", "debug", "robotPa
 
 
 class ReadElement(Element):
-    """A plugin's element that remembers which of its children somebody asked for.
+    """Element of a plugin that records which of its children were read.
 
     Parameters
     ----------
@@ -43,14 +43,14 @@ class ReadElement(Element):
         return super().all(*tags)
 
     def unread(self, unused: Iterable[str] = ()) -> list[str]:
-        """Return the tags that nobody asked for, each with one that it may be meant to be."""
+        """Return the tags that were not read, each with the tag that it may be a misspelling of."""
         known = self._asked | set(unused)
         tags = dict.fromkeys(child.tag for child in self.children if child.tag not in known)
         return [f"<{tag}>" + "".join(f" (did you mean <{one}>?)" for one in near(tag, self._asked)[:1]) for tag in tags]
 
 
 class LibraryPlugin:
-    """What stands in for a library of Gazebo's: a `Plugin` or a `SensorPlugin`.
+    """Replacement of a Gazebo library: a `Plugin` or a `SensorPlugin`.
 
     Attributes
     ----------
@@ -65,7 +65,7 @@ class LibraryPlugin:
 
 
 class Plugin(LibraryPlugin, Component):
-    """Code that runs beside a model.
+    """Plugin of a model.
 
     A subclass names the libraries that it stands in for.
     Adding a file with such a class to this folder adds the plugin; a package of the user's does the
@@ -84,20 +84,20 @@ class Plugin(LibraryPlugin, Component):
 
     @classmethod
     def make(cls, description: Description, context: ComponentContext) -> Iterable[Component]:
-        """Return what runs in the simulation for this plugin: itself, unless a subclass knows better."""
+        """Return the components of this plugin: itself, unless a subclass overrides this."""
         return (cls(description, context),)
 
 
 class SensorPlugin(LibraryPlugin, ABC):
-    """Code that decides how a sensor speaks to ROS: topic, frame, message."""
+    """Plugin that sets a sensor's ROS topic, frame and message."""
 
     @abstractmethod
     def configure(self, sensor: Sensor, parameters: Parameters) -> None:
-        """Change the sensor before it is used."""
+        """Configure the sensor before it is used."""
 
 
 class Parameters:
-    """A plugin's parameters, in ROS 1's camelCase as in ROS 2's snake_case.
+    """Parameters of a plugin, in ROS 1's camelCase or ROS 2's snake_case.
 
     Parameters
     ----------
@@ -119,7 +119,7 @@ class Parameters:
                 self._remappings[name.strip()] = target.strip()
 
     def topic(self, name: str) -> str:
-        """Return the absolute topic for a name, remapped as ``<ros><remapping>`` says.
+        """Return the absolute topic of a name, remapped by ``<ros><remapping>``.
 
         A private name (``~/out``) that is not remapped lies below the plugin's own name.
         """
@@ -131,9 +131,9 @@ class Parameters:
         return absolute_topic(f"{own}/{bare}" if own else bare, self.namespace)
 
     def is_remapped(self, name: str) -> bool:
-        """Return whether ``<ros><remapping>`` speaks of a name, private or not."""
+        """Return whether ``<ros><remapping>`` contains a name, private or not."""
         return any(written in self._remappings for written in (name, f"~/{name}"))
 
     def scoped(self, name: str) -> str:
-        """Return the model's name for a link or joint that a nested model's plugin mentions."""
+        """Return the model's name of a link or joint that a nested model's plugin refers to."""
         return f"{self.scope}::{name}" if self.scope and name else name

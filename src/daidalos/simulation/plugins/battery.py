@@ -1,4 +1,4 @@
-"""Battery: a voltage that falls with the charge, and a charge that falls with the load."""
+"""Battery: its voltage falls with the charge, and its charge with the load."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _PERIOD = 0.1
 
 @dataclass
 class Charge:
-    """Charge [A h], smoothed current [A], whether it empties and whether it is charged, and when that was."""
+    """Charge [A h], smoothed current [A], flags of load and charger, and time of the last update."""
 
     charge: float
     current: float
@@ -72,12 +72,12 @@ class LinearBattery(Plugin):
 
     @property
     def publications(self) -> Mapping[str, type[Sample]]:
-        """One topic."""
+        """Topic of the battery state."""
         return {self.topic: BatterySample}
 
     @property
     def subscriptions(self) -> Mapping[str, Subscription]:
-        """What begins and ends the load."""
+        """Topics that switch the load on and off."""
         return {
             topic: Subscription(SignalCommand, partial(self._drain, draining))
             for topics, draining in ((self._starters, True), (self._stoppers, False))
@@ -86,17 +86,17 @@ class LinearBattery(Plugin):
 
     @property
     def switches(self) -> Mapping[str, Switch]:
-        """The charger, where there is one."""
+        """Service of the charger, if there is one."""
         if not self.recharges:
             return {}
         return {name: Switch(self._recharge, on) for name, on in zip(self._services, (True, False), strict=True)}
 
     def start(self) -> Charge:
-        """Start with the charge that it came with."""
+        """Return the initial charge."""
         return Charge(self.initial, 0.0, self.starts)
 
     def update(self, now_ns: int) -> Iterable[Sample]:
-        """Let the current flow since the last time."""
+        """Integrate the current since the last update."""
         state = self.state
         elapsed = (now_ns - state.stamp_ns) * 1e-9 if state.stamp_ns >= 0 else 0.0
         state.stamp_ns = now_ns

@@ -14,7 +14,7 @@ from daidalos.simulation.topics import frame
 
 
 class CameraOfSensor(SensorPlugin):
-    """``libgazebo_ros_camera.so`` of ROS 1 and 2, with its relatives for depth and several eyes."""
+    """``libgazebo_ros_camera.so`` of ROS 1 and 2, with its variants for depth and multi-camera sensors."""
 
     names = (
         *("gazebo_ros_camera", "gazebo_ros_triggered_camera", "gazebo_ros_prosilica"),
@@ -27,7 +27,7 @@ class CameraOfSensor(SensorPlugin):
     )
 
     def configure(self, sensor: Sensor, parameters: Parameters) -> None:
-        """Take topics, frame, distortion, baseline and limits of depths."""
+        """Set topics, frame, distortion, baseline and depth limits."""
         element = parameters.element
         if not isinstance(sensor, Camera):
             sensor.context.warn(f"{element.where}: plugin {parameters.library} needs a camera, left out")
@@ -71,7 +71,7 @@ def _set_topics(output: CameraOutput, prefixes: Sequence[str], parameters: Param
 
 
 def _remapped(parameters: Parameters, prefixes: Sequence[str], name: str) -> str:
-    """Return the name below the camera's, unless the bare name is what a remapping speaks of."""
+    """Return the name below the camera's, unless a remapping refers to the bare name."""
     full = name if name.startswith("/") else "/".join([*filter(None, prefixes), name])
     return full if parameters.is_remapped(full) or not parameters.is_remapped(name) else name
 

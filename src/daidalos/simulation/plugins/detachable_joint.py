@@ -1,4 +1,4 @@
-"""Detachable joint: holds another model's link until it is told to let go, and again."""
+"""Detachable joint: holds a link of another model until told to release it."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from daidalos.simulation.topics import absolute_topic
 
 @dataclass
 class Attachment:
-    """Whether the other link is to be held, where it was taken, and what was said of it last."""
+    """Whether the other link is to be held, the pose at which it was taken, and the last published state."""
 
     wanted: bool = True
     place: Pose | None = None
@@ -29,7 +29,7 @@ class Attachment:
 
 
 class DetachableJoint(Plugin):
-    """gz's DetachableJoint system: attached from the start, as soon as the other model is there."""
+    """gz's DetachableJoint system: attached from the start, as soon as the other model exists."""
 
     names = ("gz-sim-detachable-joint-system",)
     unused = ("suppress_child_warning",)
@@ -57,29 +57,29 @@ class DetachableJoint(Plugin):
 
     @property
     def publications(self) -> Mapping[str, type[Sample]]:
-        """``attached`` or ``detached``, when that changes."""
+        """Topic of ``attached`` or ``detached``, published on changes."""
         return {self.output: TextSample}
 
     @property
     def subscriptions(self) -> Mapping[str, Subscription]:
-        """Attach and detach."""
+        """Topics to attach and detach."""
         return {
             self.attach: Subscription(SignalCommand, lambda command: self._switch(on=True)),
             self.detach: Subscription(SignalCommand, lambda command: self._switch(on=False)),
         }
 
     def bind(self, instance: Instance) -> None:
-        """Find the link that holds."""
+        """Find the holding link."""
         self._physics = instance.physics
         self._holder = instance.link(self.parent)
         self._same = self.child[0] in (instance.name, "__model__")
 
     def start(self) -> Attachment:
-        """Attach."""
+        """Return the attached state."""
         return Attachment()
 
     def update(self, now_ns: int) -> Iterable[Sample]:
-        """Hold, or let go."""
+        """Hold or release the other link."""
         state = self.state
         target = self._target() if state.wanted else None
         if target is None:
@@ -97,7 +97,7 @@ class DetachableJoint(Plugin):
         self.state.wanted = on
 
     def _target(self) -> LinkView | None:
-        """Return the other link; None while it is not there."""
+        """Return the other link, None if it does not exist."""
         model, link = self.child
         name = f"{self.context.model_name if self._same else model}::{link}"
         body = mujoco.mj_name2id(self._physics.model, mujoco.mjtObj.mjOBJ_BODY, name)

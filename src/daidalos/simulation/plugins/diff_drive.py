@@ -1,4 +1,4 @@
-"""Differential drive: wheel speeds from a commanded velocity, odometry from the wheels."""
+"""Differential drive: wheel velocities from a commanded velocity, odometry from the wheels."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ SERVO_TIME = 0.005
 
 @dataclass
 class Motion:
-    """Where the drive is in its motion.
+    """State of the drive's motion.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ class DiffDrive(Plugin):
         self.period = self.settings.period
 
     def prepare(self, build: ModelBuild) -> None:
-        """Add a speed servo to each wheel."""
+        """Add a velocity servo to each wheel."""
         settings = self.settings
         mass = sum(link.inertial.mass for link in build.model.links.values() if link.inertial)
         wheels = (*settings.left, *settings.right)
@@ -98,7 +98,7 @@ class DiffDrive(Plugin):
         self._base: LinkView = instance.link(base or next(iter(instance.build.bodies)))
 
     def start(self) -> Motion:
-        """Stand still where the robot is, at the origin of the odometry frame."""
+        """Return the state at rest, at the origin of the odometry frame."""
         return Motion(
             command=np.zeros(2),
             allowed=np.zeros(2),
@@ -110,7 +110,7 @@ class DiffDrive(Plugin):
 
     @property
     def publications(self) -> Mapping[str, type[Sample]]:
-        """Odometry, its transform and the wheels' states, as far as they are wanted."""
+        """Odometry, its transform and the wheels' joint states, if enabled."""
         settings = self.settings
         topics: dict[str, type[Sample]] = {
             settings.odometry_topic: OdometrySample,
@@ -121,11 +121,11 @@ class DiffDrive(Plugin):
 
     @property
     def subscriptions(self) -> Mapping[str, Subscription]:
-        """The commanded velocity."""
+        """Topic of the commanded velocity."""
         return {self.settings.command_topic: Subscription(TwistCommand, self._command)}
 
     def update(self, now_ns: int) -> Iterable[Sample]:
-        """Measure the wheels, then give them their speeds for the time to come."""
+        """Measure the wheels, then set their velocities for the next period."""
         motion = self.state
         elapsed = self.period or self._instance.physics.model.opt.timestep
         if motion.stamp_ns >= 0:

@@ -1,4 +1,4 @@
-"""What a differential drive's parameters say, in Gazebo classic's, ROS 2's and gz's names."""
+"""Parameters of differential drives in the notations of Gazebo classic, ROS 2 and gz."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ class Limits:
     acceleration: float = math.inf
 
     def apply(self, wanted: float, now: float, elapsed: float) -> float:
-        """Return the velocity that may follow `now` after `elapsed` seconds."""
+        """Return the limited velocity `elapsed` seconds after `now`."""
         allowed = min(max(wanted, self.slowest), self.fastest)
         return min(max(allowed, now + self.deceleration * elapsed), now + self.acceleration * elapsed)
 
 
 @dataclass(frozen=True)
 class Settings:
-    """What the plugin's parameters say, whoever's dialect they are in.
+    """Parameters of a differential drive.
 
     Parameters
     ----------
@@ -80,7 +80,7 @@ class Settings:
 
 
 def read_settings(parameters: Parameters, context: ComponentContext) -> Settings:
-    """Read a differential drive's parameters.
+    """Read the parameters of a differential drive.
 
     Raises
     ------
@@ -140,7 +140,7 @@ def _read_classic(parameters: Parameters, context: ComponentContext) -> Settings
 
 
 def _read_skid_steer(parameters: Parameters) -> Settings:
-    """Read the parameters of ROS 1's skid steer drive, whose odometry is the truth: its wheels have to slip."""
+    """Read the parameters of ROS 1's skid steer drive, whose odometry is the true pose because its wheels slip."""
     element = parameters.element
     joints = {
         place: element.text_of(f"{place}Joint", default=f"{words}_joint")
@@ -207,7 +207,7 @@ def _read_gz(parameters: Parameters, context: ComponentContext) -> Settings:
 
 
 def _limits(parameters: Parameters, kind: str) -> Limits:
-    """Read bounds; those without ``linear`` or ``angular`` in their name hold for both."""
+    """Read limits; those without ``linear`` or ``angular`` in their name apply to both."""
     element = parameters.element
 
     def number(bound: str, what: str, default: float) -> float:
@@ -230,7 +230,7 @@ def _encoder(parameters: Parameters) -> EncoderError:
 
 
 def _diameters(parameters: Parameters, default: float, *wheels: int) -> tuple[float, ...]:
-    """Read the diameter of all wheels, or one for each pair of them as ROS 2's plugin takes it."""
+    """Read the diameter of all wheels, or one for each pair, as in ROS 2's plugin."""
     first = _positive(parameters, default, "wheelDiameter", "wheel_diameter")
     diameters = tuple(child.number() for child in parameters.element.all("wheelDiameter", "wheel_diameter"))
     if len(set(diameters)) < 2:

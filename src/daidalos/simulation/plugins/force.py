@@ -1,4 +1,4 @@
-"""Force: a wrench on a link, from a topic, until the next one comes."""
+"""Force plugin: applies the last received wrench to a link."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class Force(Plugin):
 
     @property
     def subscriptions(self) -> Mapping[str, Subscription]:
-        """The wanted wrench."""
+        """Topic of the wrench."""
         return {self.topic: Subscription(WrenchCommand, self._command)}
 
     def bind(self, instance: Instance) -> None:
@@ -43,11 +43,11 @@ class Force(Plugin):
         self._link = instance.link(self.link)
 
     def start(self) -> WrenchCommand:
-        """Do not push."""
+        """Return a zero wrench."""
         return WrenchCommand()
 
     def update(self, now_ns: int) -> Iterable[Sample]:
-        """Push at the centre of mass."""
+        """Apply the wrench at the centre of mass."""
         turn = rotation_matrix(self._link.pose.orientation) if self.follows else np.eye(3)
         self._forces.hold(self._key, self._link.body, turn @ self.state.force, turn @ self.state.torque)
         return ()

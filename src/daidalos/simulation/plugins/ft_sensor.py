@@ -15,13 +15,13 @@ from daidalos.simulation.topics import frame
 
 
 class ForceTorqueOfJoint(Plugin):
-    """``libgazebo_ros_ft_sensor.so``: what a joint carries, or the joint of a link, on ``wrench``."""
+    """``libgazebo_ros_ft_sensor.so``: the wrench in a joint, or in the joint of a link, on ``wrench``."""
 
     names = ("gazebo_ros_ft_sensor",)
 
     @classmethod
     def make(cls, description: PluginDescription, context: ComponentContext) -> Iterable[Component]:
-        """Make the sensor itself."""
+        """Yield the sensor."""
         parameters = Parameters(description, context)
         element = description.element
         joint = _joint(parameters, context)
@@ -41,7 +41,7 @@ class ForceTorqueOfJoint(Plugin):
 
 
 def _joint(parameters: Parameters, context: ComponentContext) -> str:
-    """Return the joint that is named, or the one that holds the link that is."""
+    """Return the named joint, or the parent joint of the named link."""
     element, joints = parameters.element, context.model.joints
     named = parameters.scoped(element.text_of("jointName", "joint_name"))
     body = parameters.scoped(element.text_of("bodyName", "body_name"))

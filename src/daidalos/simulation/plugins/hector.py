@@ -30,7 +30,7 @@ class GpsOfModel(Plugin):
 
     @classmethod
     def make(cls, description: PluginDescription, context: ComponentContext) -> Iterable[Component]:
-        """Make the sensor itself."""
+        """Yield the sensor."""
         element = description.element
         sensor = NavSat(*_carrier(description, context, "navsat", rate=4.0))
         _name(sensor, Parameters(description, context), "fix", "world")
@@ -46,14 +46,14 @@ class GpsOfModel(Plugin):
 
 
 class HectorImu(Plugin):
-    """``libhector_gazebo_ros_imu.so``: an IMU on the link ``bodyName``, with errors of its own for each axis."""
+    """``libhector_gazebo_ros_imu.so``: an IMU on the link ``bodyName``, with its own errors for each axis."""
 
     names = ("hector_gazebo_ros_imu",)
     unused = ("serviceName", "biasTopic", "headingOffset", "headingDrift", "headingGaussianNoise")
 
     @classmethod
     def make(cls, description: PluginDescription, context: ComponentContext) -> Iterable[Component]:
-        """Make the sensor itself."""
+        """Yield the sensor."""
         element = description.element
         xyz = element.vector_of("xyzOffset", size=3, default=(0.0, 0.0, 0.0))
         rpy = element.vector_of("rpyOffset", size=3, default=(0.0, 0.0, 0.0))
@@ -71,7 +71,7 @@ class HectorMagnetometer(Plugin):
 
     @classmethod
     def make(cls, description: PluginDescription, context: ComponentContext) -> Iterable[Component]:
-        """Make the sensor itself."""
+        """Yield the sensor."""
         sensor = Magnetometer(*_carrier(description, context, "magnetometer"))
         _name(sensor, Parameters(description, context), "magnetic")
         sensor.field_noise = axis_noises(description.element)
@@ -79,7 +79,7 @@ class HectorMagnetometer(Plugin):
 
 
 def axis_noises(element: Element, of: str = "") -> tuple[Noise, Noise, Noise]:
-    """Read the errors of three axes: offset, noise, and a drift that correlates over the inverse of its frequency.
+    """Read the errors of three axes: offset, noise, and a drift with the inverse of its frequency as time constant.
 
     Parameters
     ----------
@@ -105,7 +105,7 @@ def axis_noises(element: Element, of: str = "") -> tuple[Noise, Noise, Noise]:
 def _carrier(
     description: PluginDescription, context: ComponentContext, kind: str, rate: float = 0.0, pose: Pose | None = None
 ) -> tuple[SensorDescription, str, ComponentContext]:
-    """Return what a sensor is made of: the link that ``bodyName`` means, the first where it says nothing."""
+    """Return the description of a sensor on the link ``bodyName``, by default the first link."""
     element, links = description.element, context.model.links
     scoped = Parameters(description, context).scoped
     link = scoped(element.text_of("bodyName", "body_name", default=next(iter(links), "")))

@@ -1,4 +1,4 @@
-"""Holds one link at its place on another: by a stiff spring and damper that pull back at the holder."""
+"""Attachment of one link to another by a stiff spring and damper."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _BANDWIDTH = 60.0
 
 
 def pull(key: str, holder: LinkView, target: LinkView, place: Pose) -> None:
-    """Pull a link to its place, until `let_go`; to be called in every step.
+    """Pull a link to its target pose; to be called in every step until `let_go`.
 
     Parameters
     ----------
@@ -47,12 +47,12 @@ def pull(key: str, holder: LinkView, target: LinkView, place: Pose) -> None:
 
 
 def let_go(key: str, forces: Forces) -> None:
-    """Hold no longer."""
+    """Remove the forces."""
     for part in ("held", "own"):
         forces.release(f"{key}/{part}")
 
 
 def _cross(first: Array, second: Array) -> Array:
-    """Return the cross product of two vectors (3,); numpy's own takes longer than the rest of a pull."""
+    """Return the cross product of two vectors (3,), faster than numpy's."""
     (a, b, c), (x, y, z) = first.tolist(), second.tolist()
     return np.array((b * z - c * y, c * x - a * z, a * y - b * x))

@@ -25,7 +25,7 @@ class ImuOfModel(Plugin):
 
     @classmethod
     def make(cls, description: PluginDescription, context: ComponentContext) -> Iterable[Component]:
-        """Make the sensor itself."""
+        """Yield the sensor."""
         parameters = Parameters(description, context)
         element = description.element
         link = parameters.scoped(element.text_of("bodyName", "body_name", "link_name"))
@@ -56,7 +56,7 @@ class ImuOfSensor(SensorPlugin):
     unused = ("bodyName", "serviceName")
 
     def configure(self, sensor: Sensor, parameters: Parameters) -> None:
-        """Take topic and frame, and what ROS 1's plugin knows besides: rate, place and noise."""
+        """Set topic and frame, and ROS 1's further settings: rate, pose and noise."""
         element = parameters.element
         sensor.topic = parameters.topic(element.text_of("topicName", "topic_name", default="~/out"))
         sensor.frame_id = frame(element.text_of("frameName", "frame_name", default=sensor.frame_id))

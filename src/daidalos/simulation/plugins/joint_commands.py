@@ -1,4 +1,4 @@
-"""Joints that follow topics: poses along a trajectory, and gz's controllers of one joint."""
+"""Joints that follow topics: joint trajectories, and gz's controllers of single joints."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _GAINS = ("p_gain", "i_gain", "d_gain", "i_min", "i_max", "cmd_min", "cmd_max", 
 
 
 class JointPoseTrajectory(Plugin):
-    """``libgazebo_ros_joint_pose_trajectory.so``: puts joints where a trajectory says, without any force.
+    """``libgazebo_ros_joint_pose_trajectory.so``: sets joints to the positions of a trajectory without forces.
 
     gz's JointTrajectoryController does the same and holds the joints at the end, and at the start where that says
     where; its gains are not needed.
@@ -59,16 +59,16 @@ class JointPoseTrajectory(Plugin):
         return {self.topic: Subscription(PositionTrajectoryCommand, self._command)}
 
     def start(self) -> ActiveTrajectory | None:
-        """Hold the joints where the description has them, if it says so."""
+        """Return the initial trajectory of the description, if it has one."""
         return self._initial
 
     def bind(self, instance: Instance) -> None:
-        """Record which joints move."""
+        """Find the joints that move."""
         self._instance = instance
         self._joints = {name for name, added in instance.build.joints.items() if added}
 
     def update(self, now_ns: int) -> Iterable[Sample]:
-        """Put the joints where they should be now: between two points in proportion to time."""
+        """Set the joints to their interpolated positions at the current time."""
         self._now_ns = now_ns
         course = self.state
         if course is None:
@@ -86,7 +86,7 @@ class JointPoseTrajectory(Plugin):
         self.state = ActiveTrajectory(command, self._now_ns)
 
     def _initial_trajectory(self, element: Element) -> ActiveTrajectory | None:
-        """Return a course that stands still at the initial positions, which are in the order of the joints."""
+        """Return a trajectory that holds the initial positions, in the order of the joints."""
         scope = f"{self.parameters.scope}::" if self.parameters.scope else ""
         joints = self.context.model.joints.values()
         turning = [joint.name for joint in joints if joint.type is not JointType.FIXED]
@@ -107,7 +107,7 @@ class JointPoseTrajectory(Plugin):
 
 @dataclass
 class Hold:
-    """What is wanted of joints, and the integral part of the effort on each."""
+    """Target of the joints, and the integral part of the effort on each."""
 
     target: float
     integrals: list[float]
@@ -115,7 +115,7 @@ class Hold:
 
 
 class JointController(Plugin):
-    """gz's JointController (speeds) and JointPositionController (positions): one number, for one joint or several.
+    """gz's JointController (velocities) and JointPositionController (positions): one target for one or more joints.
 
     A speed is held without any gains. A position is held by a PID loop whose proportional and derivative parts
     belong to the physics, which keeps stiff ones stable.
@@ -152,7 +152,7 @@ class JointController(Plugin):
 
     @property
     def subscriptions(self) -> Mapping[str, Subscription]:
-        """The wanted position or speed."""
+        """Topic of the target position or velocity."""
         return {self.topic: Subscription(NumberCommand, self._command)}
 
     def prepare(self, build: ModelBuild) -> None:
@@ -173,13 +173,13 @@ class JointController(Plugin):
         self._views = [instance.joint(joint) for joint in self.joints]
 
     def start(self) -> Hold:
-        """Begin as the description says."""
+        """Return the initial target of the description."""
         hold = Hold(self.initial, [0.0] * len(self.joints))
         self._tell(hold)
         return hold
 
     def update(self, now_ns: int) -> Iterable[Sample]:
-        """Add to the integrals."""
+        """Update the integrals."""
         hold = self.state
         elapsed = (now_ns - hold.stamp_ns) * 1e-9 if hold.stamp_ns >= 0 else 0.0
         hold.stamp_ns = now_ns
@@ -191,7 +191,7 @@ class JointController(Plugin):
         return ()
 
     def _tell(self, hold: Hold) -> None:
-        """Tell the servos; what an integral adds to the effort is told as more of the position."""
+        """Set the servos; the integral part of the effort is added as a position offset."""
         for control, integral in zip(self._controls, hold.integrals, strict=True):
             self._data.ctrl[control] = hold.target + (integral / self.gain if self.gain > 0 else 0.0)
 

@@ -1,4 +1,4 @@
-"""gz's systems that push: efforts on joints, and thrusters."""
+"""gz's systems that apply forces: efforts on joints, and thrusters."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from daidalos.simulation.topics import absolute_topic
 
 
 class ApplyJointForce(Plugin):
-    """gz's ApplyJointForce system: an effort on a joint, until the next one comes."""
+    """gz's ApplyJointForce system: applies the last received effort to a joint."""
 
     names = ("gz-sim-apply-joint-force-system",)
     state: float
@@ -32,7 +32,7 @@ class ApplyJointForce(Plugin):
 
     @property
     def subscriptions(self) -> Mapping[str, Subscription]:
-        """The wanted effort."""
+        """Topic of the effort."""
         return {self.topic: Subscription(NumberCommand, self._command)}
 
     def prepare(self, build: ModelBuild) -> None:
@@ -45,11 +45,11 @@ class ApplyJointForce(Plugin):
         self._control = instance.actuator(self._motor)
 
     def start(self) -> float:
-        """Do not push."""
+        """Return a zero effort."""
         return 0.0
 
     def update(self, now_ns: int) -> Iterable[Sample]:
-        """Push."""
+        """Apply the effort."""
         self._data.ctrl[self._control] = self.state
         return ()
 
@@ -58,7 +58,7 @@ class ApplyJointForce(Plugin):
 
 
 class Thruster(Plugin):
-    """gz's Thruster system: a propeller that pushes along its joint's axis.
+    """gz's Thruster system: a propeller with a thrust along its joint's axis.
 
     The thrust is coefficient x density x diameter^4 x speed |speed|; commands are thrusts [N], or speeds
     [rad/s] with ``use_angvel_cmd``. The propeller itself does not turn.
@@ -91,7 +91,7 @@ class Thruster(Plugin):
 
     @property
     def subscriptions(self) -> Mapping[str, Subscription]:
-        """The wanted thrust or speed."""
+        """Topic of the thrust or speed."""
         return {self.topic: Subscription(NumberCommand, self._command)}
 
     def bind(self, instance: Instance) -> None:
@@ -102,11 +102,11 @@ class Thruster(Plugin):
         self._axis = np.array(rotate(joint.anchor.orientation, joint.axis.xyz))
 
     def start(self) -> float:
-        """Do not push."""
+        """Return a zero thrust."""
         return 0.0
 
     def update(self, now_ns: int) -> Iterable[Sample]:
-        """Push at the propeller's centre of mass."""
+        """Apply the thrust at the propeller's centre of mass."""
         self._forces.hold(self._key, self._link.body, self._link.rotation @ self._axis * self.state, np.zeros(3))
         return ()
 
@@ -117,7 +117,7 @@ class Thruster(Plugin):
 
 
 def joint_of(plugin: Plugin, tag: str) -> str:
-    """Return the joint that a parameter names, an error where the model has none."""
+    """Return the joint that a parameter names; raise an error if the model does not have it."""
     element, joints = plugin.description.element, plugin.context.model.joints
     name = plugin.parameters.scoped(element.text_of(tag))
     if name not in joints:

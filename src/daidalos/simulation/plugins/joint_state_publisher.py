@@ -1,4 +1,4 @@
-"""Joint state publisher: positions, speeds and efforts of joints as the simulation has them."""
+"""Joint state publisher: true positions, velocities and efforts of joints."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class JointStatePublisher(Plugin):
 
     @property
     def publications(self) -> Mapping[str, type[Sample]]:
-        """One topic."""
+        """Topic of the joint states."""
         return {self.topic: JointStateSample}
 
     def bind(self, instance: Instance) -> None:
@@ -53,7 +53,7 @@ class JointStatePublisher(Plugin):
         self._dof = np.array([joint.dof for joint in joints], dtype=np.intp)
 
     def update(self, now_ns: int) -> Iterable[Sample]:
-        """Read the joints."""
+        """Return the joint states."""
         if not self._instance.has_subscribers(self.topic):
             return
         data = self._instance.physics.data

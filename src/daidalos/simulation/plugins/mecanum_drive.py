@@ -1,4 +1,4 @@
-"""Mecanum drive: speeds of four wheels with rollers from a commanded velocity, odometry from the wheels."""
+"""Mecanum drive: velocities of four mecanum wheels from a commanded velocity, odometry from the wheels."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ _MIX = np.array([(1.0, -1.0, -1.0), (1.0, 1.0, 1.0), (1.0, 1.0, -1.0), (1.0, -1.
 
 @dataclass
 class Motion:
-    """Commanded and allowed velocity (ahead, left, turn), wheel angles, and the odometry."""
+    """Commanded and limited velocity (ahead, left, turn), wheel angles, and the odometry."""
 
     angles: Array
     command: Array = field(default_factory=lambda: np.zeros(3))
@@ -43,7 +43,7 @@ class Motion:
 
 
 class MecanumDrive(Plugin):
-    """gz's MecanumDrive system; the wheels' surfaces say with ``<fdir1>`` how their rollers lie."""
+    """gz's MecanumDrive system; ``<fdir1>`` of the wheels' surfaces gives the direction of their rollers."""
 
     names = ("gz-sim-mecanum-drive-system",)
     state: Motion
@@ -83,11 +83,11 @@ class MecanumDrive(Plugin):
 
     @property
     def subscriptions(self) -> Mapping[str, Subscription]:
-        """The commanded velocity."""
+        """Topic of the commanded velocity."""
         return {self.command_topic: Subscription(TwistCommand, self._command)}
 
     def prepare(self, build: ModelBuild) -> None:
-        """Add a speed servo to each wheel."""
+        """Add a velocity servo to each wheel."""
         mass = sum(link.inertial.mass for link in build.model.links.values() if link.inertial)
         driven = mass * self.radius**2 / len(self.joints)
         self._servos = [
@@ -101,7 +101,7 @@ class MecanumDrive(Plugin):
         self._wheels = [instance.joint(joint) for joint in self.joints]
 
     def start(self) -> Motion:
-        """Stand still."""
+        """Return the state at rest."""
         return Motion(self._angles())
 
     def update(self, now_ns: int) -> Iterable[Sample]:

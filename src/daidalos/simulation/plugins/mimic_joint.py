@@ -1,4 +1,4 @@
-"""Mimic joint: the plugin with which Gazebo classic's robots make one finger follow another."""
+"""Mimic joint plugin of Gazebo classic, such as for the fingers of grippers."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from daidalos.simulation.plugins.joint_forces import joint_of
 
 
 class MimicJoint(Plugin):
-    """``libroboticsgroup_gazebo_mimic_joint_plugin.so`` and its relatives; joints with ``<mimic>`` follow anyway."""
+    """``libroboticsgroup_gazebo_mimic_joint_plugin.so`` and its variants; joints with ``<mimic>`` follow without it."""
 
     names = (
         *("gazebo_mimic_joint_plugin", "gazebo_mimic_joint", "roboticsgroup_gazebo_mimic_joint_plugin"),
@@ -29,11 +29,11 @@ class MimicJoint(Plugin):
         self.offset = description.element.number_of("offset", default=0.0)
 
     def prepare(self, build: ModelBuild) -> None:
-        """Tie the joints to each other."""
+        """Couple the joints."""
         follower, leader = build.joints.get(self.follower), build.joints.get(self.leader)
         if follower and leader and self.context.model.joints[self.follower].mimic is None:
             couple(build.spec, follower[0], leader[0], self.offset, self.multiplier)
 
     def update(self, now_ns: int) -> Iterable[Sample]:
-        """Leave it to the physics."""
+        """Do nothing; the coupling is part of the physics."""
         return ()

@@ -1,4 +1,4 @@
-"""True odometry of one link: Gazebo classic's p3d, gz's odometry publisher."""
+"""True odometry of one link: Gazebo classic's p3d and gz's odometry publisher."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from daidalos.simulation.topics import absolute_topic, frame
 
 
 class P3d(Plugin):
-    """``libgazebo_ros_p3d.so`` of ROS 1 and 2: where a link is, in the world or in another link."""
+    """``libgazebo_ros_p3d.so`` of ROS 1 and 2: the pose of a link in the world or relative to another link."""
 
     names = ("gazebo_ros_p3d",)
 
@@ -40,18 +40,18 @@ class P3d(Plugin):
 
     @property
     def publications(self) -> Mapping[str, type[Sample]]:
-        """One topic."""
+        """Topic of the odometry."""
         return {self.topic: OdometrySample}
 
     def bind(self, instance: Instance) -> None:
-        """Find the link and the one that it is measured from."""
+        """Find the link and its reference link."""
         self._instance = instance
         self._link = instance.link(self.link)
         scoped = self.parameters.scoped(self.frame_id)
         self._from = instance.link(scoped) if scoped in instance.build.bodies else None
 
     def update(self, now_ns: int) -> Iterable[Sample]:
-        """Say where the link is."""
+        """Return the odometry of the link."""
         if not self._instance.has_subscribers(self.topic):
             return
         origin = Pose() if self._from is None else self._from.pose
@@ -65,7 +65,7 @@ class P3d(Plugin):
 
 
 class OdometryPublisher(Plugin):
-    """gz's OdometryPublisher system: the model's odometry since it came, without wheels."""
+    """gz's OdometryPublisher system: the model's odometry since its insertion, without wheels."""
 
     names = ("gz-sim-odometry-publisher-system",)
     unused = ("dimensions", "odom_covariance_topic")
@@ -95,11 +95,11 @@ class OdometryPublisher(Plugin):
         self._link = instance.link(self.link)
 
     def start(self) -> Pose:
-        """Take the place here as the origin."""
+        """Return the current pose as the origin."""
         return self._link.pose
 
     def update(self, now_ns: int) -> Iterable[Sample]:
-        """Say where the model is."""
+        """Return the odometry of the model."""
         frames = self.odometry_frame, self.base_frame
         odometry = _moved(true_odometry(self._link, now_ns, self.topic, *frames, start=self.state), self.offset)
         if self.noise:

@@ -1,4 +1,4 @@
-"""Planar move: a base that slides over the ground as commanded, whatever its wheels; gz's velocity control."""
+"""Planar move: a base that moves over the ground with the commanded velocity; gz's velocity control."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ Array = NDArray[np.float64]
 
 @dataclass
 class Motion:
-    """The commanded velocity, where odometry began, and when it is next due."""
+    """Commanded velocity, origin of the odometry, and time of the next publication."""
 
     linear: Array
     angular: Array
@@ -59,13 +59,13 @@ class PlanarMove(Plugin):
 
     @property
     def publications(self) -> Mapping[str, type[Sample]]:
-        """Odometry and its transform, as far as they are wanted."""
+        """Odometry and its transform, if enabled."""
         topics: dict[str, type[Sample]] = {self.odometry_topic: OdometrySample} if self.publishes else {}
         return topics | ({"/tf": TransformSample} if self.publishes_tf else {})
 
     @property
     def subscriptions(self) -> Mapping[str, Subscription]:
-        """The commanded velocity."""
+        """Topic of the commanded velocity."""
         return {self.command_topic: Subscription(TwistCommand, self._command)}
 
     def bind(self, instance: Instance) -> None:
@@ -75,11 +75,11 @@ class PlanarMove(Plugin):
         self._base = instance.link(base if base in instance.build.bodies else next(iter(instance.build.bodies)))
 
     def start(self) -> Motion:
-        """Stand still."""
+        """Return the state at rest."""
         return Motion(np.zeros(3), np.zeros(3), self._base.pose)
 
     def update(self, now_ns: int) -> Iterable[Sample]:
-        """Yield the base its velocity in the plane; it may fall and tilt as it likes."""
+        """Set the planar velocity of the base; it may fall and tilt freely."""
         motion = self.state
         self._move()
         if now_ns < motion.due_ns:
@@ -107,7 +107,7 @@ class PlanarMove(Plugin):
 
 
 class VelocityControl(Plugin):
-    """gz's VelocityControl system: the model flies as commanded, in its own axes."""
+    """gz's VelocityControl system: the model moves with the commanded velocity in its own axes."""
 
     names = ("gz-sim-velocity-control-system",)
     state: Motion
@@ -122,7 +122,7 @@ class VelocityControl(Plugin):
 
     @property
     def subscriptions(self) -> Mapping[str, Subscription]:
-        """The commanded velocity."""
+        """Topic of the commanded velocity."""
         return {self.topic: Subscription(TwistCommand, self._command)}
 
     def bind(self, instance: Instance) -> None:
@@ -131,11 +131,11 @@ class VelocityControl(Plugin):
         self._base = instance.link(next(iter(instance.build.bodies)))
 
     def start(self) -> Motion:
-        """Begin as the description says."""
+        """Return the initial velocity of the description."""
         return Motion(np.array(self._linear), np.array(self._angular), self._base.pose)
 
     def update(self, now_ns: int) -> Iterable[Sample]:
-        """Return the model its velocity."""
+        """Set the velocity of the model."""
         turn = rotation_matrix(self._base.pose.orientation)
         self._instance.set_velocity(turn @ self.state.linear, turn @ self.state.angular)
         self._instance.physics.changed()

@@ -1,4 +1,4 @@
-"""Pose publisher: where the links of a model are, as transforms."""
+"""Pose publisher: poses of a model's links as transforms."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from daidalos.simulation.topics import absolute_topic
 
 
 class PosePublisher(Plugin):
-    """gz's PosePublisher system: links in the model's frame, and the model in the world where that is wanted.
+    """gz's PosePublisher system: links in the model's frame, and optionally the model in the world.
 
     With ``static_publisher`` what no joint moves has a topic and a rate of its own.
     """
@@ -41,11 +41,11 @@ class PosePublisher(Plugin):
 
     @property
     def publications(self) -> Mapping[str, type[Sample]]:
-        """One topic, or two."""
+        """Topics of the transforms."""
         return {topic: TransformSample for topic in (self.topic, self.static_topic) if topic}
 
     def bind(self, instance: Instance) -> None:
-        """Take the model."""
+        """Find the model."""
         self._instance = instance
         moved = {joint.child for joint in instance.model.joints.values() if joint.type is not JointType.FIXED}
         self._topics = {
@@ -54,7 +54,7 @@ class PosePublisher(Plugin):
         }
 
     def update(self, now_ns: int) -> Iterable[Sample]:
-        """Say where everything is."""
+        """Return the transforms."""
         instance = self._instance
         due = {topic for topic in (self.topic, self.static_topic) if topic and instance.has_subscribers(topic)}
         if self.static_topic in due and not self._static_gate.is_due(now_ns):

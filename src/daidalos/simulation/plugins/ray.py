@@ -20,7 +20,7 @@ class Laser(SensorPlugin):
     unused = _UNUSED
 
     def configure(self, sensor: Sensor, parameters: Parameters) -> None:
-        """Take topic, frame and noise."""
+        """Set topic, frame and noise."""
         element = parameters.element
         sensor.topic = parameters.topic(element.text_of("topicName", "topic_name", default="scan"))
         sensor.frame_id = frame(element.text_of("frameName", "frame_name", default=sensor.frame_id))
@@ -38,7 +38,7 @@ class BlockLaser(SensorPlugin):
     unused = _UNUSED
 
     def configure(self, sensor: Sensor, parameters: Parameters) -> None:
-        """As `Laser`, in points."""
+        """Set topic, frame and noise, with points as message."""
         Laser().configure(sensor, parameters)
         if isinstance(sensor, Lidar):
             sensor.as_points = True
@@ -53,7 +53,7 @@ class RaySensor(SensorPlugin):
     unused = _UNUSED
 
     def configure(self, sensor: Sensor, parameters: Parameters) -> None:
-        """Take topic, frame and kind of message."""
+        """Set topic, frame and message type."""
         element = parameters.element
         sensor.topic = parameters.topic("~/out")
         sensor.frame_id = frame(element.text_of("frame_name", default=sensor.frame_id))
@@ -68,13 +68,13 @@ class RaySensor(SensorPlugin):
 
 
 class RangeSensor(SensorPlugin):
-    """``libgazebo_ros_range.so``: the nearest ray, as an infrared or ultrasound sensor would tell it."""
+    """``libgazebo_ros_range.so``: the shortest ray, as an infrared or ultrasound sensor."""
 
     names = ("gazebo_ros_range",)
     unused = (*_UNUSED, "fov")
 
     def configure(self, sensor: Sensor, parameters: Parameters) -> None:
-        """Take topic, frame and noise."""
+        """Set topic, frame and noise."""
         Laser().configure(sensor, parameters)
         element = parameters.element
         sensor.topic = parameters.topic(element.text_of("topicName", "topic_name", default="range"))

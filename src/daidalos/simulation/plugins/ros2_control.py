@@ -1,4 +1,4 @@
-"""ros2_control in the simulation: motors and sensors for the hardware that a robot's description names."""
+"""ros2_control in the simulator: motors and sensors of the hardware in a robot's description."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ class Ros2Control(Plugin):
 
     @classmethod
     def make(cls, description: Description, context: ComponentContext) -> Iterable[Component]:
-        """Return it for a robot that says what to control; another one is there without."""
+        """Yield the plugin if the robot has hardware to control."""
         if read_hardware(context.model):
             return super().make(description, context)
         context.warn(
@@ -101,7 +101,7 @@ class Ros2Control(Plugin):
         }
 
     def start(self) -> DriveState:
-        """Put the joints where their initial values are."""
+        """Return the state with the joints at their initial values."""
         self.drives.place(self._initial)
         state = self.drives.start(self.holds)
         if self.state is not None:  # a reset; whoever commands the joints goes on
@@ -110,7 +110,7 @@ class Ros2Control(Plugin):
         return state
 
     def update(self, now_ns: int) -> Iterable[Sample]:
-        """Let the controllers run; without any the joints hold."""
+        """Run the controllers; without them the joints hold their positions."""
         if self.cycle is not None:
             self.cycle(now_ns)
         self.drives.command(self.state, self.period)
@@ -121,7 +121,7 @@ class Ros2Control(Plugin):
         return name in self._components
 
     def measure(self, sensor: str, now_ns: int) -> dict[str, float]:
-        """Return what one of the model's sensors measures now, by interface; nothing when there is none."""
+        """Return the current values of a model's sensor, by interface; empty if there is no such sensor."""
         component: Any = self._components.get(sensor)
         samples = () if component is None else component.measure(now_ns)
         return {name: value for sample in samples for name, value in _values(sample).items()}
@@ -154,7 +154,7 @@ def _is_driven(joint: ComponentInfo) -> bool:
 
 
 def _effort(plugin: str, joint: ComponentInfo) -> float:
-    """Return what a motor can do; a limit of zero, which many descriptions have by mistake, is none."""
+    """Return a motor's maximum effort; a limit of zero, a common mistake in descriptions, means none."""
     effort = joint.joint.axis.effort if joint.joint is not None else math.inf
     return math.inf if effort <= 0.0 or (plugin == _KINEMATIC and _takes_positions(joint)) else effort
 
@@ -175,7 +175,7 @@ def _file(element: Element) -> Path:
 
 
 def _update_rate(files: Iterable[Path], manager: str) -> float:
-    """Return a manager's rate from its parameter files [Hz]; its full name counts, else that without namespace."""
+    """Return a manager's rate [Hz] from its parameter files, by its full name or else without namespace."""
     import yaml
 
     rates = {"named": math.nan, "bare": math.nan}
@@ -195,13 +195,13 @@ def _update_rate(files: Iterable[Path], manager: str) -> float:
 
 
 def _matches(pattern: str, name: str) -> bool:
-    """Return whether a node's name in a file, with ``*`` and ``**`` as wildcards, means a node."""
+    """Return whether a node name with the wildcards ``*`` and ``**`` matches a node."""
     text = re.escape(pattern).replace(r"/\*\*", "(?:/[^/]+)*").replace(r"\*", "[^/]+")
     return re.fullmatch(text, name) is not None
 
 
 def _sections(content: Any, name: str = "") -> Iterable[tuple[str, dict[str, Any]]]:
-    """Yield each node's name, as the file writes it, with its parameters."""
+    """Yield the node names of a file with their parameters."""
     if not isinstance(content, dict):
         return
     for key, value in content.items():

@@ -1,4 +1,4 @@
-"""Gazebo classic's plugins that do no more than name a sensor's topic and frame."""
+"""Gazebo classic's plugins that only set a sensor's topic and frame."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from daidalos.simulation.topics import frame
 
 
 class NamesTopic(SensorPlugin):
-    """GPS, sonar, altimeter and magnetometer of ROS 2: ``~/out`` unless told otherwise."""
+    """GPS, sonar, altimeter and magnetometer of ROS 2; the default topic is ``~/out``."""
 
     names = (
         *("gazebo_ros_gps_sensor", "gazebo_ros_sonar", "hector_gazebo_ros_sonar"),
@@ -23,7 +23,7 @@ class NamesTopic(SensorPlugin):
     _CLASSIC_NORTH = 180.0
 
     def configure(self, sensor: Sensor, parameters: Parameters) -> None:
-        """Take topic and frame."""
+        """Set topic and frame."""
         element = parameters.element
         sensor.topic = parameters.topic(element.text_of("topicName", "topic_name", default="~/out"))
         sensor.frame_id = frame(element.text_of("frameName", "frame_name", "frameId", default=sensor.frame_id))
@@ -37,7 +37,7 @@ class Bumper(SensorPlugin):
     names = ("gazebo_ros_bumper",)
 
     def configure(self, sensor: Sensor, parameters: Parameters) -> None:
-        """Take topic and frame."""
+        """Set topic and frame."""
         element = parameters.element
         sensor.topic = parameters.topic(element.text_of("bumperTopicName", "topicName", default="bumper_states"))
         sensor.frame_id = frame(element.text_of("frameName", "frame_name", default=sensor.frame_id))

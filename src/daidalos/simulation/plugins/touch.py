@@ -1,4 +1,4 @@
-"""Touch: says once that a model has rested against another for a while."""
+"""Touch plugin: reports once that a model has touched another for a time."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from daidalos.simulation.topics import absolute_topic
 
 @dataclass
 class Watch:
-    """Whether it looks, and since when it has touched [ns]."""
+    """Whether the plugin is enabled, and since when there is contact [ns]."""
 
     on: bool
     since_ns: int | None = None
 
 
 class Touch(Plugin):
-    """gz's TouchPlugin: ``/<namespace>/touched``, and ``/<namespace>/enable`` to look again.
+    """gz's TouchPlugin: ``/<namespace>/touched``, and ``/<namespace>/enable`` to enable it again.
 
     Without a namespace the model's name is one.
     """
@@ -46,16 +46,16 @@ class Touch(Plugin):
 
     @property
     def publications(self) -> Mapping[str, type[Sample]]:
-        """One topic."""
+        """Topic of the report."""
         return {self.topic: FlagSample}
 
     @property
     def switches(self) -> Mapping[str, Switch]:
-        """To look, or not."""
+        """Service that enables or disables the plugin."""
         return {self.service: Switch(self._switch)}
 
     def bind(self, instance: Instance) -> None:
-        """Find the geoms of both."""
+        """Find the geoms of both models."""
         self._data = instance.physics.data
         self._physics = instance.physics
         count = instance.physics.model.ngeom
@@ -66,11 +66,11 @@ class Touch(Plugin):
             self._other[geom] = model != instance.name and self.target in scoped
 
     def start(self) -> Watch:
-        """Look, if that is wanted from the start."""
+        """Return whether the plugin is initially enabled."""
         return Watch(self.on)
 
     def update(self, now_ns: int) -> Iterable[Sample]:
-        """Look."""
+        """Check for contact."""
         watch = self.state
         if not watch.on:
             return

@@ -1,4 +1,4 @@
-"""Tricycle drive: one wheel that is driven and steered, and two whose turns are counted."""
+"""Tricycle drive: one driven and steered wheel, and two wheels with encoders."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ _STEERING_BANDWIDTH = 60.0
 
 @dataclass
 class Motion:
-    """Command, speed and angle of the wheel that drives, and the odometry."""
+    """Command, speed and angle of the driven wheel, and the odometry."""
 
     command: Array
     speed: float
@@ -81,7 +81,7 @@ class TricycleDrive(Plugin):
 
     @property
     def publications(self) -> Mapping[str, type[Sample]]:
-        """Odometry, transforms and joint states, as far as they are wanted."""
+        """Odometry, transforms and joint states, if enabled."""
         topics: dict[str, type[Sample]] = {
             self.odometry_topic: OdometrySample,
             self.tf_topic or self.wheel_topic: TransformSample,
@@ -91,11 +91,11 @@ class TricycleDrive(Plugin):
 
     @property
     def subscriptions(self) -> Mapping[str, Subscription]:
-        """The commanded speed and steering angle."""
+        """Topic of the commanded speed and steering angle."""
         return {self.topic: Subscription(TwistCommand, self._command)}
 
     def prepare(self, build: ModelBuild) -> None:
-        """Add a speed servo to the wheel and a position servo to its steering."""
+        """Add a velocity servo to the wheel and a position servo to its steering joint."""
         mass = sum(link.inertial.mass for link in build.model.links.values() if link.inertial)
         driven = mass * self.driven_radius**2
         self._drive_servo = build.add_velocity_servo(self.driven, 2 * driven / _SERVO_TIME, self.torque, rotor=driven)
@@ -116,11 +116,11 @@ class TricycleDrive(Plugin):
         self._shown = [joint.name for joint in self._moved if joints[joint.name].child != base]
 
     def start(self) -> Motion:
-        """Stand still."""
+        """Return the state at rest."""
         return Motion(np.zeros(2), 0.0, 0.0, self._turns(), np.zeros(3))
 
     def update(self, now_ns: int) -> Iterable[Sample]:
-        """Count the wheels' turns, then drive and steer."""
+        """Measure the wheels, then drive and steer."""
         motion = self.state
         step = self.period or self._instance.physics.model.opt.timestep
         elapsed = step if motion.stamp_ns < 0 else (now_ns - motion.stamp_ns) * 1e-9
@@ -188,5 +188,5 @@ class TricycleDrive(Plugin):
 
 
 def _nearer(value: float, goal: float, reach: float) -> float:
-    """Return the value, moved towards the goal by no more than the reach."""
+    """Return the value, moved towards the goal by at most `reach`."""
     return value + min(max(goal - value, -reach), reach)

@@ -1,4 +1,4 @@
-"""Odometry that knows where a link really is: for bases that have no wheels to measure, and to compare with."""
+"""Ground-truth odometry of a link."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def true_odometry(
     covariance: tuple[float, float, float] = (1e-5, 1e-5, 1e-3),
     start: Pose | None = None,
 ) -> OdometrySample:
-    """Return where a link is and how it moves.
+    """Return the true odometry of a link.
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ def true_odometry(
 def link_transforms(
     instance: Instance, base: LinkView, joints: Iterable[str], now_ns: int, topic: str, frame_id: str
 ) -> Iterator[TransformSample]:
-    """Yield where the children of joints are, seen from a base."""
+    """Yield the transforms of the child links of joints in a base frame."""
     back = base.pose.inverse
     for joint in joints:
         child = instance.model.joints[joint].child

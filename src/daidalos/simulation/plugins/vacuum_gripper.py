@@ -1,4 +1,4 @@
-"""Vacuum gripper: holds the nearest thing while it is on."""
+"""Vacuum gripper: holds the nearest link while it is on."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ Array = NDArray[np.float64]
 
 @dataclass
 class Hold:
-    """Whether the pump runs, what hangs on it (model, link), and where that is in the gripper's frame."""
+    """Whether the pump runs, the held link (model, link), and its pose in the gripper's frame."""
 
     on: bool = False
     held: tuple[str, str] | None = None
@@ -57,19 +57,19 @@ class VacuumGripper(Plugin):
 
     @property
     def publications(self) -> Mapping[str, type[Sample]]:
-        """Whether something is held."""
+        """Topic of whether a link is held."""
         return {self.topic: FlagSample}
 
     @property
     def switches(self) -> Mapping[str, Switch]:
-        """One service that is told on or off, or ROS 1's two."""
+        """One service with an on or off argument, or ROS 1's two."""
         if self.is_ros1:
             on, off = self._services
             return {on: Switch(self.switch, True), off: Switch(self.switch, False)}
         return {self._services[0]: Switch(self.switch)}
 
     def switch(self, on: bool) -> None:
-        """Turn the pump on or off."""
+        """Switch the pump on or off."""
         self.state.on = on
 
     def bind(self, instance: Instance) -> None:
@@ -79,11 +79,11 @@ class VacuumGripper(Plugin):
         self._gripper = instance.link(self.link)
 
     def start(self) -> Hold:
-        """Hold nothing."""
+        """Return the state with the pump off."""
         return Hold()
 
     def update(self, now_ns: int) -> Iterable[Sample]:
-        """Take, hold or let go."""
+        """Grip, hold or release."""
         hold = self.state
         if hold.on and hold.held is None:
             self._take()
@@ -99,14 +99,14 @@ class VacuumGripper(Plugin):
             yield FlagSample(now_ns, self.topic, "", target is not None)
 
     def _target(self) -> LinkView | None:
-        """Return the link that is held; None when it is gone."""
+        """Return the held link; None if it no longer exists."""
         if self.state.held is None:
             return None
         body = mujoco.mj_name2id(self._physics.model, mujoco.mjtObj.mjOBJ_BODY, "::".join(self.state.held))
         return LinkView(self._physics, body) if body >= 0 else None
 
     def _take(self) -> None:
-        """Hold the nearest link that can move, if one is in reach."""
+        """Grip the nearest movable link within reach."""
         physics = self._physics
         physics.refresh_positions()
         here = np.array(self._gripper.pose.position)
@@ -122,7 +122,7 @@ class VacuumGripper(Plugin):
                 self.state.place = self._gripper.pose.inverse @ LinkView(physics, body).pose
 
     def _distance(self, geom: int, point: Array) -> float:
-        """Return how far a point is from the box around a geom."""
+        """Return the distance of a point from the bounding box of a geom."""
         model, data = self._physics.model, self._physics.data
         local = data.geom_xmat[geom].reshape(3, 3).T @ (point - data.geom_xpos[geom])
         centre, half = model.geom_aabb[geom, :3], model.geom_aabb[geom, 3:]

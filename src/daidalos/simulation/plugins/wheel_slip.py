@@ -1,4 +1,4 @@
-"""Wheel slip: wheels that creep in proportion to the force that they carry."""
+"""Wheel slip: wheels that creep in proportion to their contact force."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _UP = np.array((0.0, 0.0, 1.0))
 
 @dataclass(frozen=True)
 class Wheel:
-    """A wheel that slips.
+    """Wheel with slip.
 
     Parameters
     ----------
@@ -70,18 +70,18 @@ class WheelSlip(Plugin):
 
     @property
     def publications(self) -> Mapping[str, type[Sample]]:
-        """The slip of all wheels."""
+        """Topic of the slip of all wheels."""
         return {self.topic: WheelSlipSample}
 
     def prepare(self, build: ModelBuild) -> None:
-        """Take the wheels' friction away."""
+        """Remove the wheels' contact friction."""
         slipping = {wheel.link for wheel in self.wheels}
         for name, info in build.geoms.items():
             if info.link in slipping:
                 set_friction(build.spec.geom(name), Surface(mu=0.0, mu2=0.0))
 
     def bind(self, instance: Instance) -> None:
-        """Find the wheels, and how stiff their grip may be."""
+        """Find the wheels, and the stability limits of their forces."""
         self._instance = instance
         model, wheels = instance.physics.model, self.wheels
         self._bodies = np.array([instance.link(wheel.link).body for wheel in wheels], dtype=np.intp)
@@ -97,11 +97,11 @@ class WheelSlip(Plugin):
         self._limits = 0.5 / (len(wheels) / masses + self._radii**2 / moments) / model.opt.timestep
 
     def start(self) -> int:
-        """Report at once."""
+        """Return the time of the first report, at once."""
         return 0
 
     def update(self, now_ns: int) -> Iterable[Sample]:
-        """Hold each wheel that touches against its slip."""
+        """Apply friction forces to each wheel in contact."""
         if not self.wheels:
             return
         physics = self._instance.physics
@@ -127,11 +127,11 @@ class WheelSlip(Plugin):
 
     @property
     def _below(self) -> Array:
-        """From each wheel's middle to the ground (n, 3)."""
+        """Vectors from the wheels' centres to the ground (n, 3)."""
         return np.outer(-self._radii, _UP)
 
     def _slips(self, linear: Array, angular: Array) -> tuple[Array, Array]:
-        """Return each contact's speeds (n, 2) to the left and ahead, and where ahead is (n, 3)."""
+        """Return lateral and longitudinal slip velocities (n, 2) of contacts, and their forward directions (n, 3)."""
         turns = self._instance.physics.data.xmat[self._bodies].reshape(-1, 3, 3)
         axes = np.einsum("nij,nj->ni", turns, self._axes)
         ahead = cross(axes, np.tile(_UP, (len(axes), 1)))
@@ -140,7 +140,7 @@ class WheelSlip(Plugin):
         return np.stack([np.sum(patches * way, axis=1) for way in (_left_of(ahead), ahead)], axis=1), ahead
 
     def _friction_forces(self, slips: Array, rims: Array) -> Array:
-        """Return the forces (n, 2) to the left and ahead that hold the contacts."""
+        """Return the lateral and longitudinal friction forces (n, 2) of contacts."""
         compliances = self._compliances * np.maximum(np.abs(rims), 1e-3)[:, None]
         grips = -slips * np.minimum(1 / np.maximum(compliances, 1e-9), self._limits[:, None])
         scale = np.minimum(1.0, self._max_force / np.maximum(np.linalg.norm(grips, axis=1), 1e-9))
@@ -169,12 +169,12 @@ class WheelSlip(Plugin):
 
 
 def _left_of(ahead: Array) -> Array:
-    """Return what is to the left of directions (n, 3) in the plane."""
+    """Return the direction to the left of directions (n, 3) in the plane."""
     return np.stack((-ahead[:, 1], ahead[:, 0], np.zeros(len(ahead))), axis=1)
 
 
 def _shares(slips: Array, rims: Array, linear: Array) -> Array:
-    """Return (n, 2): the angle between where a wheel points and where it goes, and its slip as a share of its speed."""
+    """Return (n, 2): the angle between the wheel and its motion, and its longitudinal slip ratio."""
     speeds = np.linalg.norm(linear, axis=1)
     angles = np.arcsin(np.clip(slips[:, 0] / np.maximum(speeds, 1e-3), -1.0, 1.0))
     moving, turning = speeds > 1e-3, np.abs(rims) > 1e-3
@@ -183,7 +183,7 @@ def _shares(slips: Array, rims: Array, linear: Array) -> Array:
 
 
 def _radius(link: Link, element: Element) -> float:
-    """Return what the parameters say, or the shape."""
+    """Return the radius from the parameters, or from the shape."""
     given = element.number_of("wheel_radius", default=0.0)
     round_shapes = [c.geometry for c in link.collisions if isinstance(c.geometry, Cylinder | Sphere)]
     if not given and not round_shapes:

@@ -1,4 +1,4 @@
-"""Which renderer draws for cameras: software, or OpenGL where the user asks for it and there is an EGL device."""
+"""Renderer backends of cameras: software, or OpenGL on an EGL device on request."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _log = logging.getLogger(__name__)
 
 
 def make_renderer(pinhole: Pinhole, near: float, far: float, mask: int) -> Renderer | GlRenderer:
-    """Make a camera's renderer: in software, unless the environment's ``DAIDALOS_RENDERER`` is ``egl``.
+    """Create a camera's renderer: in software, unless the environment's ``DAIDALOS_RENDERER`` is ``egl``.
 
     Where there is no EGL device, one line says so and software draws. Parameters are `Renderer`'s.
     """
@@ -42,5 +42,5 @@ def make_renderer(pinhole: Pinhole, near: float, far: float, mask: int) -> Rende
 
 @cache
 def tell(line: str) -> None:
-    """Say something once."""
+    """Log a message once."""
     _log.warning(line)

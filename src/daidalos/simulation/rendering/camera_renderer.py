@@ -75,13 +75,13 @@ class CameraRenderer:
 
     @property
     def view(self) -> View:
-        """What the last `look` saw, without distortion."""
+        """View of the last `render`, without distortion."""
         if self._view is None:
             raise ValueError("nothing was rendered yet")
         return self._view
 
     def picture(self, start: int = 0) -> NDArray[np.uint8]:
-        """Return the colours (height, width, 3) of what was seen.
+        """Return the colours (height, width, 3) of the last view.
 
         Parameters
         ----------
@@ -99,7 +99,7 @@ class CameraRenderer:
         return picture
 
     def depth(self, near: float = 0.0, far: float = np.inf) -> NDArray[np.float32]:
-        """Return the depths (height, width) along the optical axis [m], with REP 118's infinities out of reach."""
+        """Return the depths (height, width) along the optical axis [m], infinite out of range as in REP 118."""
         return self._bent(self.view.depth(near, far))
 
     def of_parts(self, values: NDArray[Any], nothing: int = 0) -> NDArray[Any]:

@@ -1,4 +1,4 @@
-"""What a parallel light sees: the compiled loops behind shadow maps.
+"""Rasterization for parallel lights: the compiled loops of shadow maps.
 
 As in `raster`, with every ray parallel: a triangle's edges and its depth are linear in the pixel's place.
 """
@@ -27,7 +27,7 @@ def draw_flat(
     depths: Any,
     box: Any,
 ) -> None:
-    """Draw the depths that a parallel light sees, keeping the nearest.
+    """Draw depth along a parallel light, keeping the nearest.
 
     Parameters
     ----------
@@ -106,7 +106,7 @@ def fill_flat(
     end_column: Any,
     depths: Any,
 ) -> None:
-    """Write the rows of a triangle from edge to edge where it is nearer to the light than what is there."""
+    """Write the rows of a triangle where it is nearer to the light than the buffer."""
     p0, q0, s0, t0 = cut(a0, b0, c0)
     p1, q1, s1, t1 = cut(a1, b1, c1)
     p2, q2, s2, t2 = cut(a2, b2, c2)

@@ -1,4 +1,4 @@
-"""Draws a scene with OpenGL on an EGL device, without a screen: what `renderer` does, for machines with a GPU."""
+"""Renderer with OpenGL on an EGL device, without a screen: a replacement of `renderer` for machines with a GPU."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ _contexts = threading.local()
 
 
 class GlRenderer:
-    """One camera's pictures by OpenGL; parameters and methods are those of `renderer.Renderer`.
+    """OpenGL renderer of one camera, with the interface of `renderer.Renderer`.
 
     Shadow maps are drawn in software. Transparent things behind one another are mixed in the order of the scene.
 
@@ -68,7 +68,7 @@ class GlRenderer:
             program["projection"].write(self._projection().T.astype("f4").tobytes())
 
     def render(self, scene: Scene, positions: Array, rotations: Array, pose: Pose) -> View:
-        """Find what each pixel sees."""
+        """Rasterize the scene."""
         if scene is not self._scene:
             self._take(scene)
         self._camera_pose = pose @ OPTICAL
@@ -91,7 +91,7 @@ class GlRenderer:
         return View(inverse, triangles, scene, self._pool)
 
     def paint(self, positions: Array, rotations: Array, lighting: Lighting) -> NDArray[np.uint8]:
-        """Return the colours (rows, columns, 3) of what the last `render` saw; glass in front of it included."""
+        """Return the colours (rows, columns, 3) of the last `render`, including transparent surfaces."""
         scene = self._scene
         assert scene is not None
         sun, lights = sort_lights(lighting)
@@ -121,7 +121,7 @@ class GlRenderer:
         vertices.render(moderngl.TRIANGLES)
 
     def _take(self, scene: Scene) -> None:
-        """Bring a scene to the device."""
+        """Upload a scene to the device."""
         self._scene = scene
         vertex_part = np.repeat(np.arange(len(scene.body)), np.diff(scene.vertex_ranges, axis=1).ravel())
         rows = np.concatenate((scene.vertices, scene.normals, scene.uv, vertex_part[:, None]), axis=1)
@@ -147,7 +147,7 @@ class GlRenderer:
         self._fill("levels", levels, 4)
 
     def _fill(self, name: str, values: NDArray[Any], components: int, dtype: str = "f4") -> None:
-        """Put an array (rows, columns, components) into a texture."""
+        """Upload an array (rows, columns, components) to a texture."""
         size = (values.shape[1], values.shape[0])
         texture = self._textures.get(name)
         if texture is None or texture.size != size:
@@ -210,7 +210,7 @@ class GlRenderer:
 
 
 def context() -> Any:
-    """Return this thread's OpenGL context on an EGL device, made when it is first needed."""
+    """Return this thread's OpenGL context on an EGL device, created on first use."""
     made = getattr(_contexts, "made", None)
     if made is None:
         made = _contexts.made = moderngl.create_context(standalone=True, backend="egl")

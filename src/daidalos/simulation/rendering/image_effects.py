@@ -1,4 +1,4 @@
-"""What happens to a picture behind the lens: distortion, noise, a Bayer mosaic. Compiled loops over pixels."""
+"""Image effects of cameras: distortion, noise and Bayer mosaic, as compiled loops over pixels."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from daidalos.common.kernels import compiled
 
 @compiled
 def distort(ideal: Any, lookup: Any, bent: Any) -> None:
-    """Take each pixel of a picture from a place between four pixels of the undistorted one.
+    """Resample a picture with bilinear interpolation of the undistorted one.
 
     Parameters
     ----------
@@ -37,7 +37,7 @@ def distort(ideal: Any, lookup: Any, bent: Any) -> None:
 
 @compiled
 def pick(ideal: Any, lookup: Any, bent: Any) -> None:
-    """Take each pixel from the nearest one of the undistorted array: depths and labels do not mix."""
+    """Resample an array with the nearest pixel of the undistorted one, for depths and labels."""
     rows, columns = ideal.shape
     for row in range(lookup.shape[0]):
         for column in range(lookup.shape[1]):
@@ -48,7 +48,7 @@ def pick(ideal: Any, lookup: Any, bent: Any) -> None:
 
 @compiled
 def add_noise(picture: Any, noise: Any, start: Any) -> None:
-    """Add numbers of a table, from a place on and around, to the bytes of a picture."""
+    """Add values of a table, from an offset on and cyclically, to the bytes of a picture."""
     place = start
     size = len(noise)
     for index in range(len(picture)):
@@ -61,7 +61,7 @@ def add_noise(picture: Any, noise: Any, start: Any) -> None:
 
 @compiled
 def mosaic(picture: Any, pattern: Any, raw: Any) -> None:
-    """Keep of each pixel the band that its place in a two by two pattern lets through."""
+    """Keep one colour band per pixel, by its position in a two by two pattern."""
     for row in range(raw.shape[0]):
         for column in range(raw.shape[1]):
             raw[row, column] = picture[row, column, pattern[row & 1, column & 1]]
@@ -69,7 +69,7 @@ def mosaic(picture: Any, pattern: Any, raw: Any) -> None:
 
 @compiled
 def depths_of(inverse: Any, triangles: Any, near: Any, far: Any, depths: Any) -> None:
-    """Turn inverse depths into depths [m]: infinite where nothing is or it is too far, minus that where too near."""
+    """Convert inverse depths to depths [m]: infinite for misses and beyond range, minus infinite if too near."""
     rows, columns = inverse.shape
     infinite = np.float32(np.inf)
     for row in range(rows):
@@ -81,7 +81,7 @@ def depths_of(inverse: Any, triangles: Any, near: Any, far: Any, depths: Any) ->
 
 @compiled
 def points_of(depths: Any, rays: Any, points: Any) -> None:
-    """Place each pixel's depth along its ray (rows, columns, 3); what is out of reach is not a number."""
+    """Compute the 3-D point of each pixel from its depth (rows, columns, 3); NaN if out of range."""
     rows, columns = depths.shape
     none = np.float32(np.nan)
     for row in range(rows):

@@ -1,4 +1,4 @@
-"""What shines in a scene, and what one sees where nothing is."""
+"""Lights and background of a scene."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from daidalos.description.link import Light, Rgba
 
 @dataclass(frozen=True)
 class Lighting:
-    """What shines in a scene.
+    """Lights and background of a scene.
 
     Parameters
     ----------

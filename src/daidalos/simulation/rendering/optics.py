@@ -1,4 +1,4 @@
-"""The pinhole model of a camera, with the distortion of its lens."""
+"""Pinhole camera model with lens distortion."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ OPTICAL = Pose(orientation=quaternion_from_rpy(-math.pi / 2, 0.0, -math.pi / 2))
 
 @dataclass(frozen=True)
 class Pinhole:
-    """How rays become pixels; the centre of the pixel in column i is at i.
+    """Pinhole camera; the centre of the pixel in column i is at i.
 
     Parameters
     ----------
@@ -41,18 +41,18 @@ class Pinhole:
 
     @classmethod
     def from_field_of_view(cls, width: int, height: int, field_of_view: float) -> Pinhole:
-        """Make one from the horizontal field of view [rad], with square pixels, as Gazebo does."""
+        """Return the camera with a horizontal field of view [rad] and square pixels, as in Gazebo."""
         focal = width / (2 * math.tan(field_of_view / 2))
         return cls(width, height, focal, focal, width / 2, height / 2)
 
     @property
     def is_distorted(self) -> bool:
-        """Whether the lens bends rays."""
+        """Whether the lens distorts."""
         return any(self.distortion)
 
     @property
     def matrix(self) -> Array:
-        """The intrinsic matrix K (3, 3)."""
+        """Intrinsic matrix K (3, 3)."""
         return np.array(((self.fx, 0.0, self.cx), (0.0, self.fy, self.cy), (0.0, 0.0, 1.0)))
 
     @property
@@ -62,7 +62,7 @@ class Pinhole:
 
     @property
     def rays(self) -> NDArray[np.float32]:
-        """The ray of each pixel (height, width, 3), 1 long along the optical axis."""
+        """Ray of each pixel (height, width, 3), of length 1 along the optical axis."""
         x, y = self._ideal_rays
         return np.stack((x, y, np.ones_like(x)), axis=-1).astype(np.float32)
 
@@ -73,7 +73,7 @@ class Pinhole:
 
     @cached_property
     def ideal(self) -> Pinhole:
-        """The camera without distortion that sees everything which this one sees, at the same resolution."""
+        """Camera without distortion whose view contains this camera's, at the same resolution."""
         if not self.is_distorted:
             return self
         x, y = self._ideal_rays
@@ -83,14 +83,14 @@ class Pinhole:
 
     @cached_property
     def lookup(self) -> NDArray[np.float32]:
-        """Where in the picture of `ideal` each pixel is, (height, width, 2): column and row."""
+        """Position of each pixel in the picture of `ideal` (height, width, 2): column and row."""
         x, y = self._ideal_rays
         ideal = self.ideal
         return np.stack((ideal.fx * x + ideal.cx, ideal.fy * y + ideal.cy), axis=-1).astype(np.float32)
 
     @cached_property
     def _ideal_rays(self) -> tuple[Array, Array]:
-        """Return x / z and y / z of each pixel's ray: the distortion's inverse, by fixed-point iteration."""
+        """Return x / z and y / z of each pixel's ray by fixed-point inversion of the distortion."""
         columns, rows = np.meshgrid(np.arange(self.width, dtype=np.float64), np.arange(self.height, dtype=np.float64))
         goal_x: Array = (columns - self.cx) / self.fx
         goal_y: Array = (rows - self.cy) / self.fy

@@ -1,4 +1,4 @@
-"""Large arrays that are used again once nobody holds them: fresh memory costs more than what is drawn into it."""
+"""Pool of large arrays, whose allocation would cost more than drawing into them."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ _UNUSED = 3
 
 
 class Pool:
-    """Hands out arrays with anything in them; one comes back by itself when the last reference to it goes."""
+    """Pool of uninitialized arrays; an array returns to it with its last reference."""
 
     def __init__(self) -> None:
         self._arrays: dict[tuple[tuple[int, ...], np.dtype[Any]], list[NDArray[Any]]] = {}
 
     def take(self, shape: tuple[int, ...], dtype: DTypeLike) -> NDArray[Any]:
-        """Return an array (shape) that is nobody's."""
+        """Return an unused array of a shape."""
         arrays = self._arrays.setdefault((shape, np.dtype(dtype)), [])
         for array in arrays:
             if sys.getrefcount(array) <= _UNUSED:

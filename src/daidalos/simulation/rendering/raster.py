@@ -1,4 +1,4 @@
-"""Which triangle each pixel sees, and how far it is: the compiled loops of the rasteriser.
+"""Rasterization: the compiled loops that find the triangle and the depth of each pixel.
 
 Triangles are scan-converted in homogeneous coordinates, so that none needs to be clipped (Olano and Greer,
 "Triangle scan conversion using 2D homogeneous coordinates", 1997). With vertices v0, v1, v2 in the camera's
@@ -33,7 +33,7 @@ _SHORT = 8
 
 @compiled
 def place_parts(part_body: Any, part_pose: Any, body_position: Any, body_rotation: Any, view: Any, placed: Any) -> None:
-    """Compose poses: from each part to the camera, by way of its body.
+    """Compose the poses of the parts in the camera frame from their bodies' poses.
 
     Parameters
     ----------
@@ -114,7 +114,7 @@ def draw(
     inverse: Any,
     triangles: Any,
 ) -> None:
-    """Draw parts into a buffer of inverse depths and one of triangles, keeping what is nearer.
+    """Draw parts into buffers of inverse depths and triangles, keeping the nearest.
 
     Parameters
     ----------
@@ -204,7 +204,7 @@ def draw_face(
     inverse: Any,
     triangles: Any,
 ) -> None:
-    """Draw one triangle into a box of pixels, as far as its inverse depth is no more than `nearest`."""
+    """Draw one triangle into a box of pixels where its inverse depth is at most `nearest`."""
     fx, fy, cx, cy = lens[0], lens[1], lens[2], lens[3]
     x0, y0, z0 = projected[i, 0], projected[i, 1], projected[i, 2]
     x1, y1, z1 = projected[j, 0], projected[j, 1], projected[j, 2]
@@ -267,7 +267,7 @@ def draw_face(
 def fill(
     inverse: Any, triangles: Any, row: Any, start: Any, stop: Any, value: Any, change: Any, face: Any, nearest: Any
 ) -> None:
-    """Write a triangle into a run of pixels where it is nearer than what is there."""
+    """Write a triangle into a run of pixels where it is nearer than the buffer."""
     if stop - start < _SHORT:
         for column in range(start, stop):
             here = value + change * np.float32(column - start)
@@ -285,7 +285,7 @@ def fill(
 
 @compiled(fastmath=True, inline=True)
 def cut(slope_x: Any, slope_y: Any, offset: Any) -> Any:
-    """Return where slope_x * x + slope_y * row + offset becomes positive, and where it ends to be: two lines over rows.
+    """Return the range where slope_x * x + slope_y * row + offset is positive, as two lines over rows.
 
     Each line is p * row + q; minus and plus infinity where there is no such place. What lies exactly on an edge belongs
     to the triangle on its right or, for a level edge, below it: triangles that share an edge neither overlap nor leave
@@ -301,7 +301,7 @@ def cut(slope_x: Any, slope_y: Any, offset: Any) -> Any:
 
 @compiled(fastmath=True, inline=True)
 def rows_of(slope_x: Any, slope_y: Any, offset: Any, first: Any, end: Any) -> Any:
-    """Narrow a range of rows to where a level edge leaves the inside; others leave all of them."""
+    """Narrow a range of rows at a horizontal edge; other edges leave it unchanged."""
     if slope_x == 0.0:
         if slope_y > 0.0:
             first = max(first, np.ceil(min(-offset / slope_y, end)))
@@ -314,7 +314,7 @@ def rows_of(slope_x: Any, slope_y: Any, offset: Any, first: Any, end: Any) -> An
 
 @compiled
 def outside(pose: Any, sphere: Any, left: Any, right: Any, top: Any, bottom: Any, near: Any, far: Any) -> Any:
-    """Return whether a ball lies outside the view's frustum."""
+    """Return whether a sphere lies outside the view frustum."""
     x = pose[0, 0] * sphere[0] + pose[0, 1] * sphere[1] + pose[0, 2] * sphere[2] + pose[0, 3]
     y = pose[1, 0] * sphere[0] + pose[1, 1] * sphere[1] + pose[1, 2] * sphere[2] + pose[1, 3]
     z = pose[2, 0] * sphere[0] + pose[2, 1] * sphere[1] + pose[2, 2] * sphere[2] + pose[2, 3]

@@ -1,4 +1,4 @@
-"""Draws a scene as a camera sees it."""
+"""Software renderer of a scene for a camera."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _NO_SHADOW = np.zeros((0, 0), dtype=np.float32)
 
 @dataclass(frozen=True, eq=False)
 class View:
-    """What a camera sees; the arrays are used again by the next `Renderer.render`.
+    """View of a camera; its arrays are reused by the next `Renderer.render`.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ class _Buffers:
 
 
 class Renderer:
-    """One camera's rasteriser with its buffers.
+    """Rasterizer of one camera with its buffers.
 
     Parameters
     ----------
@@ -102,7 +102,7 @@ class Renderer:
         self._shadow_map: ShadowMap | None = None
 
     def render(self, scene: Scene, positions: Array, rotations: Array, pose: Pose) -> View:
-        """Find what each pixel sees.
+        """Rasterize the scene.
 
         Parameters
         ----------
@@ -125,7 +125,7 @@ class Renderer:
         return View(self._inverse, self._triangles, scene, self._pool)
 
     def paint(self, positions: Array, rotations: Array, lighting: Lighting) -> NDArray[np.uint8]:
-        """Return the colours (rows, columns, 3) of what the last `render` saw; glass in front of it included."""
+        """Return the colours (rows, columns, 3) of the last `render`, including transparent surfaces."""
         assert self._buffers is not None
         scene = self._buffers.scene
         sun, lights = sort_lights(lighting)
@@ -201,12 +201,12 @@ class Renderer:
 
 
 def background_of(lighting: Lighting) -> tuple[Rgba, Rgba]:
-    """Return the colours of the sky at the horizon and above."""
+    """Return the colours of the sky at the horizon and at the zenith."""
     return _SKY if lighting.sky else (lighting.background, lighting.background)
 
 
 def sort_lights(lighting: Lighting) -> tuple[tuple[Light, Pose] | None, list[tuple[Light, Pose]]]:
-    """Return the parallel light that shadows are drawn for, and all others."""
+    """Return the directional light that casts shadows, and all other lights."""
     shining = [pair for pair in lighting.lights if pair[0].on and pair[0].intensity > 0]
     parallel = [pair for pair in shining if pair[0].type == "directional"]
     sun = next((pair for pair in parallel if pair[0].cast_shadows), parallel[0] if parallel else None)
@@ -214,14 +214,14 @@ def sort_lights(lighting: Lighting) -> tuple[tuple[Light, Pose] | None, list[tup
 
 
 def light_direction(light: Light, pose: Pose) -> Array:
-    """Return the unit vector in which a light shines, in the world."""
+    """Return the unit vector of a light's direction in the world."""
     direction = np.array(rotate(pose.orientation, light.direction))
     length = float(np.linalg.norm(direction))
     return direction / length if length > 0 else np.array((0.0, 0.0, -1.0))
 
 
 def light_color(light: Light) -> NDArray[np.float32]:
-    """Return a light's colour (3,), times how bright it is."""
+    """Return a light's colour (3,) times its intensity."""
     return np.array(light.diffuse[:3], dtype=np.float32) * np.float32(light.intensity)
 
 

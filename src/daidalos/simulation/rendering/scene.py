@@ -1,4 +1,4 @@
-"""All that can be seen in a simulation, as arrays for the rasteriser."""
+"""Visible geometry of a simulation as arrays for the rasterizer."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _ALL = 0xFFFFFFFF
 
 @dataclass(frozen=True)
 class Item:
-    """A visual in the simulation.
+    """Visual in the simulation.
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ class Item:
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """Triangles of n parts: v vertices, f faces, in arrays that lie behind one another.
+    """Triangles of n parts: v vertices and f faces in concatenated arrays.
 
     Parameters
     ----------
@@ -100,7 +100,7 @@ class Scene:
 
 
 def make_scene(items: Iterable[Item], warn: Callable[[str], None]) -> Scene:
-    """Gather the triangles of visuals.
+    """Collect the triangles of visuals.
 
     Parameters
     ----------
@@ -154,7 +154,7 @@ def make_scene(items: Iterable[Item], warn: Callable[[str], None]) -> Scene:
 
 @lru_cache(maxsize=512)
 def _parts(visual: Visual) -> tuple[Part, ...]:
-    """Return what a visual shows, with the vertices merged that are alike in everything."""
+    """Return the parts of a visual, with identical vertices merged."""
     return tuple(_merged(part) for part in visual_parts(visual))
 
 
@@ -173,13 +173,13 @@ def _merged(part: Part) -> Part:
 
 
 def _open(item: Item, part: Part) -> bool:
-    """Return whether a part may be seen from behind: whoever made a mesh may have turned its triangles either way."""
+    """Return whether a part must be drawn from both sides, since its triangles may be oriented either way."""
     return isinstance(item.visual.geometry, Mesh) and not _is_closed(part)
 
 
 @lru_cache(maxsize=1024)
 def _is_closed(part: Part) -> bool:
-    """Return whether every edge joins two triangles that run along it in opposite ways, with the inside inside."""
+    """Return whether the surface is closed and consistently oriented, with its inside inside."""
     _, place = np.unique(np.round(part.vertices, 6), axis=0, return_inverse=True)
     faces = place.ravel()[part.faces].astype(np.int64)
     faces = faces[(faces[:, 0] != faces[:, 1]) & (faces[:, 1] != faces[:, 2]) & (faces[:, 2] != faces[:, 0])]

@@ -1,4 +1,4 @@
-"""The programs that a GPU runs for `gl_renderer`, in GLSL 3.30.
+"""GLSL 3.30 shaders of `gl_renderer`.
 
 They follow the software renderer: the same light, shadow and textures by the same formulas. What differs from part to
 part lies in a texture with a row for each: three texels of pose, colour, glow with what is wanted, and the texture.

@@ -1,4 +1,4 @@
-"""What colour each pixel gets: light, shadow and textures, in one compiled loop over runs of pixels.
+"""Shading of pixels with light, shadow and textures, in one compiled loop over runs of pixels.
 
 Everything that a run of pixels in one triangle needs is worked out once for the run; within it depth,
 light and texture coordinates are linear or linear over depth.
@@ -51,7 +51,7 @@ def shade(
     picture: Any,
     blend: Any,
 ) -> None:
-    """Colour all pixels.
+    """Shade all pixels.
 
     Parameters
     ----------
@@ -224,7 +224,7 @@ def paint_rich(
     shadow: Any,
     aim: Any,
 ) -> None:
-    """Colour pixels of one triangle that has a texture, or point lights and spot lights."""
+    """Shade the pixels of one triangle with a texture, or with point lights and spot lights."""
     e = edges[face]
     a0, a1, a2 = e[0], e[3], e[6]
     r0, r1, r2 = e[1] * row + e[2], e[4] * row + e[5], e[7] * row + e[8]
@@ -270,7 +270,7 @@ def paint_rich(
 
 @compiled(fastmath=True)
 def fill_background(line: Any, start: Any, stop: Any, dy: Any, fx: Any, cx: Any, background: Any, horizon: Any) -> None:
-    """Colour the sky: one colour, or two that blend with the height over the horizon."""
+    """Fill the sky with one colour, or with two that blend by the height above the horizon."""
     r0, g0, b0 = background[0, 0], background[0, 1], background[0, 2]
     r1, g1, b1 = background[1, 0], background[1, 1], background[1, 2]
     if r0 == r1 and g0 == g1 and b0 == b1:
@@ -285,7 +285,7 @@ def fill_background(line: Any, start: Any, stop: Any, dy: Any, fx: Any, cx: Any,
 
 @compiled(fastmath=True)
 def put(line: Any, start: Any, stop: Any, red: Any, green: Any, blue: Any, alpha: Any) -> None:
-    """Return a run of pixels one colour."""
+    """Set a run of pixels to one colour."""
     if alpha >= 1.0:
         r, g, b = byte(red), byte(green), byte(blue)
         for x in range(start, stop):
@@ -297,7 +297,7 @@ def put(line: Any, start: Any, stop: Any, red: Any, green: Any, blue: Any, alpha
 
 @compiled(fastmath=True)
 def put_one(line: Any, x: Any, red: Any, green: Any, blue: Any, alpha: Any) -> None:
-    """Return one pixel a colour, mixed with what is there."""
+    """Blend a colour into one pixel."""
     if alpha < 1.0:
         rest = (np.float32(1.0) - alpha) / np.float32(255.0)
         red = alpha * red + rest * line[x, 0]
@@ -308,5 +308,5 @@ def put_one(line: Any, x: Any, red: Any, green: Any, blue: Any, alpha: Any) -> N
 
 @compiled(fastmath=True)
 def byte(value: Any) -> Any:
-    """Return 0..1 as 0..255."""
+    """Convert 0..1 to 0..255."""
     return np.uint8(min(max(value, np.float32(0.0)), np.float32(1.0)) * np.float32(255.0) + np.float32(0.5))

@@ -1,4 +1,4 @@
-"""The shadow map of a parallel light: what it sees of the surroundings of a camera."""
+"""Shadow map of a directional light around a camera."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _NEVER = np.array((1 << 30, -1, 1 << 30, -1), dtype=np.int64)
 
 
 class ShadowMap:
-    """Depths along a light, of a square around a camera.
+    """Depths along a light of a square around a camera.
 
     What stands is drawn again only when the square moves on or something starts or stops to move; what moves is drawn
     over it each time.
@@ -67,7 +67,7 @@ class ShadowMap:
     def update(
         self, scene: Scene, positions: Array, rotations: Array, light: Array, eye: Array, ahead: Array, far: float
     ) -> None:
-        """Bring the map up to date.
+        """Update the map.
 
         Parameters
         ----------
@@ -98,7 +98,7 @@ class ShadowMap:
         self._draw_moving(scene)
 
     def _find_moving(self, positions: Array, rotations: Array) -> NDArray[np.bool_]:
-        """Tell for each body whether it moved of late."""
+        """Return for each body whether it moved recently."""
         poses = np.concatenate((positions, rotations), axis=1)
         shifted = (np.abs(poses - self._poses) > _SHIFT).any(axis=1)
         self._poses[shifted] = poses[shifted]
@@ -106,7 +106,7 @@ class ShadowMap:
         return self._rest < _LINGER
 
     def _aim(self, light: Array, centre: Array, reach: float) -> bool:
-        """Lay the square around a place, in steps so that it seldom moves; tell whether it did."""
+        """Place the square around a position, in steps so that it rarely moves; return whether it moved."""
         size = len(self.depths)
         texel = 2 * reach / size
         up = np.array((0.0, 1.0, 0.0)) if abs(light[2]) > 0.9 else np.array((0.0, 0.0, 1.0))
@@ -172,7 +172,7 @@ class ShadowMap:
 
 @dataclass(frozen=True, eq=False)
 class Shapes:
-    """What throws shadows: triangles of the parts of a scene, in arrays as there."""
+    """Shadow casters: triangles of the parts of a scene."""
 
     vertices: NDArray[np.float32] = field(default_factory=lambda: np.zeros((0, 3), dtype=np.float32))
     faces: NDArray[np.int32] = field(default_factory=lambda: np.zeros((0, 3), dtype=np.int32))
@@ -182,7 +182,7 @@ class Shapes:
 
 
 def simplify(scene: Scene, cell: float) -> Shapes:
-    """Return the triangles of a scene with the vertices of each cube of a grid made one.
+    """Return the triangles of a scene with the vertices of each grid cell merged.
 
     What is closed stays closed, and triangles that no longer have three corners are gone (Rossignac and Borrel,
     "Multi-resolution 3D approximations for rendering complex scenes", 1993).
@@ -213,7 +213,7 @@ def simplify(scene: Scene, cell: float) -> Shapes:
 
 
 def _hash(*numbers: NDArray[np.int64]) -> NDArray[np.uint64]:
-    """Mix integers into one that is theirs alone, as good as certainly."""
+    """Mix integers into a hash, practically without collisions."""
     mixed = np.zeros(len(numbers[0]), dtype=np.uint64)
     for number in numbers:
         mixed = (mixed ^ number.astype(np.uint64)) * np.uint64(0x9E3779B97F4A7C15)

@@ -1,4 +1,4 @@
-"""How much of the sun reaches a place: compiled questions to a shadow map.
+"""Visibility of the sun at surface points: compiled lookups in a shadow map.
 
 A shadow map has a coarse copy: the nearest depth in blocks of 2**BLOCK_BITS pixels a side.
 """
@@ -18,7 +18,7 @@ _MAX_BLOCKS = 16
 
 @compiled(fastmath=True)
 def aim_at_shadow(to_shadow: Any, offset: Any, pose: Any, nx: Any, ny: Any, nz: Any, dy: Any, fx: Any, cx: Any) -> Any:
-    """Return where in the shadow map the pixels x of a row are: (a x + b) z + c, for each of column, row and depth.
+    """Return shadow-map coordinates of the pixels x of a row: (a x + b) z + c for column, row and depth.
 
     They are looked up a little off the surface, along its normal and towards the light.
     """
@@ -41,7 +41,7 @@ def aim_at_shadow(to_shadow: Any, offset: Any, pose: Any, nx: Any, ny: Any, nz: 
 
 @compiled(fastmath=True)
 def clear(shadow: Any, coarse: Any, aim: Any, first: Any, inverse_first: Any, last: Any, inverse_last: Any) -> Any:
-    """Return whether nothing can shade the pixels between two of a row that see one triangle.
+    """Return whether nothing can cast a shadow on the pixels between two of a row on one triangle.
 
     They lie on a line in the map, and so between the two in depth: the coarse copy tells.
     """
@@ -66,7 +66,7 @@ def clear(shadow: Any, coarse: Any, aim: Any, first: Any, inverse_first: Any, la
 
 @compiled(fastmath=True, inline=True)
 def sun_visibility(shadow: Any, aim: Any, x: Any, inverse: Any) -> Any:
-    """Return how much of the sun reaches what a pixel sees."""
+    """Return the visible fraction of the sun at the surface point of a pixel."""
     z = 1.0 / inverse
     return visibility(
         shadow, (aim[0] * x + aim[1]) * z + aim[2], (aim[3] * x + aim[4]) * z + aim[5],
@@ -76,7 +76,7 @@ def sun_visibility(shadow: Any, aim: Any, x: Any, inverse: Any) -> Any:
 
 @compiled(fastmath=True, inline=True)
 def visibility(shadow: Any, x: Any, y: Any, depth: Any) -> Any:
-    """Return how much of the sun reaches a place: the mean of four comparisons, weighted by nearness."""
+    """Return the visible fraction of the sun at a point: four comparisons, weighted bilinearly."""
     rows, columns = shadow.shape
     if not (x >= 0.0 and y >= 0.0 and x < columns - 1 and y < rows - 1):
         return np.float32(1.0)
@@ -95,7 +95,7 @@ def visibility(shadow: Any, x: Any, y: Any, depth: Any) -> Any:
 
 @compiled
 def coarsen(shadow: Any, coarse: Any, box: Any) -> None:
-    """Renew the coarse copy of a shadow map where rows and columns of `box` changed.
+    """Update the coarse copy of a shadow map where rows and columns of `box` changed.
 
     A block holds the nearest depth of its pixels and of the next row and column, which `visibility` looks at.
     """

@@ -1,4 +1,4 @@
-"""Textures of a scene in one array, each with its smaller levels, and the compiled loops' look into them."""
+"""Texture atlas with mip maps, and its compiled lookups."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from daidalos.common.kernels import compiled
 
 @dataclass(frozen=True, eq=False)
 class TextureAtlas:
-    """Textures behind one another.
+    """Textures in one array.
 
     Parameters
     ----------
@@ -32,7 +32,7 @@ class TextureAtlas:
 
 
 def make_atlas(images: Sequence[NDArray[np.uint8]]) -> TextureAtlas:
-    """Put images (rows, columns, 4) into an atlas."""
+    """Create an atlas of images (rows, columns, 4)."""
     texels: list[NDArray[np.uint8]] = []
     textures: list[tuple[int, int]] = []
     levels: list[tuple[int, int, int]] = []
@@ -52,7 +52,7 @@ def make_atlas(images: Sequence[NDArray[np.uint8]]) -> TextureAtlas:
 
 
 def mip_chain(image: NDArray[np.uint8]) -> list[NDArray[np.uint8]]:
-    """Return an image and its halves down to one texel, each the mean of the one before."""
+    """Return an image and its mip levels down to one texel, each the mean of the one before."""
     chain = [image]
     while max(chain[-1].shape[:2]) > 1:
         chain.append(_halved(chain[-1]))
@@ -60,7 +60,7 @@ def mip_chain(image: NDArray[np.uint8]) -> list[NDArray[np.uint8]]:
 
 
 def _halved(image: NDArray[np.uint8]) -> NDArray[np.uint8]:
-    """Average two by two texels; an odd last row or column counts twice."""
+    """Return the mean of two by two texels; an odd last row or column counts twice."""
     rows, columns = image.shape[:2]
     even = np.pad(image, ((0, rows % 2), (0, columns % 2), (0, 0)), mode="edge").astype(np.uint16)
     pairs = even[0::2] + even[1::2]
@@ -69,7 +69,7 @@ def _halved(image: NDArray[np.uint8]) -> NDArray[np.uint8]:
 
 @compiled(fastmath=True)
 def mip_level(levels: Any, texture: Any, ux: Any, vx: Any, uy: Any, vy: Any) -> Any:
-    """Return the row of the level whose texels are about as large as pixels."""
+    """Return the row of the mip level whose texels are about as large as pixels."""
     first, count = texture[0], texture[1]
     width, height = levels[first, 1], levels[first, 2]
     across = (ux * width) ** 2 + (vx * height) ** 2
@@ -82,7 +82,7 @@ def mip_level(levels: Any, texture: Any, ux: Any, vx: Any, uy: Any, vy: Any) -> 
 
 @compiled(fastmath=True)
 def sample(texels: Any, level: Any, u: Any, v: Any) -> Any:
-    """Return the colour of a texture that repeats, between its four nearest texels."""
+    """Return the bilinearly interpolated colour of a repeating texture."""
     first, width, height = level[0], level[1], level[2]
     x, y = u * width - 0.5, (1.0 - v) * height - 0.5
     left, top = math.floor(x), math.floor(y)

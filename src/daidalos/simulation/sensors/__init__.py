@@ -1,1 +1,1 @@
-"""One file for each kind of sensor; `base` holds their contract."""
+"""Sensors of the simulator, one file each; `base` defines their contract."""

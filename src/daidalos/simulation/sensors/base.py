@@ -1,4 +1,4 @@
-"""The contract of sensors."""
+"""Contract of sensors."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class Sensor(Component):
-    """A sensor on a link.
+    """Sensor on a link.
 
     A subclass names the SDF types that it serves in `names`, reads its part of the description in `read` and says
     in `measure` what it sees. Adding a file with such a class to this folder adds the sensor; a package
@@ -61,17 +61,17 @@ class Sensor(Component):
         self.read(description.element)
 
     def read(self, element: Element) -> None:
-        """Read what is special to this sensor from its element."""
+        """Read the settings of this type of sensor from its element."""
 
     def bind(self, instance: Instance) -> None:
-        """Find the link that carries the sensor."""
+        """Find the link of the sensor."""
         self.instance = instance
         self.link: LinkView = instance.link(self.link_name)
 
     def update(self, now_ns: int) -> Iterable[Sample]:
-        """Measure, unless nobody listens."""
+        """Return measurements if the topic has subscribers."""
         return self.measure(now_ns) if self.instance.has_subscribers(self.topic) else ()
 
     def measure(self, now_ns: int) -> Iterable[Sample]:
-        """Return what the sensor sees now."""
+        """Return the current measurements."""
         raise NotImplementedError

@@ -1,4 +1,4 @@
-"""Cameras: colour, depth, both, several eyes, and labels instead of colours."""
+"""Cameras: colour, depth, multi-camera and segmentation."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ class CameraOutput:
     baseline: float = 0.0
 
     def topics(self) -> dict[str, type[Sample]]:
-        """Return what is published where."""
+        """Return the topics with their sample classes."""
         pictures = (self.image, self.depth, self.labels, self.colored_labels)
         topics: dict[str, type[Sample]] = dict.fromkeys(pictures, ImageSample)
         topics |= {self.points: PointCloudSample}
@@ -73,7 +73,7 @@ class CameraOutput:
 
 @dataclass
 class Trigger:
-    """Whether a camera was told to look."""
+    """Whether an image was requested."""
 
     due: bool = False
 
@@ -118,7 +118,7 @@ class Camera(Sensor):
 
     @property
     def subscriptions(self) -> Mapping[str, Subscription]:
-        """What makes it look, where it does not look by itself."""
+        """Topic that triggers an image, if the camera is triggered."""
         return {self.trigger[0]: Subscription(self.trigger[1], self._pull_trigger)} if self.trigger else {}
 
     def _pull_trigger(self, command: FlagCommand | SignalCommand) -> None:
@@ -201,7 +201,7 @@ class Camera(Sensor):
             yield from self._segments(renderer, output, wanted, now_ns)
 
     def _depth(self, renderer: CameraRenderer, settings: CameraSettings) -> NDArray[np.float32]:
-        """Return depths with noise; what is too near or too far is marked (REP 118)."""
+        """Return depths with noise; out-of-range values are marked as in REP 118."""
         noise = settings.depth_noise
         if not (noise.stddev or noise.mean):
             return renderer.depth(settings.depth_near, settings.depth_far)
@@ -242,7 +242,7 @@ class Camera(Sensor):
     def _segments(
         self, renderer: CameraRenderer, output: CameraOutput, wanted: set[str], now_ns: int
     ) -> Iterable[ImageSample]:
-        """Label pixels: the class in all bands, or (panoptic) the instance in the first two and the class in the third.
+        """Return labels: the class in all bands, or (panoptic) the instance in two bands and the class in the third.
 
         Instances are counted within their class from 1, in the order in which they came.
         """
@@ -299,7 +299,7 @@ def _info(output: CameraOutput, topic: str, now_ns: int) -> CameraInfoSample:
 
 
 def _instances(labels: NDArray[np.int32], owners: NDArray[np.int32]) -> NDArray[np.int32]:
-    """Return for each part the number of its model among those of its class, from 1; 0 for what has no class."""
+    """Return for each part its model's number among those of its class, from 1; 0 without a class."""
     counts = np.zeros(len(labels), dtype=np.int32)
     for label in np.unique(labels[labels > 0]):
         here = labels == label

@@ -1,4 +1,4 @@
-"""What SDF's ``<camera>`` says."""
+"""Reader of SDF's ``<camera>``."""
 
 from __future__ import annotations
 

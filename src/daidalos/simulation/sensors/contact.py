@@ -1,4 +1,4 @@
-"""Contact sensor: what the collisions of a link touch."""
+"""Contact sensor: contacts of a link's collisions."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from daidalos.simulation.sensors.base import Sensor
 
 
 class ContactSensor(Sensor):
-    """Lists the contacts of some collisions.
+    """Sensor of the contacts of some collisions.
 
     Attributes
     ----------
@@ -26,7 +26,7 @@ class ContactSensor(Sensor):
     default_topic = "contact"
 
     def read(self, element: Element) -> None:
-        """Read which collisions count; all of the link when none is named."""
+        """Read the names of the collisions; all of the link if none is named."""
         settings = element.first("contact") or Element("contact")
         self.collisions = frozenset(child.text.strip().rpartition("::")[2] for child in settings.all("collision"))
         self.as_bumper = False
@@ -36,7 +36,7 @@ class ContactSensor(Sensor):
 
     @property
     def publications(self) -> Mapping[str, type[Sample]]:
-        """One topic."""
+        """Topic of the contacts."""
         return {self.topic: BumperSample if self.as_bumper else ContactsSample}
 
     def bind(self, instance: Instance) -> None:
@@ -51,7 +51,7 @@ class ContactSensor(Sensor):
             self._mine[geom] = model == instance.name and info.link == self.link_name and info.collision in matches
 
     def measure(self, now_ns: int) -> Iterable[Sample]:
-        """List what touches now; the sensor's own collision is the first of each pair."""
+        """Return the current contacts; the sensor's own collision is the first of each pair."""
         found = tuple(
             contact if contact.link1 == self.link_name and contact.model1 == self.instance.name else contact.swapped()
             for contact in read_contacts(self.instance.physics, self._mine)

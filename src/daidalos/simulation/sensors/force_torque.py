@@ -1,4 +1,4 @@
-"""Force-torque sensor: what a joint carries."""
+"""Force-torque sensor in a joint."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _FRAMES = ("child", "parent", "sensor")
 
 
 class ForceTorque(NoisySensor):
-    """Measures force [N] and torque about the joint [N m] between a joint's two links.
+    """Sensor of the force [N] and the torque [N m] between a joint's two links.
 
     Attributes
     ----------
@@ -44,21 +44,21 @@ class ForceTorque(NoisySensor):
         )
 
     def set_noise(self, noise: Noise) -> None:
-        """Return all six numbers the same noise."""
+        """Set the same noise on all six values."""
         self._noises = (noise,) * 6
 
     @property
     def noises(self) -> tuple[Noise, ...]:
-        """Of force and torque."""
+        """Noise of force and torque."""
         return self._noises
 
     @property
     def publications(self) -> Mapping[str, type[Sample]]:
-        """One topic."""
+        """Topic of the wrench."""
         return {self.topic: WrenchSample}
 
     def bind(self, instance: Instance) -> None:
-        """Find the joint, or the one that holds the link."""
+        """Find the joint, or the parent joint of the link."""
         super().bind(instance)
         joints = self.context.model.joints
         above = (joint for joint in joints.values() if joint.child == self.link_name)
@@ -67,7 +67,7 @@ class ForceTorque(NoisySensor):
         self._parent = instance.link(parent) if parent in instance.build.bodies else None
 
     def measure(self, now_ns: int) -> Iterable[Sample]:
-        """Read the force between the bodies."""
+        """Return the wrench between the links."""
         physics = self.instance.physics
         physics.refresh()
         model, data = physics.model, physics.data

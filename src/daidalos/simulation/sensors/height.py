@@ -1,4 +1,4 @@
-"""Sensors of height: the altimeter and the barometer."""
+"""Height sensors: altimeter and barometer."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _GAS_CONSTANT = 8.3144598
 
 
 class Altimeter(NoisySensor):
-    """Height over where it started, and how fast it climbs."""
+    """Altimeter: height over the start, and its rate."""
 
     names = ("altimeter",)
     default_topic = "altimeter"
@@ -31,21 +31,21 @@ class Altimeter(NoisySensor):
 
     @property
     def noises(self) -> tuple[Noise, ...]:
-        """Of height and speed."""
+        """Noise of height and its rate."""
         return self._noises
 
     @property
     def publications(self) -> Mapping[str, type[Sample]]:
-        """One topic."""
+        """Topic of the altitude."""
         return {self.topic: AltimeterSample}
 
     def start(self) -> Biases:
-        """Take the height here as the reference."""
+        """Record the current height as the reference."""
         self._reference = (self.link.pose @ self.pose).position[2]
         return super().start()
 
     def measure(self, now_ns: int) -> Iterable[Sample]:
-        """Measure the sensor's point."""
+        """Return the height of the sensor."""
         pose = self.link.pose
         linear, angular = self.link.velocity()
         arm = np.array(rotate(pose.orientation, self.pose.position))
@@ -56,7 +56,7 @@ class Altimeter(NoisySensor):
 
 
 class Barometer(NoisySensor):
-    """Air pressure at its height, after the barometric formula with a constant temperature gradient."""
+    """Barometer: air pressure by the barometric formula with a constant temperature gradient."""
 
     names = ("air_pressure",)
     default_topic = "air_pressure"
@@ -69,16 +69,16 @@ class Barometer(NoisySensor):
 
     @property
     def noises(self) -> tuple[Noise, ...]:
-        """Of the pressure."""
+        """Noise of the pressure."""
         return self._noises
 
     @property
     def publications(self) -> Mapping[str, type[Sample]]:
-        """One topic."""
+        """Topic of the pressure."""
         return {self.topic: PressureSample}
 
     def measure(self, now_ns: int) -> Iterable[Sample]:
-        """Work out the pressure [Pa]."""
+        """Return the pressure [Pa]."""
         air = self.context.world.atmosphere
         height = self._altitude + (self.link.pose @ self.pose).position[2]
         exponent = _GRAVITY * _MOLAR_MASS / (_GAS_CONSTANT * -air.temperature_gradient)

@@ -1,4 +1,4 @@
-"""IMU: turn rates, specific force and orientation of a link."""
+"""IMU: angular velocity, specific force and orientation of a link."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Array = NDArray[np.float64]
 
 
 class Imu(NoisySensor):
-    """An inertial measurement unit in ROS's conventions (REP 145): at rest it measures +g upwards.
+    """Inertial measurement unit in ROS's conventions (REP 145): at rest it measures +g upwards.
 
     Attributes
     ----------
@@ -29,7 +29,7 @@ class Imu(NoisySensor):
     default_topic = "imu"
 
     def read(self, element: Element) -> None:
-        """Read the noise of each axis, in the old form and the new."""
+        """Read the noise of each axis, in the old and the new notation."""
         settings = element.first("imu") or Element("imu")
         old = settings.first("noise")
         if old is not None:
@@ -46,16 +46,16 @@ class Imu(NoisySensor):
 
     @property
     def publications(self) -> Mapping[str, type[Sample]]:
-        """One topic."""
+        """Topic of the measurements."""
         return {self.topic: ImuSample}
 
     @property
     def noises(self) -> tuple[Noise, ...]:
-        """Of turn rate and acceleration."""
+        """Noise of angular velocity and acceleration."""
         return (*self.rate_noise, *self.acceleration_noise)
 
     def start(self) -> Biases:
-        """Draw the biases, and work out what stays the same from measurement to measurement."""
+        """Draw the biases and compute constant parts of the measurements."""
         biases = super().start()
         self._arm = np.array(self.pose.position) if any(self.pose.position) else None
         self._into_sensor = rotation_matrix(self.pose.orientation).T
@@ -69,7 +69,7 @@ class Imu(NoisySensor):
         return biases
 
     def measure(self, now_ns: int) -> Iterable[Sample]:
-        """Measure the motion of the sensor's own point."""
+        """Return the measurement at the sensor's origin."""
         measured = self.apply_noise(self._motion(), now_ns)
         of_orientation, of_rate, of_acceleration = self._covariances
         yield ImuSample(
@@ -85,7 +85,7 @@ class Imu(NoisySensor):
         )
 
     def _motion(self) -> Array:
-        """Return true turn rate and specific force (6,) at the sensor, in its axes."""
+        """Return the true angular velocity and specific force (6,) at the sensor, in its axes."""
         rate, force, spin_up = self.link.inertial_motion()
         if self._arm is not None:
             force = force + np.cross(spin_up, self._arm) + np.cross(rate, np.cross(rate, self._arm))

@@ -1,4 +1,4 @@
-"""Lidar: rays against the collision shapes of the world, in one plane or in several rings."""
+"""Lidar: rays against the world's collision shapes, in one plane or in several rings."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ _TURN = 4 * math.pi
 
 @dataclass(frozen=True)
 class Fan:
-    """Angles of rays in one direction [rad], evenly spread from the first to the last."""
+    """Angles of rays in one direction [rad], evenly spaced from the first to the last."""
 
     first: float
     last: float
@@ -41,17 +41,17 @@ class Fan:
 
     @property
     def step(self) -> float:
-        """Angle between neighbours [rad]."""
+        """Angle between adjacent rays [rad]."""
         return (self.last - self.first) / (self.count - 1) if self.count > 1 else 0.0
 
     @property
     def angles(self) -> Array:
-        """All of them (count,)."""
+        """Angles of all rays (count,)."""
         return self.first + self.step * np.arange(self.count, dtype=np.float64)
 
 
 class Lidar(Sensor):
-    """A lidar that measures all its rays at one instant.
+    """Lidar that measures all its rays at one instant.
 
     A ray that starts inside the robot's own shapes within the least range passes them; anything else
     nearer than that is reported as minus infinity, and nothing within reach as infinity (REP 117).
@@ -94,7 +94,7 @@ class Lidar(Sensor):
 
     @property
     def publications(self) -> Mapping[str, type[Sample]]:
-        """One topic, or gz's two."""
+        """Topic of the scan, or gz's two topics."""
         if self.as_range:
             return {self.topic: RangeSample}
         if self.as_both:
@@ -102,7 +102,7 @@ class Lidar(Sensor):
         return {self.topic: PointCloudSample if self.as_points else LaserScanSample}
 
     def bind(self, instance: Instance) -> None:
-        """Find the link and what each geom reflects."""
+        """Find the link and the reflectance of each geom."""
         super().bind(instance)
         physics = instance.physics
         self._reflection = np.zeros(physics.model.ngeom + 1, dtype=np.float32)
@@ -112,7 +112,7 @@ class Lidar(Sensor):
             self._own[geom] = model == instance.name
 
     def update(self, now_ns: int) -> Iterable[Sample]:
-        """Measure, unless nobody listens."""
+        """Return measurements if a topic has subscribers."""
         return self.measure(now_ns) if any(map(self.instance.has_subscribers, self.publications)) else ()
 
     def measure(self, now_ns: int) -> Iterable[Sample]:
@@ -174,7 +174,7 @@ class Lidar(Sensor):
         return ranges, geoms
 
     def _cast_past(self, origin: Array, ray: Array) -> tuple[float, int]:
-        """Cast one ray that begins at the least range."""
+        """Cast one ray that starts at the minimum range."""
         physics = self.instance.physics
         geom = np.empty(1, dtype=np.int32)
         start = origin + self.range_min * ray
@@ -218,7 +218,7 @@ class Lidar(Sensor):
 
 
 def _fan(element: Element | None, samples: int, scan: Element) -> Fan:
-    """Read the angles of one direction; ``resolution`` multiplies the number of samples (SDF), never to none."""
+    """Read the angles of one direction; ``resolution`` scales the number of samples (SDF), at least to 1."""
     if element is None:
         return Fan(0.0, 0.0, 1)
     asked = element.integer_of("samples", default=samples)

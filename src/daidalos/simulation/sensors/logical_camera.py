@@ -1,4 +1,4 @@
-"""Logical camera: the models in a frustum, by name and pose, without a picture."""
+"""Logical camera: names and poses of the models in a frustum."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from daidalos.simulation.sensors.base import Sensor
 
 
 class LogicalCamera(Sensor):
-    """A camera that recognises everything it looks at, walls or not."""
+    """Camera that recognizes every model in its frustum, regardless of occlusion."""
 
     names = ("logical_camera",)
     default_topic = "logical_camera"
@@ -31,11 +31,11 @@ class LogicalCamera(Sensor):
 
     @property
     def publications(self) -> Mapping[str, type[Sample]]:
-        """One topic."""
+        """Topic of the models."""
         return {self.topic: LogicalImageSample}
 
     def measure(self, now_ns: int) -> Iterable[Sample]:
-        """List the models of which some shape reaches into the frustum."""
+        """Return the models with a shape in the frustum."""
         physics = self.instance.physics
         eye = self.link.pose @ self.pose
         model, data = physics.model, physics.data
@@ -52,7 +52,7 @@ class LogicalCamera(Sensor):
         yield LogicalImageSample(now_ns, self.topic, self.frame_id, eye, tuple(names.items()))
 
     def _reaches(self, centres: np.ndarray, radii: np.ndarray) -> np.ndarray:
-        """Tell for balls (n, 3) in the camera's frame whether they reach into the frustum."""
+        """Return for spheres (n, 3) in the camera frame whether they intersect the frustum."""
         x, y, z = centres.T
         across, along = math.tan(self.angle / 2), math.tan(self.angle / 2) / self.aspect
         inside: np.ndarray = (x + radii >= self.near) & (x - radii <= self.far)

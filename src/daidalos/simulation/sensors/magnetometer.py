@@ -1,4 +1,4 @@
-"""Magnetometer: the world's magnetic field, seen from the sensor."""
+"""Magnetometer: the world's magnetic field in the sensor's axes."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from daidalos.simulation.sensors.noisy import NoisySensor, noise_of_axes
 
 
 class Magnetometer(NoisySensor):
-    """Measures in its own axes [T].
+    """Magnetometer [T].
 
     Attributes
     ----------
@@ -31,16 +31,16 @@ class Magnetometer(NoisySensor):
 
     @property
     def noises(self) -> tuple[Noise, ...]:
-        """Of the three axes."""
+        """Noise of the three axes."""
         return self.field_noise
 
     @property
     def publications(self) -> Mapping[str, type[Sample]]:
-        """One topic."""
+        """Topic of the field."""
         return {self.topic: MagneticFieldSample}
 
     def measure(self, now_ns: int) -> Iterable[Sample]:
-        """Turn the field into the sensor's axes."""
+        """Return the field in the sensor's axes."""
         mount = self.link.pose @ self.pose
         field = np.array(rotate(mount.inverse.orientation, self.context.world.magnetic_field))
         measured = self.apply_noise(field, now_ns)

@@ -1,4 +1,4 @@
-"""GPS: where on Earth the sensor is, and how fast it moves."""
+"""GPS: geographic position and velocity of the sensor."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from daidalos.simulation.sensors.noisy import NoisySensor, nested_noise
 
 
 class NavSat(NoisySensor):
-    """A receiver of satellite navigation.
+    """Receiver of satellite navigation.
 
     Attributes
     ----------
@@ -30,7 +30,7 @@ class NavSat(NoisySensor):
     default_topic = "navsat"
 
     def read(self, element: Element) -> None:
-        """Read the noise; positions' is in metres."""
+        """Read the noise; that of positions is in metres."""
         settings = element.first("gps", "navsat") or Element("navsat")
         self.position_noise, self.velocity_noise = (
             tuple(nested_noise(settings, kind, axis) for axis in ("horizontal", "horizontal", "vertical"))
@@ -40,16 +40,16 @@ class NavSat(NoisySensor):
 
     @property
     def noises(self) -> tuple[Noise, ...]:
-        """Of position and velocity."""
+        """Noise of position and velocity."""
         return (*self.position_noise, *self.velocity_noise)
 
     @property
     def publications(self) -> Mapping[str, type[Sample]]:
-        """One topic."""
+        """Topic of the fix."""
         return {self.topic: NavSatSample}
 
     def measure(self, now_ns: int) -> Iterable[Sample]:
-        """Measure the sensor's point."""
+        """Return the position of the sensor."""
         pose = self.link.pose
         linear, angular = self.link.velocity()
         arm = np.array(rotate(pose.orientation, self.pose.position))

@@ -1,4 +1,4 @@
-"""What sensors of a few numbers share: noise with a bias on each of them."""
+"""Common base of sensors with few values: noise and biases."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Array = NDArray[np.float64]
 
 @dataclass
 class Biases:
-    """Errors (n,) of n numbers: those that stay, and those that wander."""
+    """Errors (n,) of n values: constant and drifting ones."""
 
     constant: Array
     wandering: Array
@@ -26,14 +26,14 @@ class Biases:
 
 
 class NoisySensor(Sensor):
-    """A sensor of n numbers that are measured together."""
+    """Sensor of n values that are measured together."""
 
     state: Biases
 
     @property
     @abstractmethod
     def noises(self) -> Sequence[Noise]:
-        """The noise of each number."""
+        """Noise of each value."""
 
     def start(self) -> Biases:
         """Draw the biases."""
@@ -50,12 +50,12 @@ class NoisySensor(Sensor):
 
     @property
     def variance(self) -> Array:
-        """Of the noise of each number (n,)."""
+        """Variance of the noise of each value (n,)."""
         return self._noise.variance
 
 
 def noise_of_axes(element: Element | None) -> tuple[Noise, Noise, Noise]:
-    """Read the noise of ``<x>``, ``<y>`` and ``<z>``; one ``<noise>`` for all holds where an axis has none."""
+    """Read the noise of ``<x>``, ``<y>`` and ``<z>``, by default that of a common ``<noise>``."""
     if element is None:
         return SILENT, SILENT, SILENT
     x, y, z = (read_noise((element.first(axis) or element).first("noise")) for axis in ("x", "y", "z"))
@@ -63,7 +63,7 @@ def noise_of_axes(element: Element | None) -> tuple[Noise, Noise, Noise]:
 
 
 def nested_noise(element: Element, *tags: str) -> Noise:
-    """Read the ``<noise>`` that lies below nested elements; none where one of them is missing."""
+    """Read the ``<noise>`` below nested elements; none if an element is missing."""
     for tag in tags:
         child = element.first(tag)
         if child is None:

@@ -1,4 +1,4 @@
-"""Sonar: the nearest thing in a cone."""
+"""Sonar: distance to the nearest object in a cone."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _RINGS = 6
 
 
 class Sonar(Sensor):
-    """Sends rays into a cone along x, as dense in its middle as at its rim."""
+    """Sonar with evenly distributed rays in a cone along x."""
 
     names = ("sonar",)
     default_topic = "sonar"
@@ -37,11 +37,11 @@ class Sonar(Sensor):
 
     @property
     def publications(self) -> Mapping[str, type[Sample]]:
-        """One topic."""
+        """Topic of the range."""
         return {self.topic: RangeSample}
 
     def measure(self, now_ns: int) -> Iterable[Sample]:
-        """Return the shortest ray's length."""
+        """Return the length of the shortest ray."""
         mount = self.link.pose @ self.pose
         physics = self.instance.physics
         rays = np.ascontiguousarray(self._rays @ rotation_matrix(mount.orientation).T)
@@ -72,7 +72,7 @@ class Sonar(Sensor):
 
 
 def _cone(half_angle: float) -> np.ndarray:
-    """Return unit vectors (n, 3) in rings about x: one in the middle, six in the first ring, twelve, ..."""
+    """Return unit vectors (n, 3) in rings about x: one in the centre, six in the first ring, twelve, ..."""
     rays = [(1.0, 0.0, 0.0)]
     for ring in range(1, _RINGS + 1):
         away = half_angle * ring / _RINGS
