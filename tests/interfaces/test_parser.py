@@ -70,11 +70,11 @@ def test_types(text, expected):
         ("int32<=3 x", "only strings"),
         ("int32[0] x", "at least 1"),
         ("int32[<=] x", "at least 1"),
-        ("int32[-1] x", "no type"),
-        ("int32[3][3] x", "no type"),
-        ("3d x", "no type"),
-        ("pkg/srv/deep/Point x", "no type"),
-        ("point x", "no type"),
+        ("int32[-1] x", "not a type"),
+        ("int32[3][3] x", "not a type"),
+        ("3d x", "not a type"),
+        ("pkg/srv/deep/Point x", "not a type"),
+        ("point x", "not a type"),
         ("time x", "builtin_interfaces/Time"),
         ("duration x", "builtin_interfaces/Duration"),
     ],
@@ -94,13 +94,13 @@ def test_field_names(name):
 
 @pytest.mark.parametrize("name", ["X", "1x", "_x", "x_", "a__b", "a-b", "ä"])
 def test_bad_field_names(name):
-    with pytest.raises(InterfaceError, match="no field name"):
+    with pytest.raises(InterfaceError, match="not a field name"):
         message(f"int32 {name}")
 
 
 @pytest.mark.parametrize("name", ["x", "X_", "_X", "A__B", "1X", "aB"])
 def test_bad_constant_names(name):
-    with pytest.raises(InterfaceError, match="no constant name"):
+    with pytest.raises(InterfaceError, match="not a constant name"):
         message(f"int32 {name}=1")
 
 
@@ -185,10 +185,10 @@ def test_no_default():
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("int32 A=", "no int32"),
-        ("int32 A=1.5", "no int32"),
-        ("int32 A=x", "no int32"),
-        ("float64 A=x", "no float64"),
+        ("int32 A=", "not a valid int32"),
+        ("int32 A=1.5", "not a valid int32"),
+        ("int32 A=x", "not a valid int32"),
+        ("float64 A=x", "not a valid float64"),
         ("bool A=yes", "true or false"),
         ("uint8 A=256", r"out of range for uint8 \(0 to 255\)"),
         ("uint8 A=-1", "out of range"),
@@ -202,7 +202,7 @@ def test_no_default():
         ("int32[2] a 1", "in brackets"),
         ("int32[2] a [1]", "1 values, the array 2"),
         ("int32[<=2] a [1, 2, 3]", "3 values, the bound is 2"),
-        ("int32[] a [1, x]", "no int32"),
+        ("int32[] a [1, x]", "not a valid int32"),
         ("int32", "no name"),
     ],
 )

@@ -115,4 +115,4 @@ def test_a_parallel_gripper_tells_effort_and_speed() -> None:
     assert rig.commands.names[0] == "finger/position"
     assert rig.commands.values == pytest.approx([0.04, 7.0, 0.3])
     assert "'thumb' is not the gripper's joint" in rig.action.refuse(ParallelGripperRequest(0.0, joint="thumb"))
-    assert "no number" in rig.action.refuse(ParallelGripperRequest(float("nan")))
+    assert "not a number" in rig.action.refuse(ParallelGripperRequest(float("nan")))
