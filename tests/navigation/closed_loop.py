@@ -226,7 +226,7 @@ def turtlebot(world, pose, known, seed=0, kind="mppi"):
     occupancy = OccupancyGrid(known.rasterised(0.05, (-0.5, -0.5), (140, 180)), 0.05, (-0.5, -0.5, 0.0))
     static = StaticLayer()
     static.set_map(occupancy)
-    sources = ObstacleLayerParameters({"scan": ObservationSource(2.5, 0.0, 3.0, 0.0)})
+    sources = ObstacleLayerParameters(sources={"scan": ObservationSource(2.5, 0.0, 3.0, 0.0)})
     inflation = InflationLayerParameters(0.55, 4.0)
     everywhere = LayeredCostmap(
         CostmapParameters(track_unknown_space=True),
@@ -263,7 +263,7 @@ def jackal(world, pose, seed=0):
         sensor_pose=(0.12, 0.0, 0.0),
         seed=seed,
     )
-    sources = ObstacleLayerParameters({"scan": ObservationSource(10.0, 0.0, 10.0, 0.0)})
+    sources = ObstacleLayerParameters(sources={"scan": ObservationSource(10.0, 0.0, 10.0, 0.0)})
     inflation = InflationLayerParameters(0.6, 4.0)
 
     def layers():

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from daidalos.navigation.errors import NavigationError
+from daidalos.common.parameters import ParameterError
 from daidalos.navigation.velocity_smoother import VelocitySmoother, VelocitySmootherParameters
 
 component = st.floats(-5.0, 5.0)
@@ -86,5 +86,5 @@ def test_a_command_that_is_not_finite_is_a_stop():
     [{"feedback": "OPEN"}, {"max_accel": (-1.0, 0.0, 0.0)}, {"min_velocity": (1.0, 0.0, 0.0)}],
 )
 def test_parameters_that_make_no_sense_are_refused(values):
-    with pytest.raises(NavigationError):
+    with pytest.raises(ParameterError):
         VelocitySmootherParameters(**values)

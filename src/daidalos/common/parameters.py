@@ -189,6 +189,8 @@ class Parameters:
         for entry in _entries(type(self)):
             if entry.leaf is not None:
                 entry.leaf.check(getattr(self, entry.field))
+            elif entry.by and not getattr(self, entry.field):
+                object.__setattr__(self, entry.field, {name: entry.kind() for name in _names(getattr(self, entry.by))})
         self.check()
 
     def check(self) -> None:
@@ -355,7 +357,6 @@ def leaves(kind: type[Parameters], prefix: str = "") -> Iterator[Leaf]:
         if entry.leaf is not None:
             yield _named(entry.leaf, prefix)
         else:
-            assert entry.kind is not None
             by = f"<{entry.by}>." if entry.by else ""
             yield from leaves(entry.kind, f"{prefix}{entry.prefix}{by}")
 
@@ -384,7 +385,7 @@ class _Entry:
     field: str
     name: str
     leaf: Leaf | None = None
-    kind: type[Parameters] | None = None
+    kind: Any = None
     by: str = ""
 
     @property
@@ -428,18 +429,21 @@ def _build(kind: type[T], get: Callable[[Leaf], Any], prefix: str) -> T:
             value = get(_named(entry.leaf, prefix))
             values[entry.field] = tuple(value) if entry.leaf.is_array else value
             continue
-        assert entry.kind is not None
         below = f"{prefix}{entry.prefix}"
         if not entry.by:
             values[entry.field] = _build(entry.kind, get, below)
             continue
-        names = values[entry.by]
-        names = names.split() if isinstance(names, str) else names
-        values[entry.field] = {one: _build(entry.kind, get, f"{below}{one}.") for one in dict.fromkeys(names)}
+        names = _names(values[entry.by])
+        values[entry.field] = {one: _build(entry.kind, get, f"{below}{one}.") for one in names}
     try:
         return kind(**values)
     except ParameterError as error:
         raise ParameterError(f"{prefix}{error.name}", error.problem) from None
+
+
+def _names(value: str | Sequence[str]) -> dict[str, None]:
+    """Return the names in a field, once each and in order."""
+    return dict.fromkeys(value.split() if isinstance(value, str) else value)
 
 
 def _flatten(values: Mapping[str, Any], prefix: str) -> Iterator[tuple[str, Any]]:

@@ -99,8 +99,8 @@ class Amcl:
     def __init__(self, config: AmclConfig, grid: OccupancyGrid, seed: int = 0) -> None:
         self.config = config
         self._generator = np.random.default_rng(seed)
-        motion = _choose("robot_model_type", MOTION_MODELS, config.robot_model_type)
-        sensor = _choose("laser_model_type", SENSOR_MODELS, config.laser_model_type)
+        motion = MOTION_MODELS[config.robot_model_type]
+        sensor = SENSOR_MODELS[config.laser_model_type]
         self._motion: MotionModel = motion(config)
         self._sensor: SensorModel = sensor(config)
         self._world = LikelihoodMap(grid, config.laser_likelihood_max_dist)
@@ -249,9 +249,3 @@ class Amcl:
             self._map_to_odom.copy(),
             updated,
         )
-
-
-def _choose(parameter: str, models: dict[str, type], name: str) -> type:
-    if name not in models:
-        raise LocalizationError(f"{parameter} must be one of {', '.join(models)}, not {name!r}")
-    return models[name]

@@ -60,7 +60,7 @@ class LoopCloser:
     """
 
     def __init__(self, config: SlamConfig) -> None:
-        self._config = config
+        self.config = config
         self._tried: list[tuple[int, int]] = []
 
     def search(self, clouds: Sequence[Cloud], poses: Array, edges: Sequence[Edge]) -> list[Edge]:
@@ -75,7 +75,7 @@ class LoopCloser:
         edges : sequence of Edge
             The pose graph so far; it tells how far two scans may have drifted apart.
         """
-        config = self._config
+        config = self.config
         newest = poses.shape[0] - 1
         old = max(0, newest - max(config.scan_buffer_size, QUERY_SCANS))
         distance = np.hypot(poses[:old, 0] - poses[newest, 0], poses[:old, 1] - poses[newest, 1])
@@ -108,7 +108,7 @@ class LoopCloser:
         place = PointMap([clouds[j] for j in members], pose2.between(poses[closest], poses[members]))
         points, normals = merge([clouds[j] for j in latest], pose2.between(poses[newest], poses[latest]))
         window = Window(
-            distance=min(0.5 * self._config.loop_search_space_dimension, 0.2 + drift),
+            distance=min(0.5 * self.config.loop_search_space_dimension, 0.2 + drift),
             angle=min(MAX_SEARCH_ANGLE, 0.05 + 0.15 * drift),
             resolution=RESOLUTION,
             deviation=RESOLUTION,

@@ -109,6 +109,10 @@ class Slam:
         self._drawn: list[Array] = []
         self._stale: list[int] = []
 
+    def reconfigure(self, config: SlamConfig) -> None:
+        """Use other parameters from the next scan on; the map's resolution stays."""
+        self.config = self._closer.config = config
+
     @property
     def map_to_odom(self) -> Array:
         """Pose (x, y, yaw) of the odometry frame in the map."""

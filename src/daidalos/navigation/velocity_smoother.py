@@ -5,32 +5,42 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from daidalos.navigation.errors import NavigationError
+from daidalos.common.parameters import ParameterError, Parameters, parameter
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class VelocitySmootherParameters:
-    """Parameters of the smoother, by their Nav2 names; triples are (x, y, yaw) in SI units."""
+class VelocitySmootherParameters(Parameters):
+    """Parameters of the smoother, by their Nav2 names; triples are (x, y, yaw)."""
 
-    smoothing_frequency: float = 20.0
-    scale_velocities: bool = False
-    feedback: str = "OPEN_LOOP"
-    max_velocity: tuple[float, float, float] = (0.5, 0.0, 2.5)
-    min_velocity: tuple[float, float, float] = (-0.5, 0.0, -2.5)
-    max_accel: tuple[float, float, float] = (2.5, 0.0, 3.2)
-    max_decel: tuple[float, float, float] = (-2.5, 0.0, -3.2)
-    deadband_velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    velocity_timeout: float = 1.0
+    smoothing_frequency: float = parameter(20.0, "How often commands are published.", unit="Hz", above=0.0)
+    scale_velocities: bool = parameter(False, "Whether all velocities are scaled when one is limited.")
+    feedback: str = parameter(
+        "OPEN_LOOP", "Where the present velocity comes from: the last command or odometry.",
+        choices=("OPEN_LOOP", "CLOSED_LOOP"),
+    )  # fmt: skip
+    max_velocity: tuple[float, float, float] = parameter(
+        (0.5, 0.0, 2.5), "Largest velocities.", unit="m/s, m/s, rad/s", length=3
+    )
+    min_velocity: tuple[float, float, float] = parameter(
+        (-0.5, 0.0, -2.5), "Least velocities.", unit="m/s, m/s, rad/s", length=3
+    )
+    max_accel: tuple[float, float, float] = parameter(
+        (2.5, 0.0, 3.2), "Largest accelerations.", unit="m/s^2, m/s^2, rad/s^2", length=3, minimum=0.0
+    )
+    max_decel: tuple[float, float, float] = parameter(
+        (-2.5, 0.0, -3.2), "Largest decelerations, negative.", unit="m/s^2, m/s^2, rad/s^2", length=3, maximum=0.0
+    )
+    deadband_velocity: tuple[float, float, float] = parameter(
+        (0.0, 0.0, 0.0), "Velocities below which zero is commanded.", unit="m/s, m/s, rad/s", length=3
+    )
+    velocity_timeout: float = parameter(1.0, "Age at which a command is ignored.", unit="s")
 
-    def __post_init__(self) -> None:
-        if self.feedback not in ("OPEN_LOOP", "CLOSED_LOOP"):
-            raise NavigationError(f"feedback must be OPEN_LOOP or CLOSED_LOOP, not {self.feedback!r}")
-        if any(a < 0.0 for a in self.max_accel) or any(d > 0.0 for d in self.max_decel):
-            raise NavigationError("max_accel must not be negative and max_decel not positive")
+    def check(self) -> None:
+        """Refuse least velocities above the largest."""
         if any(low > high for low, high in zip(self.min_velocity, self.max_velocity, strict=True)):
-            raise NavigationError("min_velocity must not be greater than max_velocity")
+            raise ParameterError("min_velocity", "is above max_velocity")
 
 
 class VelocitySmoother:

@@ -14,6 +14,7 @@ from daidalos.common.errors import UserError
 from daidalos.navigation.errors import NavigationError
 from daidalos.nodes.action_results import set_error
 from daidalos.nodes.node_thread import NodeThread
+from daidalos.nodes.parameters import warn_of_undeclared
 
 _MEMBERS = ("publisher", "subscription", "service", "client")
 
@@ -112,6 +113,7 @@ class ManagedNode(LifecycleNode):
         if outcome == TransitionCallbackReturn.SUCCESS:
             try:
                 self.configure()
+                warn_of_undeclared(self)
             except (UserError, ParameterException) as error:
                 self.get_logger().error(f"cannot configure {self.get_name()}: {error}")
                 outcome = TransitionCallbackReturn.FAILURE

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import MISSING, dataclass, field, fields
+from dataclasses import dataclass, field
 from difflib import get_close_matches
 from functools import partial
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -237,40 +237,6 @@ def _is_for_all_nodes(name: str) -> bool:
     return name == "use_sim_time" or name.startswith(("qos_overrides.", "start_type_description_service"))
 
 
-_PLAIN = (bool, int, float, str, list, tuple)
-
-
-def declare_dataclass(node: Node, kind: type[Any], prefix: str = "", **defaults: Any) -> Any:
-    """Declare a parameter for every field that a parameter can hold, and return the instance that they make.
-
-    Parameters
-    ----------
-    node
-        Whose parameters they are.
-    kind
-        A dataclass whose fields have defaults.
-    prefix
-        Put before the names, with a dot.
-    **defaults
-        Other defaults than the class's, by field.
-
-    Raises
-    ------
-    ParameterException
-        When a given value is of the wrong type.
-    """
-    values: dict[str, Any] = {}
-    for entry in fields(kind):
-        default = defaults.get(entry.name, entry.default)
-        if default is MISSING or not isinstance(default, _PLAIN):
-            continue
-        name = f"{prefix}.{entry.name}" if prefix else entry.name
-        declared = list(default) if isinstance(default, tuple) else default
-        value = node.declare_parameter(name, declared).value
-        values[entry.name] = tuple(value) if isinstance(default, tuple) else value
-    return kind(**values)
-
-
 def declare_plugin(node: Node, plugin: Plugin, name: str) -> Any:
     """Declare the parameters of a plugin below its name; None where it has none."""
-    return None if plugin.parameters is None else declare_dataclass(node, plugin.parameters, name)
+    return None if plugin.parameters is None else declare(node, plugin.parameters, name)

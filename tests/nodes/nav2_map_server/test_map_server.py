@@ -14,7 +14,7 @@ from rclpy.task import Future
 
 from daidalos.mapping.grid import OccupancyGrid
 from daidalos.mapping.map_file import load_map, save_map
-from daidalos.nodes.nav2_map_server._saving import SaveRequest, declare_parameters, save
+from daidalos.nodes.nav2_map_server._saving import MapSaverParameters, SaveRequest, save
 from daidalos.nodes.nav2_map_server.map_saver_server import MapSaver
 from daidalos.nodes.nav2_map_server.map_server import MapServer
 from nodes.terminal import Terminal
@@ -105,10 +105,15 @@ def test_maps_are_saved_on_request(node, arena, tmp_path):  # noqa: F811
 
 
 def test_nothing_to_save(node, tmp_path):  # noqa: F811
-    declare_parameters(node)
-    node.set_parameters([Parameter("save_map_timeout", value=0.1)])
     with spinning(node) as executor:
-        assert result_of(executor.create_task(save, node, SaveRequest("map", str(tmp_path / "none")))) is False
+        assert (
+            result_of(
+                executor.create_task(
+                    save, node, MapSaverParameters(save_map_timeout=0.1), SaveRequest("map", str(tmp_path / "none"))
+                )
+            )
+            is False
+        )
     assert list(tmp_path.iterdir()) == []
 
 

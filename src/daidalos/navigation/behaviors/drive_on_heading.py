@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.common.parameters import Parameters, parameter
 from daidalos.navigation.behaviors.behavior import (
     Behavior,
     BehaviorStep,
@@ -21,10 +22,12 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class DriveOnHeadingParameters:
-    """Parameters of the behaviour, by their Nav2 names; seconds."""
+class DriveOnHeadingParameters(Parameters):
+    """Parameters of the behaviour, by their Nav2 names."""
 
-    simulate_ahead_time: float = 2.0
+    simulate_ahead_time: float = parameter(
+        2.0, "How far ahead the motion is checked for collisions.", unit="s", minimum=0.0
+    )
 
 
 @dataclass(frozen=True)

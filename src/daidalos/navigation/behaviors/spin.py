@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.common.parameters import ParameterError, Parameters, parameter
 from daidalos.common.pose2 import wrap
 from daidalos.navigation.behaviors.behavior import (
     Behavior,
@@ -25,13 +26,20 @@ DONE_ANGLE = 0.02
 
 
 @dataclass(frozen=True)
-class SpinParameters:
-    """Parameters of the behaviour, by their Nav2 names; SI units."""
+class SpinParameters(Parameters):
+    """Parameters of the behaviour, by their Nav2 names."""
 
-    simulate_ahead_time: float = 2.0
-    max_rotational_vel: float = 1.0
-    min_rotational_vel: float = 0.4
-    rotational_acc_lim: float = 3.2
+    simulate_ahead_time: float = parameter(
+        2.0, "How far ahead the motion is checked for collisions.", unit="s", minimum=0.0
+    )
+    max_rotational_vel: float = parameter(1.0, "Largest turn rate.", unit="rad/s", above=0.0)
+    min_rotational_vel: float = parameter(0.4, "Least turn rate.", unit="rad/s", minimum=0.0)
+    rotational_acc_lim: float = parameter(3.2, "Largest turn acceleration.", unit="rad/s^2", above=0.0)
+
+    def check(self) -> None:
+        """Refuse a least turn rate above the largest."""
+        if self.min_rotational_vel > self.max_rotational_vel:
+            raise ParameterError("min_rotational_vel", "is above max_rotational_vel")
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daidalos.common.kernels import compiled
+from daidalos.common.parameters import ParameterError, Parameters, parameter
 from daidalos.navigation.controllers.controller import ControlInput, Controller, NoValidControl
 from daidalos.navigation.controllers.mppi.critics.cost_critic import CostCritic
 from daidalos.navigation.controllers.mppi.critics.critic import Critic, Scene
@@ -33,32 +34,38 @@ NOISE_POOL = 8
 
 
 @dataclass(frozen=True)
-class MppiParameters:
-    """Parameters of the controller, by their Nav2 names; SI units.
+class MppiParameters(Parameters):
+    """Parameters of the controller, by their Nav2 names.
 
     `open_loop` is on by default, other than in Nav2: rollouts begin with the last command rather than with odometry's
-    velocity, whose delay makes a robot with limited acceleration crawl and sway. `noise_correlation_time` [s] is ours:
-    how long a deviation lasts.
+    velocity, whose delay makes a robot with limited acceleration crawl and sway. `noise_correlation_time` is ours.
     """
 
-    time_steps: int = 56
-    model_dt: float = 0.05
-    batch_size: int = 1000
-    vx_std: float = 0.3
-    wz_std: float = 0.8
-    vx_max: float = 0.5
-    vx_min: float = -0.15
-    wz_max: float = 1.8
-    ax_max: float = 2.5
-    ax_min: float = -2.5
-    az_max: float = 3.2
-    iteration_count: int = 1
-    temperature: float = 0.3
-    gamma: float = 0.015
-    prune_distance: float = 1.7
-    retry_attempt_limit: int = 1
-    open_loop: bool = True
-    noise_correlation_time: float = 0.5
+    time_steps: int = parameter(56, "Number of steps of a rollout.", minimum=2)
+    model_dt: float = parameter(0.05, "Duration of a step.", unit="s", above=0.0)
+    batch_size: int = parameter(1000, "Number of rollouts.", minimum=1)
+    vx_std: float = parameter(0.3, "Standard deviation of sampled speeds.", unit="m/s", above=0.0)
+    wz_std: float = parameter(0.8, "Standard deviation of sampled turn rates.", unit="rad/s", above=0.0)
+    vx_max: float = parameter(0.5, "Largest speed ahead.", unit="m/s")
+    vx_min: float = parameter(-0.15, "Least speed; negative drives backwards.", unit="m/s")
+    wz_max: float = parameter(1.8, "Largest turn rate.", unit="rad/s", minimum=0.0)
+    ax_max: float = parameter(2.5, "Largest acceleration.", unit="m/s^2", minimum=0.0)
+    ax_min: float = parameter(-2.5, "Largest deceleration, negative.", unit="m/s^2", maximum=0.0)
+    az_max: float = parameter(3.2, "Largest turn acceleration.", unit="rad/s^2", minimum=0.0)
+    iteration_count: int = parameter(1, "Number of optimisations in a cycle.", minimum=1)
+    temperature: float = parameter(
+        0.3, "How much worse trajectories contribute; less selects the best more sharply.", above=0.0
+    )
+    gamma: float = parameter(0.015, "Weight of smooth control against low cost.", minimum=0.0)
+    prune_distance: float = parameter(1.7, "Length of path ahead that is looked at.", unit="m", above=0.0)
+    retry_attempt_limit: int = parameter(1, "Number of further optimisations when all trajectories collide.", minimum=0)
+    open_loop: bool = parameter(True, "Whether rollouts begin with the last command instead of odometry's velocity.")
+    noise_correlation_time: float = parameter(0.5, "How long a sampled deviation lasts.", unit="s", minimum=0.0)
+
+    def check(self) -> None:
+        """Refuse a least speed above the largest."""
+        if self.vx_min > self.vx_max:
+            raise ParameterError("vx_min", f"is above vx_max: {self.vx_min:g} > {self.vx_max:g}")
 
 
 def default_critics() -> tuple[Critic, ...]:

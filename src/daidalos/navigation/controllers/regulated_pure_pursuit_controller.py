@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.common.parameters import Parameters, parameter
 from daidalos.common.pose2 import between
 from daidalos.navigation.controllers.controller import ControlInput, Controller, NoValidControl
 from daidalos.navigation.controllers.rotation import rotation_speed
@@ -16,31 +17,45 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class RegulatedPurePursuitParameters:
-    """Parameters of the controller, by their Nav2 names; SI units."""
+class RegulatedPurePursuitParameters(Parameters):
+    """Parameters of the controller, by their Nav2 names."""
 
-    desired_linear_vel: float = 0.5
-    max_linear_accel: float = 2.5
-    lookahead_dist: float = 0.6
-    min_lookahead_dist: float = 0.3
-    max_lookahead_dist: float = 0.9
-    lookahead_time: float = 1.5
-    use_velocity_scaled_lookahead_dist: bool = True
-    min_approach_linear_velocity: float = 0.05
-    approach_velocity_scaling_dist: float = 0.6
-    use_collision_detection: bool = True
-    max_allowed_time_to_collision_up_to_carrot: float = 1.0
-    use_regulated_linear_velocity_scaling: bool = True
-    use_cost_regulated_linear_velocity_scaling: bool = True
-    regulated_linear_scaling_min_radius: float = 0.9
-    regulated_linear_scaling_min_speed: float = 0.15
-    cost_scaling_dist: float = 0.6
-    cost_scaling_gain: float = 1.0
-    inflation_cost_scaling_factor: float = 3.0
-    use_rotate_to_heading: bool = True
-    rotate_to_heading_min_angle: float = 0.785
-    rotate_to_heading_angular_vel: float = 1.8
-    max_angular_accel: float = 3.2
+    desired_linear_vel: float = parameter(0.5, "Speed where nothing slows the robot down.", unit="m/s", above=0.0)
+    max_linear_accel: float = parameter(2.5, "Largest acceleration.", unit="m/s^2", above=0.0)
+    lookahead_dist: float = parameter(0.6, "Distance of the point that is driven to.", unit="m", above=0.0)
+    min_lookahead_dist: float = parameter(0.3, "Least distance, where it depends on speed.", unit="m", above=0.0)
+    max_lookahead_dist: float = parameter(0.9, "Largest distance, where it depends on speed.", unit="m", above=0.0)
+    lookahead_time: float = parameter(1.5, "Distance by speed.", unit="s", above=0.0)
+    use_velocity_scaled_lookahead_dist: bool = parameter(True, "Whether the distance depends on speed.")
+    min_approach_linear_velocity: float = parameter(0.05, "Least speed on the approach.", unit="m/s", above=0.0)
+    approach_velocity_scaling_dist: float = parameter(
+        0.6, "Distance to the goal at which the robot starts to slow down.", unit="m", minimum=0.0
+    )
+    use_collision_detection: bool = parameter(True, "Whether the arc ahead is checked for collisions.")
+    max_allowed_time_to_collision_up_to_carrot: float = parameter(
+        1.0, "How far ahead collisions are looked for.", unit="s", minimum=0.0
+    )
+    use_regulated_linear_velocity_scaling: bool = parameter(True, "Whether tight curves slow the robot down.")
+    use_cost_regulated_linear_velocity_scaling: bool = parameter(True, "Whether obstacles near by slow the robot down.")
+    regulated_linear_scaling_min_radius: float = parameter(
+        0.9, "Radius of curves below which the robot slows down.", unit="m", above=0.0
+    )
+    regulated_linear_scaling_min_speed: float = parameter(
+        0.15, "Least speed that curves and obstacles slow down to.", unit="m/s", minimum=0.0
+    )
+    cost_scaling_dist: float = parameter(
+        0.6, "Distance of obstacles below which the robot slows down.", unit="m", minimum=0.0
+    )
+    cost_scaling_gain: float = parameter(1.0, "Factor of the speed near obstacles.", above=0.0, maximum=1.0)
+    inflation_cost_scaling_factor: float = parameter(
+        3.0, "The inflation layer's cost_scaling_factor, to compute distances from costs.", unit="1/m", above=0.0
+    )
+    use_rotate_to_heading: bool = parameter(True, "Whether to turn on the spot towards the path and the goal.")
+    rotate_to_heading_min_angle: float = parameter(
+        0.785, "Angle to the path above which the robot turns on the spot.", unit="rad", minimum=0.0
+    )
+    rotate_to_heading_angular_vel: float = parameter(1.8, "Turn rate on the spot.", unit="rad/s", above=0.0)
+    max_angular_accel: float = parameter(3.2, "Largest turn acceleration on the spot.", unit="rad/s^2", above=0.0)
 
 
 class RegulatedPurePursuitController(Controller):

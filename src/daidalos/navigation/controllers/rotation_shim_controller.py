@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.common.parameters import Parameters, parameter
 from daidalos.common.pose2 import between
 from daidalos.navigation.controllers.controller import ControlInput, Controller
 from daidalos.navigation.controllers.rotation import rotation_speed
@@ -16,16 +17,24 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class RotationShimParameters:
-    """Parameters of the controller, by their Nav2 names; SI units."""
+class RotationShimParameters(Parameters):
+    """Parameters of the controller, by their Nav2 names."""
 
-    angular_dist_threshold: float = 0.785
-    angular_disengage_threshold: float = 0.3
-    forward_sampling_distance: float = 0.5
-    rotate_to_heading_angular_vel: float = 1.8
-    max_angular_accel: float = 3.2
-    simulate_ahead_time: float = 1.0
-    rotate_to_goal_heading: bool = True
+    angular_dist_threshold: float = parameter(
+        0.785, "Angle to the path above which the robot turns on the spot.", unit="rad", minimum=0.0
+    )
+    angular_disengage_threshold: float = parameter(
+        0.3, "Angle to the path below which the primary controller takes over.", unit="rad", minimum=0.0
+    )
+    forward_sampling_distance: float = parameter(
+        0.5, "Distance of the path point that the robot turns to.", unit="m", above=0.0
+    )
+    rotate_to_heading_angular_vel: float = parameter(1.8, "Turn rate on the spot.", unit="rad/s", above=0.0)
+    max_angular_accel: float = parameter(3.2, "Largest turn acceleration.", unit="rad/s^2", above=0.0)
+    simulate_ahead_time: float = parameter(
+        1.0, "How far ahead the turn is checked for collisions.", unit="s", minimum=0.0
+    )
+    rotate_to_goal_heading: bool = parameter(True, "Whether to turn on the spot at the goal.")
 
 
 class RotationShimController(Controller):

@@ -6,13 +6,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.common.parameters import Parameters, parameter
 from daidalos.navigation.costmap.costmap import (
     EVERYWHERE,
     FREE_SPACE,
     NO_INFORMATION,
     Bounds,
     Costmap,
-    CostmapError,
     Window,
 )
 from daidalos.navigation.costmap.footprint import Footprint
@@ -23,23 +23,18 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class CostmapParameters:
-    """Parameters of a costmap, by their Nav2 names; lengths in metres."""
+class CostmapParameters(Parameters):
+    """Parameters of a costmap, by their Nav2 names."""
 
-    width: float = 5.0
-    height: float = 5.0
-    resolution: float = 0.1
-    origin_x: float = 0.0
-    origin_y: float = 0.0
-    rolling_window: bool = False
-    track_unknown_space: bool = False
-
-    def __post_init__(self) -> None:
-        if min(self.width, self.height, self.resolution) <= 0.0:
-            raise CostmapError(
-                "width, height and resolution must be positive lengths in metres, not "
-                f"{self.width}, {self.height} and {self.resolution}"
-            )
+    width: float = parameter(5.0, "Width of the map.", unit="m", above=0.0, takes_integer=True, read_only=True)
+    height: float = parameter(5.0, "Height of the map.", unit="m", above=0.0, takes_integer=True, read_only=True)
+    resolution: float = parameter(0.1, "Side of a cell.", unit="m", above=0.0, read_only=True)
+    origin_x: float = parameter(0.0, "Lower left corner of the map in its frame.", unit="m", read_only=True)
+    origin_y: float = parameter(0.0, "Lower left corner of the map in its frame.", unit="m", read_only=True)
+    rolling_window: bool = parameter(False, "Whether the map moves with the robot.", read_only=True)
+    track_unknown_space: bool = parameter(
+        False, "Whether cells that nothing has seen are unknown instead of free.", read_only=True
+    )
 
 
 class LayeredCostmap:

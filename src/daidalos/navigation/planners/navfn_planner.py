@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.common.parameters import Parameters, parameter
 from daidalos.navigation.costmap.costmap import (
     INSCRIBED_INFLATED_OBSTACLE,
     LETHAL_OBSTACLE,
@@ -47,13 +48,17 @@ ESCAPE_RADIUS = 0.5
 
 
 @dataclass(frozen=True)
-class NavfnPlannerParameters:
-    """Parameters of the planner, by their Nav2 names; the tolerance is in metres."""
+class NavfnPlannerParameters(Parameters):
+    """Parameters of the planner, by their Nav2 names."""
 
-    tolerance: float = 0.5
-    use_astar: bool = False
-    allow_unknown: bool = True
-    use_final_approach_orientation: bool = False
+    tolerance: float = parameter(
+        0.5, "Distance to an occupied goal within which another cell may take its place.", unit="m", minimum=0.0
+    )
+    use_astar: bool = parameter(False, "Whether to search with A* instead of Dijkstra's algorithm.")
+    allow_unknown: bool = parameter(True, "Whether paths may cross unknown cells.")
+    use_final_approach_orientation: bool = parameter(
+        False, "Whether the path ends in the direction in which it arrives."
+    )
 
 
 class NavfnPlanner(GlobalPlanner):

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daidalos.common.kernels import compiled
+from daidalos.common.parameters import Parameters, parameter
 from daidalos.navigation.costmap.costmap import INSCRIBED_INFLATED_OBSTACLE, NO_INFORMATION, Costmap, Costs
 from daidalos.navigation.paths import with_headings
 from daidalos.navigation.smoothers.smoother import Smoother
@@ -14,13 +15,13 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class SimpleSmootherParameters:
+class SimpleSmootherParameters(Parameters):
     """Parameters of the smoother, by their Nav2 names."""
 
-    tolerance: float = 1e-10
-    max_its: int = 1000
-    w_data: float = 0.2
-    w_smooth: float = 0.3
+    tolerance: float = parameter(1e-10, "Change of the path at which smoothing ends.", unit="m", minimum=0.0)
+    max_its: int = parameter(1000, "Largest number of iterations.", minimum=1)
+    w_data: float = parameter(0.2, "Weight of staying near the path.", minimum=0.0)
+    w_smooth: float = parameter(0.3, "Weight of smoothness.", minimum=0.0)
 
 
 class SimpleSmoother(Smoother):

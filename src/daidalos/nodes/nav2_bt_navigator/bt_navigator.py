@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,7 @@ from rclpy.lifecycle import LifecycleState, TransitionCallbackReturn
 from rclpy.time import Time
 from tf2_ros import Buffer, TransformException, TransformListener
 
+from daidalos.common.parameters import Parameters, parameter
 from daidalos.navigation.paths import path_length
 from daidalos.navigation.trees.action.action_node import RECOVERIES
 from daidalos.navigation.trees.behavior_tree import DEFAULT_TREE, BehaviorTree
@@ -22,7 +24,18 @@ from daidalos.nodes.cycles import Cycle
 from daidalos.nodes.managed import ManagedNode
 from daidalos.nodes.nav2_bt_navigator._navigation import Navigation
 from daidalos.nodes.nav2_bt_navigator._tasks import GraphServices
+from daidalos.nodes.parameters import declare
 from daidalos.nodes.runner import run
+
+
+@dataclass(frozen=True)
+class BtNavigatorParameters(Parameters):
+    """Parameters of the node, by their Nav2 names."""
+
+    global_frame: str = parameter("map", "Frame of goals and feedback.", not_empty=True, read_only=True)
+    robot_base_frame: str = parameter("base_link", "Frame of the robot's base.", not_empty=True, read_only=True)
+    bt_loop_duration: int = parameter(50, "Time between two ticks of the tree.", unit="ms", minimum=1)
+    default_nav_to_pose_bt_xml: str = parameter("", "File of the behaviour tree; empty for the built-in one.")
 
 
 class BtNavigator(ManagedNode):
@@ -30,14 +43,19 @@ class BtNavigator(ManagedNode):
 
     def __init__(self, node_name: str = "bt_navigator", **kwargs: Any) -> None:
         super().__init__(node_name, **kwargs)
-        self._map_frame = self.declare_parameter("global_frame", "map").value
-        self._base_frame = self.declare_parameter("robot_base_frame", "base_link").value
-        self._loop_ms = self.declare_parameter("bt_loop_duration", 50).value
-        self._tree_file = self.declare_parameter("default_nav_to_pose_bt_xml", "").value or str(DEFAULT_TREE)
+        self._settings = declare(self, BtNavigatorParameters, reconfigure=self._reconfigure)
         self._buffer = Buffer()
         self._listener = TransformListener(self._buffer, self)
         self._navigation: Navigation | None = None
         self._early_pose: Any = None
+
+    def _reconfigure(self, parameters: BtNavigatorParameters) -> None:
+        """Use another tree and period from the next goal on."""
+        self._settings = parameters
+
+    @property
+    def _tree_file(self) -> str:
+        return self._settings.default_nav_to_pose_bt_xml or str(DEFAULT_TREE)
 
     def configure(self) -> None:
         """Read the default tree and serve."""
@@ -68,7 +86,11 @@ class BtNavigator(ManagedNode):
 
     def _refusal(self, request: Any) -> str:
         frame = request.pose.header.frame_id
-        if frame and frame != self._map_frame and not self._buffer.can_transform(self._map_frame, frame, Time()):
+        if (
+            frame
+            and frame != self._settings.global_frame
+            and not self._buffer.can_transform(self._settings.global_frame, frame, Time())
+        ):
             return f"the frame '{frame}' is not known"
         return ""
 
@@ -107,7 +129,7 @@ class BtNavigator(ManagedNode):
 
     async def _run(self, navigation: Navigation) -> Status:
         """Tick the tree until it ends or the goal is cancelled."""
-        with Cycle(self, 1000.0 / self._loop_ms) as cycle:
+        with Cycle(self, 1000.0 / self._settings.bt_loop_duration) as cycle:
             while (status := navigation.tick()) == Status.RUNNING:
                 self._publish_feedback(navigation)
                 await cycle.next()
@@ -117,14 +139,14 @@ class BtNavigator(ManagedNode):
         from nav2_msgs.action import NavigateToPose
 
         try:
-            found = self._buffer.lookup_transform(self._map_frame, self._base_frame, Time())
+            found = self._buffer.lookup_transform(self._settings.global_frame, self._settings.robot_base_frame, Time())
         except TransformException:
             return
         path = navigation.blackboard.get("path")
         pose = pose2_of_transform(found.transform)
         navigation.goal_handle.publish_feedback(
             NavigateToPose.Feedback(
-                current_pose=pose_stamped(pose, self._map_frame, found.header.stamp),
+                current_pose=pose_stamped(pose, self._settings.global_frame, found.header.stamp),
                 navigation_time=(self.get_clock().now() - navigation.begun).to_msg(),
                 number_of_recoveries=int(navigation.blackboard.get(RECOVERIES, 0)),
                 distance_remaining=0.0 if path is None else _remaining(path_array(path), pose),

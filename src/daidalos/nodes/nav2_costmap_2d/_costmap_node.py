@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import threading
-from dataclasses import fields
 from typing import Any
 
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
@@ -14,7 +13,7 @@ from rclpy.time import Time
 from tf2_ros import TransformException, TransformListener
 
 from daidalos.mapping.grid import OccupancyGrid
-from daidalos.navigation.costmap.costmap import Costmap, CostmapError
+from daidalos.navigation.costmap.costmap import Costmap
 from daidalos.navigation.costmap.footprint import Footprint
 from daidalos.navigation.costmap.layered_costmap import CostmapParameters, LayeredCostmap
 from daidalos.navigation.costmap.layers.inflation_layer import InflationLayer
@@ -40,7 +39,7 @@ from daidalos.nodes.conversions import (
 from daidalos.nodes.cycles import wait_until
 from daidalos.nodes.managed import ManagedNode
 from daidalos.nodes.nav2_costmap_2d._costmap_messages import costmap_message, footprint_message
-from daidalos.nodes.parameters import declare_dataclass, declare_plugin
+from daidalos.nodes.parameters import declare, declare_plugin
 from daidalos.nodes.transforms import BlockingBuffer, SensorPoses
 from daidalos.nodes.warming import warm_up_in_background
 
@@ -101,7 +100,7 @@ class CostmapNode(ManagedNode):
         self.declare_parameter("footprint_padding", 0.01)
         self.declare_parameter("plugins", list(_DEFAULT_PLUGINS))
         self.declare_parameter("map_topic", "/map")
-        self._parameters_of_grid = declare_dataclass(self, CostmapParameters)
+        self._parameters_of_grid = declare(self, CostmapParameters)
         self.footprint = self._read_footprint()
         self.buffer = BlockingBuffer(node=self)
         self._listener = TransformListener(self.buffer, self)
@@ -179,7 +178,7 @@ class CostmapNode(ManagedNode):
             return self._make_obstacle_layer(name, plugin.made_by)
         parameters = declare_plugin(self, plugin, name)
         if issubclass(plugin.made_by, StaticLayer):
-            return self._make_static_layer(name, plugin.made_by(parameters))
+            return self._make_static_layer(plugin.made_by(parameters))
         layer: Layer
         if issubclass(plugin.made_by, InflationLayer):
             layer = plugin.made_by(self.footprint.inscribed_radius, parameters)
@@ -187,10 +186,10 @@ class CostmapNode(ManagedNode):
             layer = plugin.made_by(parameters)
         return layer
 
-    def _make_static_layer(self, name: str, layer: StaticLayer) -> StaticLayer:
+    def _make_static_layer(self, layer: StaticLayer) -> StaticLayer:
         from nav_msgs.msg import OccupancyGrid as GridMessage
 
-        topic = self.declare_parameter(f"{name}.map_topic", "").value or self.get_parameter("map_topic").value
+        topic = layer.parameters.map_topic or self.get_parameter("map_topic").value
 
         def take(message: Any) -> None:
             info = message.info
@@ -203,27 +202,17 @@ class CostmapNode(ManagedNode):
         return layer
 
     def _make_obstacle_layer(self, name: str, kind: type[ObstacleLayer]) -> ObstacleLayer:
-        names = self.declare_parameter(f"{name}.observation_sources", "scan").value.split()
-        sources = {source: declare_dataclass(self, ObservationSource, f"{name}.{source}") for source in names}
-        plain = {field.name for field in fields(ObstacleLayerParameters)} - {"sources"}
-        values = {
-            field: self.declare_parameter(f"{name}.{field}", getattr(ObstacleLayerParameters(), field)).value
-            for field in sorted(plain)
-        }
+        parameters = declare(self, ObstacleLayerParameters, name)
         unknown = self._parameters_of_grid.track_unknown_space
-        parameters = ObstacleLayerParameters(sources=sources, **values)
         layer = kind(self.footprint, parameters, track_unknown_space=unknown)
-        for source in names:
-            self._listen(name, source, layer, sources[source])
+        for source, settings in parameters.sources.items():
+            self._listen(source, layer, settings)
         return layer
 
-    def _listen(self, name: str, source: str, layer: ObstacleLayer, settings: ObservationSource) -> None:
+    def _listen(self, source: str, layer: ObstacleLayer, settings: ObservationSource) -> None:
         from sensor_msgs.msg import LaserScan
 
-        topic = self.declare_parameter(f"{name}.{source}.topic", source).value
-        kind = self.declare_parameter(f"{name}.{source}.data_type", "LaserScan").value
-        if kind != "LaserScan":
-            raise CostmapError(f"the data_type '{kind}' of {name}.{source} is not supported; expected LaserScan")
+        topic = settings.topic or source
         if not topic.startswith("/"):
             topic = f"/{topic}"
 

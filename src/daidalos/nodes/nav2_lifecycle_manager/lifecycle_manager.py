@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import sys
+from dataclasses import dataclass
 from enum import IntEnum
 from typing import Any
 
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.node import Node
 
+from daidalos.common.parameters import Parameters, parameter
+from daidalos.nodes.parameters import declare, warn_of_undeclared
 from daidalos.nodes.runner import run
 
 _INACTIVE, _ACTIVE = 2, 3
@@ -23,6 +26,14 @@ class _Transition(IntEnum):
     DEACTIVATE = 4
 
 
+@dataclass(frozen=True)
+class LifecycleManagerParameters(Parameters):
+    """Parameters of the node, by their Nav2 names."""
+
+    node_names: tuple[str, ...] = parameter(("",), "Nodes that are managed, in the order of their start.")
+    autostart: bool = parameter(False, "Whether the nodes are started at once.")
+
+
 class LifecycleManager(Node):
     """Manages the nodes in its parameter ``node_names``; with ``autostart`` it begins by itself.
 
@@ -35,16 +46,17 @@ class LifecycleManager(Node):
         from nav2_msgs.srv import ManageLifecycleNodes
         from std_srvs.srv import Trigger
 
-        self._names = [name for name in self.declare_parameter("node_names", [""]).value if name]
-        autostart = self.declare_parameter("autostart", False).value
+        parameters = declare(self, LifecycleManagerParameters)
+        self._names = [name for name in parameters.node_names if name]
         self._clients: dict[tuple[str, str], Any] = {}
         self._active = False
         self._group = MutuallyExclusiveCallbackGroup()
         own = MutuallyExclusiveCallbackGroup()
         self.create_service(ManageLifecycleNodes, "~/manage_nodes", self._on_manage, callback_group=own)
         self.create_service(Trigger, "~/is_active", self._on_is_active)
-        if autostart:
+        if parameters.autostart:
             self._start_timer = self.create_timer(0.0, self._autostart, callback_group=own)
+        warn_of_undeclared(self)
 
     async def _autostart(self) -> None:
         self.destroy_timer(self._start_timer)

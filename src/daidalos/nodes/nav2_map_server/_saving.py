@@ -12,6 +12,7 @@ from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.task import Future
 
+from daidalos.common.parameters import Parameters, parameter
 from daidalos.mapping.errors import MapFileError
 from daidalos.mapping.grid import OccupancyGrid
 from daidalos.mapping.map_file import FREE_THRESHOLD, OCCUPIED_THRESHOLD, Mode, save_map
@@ -19,7 +20,6 @@ from daidalos.mapping.map_image import Format
 from daidalos.nodes.conversions import grid_array, pose2_of
 
 MODES, FORMATS = get_args(Mode), get_args(Format)
-_TIMEOUT_S = 5.0
 
 
 @dataclass(frozen=True)
@@ -46,27 +46,33 @@ class SaveRequest:
     free_thresh: float = 0.0
 
 
-def declare_parameters(node: Node) -> None:
-    """Declare the parameters of Nav2's map_saver."""
-    node.declare_parameter("save_map_timeout", _TIMEOUT_S)
-    node.declare_parameter("free_thresh_default", FREE_THRESHOLD)
-    node.declare_parameter("occupied_thresh_default", OCCUPIED_THRESHOLD)
-    node.declare_parameter("map_subscribe_transient_local", True)
+@dataclass(frozen=True)
+class MapSaverParameters(Parameters):
+    """Parameters of Nav2's map_saver."""
+
+    save_map_timeout: float = parameter(5.0, "How long to wait for a map.", unit="s", minimum=0.0)
+    free_thresh_default: float = parameter(
+        FREE_THRESHOLD, "Occupancy below which a cell is free.", minimum=0.0, maximum=1.0
+    )
+    occupied_thresh_default: float = parameter(
+        OCCUPIED_THRESHOLD, "Occupancy above which a cell is occupied.", minimum=0.0, maximum=1.0
+    )
+    map_subscribe_transient_local: bool = parameter(True, "Whether the map is taken from a latched topic.")
 
 
-async def save(node: Node, wish: SaveRequest) -> bool:
+async def save(node: Node, parameters: MapSaverParameters, wish: SaveRequest) -> bool:
     """Wait for a map and write it; False, after a word in the log, when that failed."""
     log = node.get_logger()
     log.info(f"Saving map from '{wish.topic}' topic to '{wish.stem}' file")
-    message = await _next_map(node, wish.topic)
+    message = await _next_map(node, parameters, wish.topic)
     if message is None:
-        seconds = node.get_parameter("save_map_timeout").value
+        seconds = parameters.save_map_timeout
         log.error(f"Failed to save the map: nothing came on the topic '{wish.topic}' within {seconds:g} s")
         return False
     info = message.info
     log.info(f"Received a {info.width} X {info.height} map @ {info.resolution:.3g} m/pix")
     try:
-        files = _write(node, message, wish)
+        files = _write(parameters, message, wish)
     except MapFileError as error:
         log.error(f"Failed to save the map: {error}")
         return False
@@ -74,7 +80,7 @@ async def save(node: Node, wish: SaveRequest) -> bool:
     return True
 
 
-async def _next_map(node: Node, topic: str) -> Any:
+async def _next_map(node: Node, parameters: MapSaverParameters, topic: str) -> Any:
     """Return the next map on a topic, None when none comes in time."""
     from nav_msgs.msg import OccupancyGrid as OccupancyGridMessage
 
@@ -84,13 +90,12 @@ async def _next_map(node: Node, topic: str) -> Any:
         if not came.done():
             came.set_result(message)
 
-    latched = node.get_parameter("map_subscribe_transient_local").value
+    latched = parameters.map_subscribe_transient_local
     durability = DurabilityPolicy.TRANSIENT_LOCAL if latched else DurabilityPolicy.VOLATILE
     qos = QoSProfile(depth=1, durability=durability)
     group = MutuallyExclusiveCallbackGroup()  # who waits for the map may hold the node's own
     subscription = node.create_subscription(OccupancyGridMessage, topic, take, qos, callback_group=group)
-    timeout_s = max(node.get_parameter("save_map_timeout").value, 0.0)
-    timer = node.create_timer(timeout_s, lambda: take(None), callback_group=group)
+    timer = node.create_timer(parameters.save_map_timeout, lambda: take(None), callback_group=group)
     try:
         return await came
     finally:
@@ -98,7 +103,7 @@ async def _next_map(node: Node, topic: str) -> Any:
         node.destroy_subscription(subscription)
 
 
-def _write(node: Node, message: Any, wish: SaveRequest) -> tuple[Any, Any]:
+def _write(parameters: MapSaverParameters, message: Any, wish: SaveRequest) -> tuple[Any, Any]:
     # The message's resolution has 32 bits; the file says what its writer meant, such as 0.05.
     resolution = float(str(np.float32(message.info.resolution)))
     x, y, yaw = pose2_of(message.info.origin).tolist()
@@ -114,6 +119,6 @@ def _write(node: Node, message: Any, wish: SaveRequest) -> tuple[Any, Any]:
         wish.stem,
         cast(Mode, mode),
         image_format=cast(Format, image_format),
-        occupied_thresh=wish.occupied_thresh or node.get_parameter("occupied_thresh_default").value,
-        free_thresh=wish.free_thresh or node.get_parameter("free_thresh_default").value,
+        occupied_thresh=wish.occupied_thresh or parameters.occupied_thresh_default,
+        free_thresh=wish.free_thresh or parameters.free_thresh_default,
     )

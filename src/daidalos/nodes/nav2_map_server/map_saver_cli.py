@@ -8,7 +8,8 @@ import sys
 from rclpy.node import Node
 from rclpy.utilities import remove_ros_args
 
-from daidalos.nodes.nav2_map_server._saving import FORMATS, MODES, SaveRequest, declare_parameters, save
+from daidalos.nodes.nav2_map_server._saving import FORMATS, MODES, MapSaverParameters, SaveRequest, save
+from daidalos.nodes.parameters import declare
 from daidalos.nodes.runner import run_program
 
 
@@ -31,12 +32,12 @@ def _save(arguments: argparse.Namespace) -> bool:
     rclpy.init()
     node = Node("map_saver")
     try:
-        declare_parameters(node)
+        parameters = declare(node, MapSaverParameters)
         stem = arguments.stem or f"map_{node.get_clock().now().nanoseconds // 1_000_000_000}"
         wish = SaveRequest(arguments.topic, stem, arguments.mode, arguments.fmt, arguments.occ, arguments.free)
         executor = SingleThreadedExecutor()
         executor.add_node(node)
-        task = executor.create_task(save, node, wish)
+        task = executor.create_task(save, node, parameters, wish)
         executor.spin_until_future_complete(task)
         return bool(task.result())
     finally:

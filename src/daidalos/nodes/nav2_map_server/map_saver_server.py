@@ -6,7 +6,8 @@ import sys
 from typing import Any
 
 from daidalos.nodes.managed import ManagedNode
-from daidalos.nodes.nav2_map_server._saving import SaveRequest, declare_parameters, save
+from daidalos.nodes.nav2_map_server._saving import MapSaverParameters, SaveRequest, save
+from daidalos.nodes.parameters import declare
 from daidalos.nodes.runner import run
 
 
@@ -15,7 +16,10 @@ class MapSaver(ManagedNode):
 
     def __init__(self, node_name: str = "map_saver", **kwargs: Any) -> None:
         super().__init__(node_name, **kwargs)
-        declare_parameters(self)
+        self._settings = declare(self, MapSaverParameters, reconfigure=self._reconfigure)
+
+    def _reconfigure(self, parameters: MapSaverParameters) -> None:
+        self._settings = parameters
 
     def configure(self) -> None:
         """Serve."""
@@ -35,7 +39,7 @@ class MapSaver(ManagedNode):
             request.occupied_thresh,
             request.free_thresh,
         )
-        response.result = await save(self, wish)
+        response.result = await save(self, self._settings, wish)
         return response
 
 

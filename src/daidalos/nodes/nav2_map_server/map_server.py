@@ -3,37 +3,51 @@
 from __future__ import annotations
 
 import sys
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from rclpy.lifecycle import LifecycleState, TransitionCallbackReturn
 from rclpy.qos import DurabilityPolicy, QoSProfile
 
+from daidalos.common.parameters import Parameters, parameter
 from daidalos.mapping.errors import MapFileError
 from daidalos.mapping.map_file import load_map
 from daidalos.nodes.conversions import grid_message, pose_message
 from daidalos.nodes.managed import ManagedNode
 from daidalos.nodes.packages import package_share
+from daidalos.nodes.parameters import declare
 from daidalos.nodes.runner import run
 
 _LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
+@dataclass(frozen=True)
+class MapServerParameters(Parameters):
+    """Parameters of the node, by their Nav2 names."""
+
+    yaml_filename: str = parameter("", "Map file that is read when the node is configured; empty for none.")
+    topic_name: str = parameter("map", "Topic of the map.", not_empty=True, read_only=True)
+    frame_id: str = parameter("map", "Frame of the map.", not_empty=True)
+    autostart_node: bool = parameter(False, "Whether the node configures and activates itself.", read_only=True)
+
+
 class MapServer(ManagedNode):
     """Publishes a map, latched, and serves ``~/map`` and ``~/load_map``.
 
-    Parameters of the node are Nav2's: ``yaml_filename``, ``topic_name``, ``frame_id``; with ``autostart_node`` it
-    needs nobody to configure and activate it.
+    Its parameters are those of `MapServerParameters`.
     """
 
     def __init__(self, node_name: str = "map_server", **kwargs: Any) -> None:
         super().__init__(node_name, **kwargs)
-        self.declare_parameter("yaml_filename", "")
-        self.declare_parameter("topic_name", "map")
-        self.declare_parameter("frame_id", "map")
+        self._settings = declare(self, MapServerParameters, reconfigure=self._reconfigure)
         self._map: Any = None
-        if self.declare_parameter("autostart_node", False).value:
+        if self._settings.autostart_node:
             self._start_timer = self.create_timer(0.0, self._autostart)
+
+    def _reconfigure(self, parameters: MapServerParameters) -> None:
+        """Use another file at the next configuration, and another frame for the next file."""
+        self._settings = parameters
 
     def _autostart(self) -> None:
         self.destroy_timer(self._start_timer)
@@ -46,11 +60,11 @@ class MapServer(ManagedNode):
         from nav_msgs.msg import OccupancyGrid
         from nav_msgs.srv import GetMap
 
-        file = self.get_parameter("yaml_filename").value
+        file = self._settings.yaml_filename
         self._map = self._load(file) if file else None
         if not file:
             self.get_logger().info("yaml_filename parameter is empty, set map through '~/load_map' service")
-        self._publisher = self.create_publisher(OccupancyGrid, self.get_parameter("topic_name").value, _LATCHED)
+        self._publisher = self.create_publisher(OccupancyGrid, self._settings.topic_name, _LATCHED)
         self.create_service(GetMap, "~/map", self._on_get_map)
         self.create_service(LoadMap, "~/load_map", self._on_load_map)
 
@@ -69,7 +83,7 @@ class MapServer(ManagedNode):
         """
         grid = load_map(_path_of(url))
         stamp = self.get_clock().now().to_msg()
-        frame = self.get_parameter("frame_id").value
+        frame = self._settings.frame_id
         message = grid_message(grid.data, grid.resolution, grid.origin[:2], frame, stamp)
         message.info.origin = pose_message(grid.origin)
         rows, columns = grid.data.shape

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 import threading
-from dataclasses import replace
+from dataclasses import dataclass
 from typing import Any
 
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
@@ -12,6 +12,7 @@ from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.task import Future
 
+from daidalos.common.parameters import parameter
 from daidalos.mapping.config import SlamConfig
 from daidalos.nodes.conversions import (
     grid_message,
@@ -21,7 +22,7 @@ from daidalos.nodes.conversions import (
     time_message,
     transform_stamped,
 )
-from daidalos.nodes.parameters import declare_dataclass
+from daidalos.nodes.parameters import declare, warn_of_undeclared
 from daidalos.nodes.runner import run
 from daidalos.nodes.warming import warm_up_in_background
 
@@ -30,12 +31,30 @@ _SCANS_A_MAP = 100
 """Scans that one publication of the map may move to where a loop closure wants them."""
 
 
+@dataclass(frozen=True)
+class SlamToolboxParameters(SlamConfig):
+    """Parameters of the node: slam_toolbox's, and those of `SlamConfig`."""
+
+    match_every_scan: bool = parameter(
+        True, "Whether the scans in between correct the pose as well, without being added to the map."
+    )
+    map_frame: str = parameter("map", "Frame of the map.", not_empty=True, read_only=True)
+    odom_frame: str = parameter("odom", "Frame of the odometry.", not_empty=True, read_only=True)
+    base_frame: str = parameter("base_footprint", "Frame of the robot's base.", not_empty=True, read_only=True)
+    scan_topic: str = parameter("/scan", "Topic of the scans.", not_empty=True, read_only=True)
+    scan_queue_size: int = parameter(5, "Number of scans that wait.", minimum=1, read_only=True)
+    throttle_scans: int = parameter(1, "Of so many scans one is used.", minimum=1)
+    map_update_interval: float = parameter(1.0, "How often the map is published.", unit="s", above=0.0, read_only=True)
+    transform_publish_period: float = parameter(
+        0.02, "How often the transform is published; 0 for never.", unit="s", minimum=0.0, read_only=True
+    )
+    transform_timeout: float = parameter(0.2, "How far ahead the transform is stamped.", unit="s", minimum=0.0)
+
+
 class SlamToolbox(Node):
     """Publishes ``map`` and the transform from ``map_frame`` to ``odom_frame``.
 
-    Parameters of the node are slam_toolbox's: those of `SlamConfig`, and ``odom_frame``, ``map_frame``,
-    ``base_frame``, ``scan_topic``, ``map_update_interval`` [s], ``transform_publish_period`` [s],
-    ``transform_timeout`` [s], ``throttle_scans``, ``scan_queue_size``.
+    Its parameters are those of `SlamToolboxParameters`.
     """
 
     def __init__(self, **kwargs: Any) -> None:
@@ -48,16 +67,7 @@ class SlamToolbox(Node):
 
         from daidalos.nodes.transforms import BlockingBuffer, SensorPoses
 
-        self._config = declare_dataclass(self, SlamConfig, match_every_scan=True)
-        self._map_frame = self.declare_parameter("map_frame", "map").value
-        self._odom_frame = self.declare_parameter("odom_frame", "odom").value
-        self._base_frame = self.declare_parameter("base_frame", "base_footprint").value
-        self._throttle = max(self.declare_parameter("throttle_scans", 1).value, 1)
-        self._tolerance_ns = int(1e9 * self.declare_parameter("transform_timeout", 0.2).value)
-        self.declare_parameter("scan_topic", "/scan")
-        self.declare_parameter("scan_queue_size", 5)
-        self.declare_parameter("map_update_interval", 1.0)
-        self.declare_parameter("transform_publish_period", 0.02)
+        self._settings = p = declare(self, SlamToolboxParameters, reconfigure=self._reconfigure)
         self._slam: Any = None
         self._lock = threading.Lock()
         self._scans = 0
@@ -65,23 +75,21 @@ class SlamToolbox(Node):
         self._map_to_odom: Any = None
         self._buffer = BlockingBuffer()
         self._listener = TransformListener(self._buffer, self)
-        self._sensor_poses = SensorPoses(self._buffer, self._base_frame, self.get_logger())
+        self._sensor_poses = SensorPoses(self._buffer, p.base_frame, self.get_logger())
         self._broadcaster = TransformBroadcaster(self)
         self._map_publisher = self.create_publisher(OccupancyGrid, "map", _LATCHED)
         self._metadata_publisher = self.create_publisher(MapMetaData, "map_metadata", _LATCHED)
-        depth = self.get_parameter("scan_queue_size").value
         # A scan may wait for its odometry; the map and the services do not wait with it.
         scans = MutuallyExclusiveCallbackGroup()
-        topic = self.get_parameter("scan_topic").value
-        self.create_subscription(LaserScan, topic, self._on_scan, depth, callback_group=scans)
-        self.create_timer(self.get_parameter("map_update_interval").value, self._publish_map)
-        period = self.get_parameter("transform_publish_period").value
-        if period > 0.0:
+        self.create_subscription(LaserScan, p.scan_topic, self._on_scan, p.scan_queue_size, callback_group=scans)
+        self.create_timer(p.map_update_interval, self._publish_map)
+        if p.transform_publish_period > 0.0:
             own = MutuallyExclusiveCallbackGroup()
-            self.create_timer(period, self._publish_transform, callback_group=own)
+            self.create_timer(p.transform_publish_period, self._publish_transform, callback_group=own)
         self.create_service(SaveMap, "~/save_map", self._on_save)
         self.create_service(GetMap, "~/dynamic_map", self._on_get_map)
         self.create_service(Reset, "~/reset", self._on_reset)
+        warn_of_undeclared(self)
         warm_up_in_background("daidalos.mapping", self.get_logger()).add_done_callback(self._begin)
 
     def _begin(self, compiled: Future) -> None:
@@ -93,17 +101,25 @@ class SlamToolbox(Node):
     def _new_slam(self) -> Any:
         from daidalos.mapping.slam import Slam
 
-        return Slam(replace(self._config))
+        return Slam(self._settings)
+
+    def _reconfigure(self, parameters: SlamToolboxParameters) -> None:
+        self._settings = parameters
+        if self._slam is not None:
+            with self._lock:
+                self._slam.reconfigure(parameters)
 
     async def _on_scan(self, scan: Any) -> None:
         self._scans += 1
-        if self._scans % self._throttle or self._slam is None:
+        if self._scans % self._settings.throttle_scans or self._slam is None:
             return
         sensor_pose = self._sensor_poses.find(scan.header.frame_id)
         if sensor_pose is None:
             return
         # Odometry comes a little later than the scan that it belongs to.
-        odometry = await self._buffer.transform_at(self._odom_frame, self._base_frame, scan.header.stamp)
+        odometry = await self._buffer.transform_at(
+            self._settings.odom_frame, self._settings.base_frame, scan.header.stamp
+        )
         if odometry is None:
             return
         stamp_ns = nanoseconds(scan.header.stamp)
@@ -116,14 +132,15 @@ class SlamToolbox(Node):
         if self._map_to_odom is None:
             return
         # Stamped ahead, as slam_toolbox does: those who ask for "now" need not wait for the next one.
-        stamp = time_message(self.get_clock().now().nanoseconds + self._tolerance_ns)
-        self._broadcaster.sendTransform(transform_stamped(self._map_to_odom, self._map_frame, self._odom_frame, stamp))
+        stamp = time_message(self.get_clock().now().nanoseconds + round(1e9 * self._settings.transform_timeout))
+        frames = self._settings.map_frame, self._settings.odom_frame
+        self._broadcaster.sendTransform(transform_stamped(self._map_to_odom, *frames, stamp))
 
     def _map_message(self) -> Any:
         with self._lock:
             grid = self._slam.grid(_SCANS_A_MAP)
         stamp = self.get_clock().now().to_msg()
-        return grid_message(grid.data, grid.resolution, grid.origin, self._map_frame, stamp)
+        return grid_message(grid.data, grid.resolution, grid.origin, self._settings.map_frame, stamp)
 
     def _publish_map(self) -> None:
         if self._slam is None:

@@ -8,7 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.ndimage import distance_transform_edt
 
-from daidalos.navigation.costmap.costmap import Costmap, CostmapError, Window
+from daidalos.common.parameters import ParameterError
+from daidalos.navigation.costmap.costmap import Costmap, Window
 from daidalos.navigation.costmap.layers.inflation_layer import InflationLayer, InflationLayerParameters
 
 
@@ -88,5 +89,5 @@ def test_cost_at_a_distance():
 
 
 def test_negative_parameters_are_refused():
-    with pytest.raises(CostmapError, match="negative"):
+    with pytest.raises(ParameterError, match="must be at least 0"):
         InflationLayerParameters(inflation_radius=-0.1)

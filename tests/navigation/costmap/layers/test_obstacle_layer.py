@@ -24,7 +24,9 @@ HERE = np.array([1.0, 1.0, 0.0])
 
 
 def layer_of(**source):
-    parameters = ObstacleLayerParameters({"scan": ObservationSource(**source)}, footprint_clearing_enabled=False)
+    parameters = ObstacleLayerParameters(
+        sources={"scan": ObservationSource(**source)}, footprint_clearing_enabled=False
+    )
     return ObstacleLayer(ROBOT, parameters)
 
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.common.parameters import parameter
 from daidalos.common.pose2 import wrap
 from daidalos.navigation.controllers.plugins.simple_progress_checker import (
     SimpleProgressChecker,
@@ -16,9 +17,9 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class PoseProgressCheckerParameters(SimpleProgressCheckerParameters):
-    """Parameters of the checker, by their Nav2 names; the angle is in radians."""
+    """Parameters of the checker, by their Nav2 names."""
 
-    required_movement_angle: float = 0.5
+    required_movement_angle: float = parameter(0.5, "Turn that counts as progress.", unit="rad", minimum=0.0)
 
 
 class PoseProgressChecker(SimpleProgressChecker):

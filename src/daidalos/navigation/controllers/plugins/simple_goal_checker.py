@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.common.parameters import Parameters, parameter
 from daidalos.common.pose2 import wrap
 from daidalos.navigation.controllers.plugins.goal_checker import GoalChecker
 
@@ -13,12 +14,12 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class SimpleGoalCheckerParameters:
-    """Parameters of the checker, by their Nav2 names; metres and radians."""
+class SimpleGoalCheckerParameters(Parameters):
+    """Parameters of the checker, by their Nav2 names."""
 
-    xy_goal_tolerance: float = 0.25
-    yaw_goal_tolerance: float = 0.25
-    stateful: bool = True
+    xy_goal_tolerance: float = parameter(0.25, "Distance to the goal that counts as there.", unit="m", minimum=0.0)
+    yaw_goal_tolerance: float = parameter(0.25, "Angle to the goal that counts as there.", unit="rad", minimum=0.0)
+    stateful: bool = parameter(True, "Whether the distance is not checked again once it was reached.")
 
 
 class SimpleGoalChecker(GoalChecker):

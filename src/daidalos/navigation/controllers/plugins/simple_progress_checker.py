@@ -6,17 +6,18 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.common.parameters import Parameters, parameter
 from daidalos.navigation.controllers.plugins.progress_checker import ProgressChecker
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class SimpleProgressCheckerParameters:
-    """Parameters of the checker, by their Nav2 names; metres and seconds."""
+class SimpleProgressCheckerParameters(Parameters):
+    """Parameters of the checker, by their Nav2 names."""
 
-    required_movement_radius: float = 0.5
-    movement_time_allowance: float = 10.0
+    required_movement_radius: float = parameter(0.5, "Motion that counts as progress.", unit="m", minimum=0.0)
+    movement_time_allowance: float = parameter(10.0, "How long that motion may take.", unit="s", minimum=0.0)
 
 
 class SimpleProgressChecker(ProgressChecker):

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.common.parameters import parameter
 from daidalos.navigation.controllers.plugins.simple_goal_checker import (
     SimpleGoalChecker,
     SimpleGoalCheckerParameters,
@@ -16,10 +17,10 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class StoppedGoalCheckerParameters(SimpleGoalCheckerParameters):
-    """Parameters of the checker, by their Nav2 names; velocities in m/s and rad/s."""
+    """Parameters of the checker, by their Nav2 names."""
 
-    trans_stopped_velocity: float = 0.25
-    rot_stopped_velocity: float = 0.25
+    trans_stopped_velocity: float = parameter(0.25, "Speed that counts as stopped.", unit="m/s", minimum=0.0)
+    rot_stopped_velocity: float = parameter(0.25, "Turn rate that counts as stopped.", unit="rad/s", minimum=0.0)
 
 
 class StoppedGoalChecker(SimpleGoalChecker):

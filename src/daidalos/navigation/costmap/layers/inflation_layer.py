@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daidalos.common.kernels import compiled
+from daidalos.common.parameters import Parameters, parameter
 from daidalos.navigation.costmap.costmap import (
     FREE_SPACE,
     INSCRIBED_INFLATED_OBSTACLE,
@@ -15,7 +16,6 @@ from daidalos.navigation.costmap.costmap import (
     NO_INFORMATION,
     Bounds,
     Costmap,
-    CostmapError,
     Costs,
     Window,
 )
@@ -25,20 +25,15 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class InflationLayerParameters:
-    """Parameters of the layer, by their Nav2 names; lengths in metres, the factor in 1/m."""
+class InflationLayerParameters(Parameters):
+    """Parameters of the layer, by their Nav2 names."""
 
-    inflation_radius: float = 0.55
-    cost_scaling_factor: float = 10.0
-    inflate_unknown: bool = False
-    inflate_around_unknown: bool = False
-
-    def __post_init__(self) -> None:
-        if self.inflation_radius < 0.0 or self.cost_scaling_factor < 0.0:
-            raise CostmapError(
-                "inflation_radius and cost_scaling_factor must not be negative, not "
-                f"{self.inflation_radius} and {self.cost_scaling_factor}"
-            )
+    inflation_radius: float = parameter(0.55, "Distance from obstacles that costs reach.", unit="m", minimum=0.0)
+    cost_scaling_factor: float = parameter(
+        10.0, "How fast costs fall with the distance from obstacles.", unit="1/m", minimum=0.0
+    )
+    inflate_unknown: bool = parameter(False, "Whether unknown cells get costs.")
+    inflate_around_unknown: bool = parameter(False, "Whether unknown cells count as obstacles.")
 
 
 class InflationLayer(Layer):

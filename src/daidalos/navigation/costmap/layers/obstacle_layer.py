@@ -2,12 +2,13 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from daidalos.common.kernels import compiled
+from daidalos.common.parameters import Parameters, parameter, per_name
 from daidalos.common.pose2 import compose
 from daidalos.mapping.scan import LaserScanData
 from daidalos.navigation.costmap.costmap import (
@@ -26,30 +27,40 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class ObservationSource:
-    """Parameters of one sensor, by their Nav2 names; ranges in metres, times in seconds.
+class ObservationSource(Parameters):
+    """Parameters of one sensor, by their Nav2 names.
 
     `inf_is_valid` is on by default, other than in Nav2: a ray that met nothing shows that its way is free,
     and obstacles that have gone stay in the costmap for ever without it.
     """
 
-    obstacle_max_range: float = 2.5
-    obstacle_min_range: float = 0.0
-    raytrace_max_range: float = 3.0
-    raytrace_min_range: float = 0.0
-    observation_persistence: float = 0.0
-    marking: bool = True
-    clearing: bool = True
-    inf_is_valid: bool = True
+    obstacle_max_range: float = parameter(2.5, "Range up to which obstacles are marked.", unit="m", minimum=0.0)
+    obstacle_min_range: float = parameter(0.0, "Range from which obstacles are marked.", unit="m", minimum=0.0)
+    raytrace_max_range: float = parameter(3.0, "Range up to which cells are cleared.", unit="m", minimum=0.0)
+    raytrace_min_range: float = parameter(0.0, "Range from which cells are cleared.", unit="m", minimum=0.0)
+    observation_persistence: float = parameter(
+        0.0, "How long an observation is kept; 0 keeps the latest alone.", unit="s", minimum=0.0
+    )
+    marking: bool = parameter(True, "Whether obstacles are marked.")
+    clearing: bool = parameter(True, "Whether cells before obstacles are cleared.")
+    inf_is_valid: bool = parameter(True, "Whether rays that met nothing clear their way.")
+    topic: str = parameter("", "Topic of the sensor; empty for the source's name.", read_only=True)
+    data_type: str = parameter("LaserScan", "Type of its messages.", choices=("LaserScan",), read_only=True)
 
 
 @dataclass(frozen=True)
-class ObstacleLayerParameters:
+class ObstacleLayerParameters(Parameters):
     """Parameters of the layer, by their Nav2 names."""
 
-    sources: Mapping[str, ObservationSource] = field(default_factory=lambda: {"scan": ObservationSource()})
-    footprint_clearing_enabled: bool = True
-    combination_method: int = 1
+    observation_sources: str = parameter("scan", "Names of the sensors, with spaces between them.", read_only=True)
+    sources: Mapping[str, ObservationSource] = per_name(ObservationSource, by="observation_sources", at="")
+    footprint_clearing_enabled: bool = parameter(True, "Whether the cells below the robot are cleared.")
+    combination_method: int = parameter(
+        1,
+        "How costs are combined with those of layers below: 0 overwrites, 1 takes the largest, 2 takes the largest "
+        "and leaves unknown cells unknown.",
+        choices=(0, 1, 2),
+    )
 
 
 @dataclass(frozen=True)
@@ -287,5 +298,5 @@ def _combine(below: Costs, above: Costs, method: int) -> None:
             if cost == NO_INFORMATION:
                 continue
             old = below[row, column]
-            if method == 0 or old == NO_INFORMATION or old < cost:
+            if method == 0 or (old == NO_INFORMATION and method == 1) or old < cost:
                 below[row, column] = cost

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.common.parameters import Parameters, parameter
 from daidalos.mapping.grid import OccupancyGrid
 from daidalos.navigation.costmap.costmap import EVERYWHERE, Bounds, Costmap, CostmapError, Window
 from daidalos.navigation.costmap.layers.layer import Layer
@@ -14,13 +15,16 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class StaticLayerParameters:
+class StaticLayerParameters(Parameters):
     """Parameters of the layer, by their Nav2 names."""
 
-    lethal_cost_threshold: int = 100
-    unknown_cost_value: int = -1
-    trinary_costmap: bool = True
-    track_unknown_space: bool = True
+    map_topic: str = parameter("", "Topic of the map; empty for the costmap's map_topic.", read_only=True)
+    lethal_cost_threshold: int = parameter(
+        100, "Value of the map from which a cell is an obstacle.", minimum=0, maximum=100
+    )
+    unknown_cost_value: int = parameter(-1, "Value of the map that means unknown.", minimum=-1, maximum=255)
+    trinary_costmap: bool = parameter(True, "Whether cells are free, occupied or unknown, and nothing in between.")
+    track_unknown_space: bool = parameter(True, "Whether unknown cells stay unknown instead of free.")
 
 
 class StaticLayer(Layer):

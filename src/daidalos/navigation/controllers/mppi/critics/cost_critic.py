@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daidalos.common.kernels import compiled
+from daidalos.common.parameters import Parameters, parameter
 from daidalos.navigation.controllers.mppi.critics.critic import Critic, Scene
 from daidalos.navigation.controllers.mppi.rollouts import Rollouts, Samples
 from daidalos.navigation.costmap.costmap import (
@@ -20,20 +21,22 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class CostCriticParameters:
-    """Parameters of the critic, by their Nav2 names; the distance is in metres.
+class CostCriticParameters(Parameters):
+    """Parameters of the critic, by their Nav2 names.
 
     The power is not Nav2's: raised to the third, cells near to contact weigh much and the middle of a door
     little.
     """
 
-    cost_weight: float = 10.0
-    cost_power: int = 3
-    critical_cost: float = 300.0
-    collision_cost: float = 1_000_000.0
-    near_goal_distance: float = 0.5
-    consider_footprint: bool = False
-    trajectory_point_step: int = 2
+    cost_weight: float = parameter(10.0, "Weight of the critic in the cost of a trajectory.", minimum=0.0)
+    cost_power: int = parameter(3, "Power that the cost of a cell is raised to.", minimum=1)
+    critical_cost: float = parameter(300.0, "Cost of a pose within the inscribed radius of obstacles.", minimum=0.0)
+    collision_cost: float = parameter(1_000_000.0, "Cost of a trajectory that collides.", minimum=0.0)
+    near_goal_distance: float = parameter(
+        0.5, "Distance to the goal below which only collisions count.", unit="m", minimum=0.0
+    )
+    consider_footprint: bool = parameter(False, "Whether the footprint is checked instead of the robot's centre.")
+    trajectory_point_step: int = parameter(2, "Step between the poses of a trajectory that are checked.", minimum=1)
 
 
 class CostCritic(Critic):

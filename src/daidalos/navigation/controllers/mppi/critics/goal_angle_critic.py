@@ -5,17 +5,20 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from daidalos.common.parameters import Parameters, parameter
 from daidalos.common.pose2 import wrap
 from daidalos.navigation.controllers.mppi.critics.critic import Critic, Scene
 from daidalos.navigation.controllers.mppi.rollouts import Rollouts
 
 
 @dataclass(frozen=True)
-class GoalAngleCriticParameters:
-    """Parameters of the critic, by their Nav2 names; the threshold is in metres."""
+class GoalAngleCriticParameters(Parameters):
+    """Parameters of the critic, by their Nav2 names."""
 
-    cost_weight: float = 3.0
-    threshold_to_consider: float = 0.5
+    cost_weight: float = parameter(3.0, "Weight of the critic in the cost of a trajectory.", minimum=0.0)
+    threshold_to_consider: float = parameter(
+        0.5, "Distance to the goal below which the critic works.", unit="m", minimum=0.0
+    )
 
 
 class GoalAngleCritic(Critic):

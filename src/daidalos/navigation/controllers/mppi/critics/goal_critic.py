@@ -5,16 +5,19 @@ from dataclasses import dataclass
 import numpy as np
 
 from daidalos.common.kernels import compiled
+from daidalos.common.parameters import Parameters, parameter
 from daidalos.navigation.controllers.mppi.critics.critic import Critic, Scene
 from daidalos.navigation.controllers.mppi.rollouts import Rollouts, Samples
 
 
 @dataclass(frozen=True)
-class GoalCriticParameters:
-    """Parameters of the critic, by their Nav2 names; the threshold is in metres."""
+class GoalCriticParameters(Parameters):
+    """Parameters of the critic, by their Nav2 names."""
 
-    cost_weight: float = 5.0
-    threshold_to_consider: float = 1.4
+    cost_weight: float = parameter(5.0, "Weight of the critic in the cost of a trajectory.", minimum=0.0)
+    threshold_to_consider: float = parameter(
+        1.4, "Distance to the goal below which the critic works.", unit="m", minimum=0.0
+    )
 
 
 class GoalCritic(Critic):

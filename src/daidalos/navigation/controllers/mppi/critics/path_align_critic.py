@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daidalos.common.kernels import compiled
+from daidalos.common.parameters import Parameters, parameter
 from daidalos.navigation.controllers.mppi.critics.critic import Critic, Scene
 from daidalos.navigation.controllers.mppi.rollouts import Rollouts, Samples
 
@@ -13,14 +14,20 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class PathAlignCriticParameters:
-    """Parameters of the critic, by their Nav2 names; the threshold is in metres."""
+class PathAlignCriticParameters(Parameters):
+    """Parameters of the critic, by their Nav2 names."""
 
-    cost_weight: float = 10.0
-    threshold_to_consider: float = 0.5
-    offset_from_furthest: int = 6
-    max_path_occupancy_ratio: float = 0.07
-    trajectory_point_step: int = 4
+    cost_weight: float = parameter(10.0, "Weight of the critic in the cost of a trajectory.", minimum=0.0)
+    threshold_to_consider: float = parameter(
+        0.5, "Distance to the goal above which the critic works.", unit="m", minimum=0.0
+    )
+    offset_from_furthest: int = parameter(
+        6, "Number of path points that trajectories have to reach for the critic to work.", minimum=0
+    )
+    max_path_occupancy_ratio: float = parameter(
+        0.07, "Share of the path behind obstacles above which the critic rests.", minimum=0.0, maximum=1.0
+    )
+    trajectory_point_step: int = parameter(4, "Step between the poses of a trajectory that are compared.", minimum=1)
 
 
 class PathAlignCritic(Critic):

@@ -5,19 +5,26 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from daidalos.common.parameters import Parameters, parameter
 from daidalos.common.pose2 import between, wrap
 from daidalos.navigation.controllers.mppi.critics.critic import Critic, Scene
 from daidalos.navigation.controllers.mppi.rollouts import Rollouts
 
 
 @dataclass(frozen=True)
-class PathAngleCriticParameters:
-    """Parameters of the critic, by their Nav2 names; metres and radians."""
+class PathAngleCriticParameters(Parameters):
+    """Parameters of the critic, by their Nav2 names."""
 
-    cost_weight: float = 2.0
-    threshold_to_consider: float = 0.5
-    offset_from_furthest: int = 4
-    max_angle_to_furthest: float = 0.785
+    cost_weight: float = parameter(2.0, "Weight of the critic in the cost of a trajectory.", minimum=0.0)
+    threshold_to_consider: float = parameter(
+        0.5, "Distance to the goal above which the critic works.", unit="m", minimum=0.0
+    )
+    offset_from_furthest: int = parameter(
+        4, "Number of path points beyond the furthest reached one that the robot should look at.", minimum=0
+    )
+    max_angle_to_furthest: float = parameter(
+        0.785, "Angle to that point below which the critic rests.", unit="rad", minimum=0.0
+    )
 
 
 class PathAngleCritic(Critic):

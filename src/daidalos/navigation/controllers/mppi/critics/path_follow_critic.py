@@ -4,17 +4,22 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from daidalos.common.parameters import Parameters, parameter
 from daidalos.navigation.controllers.mppi.critics.critic import Critic, Scene
 from daidalos.navigation.controllers.mppi.rollouts import Rollouts
 
 
 @dataclass(frozen=True)
-class PathFollowCriticParameters:
-    """Parameters of the critic, by their Nav2 names; the threshold is in metres."""
+class PathFollowCriticParameters(Parameters):
+    """Parameters of the critic, by their Nav2 names."""
 
-    cost_weight: float = 5.0
-    threshold_to_consider: float = 1.4
-    offset_from_furthest: int = 6
+    cost_weight: float = parameter(5.0, "Weight of the critic in the cost of a trajectory.", minimum=0.0)
+    threshold_to_consider: float = parameter(
+        1.4, "Distance to the goal above which the critic works.", unit="m", minimum=0.0
+    )
+    offset_from_furthest: int = parameter(
+        6, "Number of path points beyond the furthest reached one that trajectories are drawn to.", minimum=0
+    )
 
 
 class PathFollowCritic(Critic):

@@ -4,15 +4,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from daidalos.common.parameters import Parameters, parameter
 from daidalos.navigation.controllers.mppi.critics.critic import Critic, Scene
 from daidalos.navigation.controllers.mppi.rollouts import Rollouts
 
 
 @dataclass(frozen=True)
-class TwirlingCriticParameters:
+class TwirlingCriticParameters(Parameters):
     """Parameters of the critic, by their Nav2 names."""
 
-    cost_weight: float = 10.0
+    cost_weight: float = parameter(10.0, "Weight of the critic in the cost of a trajectory.", minimum=0.0)
 
 
 class TwirlingCritic(Critic):
