@@ -65,6 +65,35 @@ def test_chordal_start_solves_what_descent_from_odometry_does_not() -> None:
     assert optimize(start, edges, chordal=True).chi2 == pytest.approx(best, rel=1e-3)
 
 
+def test_it_ends_where_gtsam_ends() -> None:
+    gtsam = pytest.importorskip("gtsam")
+    rng = np.random.default_rng(5)
+    true = manhattan(300, rng)
+    edges = noisy_steps(true, rng, 0.05)
+    distance = np.abs(true[:, None, :2] - true[None, :, :2]).max(axis=2)
+    for first, second in rng.permutation(np.argwhere(np.triu(distance < 1.1, 20)))[:300]:
+        edges.append(closure(true, int(first), int(second), rng, 0.05, robust=False))
+    graph, values = gtsam.NonlinearFactorGraph(), gtsam.Values()
+    graph.add(gtsam.PriorFactorPose2(0, gtsam.Pose2(*true[0]), gtsam.noiseModel.Isotropic.Sigma(3, 1e-4)))
+    for edge in edges:
+        noise = gtsam.noiseModel.Gaussian.Information(edge.information)
+        graph.add(gtsam.BetweenFactorPose2(edge.first, edge.second, gtsam.Pose2(*edge.measurement), noise))
+    start = dead_reckoning(true[0], edges[:300])
+    for index, pose in enumerate(start):
+        values.insert(index, gtsam.Pose2(*pose))
+    parameters = gtsam.LevenbergMarquardtParams()
+    parameters.setRelativeErrorTol(1e-10)
+    theirs = gtsam.LevenbergMarquardtOptimizer(graph, values, parameters).optimize()
+    ours = optimize(start, edges)
+    assert ours.chi2 == pytest.approx(2.0 * graph.error(theirs), rel=1e-4)
+    expected = np.array([[pose.x(), pose.y()] for pose in (theirs.atPose2(index) for index in range(len(start)))])
+    assert ours.poses[:, :2] == pytest.approx(expected, abs=0.05)
+
+
+def test_a_single_pose_stays() -> None:
+    assert optimize(np.array([[1.0, 2.0, 3.0]]), []).poses == pytest.approx(np.array([[1.0, 2.0, 3.0]]))
+
+
 def test_squared_errors_are_mahalanobis() -> None:
     poses = np.array([[0.0, 0.0, np.pi / 2], [0.0, 2.0, np.pi / 2]])
     edge = Edge(0, 1, np.array([1.5, 0.0, 0.0]), np.diag([4.0, 1.0, 1.0]))

@@ -1,8 +1,8 @@
 """Pose graphs: the poses that agree best with many relative measurements, some of which may be wrong."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +16,15 @@ ROBUST_SCALE = 2.0
 
 OUTLIER_CHI2 = 25.0
 """Squared whitened error of a closure above which it is taken for false."""
+
+MAX_STEPS = 100
+"""Steps after which descent ends although the cost may still fall."""
+
+RELATIVE_TOLERANCE = 1e-5
+"""Part of the cost that a step must save for descent to go on."""
+
+MIN_DAMPING, START_DAMPING, MAX_DAMPING = 1e-12, 1e-5, 1e10
+"""Range of the damping that is added to the diagonal of the normal equations, and its first value."""
 
 
 @dataclass(frozen=True)
@@ -60,6 +69,20 @@ class Solution:
     rejected: tuple[int, ...]
 
 
+class _Edges(NamedTuple):
+    """Edges as arrays: one row for each of m edges."""
+
+    first: NDArray[np.intp]
+    second: NDArray[np.intp]
+    measured: Array
+    information: Array
+    closure: NDArray[np.bool_]
+
+    def only(self, kept: NDArray[np.bool_]) -> "_Edges":
+        """Return the edges that a mask selects."""
+        return _Edges(*(column[kept] for column in self))
+
+
 def optimize(poses: Array, edges: Sequence[Edge], *, chordal: bool = False) -> Solution:
     """Find the poses that agree best with the edges.
 
@@ -77,78 +100,165 @@ def optimize(poses: Array, edges: Sequence[Edge], *, chordal: bool = False) -> S
         SLAM") and keep the better solution. Needed where the first guess is so bent that descent sticks in a
         local minimum.
     """
+    rows = _columns(edges)
     starts = [np.asarray(poses, dtype=np.float64)]
     if chordal:
-        starts.append(_chordal_start(starts[0], edges))
-    solutions = [_descend(start, edges) for start in starts]
+        starts.append(_chordal_start(starts[0], rows))
+    solutions = [_descend(start, rows) for start in starts]
     best, _ = min(solutions, key=lambda solution: solution[1])
-    errors = squared_errors(best, edges)
-    rejected = tuple(k for k, edge in enumerate(edges) if edge.closure and errors[k] > OUTLIER_CHI2)
-    if rejected:
-        outliers = set(rejected)
-        kept = [edge for k, edge in enumerate(edges) if k not in outliers]
-        best, _ = _descend(best, kept)
-        errors = squared_errors(best, kept)
-    return Solution(best, float(errors.sum()), rejected)
+    outliers = rows.closure & (_squared_errors(best, rows) > OUTLIER_CHI2)
+    if outliers.any():
+        rows = rows.only(~outliers)
+        best, _ = _descend(best, rows)
+    chi2 = float(_squared_errors(best, rows).sum())
+    return Solution(best, chi2, tuple(int(k) for k in np.flatnonzero(outliers)))
 
 
 def squared_errors(poses: Array, edges: Sequence[Edge]) -> Array:
-    """Squared whitened error of each edge, shape (m,)."""
-    first = np.array([edge.first for edge in edges], dtype=np.int64)
-    second = np.array([edge.second for edge in edges], dtype=np.int64)
-    measured = np.array([edge.measurement for edge in edges]).reshape(-1, 3)
-    information = np.array([edge.information for edge in edges]).reshape(-1, 3, 3)
-    error = pose2.between(measured, pose2.between(poses[first], poses[second]))
-    squared: Array = np.einsum("ki,kij,kj->k", error, information, error)
+    """Compute the squared whitened error of each edge, shape (m,)."""
+    return _squared_errors(poses, _columns(edges))
+
+
+def _columns(edges: Sequence[Edge]) -> _Edges:
+    return _Edges(
+        np.array([edge.first for edge in edges], dtype=np.intp),
+        np.array([edge.second for edge in edges], dtype=np.intp),
+        np.array([edge.measurement for edge in edges], dtype=np.float64).reshape(-1, 3),
+        np.array([edge.information for edge in edges], dtype=np.float64).reshape(-1, 3, 3),
+        np.array([edge.closure for edge in edges], dtype=np.bool_),
+    )
+
+
+def _errors(poses: Array, edges: _Edges) -> Array:
+    """Compute the pose of each second pose as measured, relative to that as estimated; shape (m, 3)."""
+    return pose2.between(edges.measured, pose2.between(poses[edges.first], poses[edges.second]))
+
+
+def _squared_errors(poses: Array, edges: _Edges) -> Array:
+    error = _errors(poses, edges)
+    squared: Array = np.einsum("ki,kij,kj->k", error, edges.information, error)
     return squared
 
 
-def _descend(start: Array, edges: Sequence[Edge]) -> tuple[Array, float]:
-    """Levenberg-Marquardt from a start: poses and remaining cost."""
-    import gtsam
-
-    kernel = gtsam.noiseModel.mEstimator.Cauchy.Create(ROBUST_SCALE)
-
-    def noise_of(edge: Edge) -> Any:
-        noise = gtsam.noiseModel.Gaussian.Information(edge.information)
-        return gtsam.noiseModel.Robust.Create(kernel, noise) if edge.closure else noise
-
-    graph = _build(edges, start[0], noise_of)
-    values = gtsam.Values()
-    for index, pose in enumerate(start):
-        values.insert(index, gtsam.Pose2(*pose))
-    parameters = gtsam.LevenbergMarquardtParams()
-    parameters.setRelativeErrorTol(1e-4)
-    solved = gtsam.LevenbergMarquardtOptimizer(graph, values, parameters).optimize()
-    return _to_array(solved, start.shape[0]), float(graph.error(solved))
+def _cost(poses: Array, edges: _Edges) -> float:
+    """Compute half the sum of squared whitened errors, those of closures under the Cauchy kernel."""
+    squared, scale = _squared_errors(poses, edges), ROBUST_SCALE**2
+    return float(0.5 * np.where(edges.closure, scale * np.log1p(squared / scale), squared).sum())
 
 
-def _chordal_start(poses: Array, edges: Sequence[Edge]) -> Array:
-    import gtsam
-
-    def noise_of(edge: Edge) -> Any:
-        # The relaxation takes one number per measurement: the standard deviation of an average direction.
-        return gtsam.noiseModel.Isotropic.Sigma(3, float(np.linalg.det(edge.information)) ** (-1.0 / 6.0))
-
-    return _to_array(gtsam.fastSyncPose2(_build(edges, poses[0], noise_of)), poses.shape[0])
-
-
-def _build(edges: Sequence[Edge], first: Array, noise_of: Callable[[Edge], Any]) -> Any:
-    """Build a graph of factors that holds the first pose where it is."""
-    import gtsam
-
-    graph = gtsam.NonlinearFactorGraph()
-    for edge in edges:
-        measured = gtsam.Pose2(*edge.measurement)
-        graph.add(gtsam.BetweenFactorPose2(edge.first, edge.second, measured, noise_of(edge)))
-    fixed = gtsam.noiseModel.Isotropic.Sigma(3, 1e-4)
-    graph.add(gtsam.PriorFactorPose2(0, gtsam.Pose2(*first), fixed))
-    return graph
+def _descend(start: Array, edges: _Edges) -> tuple[Array, float]:
+    """Run Levenberg-Marquardt from a start: poses and remaining cost; the first pose is held."""
+    poses, cost, damping = start.copy(), _cost(start, edges), START_DAMPING
+    for _ in range(MAX_STEPS):
+        hessian, gradient = _normal_equations(poses, edges)
+        while True:
+            moved = _moved(poses, -_solved(hessian, gradient, damping).reshape(-1, 3))
+            lower = _cost(moved, edges)
+            if lower <= cost:
+                break
+            damping *= 10.0
+            if damping > MAX_DAMPING:
+                return poses, cost
+        saved = cost - lower
+        poses, cost, damping = moved, lower, max(damping / 10.0, MIN_DAMPING)
+        if saved <= RELATIVE_TOLERANCE * cost:
+            break
+    return poses, cost
 
 
-def _to_array(values: Any, count: int) -> Array:
-    poses = np.empty((count, 3))
-    for index in range(count):
-        pose = values.atPose2(index)
-        poses[index] = pose.x(), pose.y(), pose.theta()
-    return poses
+def _moved(poses: Array, step: Array) -> Array:
+    """Move all poses but the first along arcs of constant twist, so that rigid parts stay rigid as they turn."""
+    moved = poses.copy()
+    half = step[:, 2] / 2.0
+    moved[1:, :2] += np.sinc(half / np.pi)[:, None] * _rotated(step[:, :2], half)
+    moved[1:, 2] = pose2.wrap(moved[1:, 2] + step[:, 2])
+    return moved
+
+
+def _rotated(vectors: Array, angle: Array) -> Array:
+    cos, sin = np.cos(angle), np.sin(angle)
+    x, y = vectors.T
+    return np.stack([cos * x - sin * y, sin * x + cos * y], axis=1)
+
+
+def _normal_equations(poses: Array, edges: _Edges) -> tuple[Any, Array]:
+    """Linearise: the Hessian's approximation of all poses but the first, and the gradient of the cost."""
+    from scipy.sparse import coo_array
+
+    error = _errors(poses, edges)
+    by_first, by_second = _jacobians(poses, edges)
+    squared = np.einsum("ki,kij,kj->k", error, edges.information, error)
+    weight = np.where(edges.closure, 1.0 / (1.0 + squared / ROBUST_SCALE**2), 1.0)
+    information = weight[:, None, None] * edges.information
+    jacobians, ends = (by_first, by_second), (edges.first, edges.second)
+    size = 3 * len(poses)
+    gradient = np.zeros(size)
+    blocks, rows, columns = [], [], []
+    component = np.arange(3)
+    for left, row in zip(jacobians, ends, strict=True):
+        weighted = left.transpose(0, 2, 1) @ information
+        at = 3 * row[:, None] + component
+        np.add.at(gradient, at, np.einsum("kij,kj->ki", weighted, error))
+        for right, column in zip(jacobians, ends, strict=True):
+            blocks.append((weighted @ right).ravel())
+            rows.append(np.repeat(at, 3, axis=1).ravel())
+            columns.append(np.tile(3 * column[:, None] + component, (1, 3)).ravel())
+    places = np.concatenate(rows), np.concatenate(columns)
+    hessian = coo_array((np.concatenate(blocks), places), shape=(size, size)).tocsc()
+    return hessian[3:, 3:], gradient[3:]
+
+
+def _jacobians(poses: Array, edges: _Edges) -> tuple[Array, Array]:
+    """Compute the derivatives of the errors by the first and by the second poses, each of shape (m, 3, 3)."""
+    offset = (poses[edges.second] - poses[edges.first])[:, :2]
+    turned = poses[edges.first, 2] + edges.measured[:, 2]
+    cos, sin = np.cos(turned), np.sin(turned)
+    by_second = np.zeros((len(turned), 3, 3))
+    by_second[:, 0, 0], by_second[:, 0, 1] = cos, sin
+    by_second[:, 1, 0], by_second[:, 1, 1] = -sin, cos
+    by_second[:, 2, 2] = 1.0
+    by_first = -by_second
+    by_first[:, 0, 2] = cos * offset[:, 1] - sin * offset[:, 0]
+    by_first[:, 1, 2] = -cos * offset[:, 0] - sin * offset[:, 1]
+    return by_first, by_second
+
+
+def _solved(matrix: Any, right: NDArray[Any], damping: float = 0.0) -> NDArray[Any]:
+    """Solve a sparse system that is symmetric and positive definite once damped."""
+    from scipy.sparse import eye_array
+    from scipy.sparse.linalg import splu
+
+    damped = (matrix + damping * eye_array(matrix.shape[0])).tocsc()
+    factors = splu(damped, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+    solution: NDArray[Any] = factors.solve(right)
+    return solution
+
+
+def _chordal_start(poses: Array, edges: _Edges) -> Array:
+    """Solve for the headings as unit complex numbers without the constraint, then for the positions; both are linear.
+
+    The relaxation takes one number per measurement: the information of an average direction.
+    """
+    weight = np.cbrt(np.linalg.det(edges.information))
+    turn = np.exp(1j * edges.measured[:, 2])
+    heading = _relaxed(len(poses), edges, weight, turn, np.zeros(len(weight)), np.exp(1j * poses[0, 2]))
+    heading /= np.abs(heading)
+    step = heading[edges.first] * (edges.measured[:, 0] + 1j * edges.measured[:, 1])
+    position = _relaxed(len(poses), edges, weight, np.ones_like(turn), step, complex(*poses[0, :2]))
+    return np.stack([position.real, position.imag, np.angle(heading)], axis=1)
+
+
+def _relaxed(
+    count: int, edges: _Edges, weight: Array, factor: NDArray[Any], shift: NDArray[Any], fixed: complex
+) -> NDArray[np.complex128]:
+    """Return the complex z, z_0 given, with the least sum of ``weight abs(z_second - factor z_first - shift)**2``."""
+    from scipy.sparse import coo_array
+
+    entry, row = np.arange(len(weight)), np.sqrt(weight)
+    values = np.concatenate([row, -row * factor])
+    places = np.tile(entry, 2), np.concatenate([edges.second, edges.first])
+    matrix = coo_array((values, places), shape=(len(weight), count)).tocsc()
+    right = row * shift - matrix[:, [0]].toarray()[:, 0] * fixed
+    free = matrix[:, 1:]
+    adjoint = free.conj().T
+    return np.concatenate([[fixed], _solved(adjoint @ free, adjoint @ right)])
