@@ -18,7 +18,7 @@ from printed import Printed
 DAIDALOS = [sys.executable, "-m", "daidalos.cli.daidalos"]
 ROS2 = [sys.executable, "-m", "daidalos.cli.ros2"]
 TIMEOUT_S = 60.0
-END_S = 5.0
+END_S = 30.0
 _MARK = "DAIDALOS_TEST_COMMAND"
 
 

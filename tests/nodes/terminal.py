@@ -20,7 +20,7 @@ import psutil
 from printed import Printed
 
 TIMEOUT_S = 60.0
-END_S = 10.0
+END_S = 30.0
 _NO_SCREEN = ("DISPLAY", "WAYLAND_DISPLAY", "BROWSER")
 
 

@@ -123,7 +123,10 @@ def test_rotations():
 
 
 def test_processes_by_name():
-    import os
+    import subprocess
+    import sys
 
-    assert os.getpid() in [pid for pid, _ in find_os_processes("pytest")]
+    with subprocess.Popen([sys.executable, "-c", "input()", "a name of its own"], stdin=subprocess.PIPE) as named:
+        assert [pid for pid, _ in find_os_processes("a name of its own")] == [named.pid]
+        named.kill()
     assert find_os_processes("no such process " + "at all") == []
