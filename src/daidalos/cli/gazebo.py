@@ -1,4 +1,4 @@
-"""The commands of Gazebo, old and new, that people's launch files start: `gazebo`, `gzclient`, `gz` and `ign`."""
+"""Commands of Gazebo, classic and new, in users' launch files: `gazebo`, `gzclient`, `gz` and `ign`."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 
 def gazebo(argv: Sequence[str] | None = None) -> int:
-    """Run the simulator and the view on it.
+    """Run the simulator and its view.
 
     Parameters
     ----------
@@ -18,12 +18,12 @@ def gazebo(argv: Sequence[str] | None = None) -> int:
 
 
 def gzclient() -> int:
-    """Serve the view on a simulator that runs; whatever it is given has no effect."""
+    """Serve the view of a running simulator; arguments have no effect."""
     return _run("", "", (), with_view=True)
 
 
 def gz(argv: Sequence[str] | None = None) -> int:
-    """Run ``gz sim`` or ``ign gazebo``; for the other verbs of gz there is ``ros2``.
+    """Run ``gz sim`` or ``ign gazebo``; other verbs of gz are not available.
 
     Parameters
     ----------
@@ -46,7 +46,7 @@ def gz(argv: Sequence[str] | None = None) -> int:
 
 
 def _run(package: str, server: str, words: Sequence[str], with_view: bool) -> int:
-    """Start a simulator, where one is named, and the view; end them together."""
+    """Start a simulator, if one is named, and the view; stop them together."""
     from launch import LaunchDescription, LaunchDescriptionEntity, LaunchService
     from launch.actions import IncludeLaunchDescription, Shutdown
     from launch.substitutions import PathJoinSubstitution

@@ -1,4 +1,4 @@
-"""The command `rosdep`: what packages depend on, and getting it."""
+"""Command `rosdep`: dependencies of packages, and their installation."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from daidalos.workspaces.rosdep.packages import TYPES, PackageDependencies, find
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run the command line; returns the exit status.
+    """Run the command line; return the exit status.
 
     Parameters
     ----------
@@ -151,7 +151,7 @@ def _nothing(args: argparse.Namespace) -> int:
 
 
 def _needs(args: argparse.Namespace) -> list[PackageDependencies]:
-    """Return the packages that were asked for, with the dependencies that count."""
+    """Return the requested packages with the selected types of dependencies."""
     folders = args.paths or [Path()]
     for folder in folders:
         if not folder.is_dir():

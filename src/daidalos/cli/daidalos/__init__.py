@@ -1,4 +1,4 @@
-"""The command `daidalos`: its verbs, each imported when it is called."""
+"""Command `daidalos` with its verbs, each imported when it is called."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def _complete(verb: Any, parser: Parser, name: str) -> None:
 
 
 class _Version(Action):
-    """Print the version and end."""
+    """Option that prints the version and exits."""
 
     def __call__(self, parser: ArgumentParser, namespace: Namespace, values: Any, option_string: Any = None) -> None:
         from daidalos import __version__

@@ -1,4 +1,4 @@
-"""Run `daidalos` as a module."""
+"""Entry point of `python -m daidalos.cli.daidalos`."""
 
 import sys
 

@@ -1,4 +1,4 @@
-"""`daidalos demo`: a robot that drives itself, in the browser or, headless, on trial."""
+"""`daidalos demo`: a mapping and navigating robot, in the browser or as a headless test."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class DemoVerb:
     """A robot that maps an arena and drives where it is sent."""
 
     def add_arguments(self, parser: argparse.ArgumentParser, cli_name: str) -> None:
-        """Declare what `daidalos demo` takes."""
+        """Declare the arguments of `daidalos demo`."""
         parser.epilog = EPILOG
         parser.add_argument("--headless", action="store_true", help="no browser: drive to goals and report")
         parser.add_argument("--seed", type=int, default=0, metavar="N", help="of all random numbers (default: 0)")
@@ -64,7 +64,7 @@ def _show(arguments: argparse.Namespace) -> int:
 
 
 def _try_out(arguments: argparse.Namespace) -> int:
-    """Launch without a studio, drive, report."""
+    """Launch without the studio, run the test drive and report its results."""
     from daidalos.nodes.daidalos_demo._measuring import LoadRecorder
 
     # A domain of its own: the trial neither disturbs nor is disturbed by what runs beside it.
@@ -86,7 +86,7 @@ def _try_out(arguments: argparse.Namespace) -> int:
 
 @contextlib.contextmanager
 def _launched(seed: int) -> Iterator[tuple[subprocess.Popen[bytes], Path]]:
-    """Run the launch file beside us; its output goes to a file."""
+    """Run the demo's launch file; its output goes to a file."""
     handle, name = tempfile.mkstemp(prefix="daidalos-demo-", suffix=".log")
     chosen = ["studio:=false", "look_around:=false", f"seed:={seed}"]
     command = [sys.executable, "-m", "daidalos.cli.ros2", "launch", *_LAUNCH, *chosen]
@@ -99,7 +99,7 @@ def _launched(seed: int) -> Iterator[tuple[subprocess.Popen[bytes], Path]]:
 
 
 def _end(process: subprocess.Popen[bytes]) -> None:
-    """End the launch with all that it started, as Ctrl-C does."""
+    """Stop the launch with all its processes, as Ctrl-C does."""
     previous = signal.signal(signal.SIGINT, signal.SIG_IGN)
     try:
         if process.poll() is None:
@@ -126,7 +126,7 @@ def _kill(process: subprocess.Popen[bytes]) -> None:
 def _run_trial(
     arguments: argparse.Namespace, say: Callable[[str], None], launch: subprocess.Popen[bytes]
 ) -> TrialReport | None:
-    """Return the report, None when the launch ended before there was one."""
+    """Return the report, None if the launch ended before."""
     import rclpy
     from rclpy.executors import SingleThreadedExecutor
     from rclpy.parameter import Parameter
@@ -155,7 +155,7 @@ def _run_trial(
 
 @contextlib.contextmanager
 def _progress(quiet: bool) -> Iterator[Callable[[str], None]]:
-    """Show what is being done: on a terminal in one moving line, else line by line on standard error."""
+    """Show the progress: on a terminal in one updated line, else line by line on standard error."""
     if quiet or not sys.stderr.isatty():
         yield lambda line: print(line, file=sys.stderr, flush=True)
         return

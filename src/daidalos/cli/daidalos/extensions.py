@@ -1,4 +1,4 @@
-"""`daidalos extensions`: what users can add, what is there, and where it comes from."""
+"""`daidalos extensions`: types of extensions, available extensions and their origins."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class ExtensionsVerb:
     """List what can be extended, and the extensions that are there."""
 
     def add_arguments(self, parser: argparse.ArgumentParser, cli_name: str) -> None:
-        """Declare what `daidalos extensions` takes."""
+        """Declare the arguments of `daidalos extensions`."""
         parser.epilog = EPILOG
         parser.add_argument(
             "kind", nargs="?", metavar="KIND", help="such as planner; without one, all kinds are listed"
@@ -34,7 +34,7 @@ class ExtensionsVerb:
         parser.add_argument("--json", action="store_true", help="print one JSON object")
 
     def main(self, *, args: argparse.Namespace) -> int:
-        """Print the kinds, or the extensions of one; returns the exit status."""
+        """Print the types, or the extensions of one type; return the exit status."""
         known = {kind.name: kind for kind in kinds()}
         if args.kind is None:
             found: dict[str, list[Extension]] = {name: listing(kind) for name, kind in known.items()}
@@ -50,7 +50,7 @@ class ExtensionsVerb:
 
 
 def kinds() -> Iterator[Kind[Any]]:
-    """Yield all kinds, those of the lowest layer first."""
+    """Yield all types of extensions, those of the lowest layer first."""
     for module in _DECLARED_IN:
         yield from import_module(module).KINDS
     from daidalos.cli.daidalos import VERBS
@@ -61,7 +61,7 @@ def kinds() -> Iterator[Kind[Any]]:
 
 
 def _singular(name: str, known: dict[str, Kind[Any]]) -> str:
-    """Return the name of a kind that was written in the plural, such as ``planners``."""
+    """Return the type of a plural name such as ``planners``."""
     return name.removesuffix("s") if name not in known and name.removesuffix("s") in known else name
 
 
@@ -95,7 +95,7 @@ def _print_extensions(kind: Kind[Any], extensions: list[Extension]) -> None:
 
 
 def _print_table(title: str, headings: tuple[str, ...], rows: Sequence[tuple[str, ...]]) -> None:
-    """Print a table; columns are never cut, so that names can be copied."""
+    """Print a table; columns are never truncated, so that names can be copied."""
     from rich.box import SIMPLE_HEAD
     from rich.console import Console
     from rich.table import Table

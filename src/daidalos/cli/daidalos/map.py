@@ -1,4 +1,4 @@
-"""`daidalos map`: a map and a trajectory from the log of a real robot."""
+"""`daidalos map`: map and trajectory from the log of a real robot."""
 
 import argparse
 import contextlib
@@ -21,14 +21,14 @@ reads them."""
 
 
 class _UserError(Exception):
-    """Something the user gave is wrong; the message says what."""
+    """Invalid input of the user; the message gives the reason."""
 
 
 class MapVerb:
     """Build a map from the log of a robot."""
 
     def add_arguments(self, parser: argparse.ArgumentParser, cli_name: str) -> None:
-        """Declare what `daidalos map` takes."""
+        """Declare the arguments of `daidalos map`."""
         parser.epilog = EPILOG
         parser.add_argument("bag", type=Path, help="bag: a folder, an .mcap or a .db3 file")
         parser.add_argument(
@@ -69,7 +69,7 @@ class MapVerb:
         parser.add_argument("--json", action="store_true", help="print one JSON object")
 
     def main(self, *, args: argparse.Namespace) -> int:
-        """Map a log; returns the exit status."""
+        """Map a log; return the exit status."""
         from daidalos.mapping.errors import MappingError
 
         try:
@@ -111,7 +111,7 @@ def _run(args: argparse.Namespace) -> dict[str, Any]:
 
 
 def _map(log: "Log", args: argparse.Namespace) -> tuple["LogMap", float]:
-    """Return the map and the seconds it took, without those for compiling the kernels."""
+    """Return the map and the computing time [s], without compilation of the kernels."""
     from daidalos.common.kernels import warm_up
     from daidalos.mapping.offline import map_log
     from daidalos.mapping.slam import SlamConfig
@@ -131,7 +131,7 @@ def _map(log: "Log", args: argparse.Namespace) -> tuple["LogMap", float]:
 
 @contextlib.contextmanager
 def _progress_bar(total: int) -> Iterator[tuple[Callable[[float, str], None], Callable[[int], None]]]:
-    """Return two functions that show the preparation and the scans done, if stderr is a terminal."""
+    """Return two callbacks that show the preparation and the processed scans if stderr is a terminal."""
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
@@ -162,7 +162,7 @@ def _errors(path: Path, log: "Log", poses: Any, relations: "Relations") -> "Rela
 
 
 def _write_trajectory(path: Path, log: "Log", mapped: "LogMap") -> None:
-    """TUM format: time x y z qx qy qz qw."""
+    """Write a trajectory in TUM format: time x y z qx qy qz qw."""
     import numpy as np
 
     lines = [
@@ -212,7 +212,7 @@ def _as_text(report: dict[str, Any]) -> str:
 
 
 def _require_writable(path: Path) -> None:
-    """Say before the work begins that its result could not be written."""
+    """Raise an error at once if a result could not be written later."""
     if not path.parent.is_dir():
         raise _UserError(f"{path}: no such folder: {path.parent}")
     if path.is_dir() or not os.access(path.parent, os.W_OK):

@@ -1,4 +1,4 @@
-"""`daidalos sim`: a world in the simulator, with robots, and a view on it in the browser."""
+"""`daidalos sim`: simulation of a world with robots, with a view in the browser."""
 
 import argparse
 import sys
@@ -18,7 +18,7 @@ class SimVerb:
     """Simulate a world."""
 
     def add_arguments(self, parser: argparse.ArgumentParser, cli_name: str) -> None:
-        """Declare what `daidalos sim` takes."""
+        """Declare the arguments of `daidalos sim`."""
         parser.epilog = EPILOG
         parser.add_argument("world", nargs="?", default="", help="an SDF file, or the name of a world")
         parser.add_argument(
@@ -36,7 +36,7 @@ class SimVerb:
         )
 
     def main(self, *, args: argparse.Namespace) -> int:
-        """Simulate; returns the exit status."""
+        """Simulate; return the exit status."""
         from daidalos.description.errors import DescriptionError
         from daidalos.simulation.errors import SimulationError
 
@@ -51,7 +51,7 @@ class SimVerb:
 
 
 def _find_world(name: str) -> Path | None:
-    """Return the file of a world; None is the empty one."""
+    """Return the file of a world; None for the empty world."""
     from daidalos.nodes.packages import package_share
 
     if not name:
@@ -100,7 +100,7 @@ def _warn(line: str) -> None:
 
 
 def _launch(path: Path | None, args: argparse.Namespace) -> int:
-    """Start the simulator, what spawns the models, and the studio; end them together."""
+    """Start the simulator, the spawners and the studio; stop them together."""
     from launch import LaunchDescription, LaunchService
     from launch.actions import Shutdown
     from launch_ros.actions import Node

@@ -1,4 +1,4 @@
-"""`daidalos urdf`: what there is to say about a robot, a model or a world, and whether it can be simulated."""
+"""`daidalos urdf`: report on a robot, a model or a world, and check whether it can be simulated."""
 
 import argparse
 import json
@@ -19,7 +19,7 @@ class UrdfVerb:
     """Look at a robot, a model or a world: tree, masses, inertias, limits."""
 
     def add_arguments(self, parser: argparse.ArgumentParser, cli_name: str) -> None:
-        """Declare what `daidalos urdf` takes."""
+        """Declare the arguments of `daidalos urdf`."""
         parser.add_argument("file", type=Path, help="a file in URDF, xacro or SDF, or a folder with a model.config")
         parser.add_argument("mappings", nargs="*", metavar="NAME:=VALUE", help="arguments of the xacro file")
         parser.add_argument(
@@ -29,7 +29,7 @@ class UrdfVerb:
         parser.add_argument("--json", action="store_true", help="print one JSON object")
 
     def main(self, *, args: argparse.Namespace) -> int:
-        """Look at a description; returns 0 when it can be used, 2 when not."""
+        """Check a description; return 0 if it is usable, else 2."""
         from daidalos.description.errors import DescriptionError
         from daidalos.simulation.errors import SimulationError
 
@@ -64,7 +64,7 @@ def _load(args: argparse.Namespace) -> "Robot | Model | World":
 
 
 def _is_sdf(path: Path) -> bool:
-    """Tell a file in SDF, also one that xacro is to expand, by its root element; what can not be read is none."""
+    """Return whether a file is SDF, possibly through xacro, by its root element; unreadable files are not."""
     from daidalos.description.errors import DescriptionError
     from daidalos.description.markup import parse_markup
 
@@ -90,7 +90,7 @@ def _load_sdf(path: Path, mappings: dict[str, str]) -> "Model | World":
 
 
 def _simulated(description: "Robot | Model | World") -> list[str]:
-    """Load a world, or a robot or model into an empty one, make ten steps, and return what was warned of.
+    """Load a world, or a robot or model into an empty world, simulate ten steps and return the warnings.
 
     As in Gazebo a mesh or an image that is missing or broken is no more than a warning.
     """
@@ -118,7 +118,7 @@ def _links(description: "Robot | Model | World") -> "Iterator[Link]":
 
 
 def _unseen(visual: "Visual", where: str) -> list[str]:
-    """Return what of a visual can not be shown, since no camera looks at it in a check."""
+    """Return warnings about visuals, which no camera renders in a check."""
     from daidalos.description.errors import DescriptionError
     from daidalos.description.visuals import visual_parts
 

@@ -1,4 +1,4 @@
-"""`python -m daidalos.cli.ros2`: the command `ros2` where it is not on the path."""
+"""Entry point of `python -m daidalos.cli.ros2`, for environments without `ros2` on the path."""
 
 import sys
 

@@ -1,4 +1,4 @@
-"""The commands that are built in."""
+"""Built-in commands."""
 
 from __future__ import annotations
 
@@ -45,5 +45,5 @@ KIND: Kind[Any] = Kind(
 
 
 def commands() -> Extensions:
-    """Return the commands, built-in and added."""
+    """Return the built-in commands and those of other packages."""
     return Extensions(KIND)

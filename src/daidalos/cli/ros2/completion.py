@@ -1,4 +1,4 @@
-"""What the shell may complete an argument to; argcomplete asks for it."""
+"""Shell completion of arguments, called by argcomplete."""
 
 from __future__ import annotations
 
@@ -16,23 +16,23 @@ Completer = Callable[..., Iterable[str]]
 
 
 def complete(action: Action, completer: Completer) -> Action:
-    """Have an argument completed by ``completer(prefix=..., parsed_args=...)``."""
+    """Set the completer of an argument, called as ``completer(prefix=..., parsed_args=...)``."""
     action.completer = completer  # type: ignore[attr-defined]
     return action
 
 
 def complete_topics(action: Action) -> Action:
-    """Complete to topics."""
+    """Return the topics that complete an argument."""
     return complete(action, lambda parsed_args, **_: _names(parsed_args, graphs.topics, "include_hidden_topics"))
 
 
 def complete_services(action: Action) -> Action:
-    """Complete to services."""
+    """Return the services that complete an argument."""
     return complete(action, lambda parsed_args, **_: _names(parsed_args, graphs.services, "include_hidden_services"))
 
 
 def complete_actions(action: Action) -> Action:
-    """Complete to actions."""
+    """Return the actions that complete an argument."""
     return complete(
         action,
         lambda parsed_args, **_: _names(parsed_args, lambda graph, hidden: graphs.all_actions(graph), ""),
@@ -40,7 +40,7 @@ def complete_actions(action: Action) -> Action:
 
 
 def complete_nodes(action: Action, hidden_key: str = "include_hidden_nodes") -> Action:
-    """Complete to the full names of nodes."""
+    """Return the full names of nodes that complete an argument."""
 
     def names(parsed_args: Namespace, **_: Any) -> list[str]:
         with graph_view(parsed_args) as graph:
@@ -50,7 +50,7 @@ def complete_nodes(action: Action, hidden_key: str = "include_hidden_nodes") -> 
 
 
 def complete_types(action: Action, kind: str, name_key: str | None = None) -> Action:
-    """Complete to types of a kind (``msg``, ``srv``, ``action``), to those of what an argument names if it is there."""
+    """Return types (``msg``, ``srv``, ``action``), or only those of the entity that another argument names."""
 
     def names(parsed_args: Namespace, **_: Any) -> list[str]:
         from ros2cli.interfaces import interface_names
@@ -67,7 +67,7 @@ def complete_types(action: Action, kind: str, name_key: str | None = None) -> Ac
 
 
 def complete_values(action: Action, type_key: str) -> Action:
-    """Complete to the default values of the type that another argument names."""
+    """Return the default values of the type that another argument names."""
 
     def values(parsed_args: Namespace, **_: Any) -> list[str]:
         from ros2cli.interfaces import prototype
@@ -78,7 +78,7 @@ def complete_values(action: Action, type_key: str) -> Action:
 
 
 def complete_packages(action: Action) -> Action:
-    """Complete to packages."""
+    """Return the packages that complete an argument."""
 
     def names(**_: Any) -> list[str]:
         from daidalos.cli.ros2.packages import package_names
@@ -89,7 +89,7 @@ def complete_packages(action: Action) -> Action:
 
 
 def complete_executables(action: Action, package_key: str = "package_name") -> Action:
-    """Complete to the executables of the package that another argument names."""
+    """Return the executables of the package that another argument names."""
 
     def names(parsed_args: Namespace, **_: Any) -> list[str]:
         from daidalos.workspaces.executables import executables

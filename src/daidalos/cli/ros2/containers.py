@@ -1,4 +1,4 @@
-"""Component containers: which there are, and what they run."""
+"""Component containers and their components."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _LOADING_S = 120.0
 
 
 def add_container_argument(parser: ArgumentParser, **options: Any) -> None:
-    """Declare which container is meant."""
+    """Declare the argument of the container."""
 
     def names(parsed_args: Namespace, **_: Any) -> list[str]:
         from daidalos.cli.ros2.graph_view import graph_view
@@ -41,7 +41,7 @@ def containers(graph: Graph) -> list[str]:
 
 
 def find_container(graph: Graph, name: str) -> str:
-    """Return the full name of the container that is meant; CliError where there is none."""
+    """Return the full name of a container; CliError if it does not exist."""
     full_name, known = absolute(name), containers(graph)
     if full_name not in known:
         raise CliError(f"Unable to find container node '{name}'{did_you_mean(full_name, known)}")
@@ -57,7 +57,7 @@ def loaded(node: Node, container: str) -> list[tuple[int, str]]:
 
 
 def add_component_arguments(parser: ArgumentParser) -> None:
-    """Declare which component is meant and how it is to run."""
+    """Declare the arguments of a component and its node."""
     complete_packages(parser.add_argument("package_name", help="Package name where to look for the component plugin"))
     complete(
         parser.add_argument("plugin_name", help="Type name of the component to be loaded"),
@@ -85,7 +85,7 @@ def _plugins(package: str) -> list[str]:
 
 
 def load(node: Node, container: str, args: Namespace) -> tuple[int, str]:
-    """Have a container load a component; return its number and full node name.
+    """Load a component into a container; return its number and full node name.
 
     Raises
     ------
@@ -111,7 +111,7 @@ def load(node: Node, container: str, args: Namespace) -> tuple[int, str]:
 
 
 def unload(node: Node, container: str, number: int) -> str:
-    """Have a container unload a component; return the reason where it does not, else an empty text."""
+    """Unload a component from a container; return the reason of a failure, else an empty text."""
     from composition_interfaces.srv import UnloadNode
 
     request = UnloadNode.Request(unique_id=number)

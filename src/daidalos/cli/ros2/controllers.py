@@ -1,4 +1,4 @@
-"""The controller manager: its services, and what it says of controllers and hardware."""
+"""Client of the controller manager's services."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _ANSWER_S = 30.0
 
 
 def add_manager_arguments(parser: ArgumentParser) -> None:
-    """Declare which controller manager is meant."""
+    """Declare the arguments of the controller manager."""
     parser.add_argument(
         "-c",
         "--controller-manager",
@@ -34,7 +34,7 @@ def add_manager_arguments(parser: ArgumentParser) -> None:
 
 
 def ask(node: Node, args: Namespace, service: str, service_type: Any, **request: Any) -> Any:
-    """Return the answer of one of the manager's services, such as ``list_controllers``.
+    """Return the response of one of the manager's services, such as ``list_controllers``.
 
     Raises
     ------
@@ -66,7 +66,7 @@ def list_components(node: Node, args: Namespace) -> list[Any]:
 
 
 def find_controller(node: Node, args: Namespace, name: str) -> Any:
-    """Return a loaded controller; CliError where there is none of that name."""
+    """Return a loaded controller; CliError if it does not exist."""
     loaded = {one.name: one for one in list_controllers(node, args)}
     if name not in loaded:
         raise CliError(f"controller {name} does not seem to be loaded{did_you_mean(name, loaded)}")
@@ -100,7 +100,7 @@ def switch(
     asap: bool = True,
     timeout_s: float = 5.0,
 ) -> None:
-    """Activate and deactivate controllers; CliError with `fault` and the manager's reason when it refuses."""
+    """Activate and deactivate controllers; CliError with `fault` and the manager's reason on failure."""
     from builtin_interfaces.msg import Duration
     from controller_manager_msgs.srv import SwitchController
 

@@ -1,4 +1,4 @@
-"""UDP multicast, to see whether the network carries it."""
+"""UDP multicast, to test whether the network supports it."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _LARGEST = 4096
 
 
 def send(data: bytes, ttl: int | None = None) -> None:
-    """Send one datagram to the group; `ttl` is how many routers it may pass."""
+    """Send one datagram to the group; `ttl` is the number of routers that it may pass."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
         if ttl is not None:
             sender.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, struct.pack("b", ttl))
@@ -36,13 +36,13 @@ def open_receiver() -> socket.socket:
 
 
 def receive(receiver: socket.socket) -> tuple[bytes, str, int]:
-    """Wait for a datagram; return it with the address and port of who sent it."""
+    """Wait for a datagram; return it with the sender's address and port."""
     data, (host, port) = receiver.recvfrom(_LARGEST)
     return data, host, port
 
 
 def hops(text: str) -> int:
-    """Return a number of routers that a datagram may pass."""
+    """Return a time to live; argument type."""
     value = int(text) if text.isascii() and text.isdigit() else -1
     if not 0 <= value <= 127:
         raise ArgumentTypeError("value must be an integer from 0 to 127")

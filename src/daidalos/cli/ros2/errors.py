@@ -1,10 +1,10 @@
-"""What a command says when it cannot do what it was asked."""
+"""Error of commands."""
 
 from __future__ import annotations
 
 
 class CliError(Exception):
-    """Something that the user can mend.
+    """Mistake that the user can correct.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Commands and verbs: what they are, and where those come from that other packages add.
+"""Contract of commands and verbs, built-in or of other packages.
 
 A package adds a command with an entry point in the group ``ros2cli.command``, and a verb of a command in that
 command's group, such as ``ros2topic.verb``. Both are classes with the methods below.
@@ -17,24 +17,24 @@ Status = int | str | None
 
 
 class Verb:
-    """A verb of a command, such as ``list`` of ``ros2 topic``; its docstring is its description."""
+    """Verb of a command, such as ``list`` of ``ros2 topic``; its docstring is its description."""
 
     def add_arguments(self, parser: ArgumentParser, cli_name: str) -> None:
         """Declare the verb's arguments; `cli_name` is such as ``ros2 topic list``."""
 
     def main(self, *, args: Namespace) -> Status:
-        """Do it."""
+        """Run the verb; return its exit status."""
         raise NotImplementedError
 
 
 class Command:
-    """A command, such as ``ros2 run``; its docstring is its description."""
+    """Command, such as ``ros2 run``; its docstring is its description."""
 
     def add_arguments(self, parser: ArgumentParser, cli_name: str) -> None:
         """Declare the command's arguments; `cli_name` is such as ``ros2 run``."""
 
     def main(self, *, parser: ArgumentParser, args: Namespace) -> Status:
-        """Do it."""
+        """Run the command; return its exit status."""
         raise NotImplementedError
 
 

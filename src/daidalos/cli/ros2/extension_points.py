@@ -16,7 +16,7 @@ class ExtensionPointsCommand(Command):
         add_list_arguments(parser, "extension points")
 
     def main(self, *, parser: ArgumentParser, args: Namespace) -> Status:
-        """Print the groups of entry points by which commands and verbs are added."""
+        """Print the entry point groups of commands and verbs."""
         from daidalos.cli.ros2.groups import groups
 
         for group, extensions in groups().items():

@@ -38,6 +38,6 @@ def _origin(extensions: Extensions, name: str) -> str:
 
 
 def add_list_arguments(parser: ArgumentParser, what: str) -> None:
-    """Declare the arguments that `ros2 extension_points` has as well."""
+    """Declare the arguments shared with `ros2 extension_points`."""
     parser.add_argument("--all", "-a", action="store_true", help=f"Also show empty {what}")
     parser.add_argument("--verbose", "-v", action="store_true", help=f"Show more information for each of the {what}")

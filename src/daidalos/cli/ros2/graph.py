@@ -1,4 +1,4 @@
-"""What verbs want to know of the graph."""
+"""Queries of the graph for verbs."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def services(graph: Graph, include_hidden: bool = True) -> NamesAndTypes:
 
 
 def actions(endpoints: Iterable[EndpointInfo]) -> NamesAndTypes:
-    """Return the actions behind the feedback topics among some endpoints: [(name, [types])]."""
+    """Return the actions of the feedback topics among endpoints: [(name, [types])]."""
     feedback = [one for one in endpoints if one.name.endswith(_FEEDBACK) and one.type_name.endswith(_FEEDBACK_TYPE)]
     return [
         (name.removesuffix(_FEEDBACK), [one.removesuffix(_FEEDBACK_TYPE) for one in types])
@@ -40,7 +40,7 @@ def all_actions(graph: Graph) -> NamesAndTypes:
 
 
 def action_parties(graph: Graph, action: str, kind: EndpointKind) -> list[EndpointInfo]:
-    """Return the endpoints by which an action is served (kind PUBLISHER) or called (kind SUBSCRIPTION)."""
+    """Return the endpoints that serve (kind PUBLISHER) or call (kind SUBSCRIPTION) an action."""
     return graph.endpoints(kind, name=f"{action}{_FEEDBACK}")
 
 
@@ -55,10 +55,10 @@ def duplicate_names(found: Iterable[NodeInfo]) -> list[str]:
 
 
 def absolute(name: str) -> str:
-    """Return a name with a slash before it."""
+    """Return a name with a leading slash."""
     return name if name.startswith("/") else f"/{name}"
 
 
 def types_of(found: NamesAndTypes, name: str) -> list[str]:
-    """Return the types of a topic, service or action; none where it is not there."""
+    """Return the types of a topic, service or action; none if it does not exist."""
     return next((types for other, types in found if other == name), [])

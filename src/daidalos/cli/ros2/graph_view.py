@@ -1,4 +1,4 @@
-"""The graph as a verb sees it: from the daemon, or from a node of its own."""
+"""Graph for verbs, from the daemon or from a node of their own."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 @contextmanager
 def graph_view(args: argparse.Namespace) -> Iterator[Graph]:
-    """Yield the graph, from the daemon if one runs and may be used, else from a node of our own.
+    """Yield the graph, from the daemon if one runs and may be used, else from a new node.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Every group of entry points by which something is added to the command `ros2`."""
+"""Entry point groups of the command `ros2`."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Arguments that the verbs of `ros2 interface` share."""
+"""Common arguments of the verbs of `ros2 interface`."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ KINDS = {"msg": "Messages", "srv": "Services", "action": "Actions"}
 
 
 def add_kind_arguments(parser: ArgumentParser, what: str) -> None:
-    """Declare the options that ask for interfaces of one kind only."""
+    """Declare the options that select interfaces of one type."""
     group = parser.add_mutually_exclusive_group()
     for kind, name in (("msg", "message"), ("srv", "service"), ("action", "action")):
         group.add_argument(
@@ -27,7 +27,7 @@ def add_kind_arguments(parser: ArgumentParser, what: str) -> None:
 
 
 def wanted(found: Mapping[str, list[str]], kind: str | None) -> dict[str, list[str]]:
-    """Return the interfaces (``msg/Name`` by package) of a kind, all where None."""
+    """Return the interfaces (``msg/Name`` by package) of a type, all for None."""
     if kind is None:
         return dict(found)
     selected = {package: [name for name in names if name.startswith(f"{kind}/")] for package, names in found.items()}
@@ -35,12 +35,12 @@ def wanted(found: Mapping[str, list[str]], kind: str | None) -> dict[str, list[s
 
 
 class TypeOrStdin(Action):
-    """Takes a type, or reads it from standard input when it is a dash."""
+    """Argument that reads a type from standard input when it is a dash."""
 
     def __call__(
         self, parser: ArgumentParser, namespace: Any, values: str | Sequence[Any] | None, option: str | None = None
     ) -> None:
-        """Store it."""
+        """Store the argument."""
         if values == "-":
             if sys.stdin.isatty():
                 parser.error("expected stdin pipe")
@@ -49,7 +49,7 @@ class TypeOrStdin(Action):
 
 
 def add_type_argument(parser: ArgumentParser, what: str) -> None:
-    """Declare the argument that names an interface."""
+    """Declare the argument of an interface."""
 
     def names(**_: Any) -> list[str]:
         from ros2cli.interfaces import interface_names

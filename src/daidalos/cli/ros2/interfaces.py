@@ -1,4 +1,4 @@
-"""From the names and values on the command line to classes and messages."""
+"""Classes and messages from names and values on the command line."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from daidalos.common.suggestions import did_you_mean, near
 
 
 def message_class(name: str, fault: str = "The passed message type is invalid") -> Any:
-    """Return the class of a message; CliError with `fault` and what may help when there is none."""
+    """Return the class of a message; CliError with `fault` and a hint if it does not exist."""
     return _class("msg", name, fault)
 
 
@@ -37,7 +37,7 @@ def _class(kind: str, name: str, fault: str) -> Any:
 
 
 def _help(kind: str, name: str) -> str:
-    """Return lines that say what to do about an unknown type; empty where the package is known and no name is near."""
+    """Return hints about an unknown type; empty if the package is known and no name is similar."""
     known = interface_names(kind)
     if near(name, known):
         return did_you_mean(name, known)
@@ -52,7 +52,7 @@ def _help(kind: str, name: str) -> str:
 
 
 def parse_values(text: str) -> dict[str, Any]:
-    """Return the dictionary that YAML on the command line means; CliError, with the position, when it means none."""
+    """Return the dictionary of YAML on the command line; CliError, with the position, if it is invalid."""
     values = parse_yaml(text)
     if values is None:
         return {}
@@ -62,7 +62,7 @@ def parse_values(text: str) -> dict[str, Any]:
 
 
 def parse_yaml(text: str) -> Any:
-    """Return what YAML on the command line means; CliError, with the position, when it is malformed."""
+    """Return the value of YAML on the command line; CliError, with the position, if it is malformed."""
     import yaml
 
     try:

@@ -99,7 +99,7 @@ class LaunchCommand(Command):
         )
 
     def main(self, *, parser: ArgumentParser, args: Namespace) -> Status:
-        """Launch, or show what would be launched."""
+        """Launch, or print what would be launched."""
         path, words = _file_and_arguments(args)
         arguments = parse_arguments(words)
         if args.show_all_subprocesses_output:
@@ -118,7 +118,7 @@ class LaunchCommand(Command):
 
 
 def _warn_of_misspelt(arguments: list[tuple[str, str]], description: LaunchDescription) -> None:
-    """Print a word about arguments that nobody declares when one that somebody declares is near."""
+    """Print a hint about undeclared arguments whose name is similar to a declared one."""
     if not arguments:
         return
     declared = [argument.name for argument in description.get_launch_arguments()]
@@ -144,7 +144,7 @@ def _launch(
 
 
 def _file_and_arguments(args: Namespace) -> tuple[Path, list[str]]:
-    """Return the launch file that is meant, and the words that stand for its arguments."""
+    """Return the launch file and the arguments on the command line."""
     rest = list(args.launch_arguments)
     first, second = args.package_name, args.launch_file_name
     if os.path.isfile(first) or second is None or ":=" in second:
@@ -202,7 +202,7 @@ def find_launch_file(package: str, name: str) -> Path:
 
 
 def launch_files(package: str) -> list[Path]:
-    """Return the launch files of a package, none where it is not there."""
+    """Return the launch files of a package, none if it does not exist."""
     from ament_index_python.packages import PackageNotFoundError, get_package_share_path
 
     try:
@@ -224,7 +224,7 @@ def parse_arguments(words: Iterable[str]) -> list[tuple[str, str]]:
 
 
 def _load(path: Path) -> tuple[LaunchDescriptionSource, LaunchDescription]:
-    """Read a launch file; CliError, with file and line, when that cannot be done."""
+    """Read a launch file; CliError, with file and line, on failure."""
     from launch import LaunchContext
     from launch.launch_description_sources import AnyLaunchDescriptionSource
     from launch.launch_file_error import LaunchFileError
@@ -238,7 +238,7 @@ def _load(path: Path) -> tuple[LaunchDescriptionSource, LaunchDescription]:
 
 
 def arguments_text(description: LaunchDescription) -> str:
-    """Return the arguments that a launch description takes, in words."""
+    """Return the arguments of a launch description as text."""
     lines = ["Arguments (pass arguments as '<name>:=<value>'):"]
     declared = description.get_launch_arguments()
     for argument in declared:
@@ -250,7 +250,7 @@ def arguments_text(description: LaunchDescription) -> str:
 
 
 def _complete_first(prefix: str, **_: Any) -> list[str]:
-    """Return packages, and launch files as paths."""
+    """Return packages, and launch files as paths; completer."""
     from argcomplete.completers import FilesCompleter
 
     from daidalos.cli.ros2.packages import package_names
@@ -260,7 +260,7 @@ def _complete_first(prefix: str, **_: Any) -> list[str]:
 
 
 def _complete_argument(prefix: str, args: Any) -> list[str]:
-    """Return the names of launch arguments, and the choices of one whose name is typed."""
+    """Return the names of launch arguments, and the choices of a typed one; completer."""
     try:
         path, _ = _file_and_arguments(args)
         declared = _load(path)[1].get_launch_arguments()

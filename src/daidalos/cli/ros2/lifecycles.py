@@ -1,4 +1,4 @@
-"""Managed nodes: which there are, their states and their transitions."""
+"""Managed nodes, their states and their transitions."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _TRANSITION_S = 60.0
 
 
 def add_node_arguments(parser: ArgumentParser, **options: Any) -> None:
-    """Declare which managed node is meant."""
+    """Declare the arguments of the managed node."""
 
     def names(parsed_args: Namespace, **_: Any) -> list[str]:
         from daidalos.cli.ros2.graph_view import graph_view
@@ -46,7 +46,7 @@ def managed_nodes(graph: Graph, include_hidden: bool = False) -> list[str]:
 
 
 def find_managed(graph: Graph, args: Namespace) -> str:
-    """Return the full name of the managed node that is meant; CliError where there is none."""
+    """Return the full name of a managed node; CliError if it does not exist."""
     name, known = absolute(args.node_name), managed_nodes(graph, args.include_hidden_nodes)
     if name not in known:
         raise CliError(f"Node not found{did_you_mean(name, known)}")
@@ -61,7 +61,7 @@ def state(node: Node, name: str) -> Any:
 
 
 def transitions(node: Node, name: str, every: bool = False) -> list[Any]:
-    """Return the transitions that a node can make now, or every one of its state machine (`TransitionDescription`)."""
+    """Return the available transitions of a node, or all of its state machine (`TransitionDescription`)."""
     from lifecycle_msgs.srv import GetAvailableTransitions
 
     service = "get_transition_graph" if every else "get_available_transitions"
@@ -70,7 +70,7 @@ def transitions(node: Node, name: str, every: bool = False) -> list[Any]:
 
 
 def change_state(node: Node, name: str, transition: Any) -> bool:
-    """Have a node make a transition (`lifecycle_msgs/msg/Transition`); tell whether it did."""
+    """Trigger a transition (`lifecycle_msgs/msg/Transition`) of a node; return whether it succeeded."""
     from lifecycle_msgs.srv import ChangeState
 
     request = ChangeState.Request(transition=transition)

@@ -1,4 +1,4 @@
-"""What verbs print of the graph: names, their types, or how many there are."""
+"""Printed lists of the graph: names, types or counts."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from daidalos.common.suggestions import hint_line
 
 
 def print_names(names: Collection[str], *, count: bool) -> None:
-    """Print names, or how many there are."""
+    """Print names, or their number."""
     if count:
         print(len(names))
         return
@@ -22,12 +22,12 @@ def print_names(names: Collection[str], *, count: bool) -> None:
 
 
 def print_found(found: NamesAndTypes, *, show_types: bool, count: bool) -> None:
-    """Print names, with their types where asked, or how many there are."""
+    """Print names, with their types on request, or their number."""
     print_names([f"{name} [{', '.join(types)}]" if show_types else name for name, types in found], count=count)
 
 
 def print_types(found: NamesAndTypes, name: str) -> Status:
-    """Print the types of a name; without any print what may have been meant, and return 1."""
+    """Print the types of a name; if there are none, print suggestions and return 1."""
     types = types_of(found, name)
     for one in types:
         print(one)

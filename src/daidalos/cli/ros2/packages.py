@@ -1,4 +1,4 @@
-"""Packages: which there are, where they are, and what they say of themselves."""
+"""Names and prefixes of packages."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ def package_names() -> list[str]:
 
 
 def package_prefix(name: str) -> Path:
-    """Return a package's prefix; CliError where there is no such package."""
+    """Return a package's prefix; CliError if the package does not exist."""
     from ament_index_python.packages import PackageNotFoundError, get_package_prefix
 
     try:

@@ -19,13 +19,13 @@ if TYPE_CHECKING:
 
 
 def add_node_arguments(parser: ArgumentParser, **options: Any) -> None:
-    """Declare which node is meant."""
+    """Declare the argument of the node."""
     complete_nodes(parser.add_argument("node_name", help="Name of the ROS node", **options))
     parser.add_argument("--include-hidden-nodes", action="store_true", help="Consider hidden nodes as well")
 
 
 def complete_parameters(action: Action, node_key: str = "node_name") -> Action:
-    """Complete to the parameters of the node that another argument names."""
+    """Return the parameters of the node that another argument names; completer."""
 
     def names(parsed_args: Namespace, **_: Any) -> list[str]:
         with direct_node(parsed_args) as node:
@@ -35,14 +35,14 @@ def complete_parameters(action: Action, node_key: str = "node_name") -> Action:
 
 
 def add_timeout_argument(parser: ArgumentParser) -> None:
-    """Declare how long to wait for the node."""
+    """Declare the argument of the discovery timeout."""
     parser.add_argument(
         "--timeout", metavar="N", type=float, default=0.0, help="Wait for N seconds until node becomes available"
     )
 
 
 def find_node(node: Node, args: Namespace) -> str:
-    """Return the full name of the node that is meant, once it is there; CliError when it is not."""
+    """Return the full name of a node once it is discovered; CliError if it is not."""
     name = absolute(args.node_name)
     graph = node.handle.graph
 
@@ -65,7 +65,7 @@ def get_parameters(node: Node, node_name: str, names: list[str]) -> list[Any]:
 
 
 def set_parameters(node: Node, node_name: str, parameters: list[Any]) -> list[Any]:
-    """Set parameters (`rcl_interfaces/msg/Parameter`); return what became of each (`SetParametersResult`)."""
+    """Set parameters (`rcl_interfaces/msg/Parameter`); return the results (`SetParametersResult`)."""
     return list(call_set_parameters(node=node, node_name=node_name, parameters=parameters).results)
 
 
@@ -75,7 +75,7 @@ def describe_parameters(node: Node, node_name: str, names: list[str]) -> list[An
 
 
 def suggest(node: Node, node_name: str, parameter: str) -> None:
-    """Say on standard error which parameters have names like an unknown one, if any."""
+    """Print parameters with names similar to an unknown one, if any, on standard error."""
     known = list_parameters(node, node_name)
     if parameter not in known:
         sys.stderr.write(hint_line(parameter, known))

@@ -1,4 +1,4 @@
-"""What the command `ros2` does: its parser is made, the command is chosen and run, and its fate becomes a status."""
+"""Program of the command `ros2`: parses, runs the command and returns the exit status."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _IMPORT_SYSTEM = "<frozen importlib"
 
 
 def run(argv: list[str]) -> int:
-    """Run a command line; returns the exit status."""
+    """Run a command line; return the exit status."""
     try:
         try:
             status = _run(argv)
@@ -36,13 +36,13 @@ def run(argv: list[str]) -> int:
 
 
 def _follows_interrupt(error: BaseException) -> bool:
-    """Return whether an exception came up while what Ctrl-C had left half made was being cleared away."""
+    """Return whether an exception occurred during the clean-up after Ctrl-C."""
     context = error.__context__
     return context is not None and (isinstance(context, KeyboardInterrupt) or _follows_interrupt(context))
 
 
 def run_interruptible(argv: list[str]) -> int:
-    """Run the command line of this process, to which Ctrl-C belongs from now on."""
+    """Run the command line of this process, and handle Ctrl-C from now on."""
     try:
         _handle_interrupts()
         return run(argv)
@@ -96,7 +96,7 @@ def _run(argv: list[str]) -> int:
 
 
 def _handle_interrupts() -> None:
-    """Raise KeyboardInterrupt at Ctrl-C; while its consequences are tidied up, more of the same does no harm.
+    """Raise KeyboardInterrupt at Ctrl-C, and ignore repeated ones during the clean-up.
 
     A terminal, a shell and a program that watches over us may each send the signal for one press of the keys. Who
     presses them again after that means it: we die at once.
@@ -126,6 +126,6 @@ def _fail(message: str, status: int) -> int:
 
 
 def _discard_output() -> None:
-    """Keep the interpreter from complaining at its end about output that nobody reads."""
+    """Redirect the output, so that the interpreter does not report a broken pipe at its end."""
     nowhere = os.open(os.devnull, os.O_WRONLY)
     os.dup2(nowhere, sys.stdout.fileno())

@@ -1,4 +1,4 @@
-"""The quality of service that a verb subscribes or publishes with."""
+"""Quality of service of subscriptions and publishers of verbs."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def requested_qos(args: Namespace) -> QoSProfile | None:
-    """Return the profile that the options ask for, None where none is given."""
+    """Return the profile of the options, None without options."""
     overrides = {
         "depth": args.qos_depth,
         "history": args.qos_history,
@@ -32,7 +32,7 @@ def requested_qos(args: Namespace) -> QoSProfile | None:
 
 
 def qos_for_publishers(publishers: Sequence[EndpointInfo]) -> QoSProfile:
-    """Return the strictest profile by which every publisher is heard; say so where some of them offer more."""
+    """Return the strictest profile compatible with all publishers; print a hint if some offer more."""
     reliable = sum(one.qos.reliable for one in publishers)
     latched = sum(one.qos.transient_local for one in publishers)
     count = len(publishers)

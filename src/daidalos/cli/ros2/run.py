@@ -29,7 +29,7 @@ class RunCommand(Command):
         parser.add_argument("argv", nargs=REMAINDER, help="Pass arbitrary arguments to the executable")
 
     def main(self, *, parser: ArgumentParser, args: Namespace) -> Status:
-        """Become the executable, so that its signals, its terminal and its exit status are its own."""
+        """Replace this process by the executable, which gets its signals, its terminal and its exit status."""
         from daidalos.workspaces.executables import interrupts_blocked
 
         command = [*shlex.split(args.prefix or ""), *_find(args.package_name, args.executable_name), *args.argv]

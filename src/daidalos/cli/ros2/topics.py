@@ -1,4 +1,4 @@
-"""What the verbs of `ros2 topic` share: a topic's name, its type, waiting for it, and what of a message is asked."""
+"""Common parts of the verbs of `ros2 topic`: topic names and types, waiting, and fields of messages."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def topic_class(node: Node, topic: str, message_type: str | None = None, *, wait
 
 
 class Field:
-    """A part of a message, written as a path such as ``pose.position.x`` or ``ranges.[0]``.
+    """Field of a message as a path such as ``pose.position.x`` or ``ranges.[0]``.
 
     Raises
     ------
@@ -73,7 +73,7 @@ class Field:
             raise CliError(f"Invalid field value '{path}'")
 
     def of(self, message: Any) -> Any:
-        """Return the part of a message; CliError when it has none such."""
+        """Return the field of a message; CliError if it does not exist."""
         value = message
         for part in self._parts:
             index = re.fullmatch(r"\[(-?\d+)\]", part)
@@ -86,7 +86,7 @@ class Field:
 
 
 def filter_function(expression: str) -> Callable[[Any], bool]:
-    """Return a function of a message that evaluates a Python expression of ``m``.
+    """Return a function that evaluates a Python expression of a message ``m``.
 
     Raises
     ------
@@ -113,7 +113,7 @@ def filter_function(expression: str) -> Callable[[Any], bool]:
 def subscribe(
     node: Node, args: Namespace, topic: str, message_type: Any, on_message: Callable[..., Any], *, raw: bool = False
 ) -> None:
-    """Have every message of a topic given to a function, by the QoS asked for or else by what the publishers offer."""
+    """Pass every message of a topic to a function, with the requested QoS or the publishers'."""
     qos = requested_qos(args)
     if qos is None:
         name = node.resolve_topic_name(topic)
@@ -122,7 +122,7 @@ def subscribe(
 
 
 def spin(node: Node, done: Future | None = None, timeout_s: float | None = None) -> None:
-    """Run a node's callbacks until Ctrl-C, the future is done or so many seconds have passed."""
+    """Run a node's callbacks until Ctrl-C, completion of the future or a timeout."""
     from rclpy.executors import SingleThreadedExecutor
     from rclpy.task import Future
 

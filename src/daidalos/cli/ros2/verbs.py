@@ -14,7 +14,7 @@ from daidalos.common.extensions import Kind
 
 
 class VerbCommand(Command):
-    """A command with verbs; each built-in one is the class ``<Name>Verb`` in a module of the command's package."""
+    """Command with verbs; each built-in verb is the class ``<Name>Verb`` in a module of the command's package."""
 
     group: ClassVar[str]
     """The group of entry points by which other packages add verbs."""
@@ -29,16 +29,16 @@ class VerbCommand(Command):
         cast(Parser, parser).add_subcommands("Commands", cli_name, self.extensions(), make_verb)
 
     def add_options(self, parser: ArgumentParser) -> None:
-        """Declare options that stand before the verb."""
+        """Declare options before the verb."""
 
     def main(self, *, parser: ArgumentParser, args: Namespace) -> Status:
-        """Show the help: no verb was given."""
+        """Print the help, since no verb was given."""
         parser.print_help()
         return 0
 
     @classmethod
     def extensions(cls) -> Extensions:
-        """Return the verbs, built-in and added."""
+        """Return the built-in verbs and those of other packages."""
         modules = cls.module or cls.__module__
         name = modules.rpartition(".")[2]
         kind: Kind[Any] = Kind(

@@ -1,4 +1,4 @@
-"""What to do next when a package or an executable of one's own workspace is not found."""
+"""Hints about unknown packages and executables that are in the user's workspace."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _SKIPPED_FOLDERS = {"build", "install", "log", "node_modules"}
 
 
 def unknown_package(name: str) -> str:
-    """Return a line, with the line break before it, when the workspace around here has the package; else nothing."""
+    """Return a hint, with a leading line break, if the current workspace contains the package; else an empty text."""
     for workspace in _workspaces():
         if (workspace / "install" / name / "share" / name / "package.xml").is_file():
             return f"\nIt is built: run 'source {workspace / 'install' / 'setup.bash'}' in this terminal"
@@ -23,7 +23,7 @@ def unknown_package(name: str) -> str:
 
 
 def unknown_executable(package: str, executable: str) -> str:
-    """Return a line, with the line break before it, on what a package in a workspace lacks; else nothing."""
+    """Return a hint, with a leading line break, about an incomplete package of a workspace; else an empty text."""
     from ament_index_python.packages import get_package_prefix
 
     prefix = Path(get_package_prefix(package))
@@ -43,7 +43,7 @@ def unknown_executable(package: str, executable: str) -> str:
 
 
 def _workspaces() -> Iterator[Path]:
-    """Go through the folders from here upwards that look like workspaces."""
+    """Yield the folders upwards from the working directory that look like workspaces."""
     here = Path.cwd()
     for folder in (here, *here.parents):
         if (folder / "src").is_dir() and folder != Path.home().parent:
@@ -51,7 +51,7 @@ def _workspaces() -> Iterator[Path]:
 
 
 def _source(workspace: Path, package: str) -> Path | None:
-    """Return the folder of a package's source in a workspace."""
+    """Return the source folder of a package in a workspace."""
     name = re.compile(rf"<name>\s*{re.escape(package)}\s*</name>")
     pending = [(workspace / "src", 0)]
     while pending:

@@ -31,7 +31,7 @@ class FindVerb(Verb):
         )
 
     def main(self, *, args: Namespace) -> Status:
-        """Print the names of the actions of the type, or how many there are."""
+        """Print the names of the actions of the type, or their number."""
         with graph_view(args) as graph:
             found = [name for name, types in all_actions(graph) if args.action_type in types]
         print_names(found, count=args.count_actions)

@@ -30,7 +30,7 @@ class InfoVerb(Verb):
         )
 
     def main(self, *, args: Namespace) -> Status:
-        """Print who calls and who serves the action."""
+        """Print the clients and servers of the action."""
         name = absolute(args.action_name)
         with graph_view(args) as graph:
             clients = action_parties(graph, name, EndpointKind.SUBSCRIPTION)

@@ -24,7 +24,7 @@ class ListVerb(Verb):
         )
 
     def main(self, *, args: Namespace) -> Status:
-        """Print the names as asked."""
+        """Print the names, with types or as a number on request."""
         with graph_view(args) as graph:
             found = all_actions(graph)
         print_found(found, show_types=args.show_types, count=args.count_actions)

@@ -106,7 +106,7 @@ def _send(node: Node, client: ActionClient, goal: Any, show_feedback: bool) -> N
 
 
 def _cancel(node: Node, handle: ClientGoalHandle) -> None:
-    """Ask for the goal to be cancelled, and wait a moment for the answer."""
+    """Request cancellation of the goal, and wait briefly for the response."""
     print("Canceling goal...")
     answer = handle.cancel_goal_async()
     spin(node, answer, _CANCEL_TIMEOUT_S)

@@ -24,7 +24,7 @@ class TypeVerb(Verb):
         )
 
     def main(self, *, args: Namespace) -> Status:
-        """Print the types; the status is 1 when the action is not there."""
+        """Print the types; the status is 1 if the action does not exist."""
         name = absolute(args.action_name)
         with graph_view(args) as graph:
             known = all_actions(graph)

@@ -1,4 +1,4 @@
-"""What the verbs of `ros2 bag` share: arguments, the checks of their values, and how they say what is wrong."""
+"""Common arguments of the verbs of `ros2 bag`, with checks of their values and error messages."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _SAME_PRESS_S = 0.5
 
 
 def add_bag_arguments(parser: ArgumentParser) -> None:
-    """Declare the bag that is read."""
+    """Declare the argument of the bag to read."""
     parser.add_argument("bag_path", type=existing_bag, help="Bag to open: a folder, or one file of a bag")
     _add_storage(parser)
 
@@ -40,7 +40,7 @@ def _add_storage(parser: ArgumentParser) -> None:
 
 
 def add_bags_arguments(parser: ArgumentParser) -> None:
-    """Declare the bags that are played: one by its place, or several by an option."""
+    """Declare the arguments of the bags to play: one positional, or several by an option."""
     parser.add_argument("bag_path", type=existing_bag, nargs="?", help="Bag to open: a folder, or one file of a bag")
     _add_storage(parser)
     parser.add_argument(
@@ -56,7 +56,7 @@ def add_bags_arguments(parser: ArgumentParser) -> None:
 
 
 def bags_to_play(args: Namespace) -> list[StorageOptions]:
-    """Return the bags that `add_bags_arguments` declared; CliError where they contradict each other."""
+    """Return the bags of `add_bags_arguments`; CliError if they contradict each other."""
     from rosbag2_py import StorageOptions
 
     if args.input and (args.bag_path or args.storage):
@@ -69,7 +69,7 @@ def bags_to_play(args: Namespace) -> list[StorageOptions]:
 
 
 def input_bags(inputs: list[list[str]]) -> list[StorageOptions]:
-    """Return the bags that the words of several options `--input` mean; CliError where they make no sense."""
+    """Return the bags of several options `--input`; CliError if they are invalid."""
     from rosbag2_py import StorageOptions
 
     bags = []
@@ -86,7 +86,7 @@ def input_bags(inputs: list[list[str]]) -> list[StorageOptions]:
 
 
 def add_start_offset(parser: ArgumentParser) -> None:
-    """Declare where playing begins."""
+    """Declare the argument of the start offset."""
     parser.add_argument(
         "--start-offset",
         type=positive_float,
@@ -97,7 +97,7 @@ def add_start_offset(parser: ArgumentParser) -> None:
 
 
 def add_topic_arguments(parser: ArgumentParser) -> None:
-    """Declare which topics and services are played, and as what."""
+    """Declare the arguments that select and remap topics and services."""
     parser.add_argument(
         "--topics", default=[], nargs="+", metavar="topic", help="Topics to replay; all where none is named"
     )
@@ -131,7 +131,7 @@ def add_topic_arguments(parser: ArgumentParser) -> None:
 
 
 def remapping_arguments(rules: list[str]) -> list[str]:
-    """Return remapping rules as arguments of a node; CliError for what is no rule."""
+    """Return remapping rules as arguments of a node; CliError for an invalid rule."""
     words = []
     for rule in rules:
         old, sign, new = rule.partition(":=")
@@ -142,21 +142,21 @@ def remapping_arguments(rules: list[str]) -> list[str]:
 
 
 def existing_bag(text: str) -> str:
-    """Check an argument: a bag that is there."""
+    """Return the path of an existing bag; argument type."""
     if not os.path.exists(text):
         raise ArgumentTypeError(f"Bag path '{text}' does not exist!")
     return text
 
 
 def existing_file(text: str) -> str:
-    """Check an argument: a file that is there."""
+    """Return the path of an existing file; argument type."""
     if not os.path.isfile(text):
         raise ArgumentTypeError(f"File '{text}' does not exist!")
     return text
 
 
 def positive_float(text: str) -> float:
-    """Check an argument: a number above 0."""
+    """Return a number above 0; argument type."""
     value = _float(text)
     if not 0.0 < value < float("inf"):
         raise ArgumentTypeError(f"{text} is not in the valid range (> 0.0)")
@@ -164,7 +164,7 @@ def positive_float(text: str) -> float:
 
 
 def not_negative_float(text: str) -> float:
-    """Check an argument: a number that is 0 or more."""
+    """Return a number of at least 0; argument type."""
     value = _float(text)
     if not 0.0 <= value < float("inf"):
         raise ArgumentTypeError(f"Value {text} is less than zero.")
@@ -179,7 +179,7 @@ def _float(text: str) -> float:
 
 
 def not_negative_int(text: str) -> int:
-    """Check an argument: a whole number that is 0 or more."""
+    """Return an integer of at least 0; argument type."""
     try:
         value = int(text)
     except ValueError:
@@ -190,7 +190,7 @@ def not_negative_int(text: str) -> int:
 
 
 def positive_int(text: str) -> int:
-    """Check an argument: a whole number above 0."""
+    """Return an integer above 0; argument type."""
     value = not_negative_int(text)
     if value == 0:
         raise ArgumentTypeError(f"{text} is not in the valid range (> 0)")
@@ -198,7 +198,7 @@ def positive_int(text: str) -> int:
 
 
 class ShutdownRequest:
-    """Notes, while it is entered, that the process was asked to end by Ctrl-C, ``kill`` or ``kill -INT``.
+    """Context that records requests to end the process by Ctrl-C, ``kill`` or ``kill -INT``.
 
     An exception out of a signal's handler could strike where a lock is held. A shell's script makes what it puts in
     the background ignore Ctrl-C, but ends it by ``kill -INT``: that is heard all the same. Who asks again, later than
@@ -235,7 +235,7 @@ class ShutdownRequest:
 
 
 def error(text: str) -> CliError:
-    """Return the error that ends the command with this text."""
+    """Return the error that ends the command with a text."""
     return CliError(f"[ERROR] [ros2bag]: {text}")
 
 

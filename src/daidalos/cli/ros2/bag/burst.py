@@ -29,7 +29,7 @@ class BurstVerb(Verb):
         )
 
     def main(self, *, args: Namespace) -> Status:
-        """Burst, then let the keyboard and the services decide."""
+        """Publish the burst, then follow the keyboard and the services."""
         from rosbag2_py import Player, PlayOptions
 
         bags = common.bags_to_play(args)

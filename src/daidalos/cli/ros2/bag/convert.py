@@ -49,7 +49,7 @@ class ConvertVerb(Verb):
 
 
 class _Bar:
-    """A progress bar on the terminal."""
+    """Progress bar on the terminal."""
 
     def __enter__(self) -> _Bar:
         import sys
@@ -65,7 +65,7 @@ class _Bar:
         return self
 
     def show(self, done: int, total: int) -> None:
-        """Show how many of all messages are written."""
+        """Show the number of messages written."""
         self._progress.update(self._task, completed=done, total=total)
 
     def __exit__(self, *error: object) -> None:

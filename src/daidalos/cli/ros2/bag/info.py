@@ -31,7 +31,7 @@ class InfoVerb(Verb):
         )
 
     def main(self, *, args: Namespace) -> Status:
-        """Print what the bag holds."""
+        """Print the content of the bag."""
         from rosbag2_py._format import contents, format_metadata, ordered
 
         from daidalos.bags.reader import BagReader

@@ -70,7 +70,7 @@ class ListVerb(Verb):
         )
 
     def main(self, *, args: Namespace) -> Status:
-        """Print the plugins of a kind."""
+        """Print the plugins of a type."""
         if args.verbose:
             print(f"available {args.plugin_type} plugins are:")
         for plugin in _PLUGINS[args.plugin_type]:

@@ -150,7 +150,7 @@ def _add_clock(parser: ArgumentParser) -> None:
 
 
 def play_options(args: Namespace) -> PlayOptions:
-    """Return the options that the arguments mean; CliError where one makes no sense."""
+    """Return the options of the arguments; CliError for invalid ones."""
     from rosbag2_py import PlayOptions, ServiceRequestsSource
 
     until = args.playback_until_nsec
@@ -185,7 +185,7 @@ def play_options(args: Namespace) -> PlayOptions:
 
 
 def run(player: Player, burst: int | None = None) -> Status:
-    """Play to the end or Ctrl-C; burst so many messages at first where a number is given."""
+    """Play to the end or Ctrl-C, starting with a burst of a number of messages if given."""
     with common.ShutdownRequest(player.interrupt) as ending:
         try:
             player.start_spin()

@@ -1,4 +1,4 @@
-"""Files that say by which quality of service topics are recorded or played."""
+"""Files with the quality of service of recorded or played topics."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _DEPTH = 10
 
 
 def read_overrides(path: str | None) -> dict[str, QoSProfile]:
-    """Return the profiles of a file by topic, none where there is no file; CliError when it is not understood."""
+    """Return the profiles of a file by topic, none without a file; CliError for an invalid file."""
     if path is None:
         return {}
     import yaml

@@ -191,7 +191,7 @@ def _add_compression(parser: ArgumentParser) -> None:
 
 
 def _check(args: Namespace, uri: str) -> None:
-    """Raise CliError where arguments contradict each other."""
+    """Raise CliError for contradictory arguments."""
     if args.topics_positional:
         common.warn('Positional "topics" argument deprecated. Please use optional "--topics" argument instead.')
         if args.topics:
@@ -290,7 +290,7 @@ def _record_options(args: Namespace) -> RecordOptions:
 
 
 def _run(recorder: Recorder) -> Status:
-    """Record until Ctrl-C or the request to end, and complete the bag."""
+    """Record until Ctrl-C or a request to end, and complete the bag."""
     from rosbag2_py._progress import StatusLine
 
     status = StatusLine(_Progress(recorder).text, _STATUS_HZ)
@@ -311,7 +311,7 @@ def _run(recorder: Recorder) -> Status:
 
 
 class _Progress:
-    """Tells how long is recorded, and how much it is."""
+    """Progress of a recording: duration and size."""
 
     def __init__(self, recorder: Recorder) -> None:
         self._node = recorder.node
@@ -319,7 +319,7 @@ class _Progress:
         self._text = ""
 
     def text(self) -> str:
-        """Return it as a line."""
+        """Return the progress as a line."""
         bag = self._node.bag
         if bag is not None:
             state = "P" if self._node.is_paused else "R"

@@ -18,7 +18,7 @@ class ReindexVerb(Verb):
         add_bag_arguments(parser)
 
     def main(self, *, args: Namespace) -> Status:
-        """Write the description of the bag anew."""
+        """Rewrite the description of the bag."""
         from rosbag2_py import Reindexer, StorageOptions
 
         if not Path(args.bag_path).is_dir():

@@ -1,4 +1,4 @@
-"""What `ros2 doctor` looks at: one module per subject, each with what it checks and what it reports."""
+"""Checks and reports of `ros2 doctor`, one module per subject."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from daidalos.transport.graph import Graph
 
 @dataclass
 class Findings:
-    """What a check found: `errors` make it fail, `warnings` only where they are asked for."""
+    """Results of a check: `errors` make it fail, `warnings` only on request."""
 
     errors: list[str] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
@@ -20,7 +20,7 @@ class Findings:
 
 @dataclass(frozen=True)
 class Report:
-    """A titled list of names and values."""
+    """Titled list of names and values."""
 
     title: str
     items: tuple[tuple[str, Any], ...]
@@ -31,7 +31,7 @@ class Report:
 
 
 class Subject:
-    """Something to look at.
+    """Subject of checks and reports.
 
     Attributes
     ----------
@@ -45,11 +45,11 @@ class Subject:
     checked = True
 
     def check(self, graph: Graph) -> Findings:
-        """Look for what is wrong."""
+        """Run the checks."""
         raise NotImplementedError
 
     def reports(self, graph: Graph) -> Iterable[Report]:
-        """Describe what is there."""
+        """Return the reports."""
         raise NotImplementedError
 
 
@@ -57,7 +57,7 @@ _MODULES = ("network", "package", "platform", "environment", "qos", "topic", "en
 
 
 def subjects() -> list[Subject]:
-    """Return what there is to look at, what other packages add included.
+    """Return the subjects, including those of other packages.
 
     They add checks by the group ``ros2doctor.checks`` and reports by ``ros2doctor.report``: classes as of ROS 2's
     own doctor.

@@ -11,25 +11,25 @@ from daidalos.transport.graph import Graph
 
 
 class AddedCheck(Subject):
-    """A class with ``category()`` and ``check() -> Result``; it says itself what is wrong."""
+    """Check of a class with ``category()`` and ``check() -> Result``, which prints its own messages."""
 
     def __init__(self, check: Any) -> None:
         self._check = check
         self.category = check.category()
 
     def check(self, graph: Graph) -> Findings:
-        """Run it."""
+        """Run the check."""
         result = self._check.check()
         fault = f"{self.category} has found something"
         return Findings([fault] * bool(result.error), [fault] * bool(result.warning))
 
     def reports(self, graph: Graph) -> Iterable[Report]:
-        """Return none: reports are added by themselves."""
+        """Return no reports; they are subjects of their own."""
         return ()
 
 
 class AddedReport(Subject):
-    """A class with ``category()`` and ``report() -> Report``."""
+    """Report of a class with ``category()`` and ``report() -> Report``."""
 
     checked = False
 
@@ -38,17 +38,17 @@ class AddedReport(Subject):
         self.category = report.category()
 
     def check(self, graph: Graph) -> Findings:
-        """Find nothing: checks are added by themselves."""
+        """Return no findings; checks are subjects of their own."""
         return Findings()
 
     def reports(self, graph: Graph) -> Iterable[Report]:
-        """Return it."""
+        """Return the report."""
         report = self._report.report()
         yield Report(report.name, tuple(report.items))
 
 
 def added_subjects() -> Iterator[Subject]:
-    """Yield what other packages add."""
+    """Yield the subjects of other packages."""
     for group, kind in (("ros2doctor.checks", AddedCheck), ("ros2doctor.report", AddedReport)):
         for point in entry_points(group=group):
             yield kind(point.load()())

@@ -11,17 +11,17 @@ from daidalos.transport.graph import EndpointKind, Graph
 
 
 class Endpoints(Subject):
-    """Who serves and who calls services and actions."""
+    """Servers and clients of services and actions."""
 
     category = "service"
     checked = False
 
     def check(self, graph: Graph) -> Findings:
-        """Find nothing: a service may well wait for its first client."""
+        """Return no findings; a service may be waiting for its first client."""
         return Findings()
 
     def reports(self, graph: Graph) -> Iterable[Report]:
-        """Count them."""
+        """Return the numbers of servers and clients."""
         items: list[tuple[str, Any]] = []
         for name, _ in services(graph, include_hidden=False):
             items += [

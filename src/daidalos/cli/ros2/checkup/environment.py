@@ -1,4 +1,4 @@
-"""The environment variables that matter."""
+"""Environment variables of ROS 2."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ class Environment(Subject):
     checked = False
 
     def check(self, graph: Graph) -> Findings:
-        """Find nothing: a wrong value is an error wherever it is read."""
+        """Return no findings; an invalid value is an error where it is read."""
         return Findings()
 
     def reports(self, graph: Graph) -> Iterable[Report]:
-        """List them."""
+        """Return the values of the variables."""
         found = sorted((name, value) for name, value in os.environ.items() if name.startswith(_PREFIXES))
         yield Report("ENVIRONMENT INFORMATION", tuple(found) or (("variables", "none is set"),))
 

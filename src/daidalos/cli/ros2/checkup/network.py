@@ -1,4 +1,4 @@
-"""The network: whether there is an interface by which other machines can be reached."""
+"""Network interfaces by which other machines can be reached."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from daidalos.transport.graph import Graph
 
 
 class Network(Subject):
-    """Interfaces, and how far nodes look for each other."""
+    """Network interfaces, and the discovery range of nodes."""
 
     category = "network"
 
     def check(self, graph: Graph) -> Findings:
-        """Fail without any interface that is up; warn where others are looked for but none leads out."""
+        """Fail without an active interface; warn if other machines are to be discovered but cannot be reached."""
         up = [name for name, stats in psutil.net_if_stats().items() if stats.isup]
         if not up:
             return Findings(errors=["No network interface is up: not even processes of this machine find each other."])
@@ -29,7 +29,7 @@ class Network(Subject):
         return Findings()
 
     def reports(self, graph: Graph) -> Iterable[Report]:
-        """Describe every interface."""
+        """Return a description of every interface."""
         items: list[tuple[str, Any]] = []
         for name, addresses in psutil.net_if_addrs().items():
             items += _interface(name, addresses)

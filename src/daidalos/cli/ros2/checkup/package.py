@@ -1,4 +1,4 @@
-"""Packages: whether their manifests can be read."""
+"""Manifests of packages."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Package(Subject):
         )
 
     def reports(self, graph: Graph) -> Iterable[Report]:
-        """List the versions."""
+        """Return the versions."""
         items = tuple((name, f"local={version or 'unknown'}") for name, version in self._versions().items())
         yield Report("PACKAGE VERSIONS", items)
 

@@ -1,4 +1,4 @@
-"""The platform: the machine, Python and the middleware."""
+"""Platform: machine, Python and middleware."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from daidalos.transport.shared import MIDDLEWARES
 
 
 class Platform(Subject):
-    """The machine, Python, and which ROS 2 this stands for."""
+    """Machine, Python and ROS 2 distribution."""
 
     category = "platform"
 
     def check(self, graph: Graph) -> Findings:
-        """Fail with a middleware that is not here; warn where the environment is that of another distribution."""
+        """Fail if the middleware is missing; warn if the environment is set up for another distribution."""
         findings = Findings()
         middleware = read_environment().middleware
         if middleware not in MIDDLEWARES:
@@ -36,7 +36,7 @@ class Platform(Subject):
         return findings
 
     def reports(self, graph: Graph) -> Iterable[Report]:
-        """Describe them."""
+        """Return their descriptions."""
         yield Report(
             "PLATFORM INFORMATION",
             (

@@ -1,4 +1,4 @@
-"""Quality of service: whether publishers and subscriptions of a topic fit together."""
+"""Compatibility of the quality of service of publishers and subscriptions."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class QosCompatibility(Subject):
     category = "middleware"
 
     def check(self, graph: Graph) -> Findings:
-        """Fail for every pair that cannot talk."""
+        """Fail for every incompatible pair."""
         return Findings(
             errors=[
                 f"QoS compatibility error found on topic [{name}]: {publisher.node.full_name} does not reach "
@@ -29,7 +29,7 @@ class QosCompatibility(Subject):
         )
 
     def reports(self, graph: Graph) -> Iterable[Report]:
-        """Describe every pair."""
+        """Return a description of every pair."""
         items: list[tuple[str, str]] = []
         for name, publisher, subscription, policies in _pairs(graph):
             items += [

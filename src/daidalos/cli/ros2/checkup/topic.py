@@ -1,4 +1,4 @@
-"""Topics: whether everybody has somebody to talk to."""
+"""Topics without publishers or without subscriptions."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ class Topic(Subject):
     category = "topic"
 
     def check(self, graph: Graph) -> Findings:
-        """Warn of topics with only one side."""
+        """Warn of topics that have only publishers or only subscriptions."""
         findings = Findings()
         for name, publishers, subscriptions in _counts(graph):
             if publishers and not subscriptions:
@@ -27,7 +27,7 @@ class Topic(Subject):
         return findings
 
     def reports(self, graph: Graph) -> Iterable[Report]:
-        """Count them."""
+        """Return the numbers of publishers and subscriptions."""
         items: list[tuple[str, str | int]] = []
         for name, publishers, subscriptions in _counts(graph):
             items += [("topic", name), ("publisher count", publishers), ("subscriber count", subscriptions)]

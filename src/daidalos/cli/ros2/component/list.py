@@ -21,7 +21,7 @@ class ListVerb(Verb):
         parser.add_argument("--containers-only", action="store_true", help="List found containers nodes only")
 
     def main(self, *, args: Namespace) -> Status:
-        """Print the containers, each with what it runs; of a named one only what it runs."""
+        """Print the containers with their components, or only the components of a named container."""
         with direct_node(args) as node:
             graph = node.handle.graph
             name = args.container_node_name

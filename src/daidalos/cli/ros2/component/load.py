@@ -22,7 +22,7 @@ class LoadVerb(Verb):
         parser.add_argument("-q", "--quiet", action="store_true", help="Use quiet output")
 
     def main(self, *, args: Namespace) -> Status:
-        """Load it, and print its number and node."""
+        """Load the component, and print its number and node."""
         with direct_node(args) as node:
             container = find_container(node.handle.graph, args.container_node_name)
             number, name = load(node, container, args)

@@ -28,7 +28,7 @@ class StandaloneVerb(Verb):
         )
 
     def main(self, *, args: Namespace) -> Status:
-        """Run a container with the component in it until Ctrl-C."""
+        """Run the component in its own container until Ctrl-C."""
         from daidalos.workspaces.executables import find_executable
 
         rename = ["--ros-args", "-r", f"__node:={args.container_node_name}"]

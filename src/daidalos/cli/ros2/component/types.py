@@ -19,7 +19,7 @@ class TypesVerb(Verb):
         )
 
     def main(self, *, args: Namespace) -> Status:
-        """Print the components of one package, or of all under their names."""
+        """Print the components of one package, or of all packages."""
         from daidalos.nodes.extensions import components, packages
 
         if not args.package_name:

@@ -23,7 +23,7 @@ class UnloadVerb(Verb):
         parser.add_argument("-q", "--quiet", action="store_true", help="Use quiet output")
 
     def main(self, *, args: Namespace) -> Status:
-        """Unload them; the status is 1 when one could not be."""
+        """Unload components; the status is 1 if one could not be unloaded."""
         failed = False
         with direct_node(args) as node:
             container = find_container(node.handle.graph, args.container_node_name)

@@ -21,7 +21,7 @@ class CleanupControllerVerb(Verb):
         add_manager_arguments(parser)
 
     def main(self, *, args: Namespace) -> Status:
-        """Do it."""
+        """Clean up the controller."""
         from controller_manager_msgs.srv import CleanupController
 
         with direct_node(args) as node:

@@ -20,7 +20,7 @@ class ListControllerTypesVerb(Verb):
         add_manager_arguments(parser)
 
     def main(self, *, args: Namespace) -> Status:
-        """Print them."""
+        """Print the controller types."""
         from controller_manager_msgs.srv import ListControllerTypes
 
         with direct_node(args) as node:

@@ -39,7 +39,7 @@ class ListControllersVerb(Verb):
         add_manager_arguments(parser)
 
     def main(self, *, args: Namespace) -> Status:
-        """Print them."""
+        """Print the controllers."""
         with direct_node(args) as node:
             found = list_controllers(node, args)
         if not found:
@@ -58,7 +58,7 @@ class ListControllersVerb(Verb):
 
 
 def _details(controller: Any, args: Namespace) -> list[tuple[str, list[str]]]:
-    """Return what the options ask for: [(title, names)]."""
+    """Return the details of the options: [(title, names)]."""
     chained = [f"{one.name}/{name}" for one in controller.chain_connections for name in one.reference_interfaces]
     sections = (
         ("claimed interfaces", controller.claimed_interfaces, args.claimed_interfaces),

@@ -28,7 +28,7 @@ class ListHardwareComponentsVerb(Verb):
         add_manager_arguments(parser)
 
     def main(self, *, args: Namespace) -> Status:
-        """Print them."""
+        """Print the hardware components."""
         with direct_node(args) as node:
             found = list_components(node, args)
         for number, component in enumerate(found, 1):

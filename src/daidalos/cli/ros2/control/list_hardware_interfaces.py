@@ -20,7 +20,7 @@ class ListHardwareInterfacesVerb(Verb):
         add_manager_arguments(parser)
 
     def main(self, *, args: Namespace) -> Status:
-        """Print them."""
+        """Print the interfaces."""
         from controller_manager_msgs.srv import ListHardwareInterfaces
 
         with direct_node(args) as node:

@@ -22,7 +22,7 @@ _UNTIL_GALACTIC = {"configure": "inactive", "start": "active"}
 
 
 def _state(word: str) -> str:
-    """Return a state that may be written as distributions until Galactic did."""
+    """Return a state, also from the notation of distributions up to Galactic."""
     return _UNTIL_GALACTIC.get(word, word)
 
 
@@ -43,7 +43,7 @@ class LoadControllerVerb(Verb):
         add_manager_arguments(parser)
 
     def main(self, *, args: Namespace) -> Status:
-        """Load it, and bring it to the state that is asked for."""
+        """Load the controller, and bring it to the requested state."""
         name = args.controller_name
         with direct_node(args) as node:
             if args.param_file:
@@ -60,7 +60,7 @@ class LoadControllerVerb(Verb):
 
 
 def _set_parameters(node: Node, args: Namespace, name: str) -> None:
-    """Tell the manager the controller's type and its parameter file."""
+    """Set the controller's type and parameter file on the manager."""
     from rcl_interfaces.msg import Parameter
     from rclpy.parameter import get_parameter_value, parameter_dict_from_yaml_file
 

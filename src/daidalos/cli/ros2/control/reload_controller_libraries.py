@@ -21,7 +21,7 @@ class ReloadControllerLibrariesVerb(Verb):
         add_manager_arguments(parser)
 
     def main(self, *, args: Namespace) -> Status:
-        """Do it."""
+        """Reload the libraries."""
         from controller_manager_msgs.srv import ReloadControllerLibraries
 
         with direct_node(args) as node:

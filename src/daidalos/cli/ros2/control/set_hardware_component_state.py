@@ -26,7 +26,7 @@ class SetHardwareComponentStateVerb(Verb):
         add_manager_arguments(parser)
 
     def main(self, *, args: Namespace) -> Status:
-        """Do it, and print the state that the component is in then."""
+        """Set the state, and print the resulting one."""
         from controller_manager_msgs.srv import SetHardwareComponentState
         from lifecycle_msgs.msg import State
 

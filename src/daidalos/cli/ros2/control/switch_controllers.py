@@ -31,7 +31,7 @@ class SwitchControllersVerb(Verb):
         add_manager_arguments(parser)
 
     def main(self, *, args: Namespace) -> Status:
-        """Do it."""
+        """Switch the controllers."""
         with direct_node(args) as node:
             switch(
                 node,

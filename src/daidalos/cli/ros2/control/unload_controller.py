@@ -21,7 +21,7 @@ class UnloadControllerVerb(Verb):
         add_manager_arguments(parser)
 
     def main(self, *, args: Namespace) -> Status:
-        """Do it."""
+        """Unload the controller."""
         from controller_manager_msgs.srv import UnloadController
 
         with direct_node(args) as node:

@@ -27,7 +27,7 @@ class ViewControllerChainsVerb(Verb):
         add_manager_arguments(parser)
 
     def main(self, *, args: Namespace) -> Status:
-        """Write the diagram, as a PDF where Graphviz is installed, and print where it is."""
+        """Write the diagram, as a PDF if Graphviz is installed, and print its path."""
         from controller_manager_msgs.srv import ListHardwareInterfaces
 
         with direct_node(args) as node:
@@ -48,7 +48,7 @@ class ViewControllerChainsVerb(Verb):
 
 
 def diagram(controllers: Iterable[Any], hardware: Any) -> str:
-    """Return a graph in Graphviz's language: controllers and hardware, joined by the interfaces that they share."""
+    """Return a graph in Graphviz's language: controllers and hardware, connected by shared interfaces."""
     lines = ["digraph controllers {", "  rankdir=LR;", "  node [shape=box, style=rounded];"]
     lines += [
         '  "hardware: commands" [shape=cylinder, style=solid];',

@@ -1,4 +1,4 @@
-"""`ros2 daemon`: a process in the background that knows the graph, so that verbs need not look for it."""
+"""`ros2 daemon`: background process that keeps the graph discovered for the other verbs."""
 
 from typing import ClassVar
 

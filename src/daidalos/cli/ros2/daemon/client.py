@@ -1,4 +1,4 @@
-"""Asking the daemon, starting it and stopping it."""
+"""Client of the daemon, which also starts and stops it."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _START_TIMEOUT_S = 10.0
 
 
 def fetch_graph() -> Graph | None:
-    """Return the graph as the daemon knows it, None where no daemon runs."""
+    """Return the daemon's graph, None if no daemon runs."""
     answer = _ask("graph")
     return None if answer is None else graph_from_json(answer)
 
@@ -26,7 +26,7 @@ def is_running() -> bool:
 
 
 def start(debug: bool = False) -> bool:
-    """Start the daemon, to stay for two hours after it was last asked; False when it does not come up.
+    """Start the daemon, which stays for two hours after its last request; return False on failure.
 
     With `debug` its messages go to our standard error.
     """
@@ -43,12 +43,12 @@ def start(debug: bool = False) -> bool:
 
 
 def keep() -> bool:
-    """Have a daemon that was started by the way stay as if it had been started on purpose; False where none runs."""
+    """Keep an automatically started daemon running as if started explicitly; return False if none runs."""
     return _ask("stay") is not None
 
 
 def start_in_background() -> None:
-    """Start a daemon that goes when the last node of the domain does, and do not wait for it."""
+    """Start a daemon that ends with the last node of the domain, without waiting for it."""
     try:
         subprocess.Popen(
             _COMMAND,
@@ -62,7 +62,7 @@ def start_in_background() -> None:
 
 
 def stop() -> bool:
-    """Stop the daemon and wait until it has left; False where none runs."""
+    """Stop the daemon and wait until it has left; return False if none runs."""
     return _ask("stop", _START_TIMEOUT_S) is not None
 
 

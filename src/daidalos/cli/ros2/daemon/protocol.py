@@ -1,4 +1,4 @@
-"""What passes between the daemon and its clients: one line with a question, one line with the answer, both JSON."""
+"""Protocol between the daemon and its clients: one line of JSON per request and response."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ MAX_QUESTION = 4096
 
 @dataclasses.dataclass(frozen=True)
 class Address:
-    """Where a daemon listens on this machine, and the word by which it knows that we may ask."""
+    """Local port of a daemon, and the secret that authorizes requests."""
 
     port: int
     token: str
 
 
 class AddressFile:
-    """The place where the daemon of a domain leaves its address.
+    """File with the address of a domain's daemon.
 
     Parameters
     ----------
@@ -41,32 +41,32 @@ class AddressFile:
 
     @property
     def file(self) -> Path:
-        """The file with the address."""
+        """Path of the file."""
         where = self.environment
         peers = "_".join(peer.replace("/", "-").replace(":", "-") for peer in where.static_peers)
         return self._registry.folder / f"daemon-{where.middleware}-{where.discovery.value}-{peers}.json"
 
     def read(self) -> Address | None:
-        """Return the address that was left, None when there is none."""
+        """Return the address in the file, None without one."""
         try:
             return Address(**json.loads(self.file.read_text(encoding="utf-8")))
         except (OSError, ValueError, TypeError):
             return None
 
     def write(self, address: Address) -> None:
-        """Leave an address, all at once."""
+        """Write an address atomically."""
         draft = self.file.with_suffix(".new")
         draft.touch(mode=0o600)
         draft.write_text(json.dumps(dataclasses.asdict(address)), encoding="utf-8")
         draft.replace(self.file)
 
     def clear(self) -> None:
-        """Take the address away."""
+        """Remove the file."""
         self.file.unlink(missing_ok=True)
 
 
 def ask(address: Address, question: str, timeout_s: float = 1.0) -> Any:
-    """Return a daemon's answer.
+    """Return a daemon's response.
 
     Raises
     ------
@@ -80,7 +80,7 @@ def ask(address: Address, question: str, timeout_s: float = 1.0) -> Any:
 
 
 def graph_to_json(graph: Graph) -> dict[str, Any]:
-    """Return a graph as what JSON can hold."""
+    """Return a graph in a form for JSON."""
     endpoints = graph.endpoints()
     nodes = {node.key: node for node in (*graph.nodes(), *(endpoint.node for endpoint in endpoints))}
     return {
@@ -97,7 +97,7 @@ def graph_to_json(graph: Graph) -> dict[str, Any]:
 
 
 def graph_from_json(content: dict[str, Any]) -> Graph:
-    """Undo `graph_to_json`."""
+    """Return the graph of the form that `graph_to_json` returns."""
     graph = Graph()
     nodes = {key: NodeInfo(key, *rest) for key, *rest in content["nodes"]}
     for key in content["alone"]:

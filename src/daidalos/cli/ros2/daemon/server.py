@@ -1,4 +1,4 @@
-"""The daemon's process: it takes part in the graph and answers questions about it.
+"""Daemon process, which takes part in the graph and answers requests about it.
 
 It ends two hours after the last question, and, unless it was started to stay, soon after the last node of the
 domain has gone. A question is ``graph``, ``status``, ``stay`` or ``stop``; see `wire`.
@@ -28,7 +28,7 @@ _IDLE_TIMEOUT_S = 1.5
 
 
 class Server:
-    """Answers questions about a graph until it is no longer needed.
+    """Server of a graph until it is no longer needed.
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ class Server:
         graph.listen(lambda added, what: self._notice())
 
     def serve(self) -> socket.socket | None:
-        """Answer questions; returns the connection of who asked to stop, None when time was up."""
+        """Answer requests; return the connection that requested to stop, None on timeout."""
         while self._stopping is None:
             left = self._time_left()
             if left <= 0:
@@ -68,7 +68,7 @@ class Server:
         return self._stopping
 
     def _notice(self) -> None:
-        """Call `serve` look at the graph again; on the transport's threads."""
+        """Make `serve` check the graph again; called on the transport's threads."""
         try:
             self._wake.send(b".")
         except BlockingIOError:

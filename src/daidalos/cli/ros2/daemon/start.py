@@ -16,7 +16,7 @@ class StartVerb(Verb):
         parser.add_argument("-d", "--debug", action="store_true", help="Print debug messages")
 
     def main(self, *, args: Namespace) -> Status:
-        """Start it, or have the one that runs stay."""
+        """Start the daemon, or keep the running one."""
         if client.keep():
             print("The daemon is already running")
         elif client.start(args.debug):

@@ -12,6 +12,6 @@ class StatusVerb(Verb):
     """Output the status of the daemon."""
 
     def main(self, *, args: Namespace) -> Status:
-        """Print it."""
+        """Print the status."""
         print("The daemon is running" if client.is_running() else "The daemon is not running")
         return 0

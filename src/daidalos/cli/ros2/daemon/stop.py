@@ -12,6 +12,6 @@ class StopVerb(Verb):
     """Stop the daemon if it is running."""
 
     def main(self, *, args: Namespace) -> Status:
-        """Stop it."""
+        """Stop the daemon."""
         print("The daemon has been stopped" if client.stop() else "The daemon is not running")
         return 0

@@ -77,7 +77,7 @@ def _check(everything: list[Subject], graph: Graph, include_warnings: bool) -> l
 
 
 def _fails(findings: Findings, include_warnings: bool) -> bool:
-    """Print what a check found; tell whether it failed."""
+    """Print the findings of a check; return whether it failed."""
     for text in findings.errors:
         print(f"UserWarning: ERROR: {text}", file=sys.stderr)
     for text in findings.warnings:

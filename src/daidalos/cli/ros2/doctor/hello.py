@@ -53,7 +53,7 @@ class HelloVerb(Verb):
         )
 
     def main(self, *, args: Namespace) -> Status:
-        """Greet the others by a topic and by multicast, and count who greets us."""
+        """Send on a topic and by multicast, and count received messages."""
         from std_msgs.msg import String
 
         name = f"{socket.gethostname()}_{os.getpid()}"
@@ -79,7 +79,7 @@ class HelloVerb(Verb):
 
 @dataclass
 class Summary:
-    """What was sent, and what came from whom, since the last print."""
+    """Messages sent, and messages received by sender, since the last print."""
 
     topic: str
     published: int = 0
@@ -88,7 +88,7 @@ class Summary:
     received: Counter[str] = field(default_factory=Counter)
 
     def text(self) -> str:
-        """Return the summary in words."""
+        """Return the summary as text."""
         lines = ["MULTIMACHINE COMMUNICATION SUMMARY", f"Topic: {self.topic}, Published Msg Count: {self.published}"]
         lines += ["Subscribed from:", *_rows(self.subscribed)]
         lines += [f"Multicast Group/Port: {datagrams.GROUP}/{datagrams.PORT}, Sent Msg Count: {self.sent}"]
@@ -96,7 +96,7 @@ class Summary:
         return "\n".join(["", *lines, "-" * 60])
 
     def reset(self) -> None:
-        """Start to count anew."""
+        """Reset the counters."""
         self.published = self.sent = 0
         self.subscribed.clear()
         self.received.clear()
@@ -118,7 +118,7 @@ def _receiver() -> socket.socket:
 
 
 def _run(node: Any, args: Namespace, summary: Summary, receiver: socket.socket, greet: Any) -> None:
-    """Greet and listen until Ctrl-C, or for one period."""
+    """Send and receive until Ctrl-C, or for one period."""
     from rclpy.executors import SingleThreadedExecutor
 
     executor = SingleThreadedExecutor(context=node.context)

@@ -16,7 +16,7 @@ class ListVerb(Verb):
         add_kind_arguments(parser, "{} types")
 
     def main(self, *, args: Namespace) -> Status:
-        """Print the names, kind by kind."""
+        """Print the names by type."""
         from rosidl_runtime_py import get_interfaces
 
         found = get_interfaces()

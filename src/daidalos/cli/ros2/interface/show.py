@@ -15,7 +15,7 @@ from daidalos.interfaces.definition import PRIMITIVES
 
 
 class Comments(Enum):
-    """Which comments are shown."""
+    """Selection of the comments to show."""
 
     ALL = "all"
     OUTER = "outer"
@@ -50,13 +50,13 @@ class ShowVerb(Verb):
         )
 
     def main(self, *, args: Namespace) -> Status:
-        """Print the definition with those of the types in it below their fields."""
+        """Print the definition, with nested types below their fields."""
         print("\n".join(definition_lines(args.type, args.comments)).rstrip())
         return 0
 
 
 def definition_lines(name: str, comments: Comments, depth: int = 0) -> Iterator[str]:
-    """Yield the lines of an interface's definition; those of nested types follow their field, indented by a tab.
+    """Yield the lines of an interface's definition; nested types follow their field, indented by a tab.
 
     Raises
     ------
@@ -76,7 +76,7 @@ def definition_lines(name: str, comments: Comments, depth: int = 0) -> Iterator[
 
 
 def nested_type(line: str, package: str) -> str | None:
-    """Return the full name of the type of a field, None when it is built in or the line declares no field."""
+    """Return the full name of a field's type, None for a primitive type or a line without a field."""
     match = re.match(r"\s*([A-Za-z][\w/]*)(\[[^\]]*\]|<=\d+)*\s+([A-Za-z]\w*)\s*(=?)", line)
     if match is None or match.group(4) or match.group(1) in PRIMITIVES:
         return None
@@ -89,7 +89,7 @@ def nested_type(line: str, package: str) -> str | None:
 
 
 def _without_comment(line: str) -> str:
-    """Return a line without the comment at its end; a hash inside quotation marks begins none."""
+    """Return a line without its comment; a hash within quotation marks does not start one."""
     match = re.match(r"""(?:[^#"']|"(?:\\.|[^"\\])*"|'(?:\\.|[^'\\])*')*""", line)
     content = match.group() if match else ""
     rest = line[len(content) :]

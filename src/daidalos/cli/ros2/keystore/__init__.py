@@ -1,4 +1,4 @@
-"""Keystores: a certificate authority and the certificates of enclaves, for ROS 2 over zenoh with TLS.
+"""Keystores for ROS 2 over zenoh with TLS: a certificate authority and the certificates of enclaves.
 
 A keystore is a folder::
 
@@ -26,34 +26,34 @@ _ROUTER_PORT = 7447
 
 @dataclass(frozen=True)
 class Keystore:
-    """A keystore at a path, there already or to be made."""
+    """Keystore at a path, which may not exist yet."""
 
     root: Path
 
     @property
     def authority(self) -> Path:
-        """The authority's certificate."""
+        """Path of the authority's certificate."""
         return self.root / "public" / "ca.cert.pem"
 
     @property
     def authority_key(self) -> Path:
-        """The authority's key."""
+        """Path of the authority's key."""
         return self.root / "private" / "ca.key.pem"
 
     @property
     def exists(self) -> bool:
-        """Whether it is there."""
+        """Whether the keystore exists."""
         return self.authority.is_file() and self.authority_key.is_file()
 
     def require(self) -> None:
-        """Raise CliError unless it is there."""
+        """Raise CliError unless the keystore exists."""
         if not self.exists:
             raise CliError(
                 f"'{self.root}' is not a valid keystore; `ros2 security create_keystore {self.root}` makes one"
             )
 
     def create(self) -> None:
-        """Make it, with an authority and the router's certificate; CliError where what that takes is not installed."""
+        """Create the keystore with an authority and the router's certificate; CliError without `cryptography`."""
         from daidalos.cli.ros2.keystore.certificates import new_authority
 
         for folder in ("public", "private", "router", "enclaves"):
@@ -65,7 +65,7 @@ class Keystore:
         _write_config(self.root / "router" / "router.json5", listen | self._transport(self.root / "router"))
 
     def enclave(self, name: str) -> Path:
-        """Return an enclave's folder; CliError where the name cannot be one."""
+        """Return an enclave's folder; CliError for an invalid name."""
         parts = name.split("/")[1:]
         if not name.startswith("/") or not all(part.replace("_", "a").isalnum() for part in parts):
             raise CliError(f"'{name}' is not a valid enclave name: it is absolute, such as /lab/talker")
@@ -77,7 +77,7 @@ class Keystore:
         return sorted(f"/{path.parent.relative_to(folder).as_posix()}" for path in folder.rglob("cert.pem"))
 
     def create_enclave(self, name: str) -> None:
-        """Make an enclave: its certificate and the configuration of its sessions."""
+        """Create an enclave: its certificate and the configuration of its sessions."""
         folder = self.enclave(name)
         folder.mkdir(parents=True)
         self._certify(folder, name)

@@ -1,4 +1,4 @@
-"""X.509 certificates (RFC 5280): an authority, and what it signs."""
+"""X.509 certificates (RFC 5280): authority and signed certificates."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Policies: what the nodes of an enclave may do, as XML (SROS 2's format 0.2.0), and as zenoh's access control."""
+"""Access policies of enclaves, as XML (SROS 2's format 0.2.0) and as zenoh's access control."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _FLOWS = {
 
 
 def policy_of(graph: Graph) -> str:
-    """Return the policy that allows exactly what the nodes of a graph do now."""
+    """Return the policy that allows exactly what the nodes of a graph currently do."""
     root = ElementTree.Element("policy", version=_VERSION)
     enclaves = ElementTree.SubElement(root, "enclaves")
     nodes = [node for node in graph.nodes() if not is_hidden(node.full_name)]
@@ -94,7 +94,7 @@ def _read(file: Path) -> ElementTree.Element:
 
 
 def _permissions(profile: ElementTree.Element) -> Iterator[tuple[str, str]]:
-    """Yield (permission, full name) for all that a profile allows."""
+    """Yield (permission, full name) for everything that a profile allows."""
     namespace, node = profile.get("ns", "/"), profile.get("node", "")
     for group in profile:
         for permission in ("publish", "subscribe", "reply", "request", "call", "execute"):
@@ -106,7 +106,7 @@ def _permissions(profile: ElementTree.Element) -> Iterator[tuple[str, str]]:
 
 
 def _parts(permission: str, name: str) -> Iterable[tuple[str, str]]:
-    """Return what a permission means for topics and services; actions consist of both."""
+    """Return a permission in terms of topics and services; actions consist of both."""
     if permission not in ("call", "execute"):
         return [(permission, name)]
     service, topic = ("request", "subscribe") if permission == "call" else ("reply", "publish")
@@ -132,7 +132,7 @@ def _rule(permission: str, flow: str, messages: Iterable[str], names: Iterable[s
 
 
 def _common_rule() -> dict[str, Any]:
-    """Return what lets everybody see who is there."""
+    """Return the rule for discovery, which is always allowed."""
     return {
         "id": "graph",
         "permission": "allow",

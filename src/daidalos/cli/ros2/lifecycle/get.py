@@ -20,7 +20,7 @@ class GetVerb(Verb):
         add_node_arguments(parser, nargs="?")
 
     def main(self, *, args: Namespace) -> Status:
-        """Print the state of one node, or of every node behind its name."""
+        """Print the state of one node, or of every managed node with its name."""
         with direct_node(args) as node:
             graph = node.handle.graph
             if args.node_name:

@@ -21,7 +21,7 @@ class ListVerb(Verb):
         parser.add_argument("-a", "--all", action="store_true", help="Display all existing transitions")
 
     def main(self, *, args: Namespace) -> Status:
-        """Print the transitions with the states that they lead from and to."""
+        """Print the transitions with their start and goal states."""
         with direct_node(args) as node:
             for found in transitions(node, find_managed(node.handle.graph, args), args.all):
                 print(f"- {found.transition.label} [{found.transition.id}]")

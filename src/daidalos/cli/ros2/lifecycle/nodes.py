@@ -24,7 +24,7 @@ class NodesVerb(Verb):
         )
 
     def main(self, *, args: Namespace) -> Status:
-        """Print the full names, or how many there are."""
+        """Print the full names, or their number."""
         with graph_view(args) as graph:
             found = managed_nodes(graph, args.all)
         print_names(found, count=args.count_nodes)

@@ -13,7 +13,7 @@ class ReceiveVerb(Verb):
     """Receive a single UDP multicast packet."""
 
     def main(self, *, args: Namespace) -> Status:
-        """Wait for one, and print it."""
+        """Wait for a packet and print it."""
         print("Waiting for UDP multicast datagram...")
         try:
             with datagrams.open_receiver() as receiver:

@@ -17,7 +17,7 @@ class SendVerb(Verb):
         parser.add_argument("--ttl", type=datagrams.hops, help="The multicast TTL")
 
     def main(self, *, args: Namespace) -> Status:
-        """Send it."""
+        """Send a packet."""
         print("Sending one UDP multicast datagram...")
         try:
             datagrams.send(b"Hello World!", args.ttl)

@@ -1,4 +1,4 @@
-"""The files of a new package."""
+"""Files of new packages."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ __all__ = ["Entry", "NewPackage", "files_of"]
 
 
 def files_of(package: NewPackage) -> Iterator[Entry]:
-    """Yield the files and folders of a package in the order in which they are made."""
+    """Yield the files and folders of a package in the order of their creation."""
     # Every command loads this module, and few write XML.
     from daidalos.cli.ros2.new_package import cmake, python
     from daidalos.cli.ros2.new_package.manifest import package_xml

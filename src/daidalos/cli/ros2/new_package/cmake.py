@@ -1,4 +1,4 @@
-"""The files of a package that CMake builds (``ament_cmake`` and plain ``cmake``)."""
+"""Files of packages that CMake builds (``ament_cmake`` and plain ``cmake``)."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from daidalos.cli.ros2.new_package.package import Entry, NewPackage
 
 
 def files(package: NewPackage) -> Iterator[Entry]:
-    """Yield the files beside the manifest."""
+    """Yield the files apart from the manifest."""
     name, library = package.name, package.library_name
     yield Entry("src", note="creating source and include folder")
     yield Entry(f"include/{name}")

@@ -1,4 +1,4 @@
-"""The texts of licences, by their SPDX identifiers."""
+"""Texts of licences by their SPDX identifiers."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ LICENSES = (
 
 
 def license_text(identifier: str, holder: str) -> str | None:
-    """Return the text of a licence, None for one that is not known.
+    """Return the text of a licence, None for an unknown one.
 
     The GNU licences are given by the notice that refers to them.
 
@@ -30,7 +30,7 @@ def license_text(identifier: str, holder: str) -> str | None:
 
 
 def _apache() -> str | None:
-    """Return the licence of this very project."""
+    """Return the licence of this project."""
     from importlib.metadata import files
 
     for path in files("daidalos") or ():

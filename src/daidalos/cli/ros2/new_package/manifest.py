@@ -1,4 +1,4 @@
-"""The manifest, ``package.xml``."""
+"""Manifest, ``package.xml``."""
 
 from __future__ import annotations
 

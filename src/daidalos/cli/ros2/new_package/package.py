@@ -1,4 +1,4 @@
-"""What a new package is to be, and what it consists of."""
+"""Specification and entries of a new package."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class NewPackage:
-    """What is to be created; `build_type` is ``ament_python``, ``ament_cmake`` or ``cmake``."""
+    """Package to be created; `build_type` is ``ament_python``, ``ament_cmake`` or ``cmake``."""
 
     name: str
     package_format: int
@@ -23,7 +23,7 @@ class NewPackage:
     library_name: str | None = None
 
     def fault(self) -> str | None:
-        """Return what is wrong with the names, None when they can be used."""
+        """Return what is wrong with the names, None if they are valid."""
         if not re.fullmatch(r"[a-zA-Z][a-zA-Z0-9_-]*", self.name):
             return (
                 f"'{self.name}' is not a valid package name: it must begin with a letter and consist of letters, "
@@ -41,7 +41,7 @@ class NewPackage:
 
 @dataclass(frozen=True)
 class Entry:
-    """A file, or a folder where `text` is None; `note` is said before it is made."""
+    """File, or folder if `text` is None; `note` is printed before its creation."""
 
     path: str
     text: str | None = None

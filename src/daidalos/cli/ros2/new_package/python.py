@@ -1,4 +1,4 @@
-"""The files of a package in Python (``ament_python``)."""
+"""Files of packages in Python (``ament_python``)."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from daidalos.cli.ros2.new_package.package import Entry, NewPackage
 
 
 def files(package: NewPackage) -> Iterator[Entry]:
-    """Yield the files beside the manifest."""
+    """Yield the files apart from the manifest."""
     name = package.name
     yield Entry(name, note="creating source folder")
     yield Entry("setup.py", _setup_py(package))

@@ -29,7 +29,7 @@ class InfoVerb(Verb):
         )
 
     def main(self, *, args: Namespace) -> Status:
-        """Print what the node has."""
+        """Print the node's endpoints."""
         full_name = absolute(args.node_name)
         with graph_view(args) as graph:
             everyone = nodes(graph)

@@ -24,7 +24,7 @@ class ListVerb(Verb):
         )
 
     def main(self, *, args: Namespace) -> Status:
-        """Print the full names, or how many there are."""
+        """Print the full names, or their number."""
         with graph_view(args) as graph:
             found = nodes(graph, include_hidden=args.all)
         if args.count_nodes:

@@ -30,7 +30,7 @@ class DeleteVerb(Verb):
         add_timeout_argument(parser)
 
     def main(self, *, args: Namespace) -> Status:
-        """Set the parameter to nothing, and say what became of it."""
+        """Unset the parameter, and print the result."""
         from rcl_interfaces.msg import Parameter
 
         with direct_node(args) as node:

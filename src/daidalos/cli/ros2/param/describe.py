@@ -43,7 +43,7 @@ class DescribeVerb(Verb):
 
 
 def description(descriptor: Any) -> str:
-    """Return a `rcl_interfaces/msg/ParameterDescriptor` in words."""
+    """Return a `rcl_interfaces/msg/ParameterDescriptor` as text."""
     lines = [f"Parameter name: {descriptor.name}", f"  Type: {TYPE_NAMES[descriptor.type]}"]
     if descriptor.description:
         lines.append(f"  Description: {descriptor.description}")

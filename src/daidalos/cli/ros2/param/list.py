@@ -38,7 +38,7 @@ class ListVerb(Verb):
         parser.add_argument("--param-type", action="store_true", help="Print parameter types with parameter names")
 
     def main(self, *, args: Namespace) -> Status:
-        """Print the parameters of one node, or of every node under its name."""
+        """Print the parameters of one node, or of every node."""
         try:
             pattern = re.compile(args.filter[0] if args.filter else "")
         except re.error as error:
@@ -55,7 +55,7 @@ class ListVerb(Verb):
 
 
 def _with_parameters(node: Node, include_hidden: bool) -> list[str]:
-    """Return the full names of the nodes that tell of their parameters."""
+    """Return the full names of the nodes with parameter services."""
     graph = node.handle.graph
     names = dict.fromkeys(one.full_name for one in nodes(graph, include_hidden))
     return [name for name in names if graph.endpoints(EndpointKind.SERVICE, name=f"{name}/list_parameters")]

@@ -29,7 +29,7 @@ class LoadVerb(Verb):
         add_timeout_argument(parser)
 
     def main(self, *, args: Namespace) -> Status:
-        """Set what the file says, and say what became of each."""
+        """Set the parameters of the file, and print the result of each."""
         from rclpy.parameter import parameter_dict_from_yaml_file
 
         with direct_node(args) as node:

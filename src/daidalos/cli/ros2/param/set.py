@@ -34,7 +34,7 @@ class SetVerb(Verb):
         add_timeout_argument(parser)
 
     def main(self, *, args: Namespace) -> Status:
-        """Set it, and say what became of it."""
+        """Set the parameter, and print the result."""
         from rcl_interfaces.msg import Parameter
         from rclpy.parameter import get_parameter_value
 
@@ -49,7 +49,7 @@ class SetVerb(Verb):
 
 
 def _yaml_hint(value: str) -> str:
-    """Return a line that says where a value that begins like YAML is none; empty otherwise, as it is a text then."""
+    """Return a hint about a value that starts like YAML but is not valid; empty for other texts."""
     try:
         if value.lstrip().startswith(("[", "{")):
             parse_yaml(value)

@@ -59,7 +59,7 @@ class CreateVerb(Verb):
         parser.add_argument("--library-name", help="name of the empty library")
 
     def main(self, *, args: Namespace) -> Status:
-        """Return what will be written, write it, and say what was written."""
+        """Create the package, and print its settings and files."""
         if args.license == "?":
             print("\n".join(("Supported licenses:", *LICENSES)))
             return 0
@@ -99,7 +99,7 @@ def _package(args: Namespace) -> NewPackage:
 
 
 def _email() -> str:
-    """Return the user's address as git knows it."""
+    """Return the user's e-mail address from git's configuration."""
     try:
         asked = subprocess.run(["git", "config", "--get", "user.email"], capture_output=True, text=True, check=False)
         found = asked.stdout.strip()
@@ -159,5 +159,5 @@ def _write(package: NewPackage, destination: str) -> None:
 
 
 def _dotted(path: Path) -> str:
-    """Return a path as typed, one in the working directory with the dot before it."""
+    """Return a path as typed, with a leading dot for one in the working directory."""
     return str(path) if path.is_absolute() or path.parts[:1] == ("..",) else f".{'/' if path.parts else ''}{path}"

@@ -12,7 +12,7 @@ class ListVerb(Verb):
     """Output a list of available packages."""
 
     def main(self, *, args: Namespace) -> Status:
-        """Print their names."""
+        """Print the names of the packages."""
         for name in package_names():
             print(name)
         return 0

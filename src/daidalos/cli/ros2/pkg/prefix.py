@@ -20,7 +20,7 @@ class PrefixVerb(Verb):
         )
 
     def main(self, *, args: Namespace) -> Status:
-        """Print it."""
+        """Print the prefix."""
         prefix = package_prefix(args.package_name)
         print(prefix / "share" / args.package_name if args.share else prefix)
         return 0

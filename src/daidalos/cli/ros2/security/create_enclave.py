@@ -18,7 +18,7 @@ class CreateEnclaveVerb(Verb):
         parser.add_argument("NAME", help="enclave name")
 
     def main(self, *, args: Namespace) -> Status:
-        """Create its certificate, and say how it is entered."""
+        """Create the enclave's certificate, and print how to use it."""
         keystore = Keystore(args.ROOT)
         keystore.require()
         folder = keystore.enclave(args.NAME)

@@ -17,7 +17,7 @@ class CreateKeystoreVerb(Verb):
         parser.add_argument("ROOT", type=Path, help="root path of keystore")
 
     def main(self, *, args: Namespace) -> Status:
-        """Create it."""
+        """Create the keystore."""
         keystore = Keystore(args.ROOT)
         if keystore.exists:
             return f"'{args.ROOT}' is already a keystore"

@@ -21,7 +21,7 @@ class CreatePermissionVerb(Verb):
         parser.add_argument("POLICY_FILE_PATH", type=Path, help="path of the policy xml file")
 
     def main(self, *, args: Namespace) -> Status:
-        """Have the enclave's sessions allow what the policy says and nothing else."""
+        """Restrict the enclave's sessions to the permissions of the policy."""
         keystore = Keystore(args.ROOT)
         keystore.require()
         if args.NAME not in keystore.enclaves():

@@ -26,7 +26,7 @@ class GenerateArtifactsVerb(Verb):
         )
 
     def main(self, *, args: Namespace) -> Status:
-        """Create what is missing, and set the permissions of every enclave in the policies."""
+        """Create missing enclaves, and set the permissions of all enclaves in the policies."""
         root = args.keystore_root_path or os.environ.get("ROS_SECURITY_KEYSTORE")
         if not root:
             raise CliError("Neither --keystore-root-path nor ROS_SECURITY_KEYSTORE says where the keystore is")

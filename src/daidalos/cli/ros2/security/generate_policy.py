@@ -22,7 +22,7 @@ class GeneratePolicyVerb(Verb):
         parser.add_argument("POLICY_FILE_PATH", type=Path, help="path of the policy xml file")
 
     def main(self, *, args: Namespace) -> Status:
-        """Write the policy that allows what the nodes do now."""
+        """Write the policy that allows what the nodes currently do."""
         with graph_view(args) as graph:
             text = policy_of(graph)
         try:

@@ -17,7 +17,7 @@ class ListEnclavesVerb(Verb):
         parser.add_argument("ROOT", type=Path, help="root path of keystore")
 
     def main(self, *, args: Namespace) -> Status:
-        """Print their names."""
+        """Print the names of the enclaves."""
         keystore = Keystore(args.ROOT)
         keystore.require()
         for name in keystore.enclaves():

@@ -20,5 +20,5 @@ class ServiceCommand(VerbCommand):
     }
 
     def add_options(self, parser: ArgumentParser) -> None:
-        """Declare the option that holds for every verb."""
+        """Declare the options common to all verbs."""
         parser.add_argument("--include-hidden-services", action="store_true", help="Consider hidden services as well")

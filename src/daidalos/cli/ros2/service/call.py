@@ -50,7 +50,7 @@ class CallVerb(Verb):
         )
 
     def main(self, *, args: Namespace) -> Status:
-        """Call once, or until Ctrl-C at the rate."""
+        """Call the service once, or at a rate until Ctrl-C."""
         service_type = service_class(args.service_type)
         request = service_type.Request()
         stampers = fill(request, parse_values(sys.stdin.read() if args.stdin else args.values))

@@ -50,7 +50,7 @@ class EchoVerb(Verb):
         add_length_arguments(parser)
 
     def main(self, *, args: Namespace) -> Status:
-        """Print what clients and servers tell of every call, until Ctrl-C."""
+        """Print the events of clients and servers until Ctrl-C."""
         with direct_node(args) as node:
             name = node.resolve_service_name(args.service_name)
             service_type = service_class(args.service_type or _type_of(node, args, name))

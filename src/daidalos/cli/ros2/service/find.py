@@ -31,7 +31,7 @@ class FindVerb(Verb):
         )
 
     def main(self, *, args: Namespace) -> Status:
-        """Print the names of the services of the type, or how many there are."""
+        """Print the names of the services of the type, or their number."""
         with graph_view(args) as graph:
             found = [
                 name for name, types in services(graph, args.include_hidden_services) if args.service_type in types

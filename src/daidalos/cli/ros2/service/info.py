@@ -25,7 +25,7 @@ class InfoVerb(Verb):
         )
 
     def main(self, *, args: Namespace) -> Status:
-        """Print the type and how many call and serve it."""
+        """Print the type and the numbers of clients and servers."""
         name = absolute(args.service_name)
         with graph_view(args) as graph:
             known = services(graph)

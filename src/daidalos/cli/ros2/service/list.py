@@ -27,7 +27,7 @@ class ListVerb(Verb):
         )
 
     def main(self, *, args: Namespace) -> Status:
-        """Print the names as asked."""
+        """Print the names, with types or as a number on request."""
         with graph_view(args) as graph:
             found = services(graph, args.include_hidden_services)
         print_found(found, show_types=args.show_types, count=args.count_services)

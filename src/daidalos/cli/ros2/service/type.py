@@ -23,7 +23,7 @@ class TypeVerb(Verb):
         )
 
     def main(self, *, args: Namespace) -> Status:
-        """Print the types; the status is 1 when the service is not there."""
+        """Print the types; the status is 1 if the service does not exist."""
         name = absolute(args.service_name)
         with graph_view(args) as graph:
             known = services(graph)

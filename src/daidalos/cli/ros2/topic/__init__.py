@@ -23,5 +23,5 @@ class TopicCommand(VerbCommand):
     }
 
     def add_options(self, parser: ArgumentParser) -> None:
-        """Declare the option that holds for every verb."""
+        """Declare the options common to all verbs."""
         parser.add_argument("--include-hidden-topics", action="store_true", help="Consider hidden topics as well")

@@ -59,7 +59,7 @@ class BwVerb(Verb):
 
 
 def positive_int(text: str) -> int:
-    """Return a number of at least one."""
+    """Return an integer of at least one; argument type."""
     value = int(text) if text.isascii() and text.isdigit() else 0
     if value <= 0:
         raise ArgumentTypeError("value must be a positive integer")
@@ -67,7 +67,7 @@ def positive_int(text: str) -> int:
 
 
 class BandwidthMeter:
-    """Measures how much data comes in, by the last `window_size` messages."""
+    """Statistics of the received data over the last `window_size` messages."""
 
     def __init__(self, window_size: int) -> None:
         self._messages: deque[tuple[float, int]] = deque(maxlen=window_size)
@@ -77,7 +77,7 @@ class BandwidthMeter:
         self._messages.append((now_s, size))
 
     def report(self, now_s: float) -> str:
-        """Return what is to be printed; empty before the second message."""
+        """Return the text to print; empty before the second message."""
         if len(self._messages) < 2:
             return ""
         sizes = [size for _, size in self._messages]

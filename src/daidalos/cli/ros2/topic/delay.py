@@ -65,7 +65,7 @@ class DelayVerb(Verb):
 
 
 class DelayMeter:
-    """Measures how old messages are when they come, by the last `window_size` of them."""
+    """Statistics of the age of messages at reception over the last `window_size` messages."""
 
     def __init__(self, window_size: int) -> None:
         self._delays: deque[float] = deque(maxlen=window_size)
@@ -77,7 +77,7 @@ class DelayMeter:
         self._new = True
 
     def report(self) -> str:
-        """Return what is to be printed; empty when nothing came since the last time."""
+        """Return the text to print; empty without new messages."""
         if not self._new:
             return ""
         self._new = False

@@ -72,7 +72,7 @@ class EchoVerb(Verb):
 
 
 def add_format_arguments(parser: ArgumentParser) -> None:
-    """Declare how messages are shown."""
+    """Declare the arguments of the output format."""
     parser.add_argument(
         "--csv", action="store_true", help="Output all recursive fields separated by commas (e.g. for plotting)"
     )
@@ -88,7 +88,7 @@ def add_format_arguments(parser: ArgumentParser) -> None:
 
 
 def add_length_arguments(parser: ArgumentParser) -> None:
-    """Declare how much of long values is shown."""
+    """Declare the arguments of the output length."""
     parser.add_argument(
         "--full-length",
         "-f",
@@ -111,7 +111,7 @@ def add_length_arguments(parser: ArgumentParser) -> None:
 
 
 def unsigned_int(text: str) -> int:
-    """Return a number of at least zero."""
+    """Return an integer of at least zero; argument type."""
     value = int(text) if text.isascii() and text.isdigit() else -1
     if value < 0:
         raise ArgumentTypeError("value must be non-negative integer")
@@ -119,7 +119,7 @@ def unsigned_int(text: str) -> int:
 
 
 def positive_float(text: str) -> float:
-    """Return a number above zero."""
+    """Return a number above zero; argument type."""
     try:
         value = float(text)
     except ValueError:
@@ -155,14 +155,14 @@ def _listen(
 
 
 class Losses:
-    """Tells, by the numbers that publishers give their messages, when one did not get here."""
+    """Detector of lost messages by the publishers' sequence numbers."""
 
     def __init__(self) -> None:
         self._last: dict[bytes, int] = {}
         self._total = 0
 
     def note(self, info: Any) -> int:
-        """Record a message's info; return how many are missing before it, and say so on standard error."""
+        """Record a message's info; return the number of lost messages before it, and report them on standard error."""
         number, publisher = info["publication_sequence_number"], info["publisher_gid"]
         if number is None or publisher is None:
             return 0
@@ -176,7 +176,7 @@ class Losses:
 
 
 def _printer(args: Namespace) -> Callable[[Any, Any], None]:
-    """Return what prints a message with its info as the options say."""
+    """Return a function that prints a message with its info in the format of the options."""
     fields = [Field(path) for path in args.field or ()]
     text = csv_text if args.csv else yaml_text
 
@@ -191,7 +191,7 @@ def _printer(args: Namespace) -> Callable[[Any, Any], None]:
 
 
 def yaml_text(args: Namespace, parts: list[Any]) -> str:
-    """Return messages or values as documents of YAML that end with three dashes."""
+    """Return messages or values as YAML documents that end with three dashes."""
     from rosidl_runtime_py import message_to_yaml
 
     def shown(part: Any) -> str:

@@ -33,7 +33,7 @@ class FindVerb(Verb):
         )
 
     def main(self, *, args: Namespace) -> Status:
-        """Print the names of the topics of the type, or how many there are."""
+        """Print the names of the topics of the type, or their number."""
         with graph_view(args) as graph:
             found = [name for name, types in topics(graph, args.include_hidden_topics) if args.topic_type in types]
         print_names(found, count=args.count_topics)

@@ -92,7 +92,7 @@ class Rate:
 
 
 class RateMeter:
-    """Measures how often something happens.
+    """Statistics of the rate of events.
 
     Parameters
     ----------
@@ -105,7 +105,7 @@ class RateMeter:
         self._last: int | None = None
 
     def add(self, now_ns: int) -> bool:
-        """Record that it happened; False when the clock went back, so that everything begins anew."""
+        """Record an event; return False if the clock went back, which resets the statistics."""
         last, self._last = self._last, now_ns
         if last is not None and now_ns < last:
             self._intervals.clear()
@@ -115,7 +115,7 @@ class RateMeter:
         return True
 
     def rate(self) -> Rate | None:
-        """Return the statistics, None before the second time."""
+        """Return the statistics, None before the second event."""
         if not self._intervals:
             return None
         count = len(self._intervals)
@@ -131,7 +131,7 @@ class RateMeter:
 
 
 def _measure_one(node: Node, args: Namespace, clock: Clock, accept: Callable[[Any], bool] | None) -> None:
-    """Print the rate of one topic with the first message that comes a second after the last print."""
+    """Print the rate of one topic at the first message at least a second after the last print."""
     meter = RateMeter(args.window_size)
     printed_at: int | None = None
 
@@ -180,7 +180,7 @@ def table(rows: list[tuple[str, Rate]]) -> str:
 
 
 def _note(meter: RateMeter, clock: Clock, accept: Callable[[Any], bool] | None, message: Any) -> bool:
-    """Count a message; False when the clock went back."""
+    """Count a message; return False if the clock went back."""
     if accept is not None and not accept(message):
         return True
     now = clock.now().nanoseconds

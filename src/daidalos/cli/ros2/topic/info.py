@@ -30,7 +30,7 @@ class InfoVerb(Verb):
         )
 
     def main(self, *, args: Namespace) -> Status:
-        """Print the type, and who publishes and subscribes."""
+        """Print the type, the publishers and the subscriptions."""
         name = absolute(args.topic_name)
         with graph_view(args) as graph:
             known = topics(graph)

@@ -35,7 +35,7 @@ class ListVerb(Verb):
         )
 
     def main(self, *, args: Namespace) -> Status:
-        """Print the names as asked."""
+        """Print the names, with types or as a number on request."""
         with graph_view(args) as graph:
             found = topics(graph, args.include_hidden_topics)
             if args.verbose:

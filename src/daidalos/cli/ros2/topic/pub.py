@@ -91,7 +91,7 @@ class PubVerb(Verb):
         add_qos_arguments(parser, "publish", "default")
 
     def main(self, *, args: Namespace) -> Status:
-        """Publish until Ctrl-C or as often as asked."""
+        """Publish until Ctrl-C, or the requested number of times."""
         message_type = message_class(args.message_type)
         text = sys.stdin.read() if args.stdin else args.values
         values = parse_values(text)
@@ -124,7 +124,7 @@ def _seconds(text: str) -> float:
 
 
 def _wait_for_subscriptions(node: Node, publisher: Publisher, wanted: int, limit_s: float | None) -> None:
-    """Wait until so many subscriptions match, saying so every second."""
+    """Wait for a number of matching subscriptions, and report progress every second."""
     deadline = None if limit_s is None else time.monotonic() + limit_s
     hint = None
     while publisher.get_subscription_count() < wanted:
@@ -142,7 +142,7 @@ def _wait_for_subscriptions(node: Node, publisher: Publisher, wanted: int, limit
 
 
 def _mismatch_hint(node: Node, publisher: Publisher) -> str:
-    """Return a line about who listens to another type, or to a topic of a like name; empty when there is neither."""
+    """Return a hint about subscriptions of another type, or of a similar topic; empty without any."""
     listened = {
         name: types
         for name, types in node.get_topic_names_and_types()

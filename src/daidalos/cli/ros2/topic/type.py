@@ -22,7 +22,7 @@ class TypeVerb(Verb):
         complete_topics(parser.add_argument("topic_name", help="Name of the ROS topic to get type (e.g. '/chatter')"))
 
     def main(self, *, args: Namespace) -> Status:
-        """Print the types; the status is 1 when the topic is not there."""
+        """Print the types; the status is 1 if the topic does not exist."""
         name = absolute(args.topic_name)
         with graph_view(args) as graph:
             known = topics(graph, args.include_hidden_topics)
