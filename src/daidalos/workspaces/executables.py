@@ -36,13 +36,17 @@ def find_executable(package: str, executable: str) -> list[str]:
         path = folder / executable
         if _is_executable(path):
             return [str(path)]
-    module = _modules(package).get(executable)
-    if module is not None:
-        return [sys.executable, "-S", "-P", _START, package, module]
+    if executable in _modules(package):
+        return built_in_command(package, executable)
     known = executables(package)
     if not known and not is_known(package):
         raise ExecutableNotFound(f"Package '{package}' not found")
     raise ExecutableNotFound(f"No executable '{executable}' in package '{package}'{hint(executable, known)}")
+
+
+def built_in_command(package: str, executable: str) -> list[str]:
+    """Return the beginning of the command that starts an executable of a built-in package, whatever is sourced."""
+    return [sys.executable, "-S", "-P", _START, package, _modules(package)[executable]]
 
 
 @contextlib.contextmanager

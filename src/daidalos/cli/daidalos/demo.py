@@ -15,6 +15,8 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from daidalos.cli.daidalos.overlays import leave_overlays
+
 if TYPE_CHECKING:
     from daidalos.nodes.daidalos_demo._measuring import Load
     from daidalos.nodes.daidalos_demo.trial import TrialReport
@@ -43,6 +45,7 @@ class DemoVerb:
 
     def main(self, *, args: argparse.Namespace) -> int:
         """Run the demonstration."""
+        leave_overlays()
         return _try_out(args) if args.headless else _show(args)
 
 
@@ -149,6 +152,7 @@ def _run_trial(
                 raise KeyboardInterrupt
         return task.result() if task.done() else None
     finally:
+        task.cancel()
         node.destroy_node()
         rclpy.try_shutdown()
 

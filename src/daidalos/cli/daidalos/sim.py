@@ -2,10 +2,15 @@
 
 import argparse
 import sys
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+
+from daidalos.workspaces.executables import built_in_command
 
 if TYPE_CHECKING:
+    from launch_ros.actions import Node
+
     from daidalos.description.robot import Robot
     from daidalos.description.world import Model
 
@@ -52,14 +57,14 @@ class SimVerb:
 
 def _find_world(name: str) -> Path | None:
     """Return the file of a world; None for the empty world."""
-    from daidalos.nodes.packages import package_share
+    from daidalos.interfaces.library import BUILT_IN
 
     if not name:
         return None
     path = Path(name)
     if path.is_file():
         return path
-    folder = Path(package_share("turtlebot3_gazebo") or "") / "worlds"
+    folder = BUILT_IN / "turtlebot3_gazebo" / "worlds"
     for candidate in (folder / name, folder / f"{name}.world"):
         if candidate.is_file():
             return candidate
@@ -103,35 +108,42 @@ def _launch(path: Path | None, args: argparse.Namespace) -> int:
     """Start the simulator, the spawners and the studio; stop them together."""
     from launch import LaunchDescription, LaunchService
     from launch.actions import Shutdown
-    from launch_ros.actions import Node
 
     for file in args.model:
         _read_model(Path(file))  # a fault is better told before anything runs
     words = [*([str(path.resolve())] if path else []), *(["--pause"] if args.pause else [])]
     parameters = {"seed": args.seed} | ({} if args.speed is None else {"real_time_factor": float(args.speed)})
-    server = Node(
-        package="gazebo_ros",
-        executable="gzserver",
-        arguments=words,
-        parameters=[parameters],
-        output="screen",
-        on_exit=[Shutdown()],
-    )
+    server = _built_in_node("gazebo_ros", "gzserver", words, [parameters], on_exit=[Shutdown()])
     spawners = [
-        Node(
-            package="gazebo_ros",
-            executable="spawn_entity.py",
-            arguments=["-file", str(Path(file).resolve()), "-entity", Path(file).name.partition(".")[0]],
-            output="screen",
+        _built_in_node(
+            "gazebo_ros",
+            "spawn_entity.py",
+            ["-file", str(Path(file).resolve()), "-entity", Path(file).name.partition(".")[0]],
         )
         for file in args.model
     ]
-    studio = Node(
-        package="foxglove_bridge",
-        executable="foxglove_bridge",
+    studio = _built_in_node(
+        "foxglove_bridge",
+        "foxglove_bridge",
         parameters=[{"port": args.port, "open_browser": True, "front": "simulation"}],
-        output="screen",
     )
     service = LaunchService()
     service.include_launch_description(LaunchDescription([server, *spawners, *([] if args.headless else [studio])]))
     return int(service.run())
+
+
+def _built_in_node(
+    package: str, executable: str, arguments: Sequence[str] = (), parameters: Sequence[Any] = (), **kwargs: Any
+) -> "Node":
+    """Return the action that starts a built-in node, even where a sourced workspace has a package of that name."""
+    from launch_ros.actions import Node
+
+    program, *beginning = built_in_command(package, executable)
+    return Node(
+        executable=program,
+        arguments=[*beginning, *arguments],
+        parameters=list(parameters) or None,
+        exec_name=executable,
+        output="screen",
+        **kwargs,
+    )
