@@ -17,7 +17,7 @@ from contextlib import contextmanager
 import aiohttp
 import psutil
 
-from daidalos.studio.pages import STATIC
+from daidalos.studio.files import STATIC
 from daidalos.studio.server import StudioServer
 from daidalos.studio.source import Graph, MessageCallback, Observer, Parameter, Publication, Service, Topic
 

@@ -9,7 +9,8 @@ import aiohttp
 import pytest
 from yarl import URL
 
-from daidalos.common.extensions import describe, listing
+from daidalos.common.extensions import BUILT_IN, describe, listing
+from daidalos.studio import extensions, typescript
 from daidalos.studio.extensions import DISPLAYS, PANELS, PageModule, module_file, page_modules
 from daidalos.studio.server import StudioServer
 
@@ -38,9 +39,26 @@ def test_modules_are_listed_with_where_they_are_served(gauge: Path) -> None:
 
 
 def test_the_registry_lists_them_without_importing_anything(gauge: Path) -> None:
-    (panel,) = listing(PANELS)
+    (panel,) = (each for each in listing(PANELS) if each.origin != BUILT_IN)
     assert (panel.name, panel.origin, describe(panel)) == ("gauge", "gauges 1.0", "A round gauge")
-    assert listing(DISPLAYS) == []
+    assert all(each.origin == BUILT_IN for each in listing(DISPLAYS))
+
+
+def test_the_registry_lists_the_pages_own() -> None:
+    own = typescript.built_in()
+    assert own["studio_panel"]["plot"] == "fields of messages over time, or over each other"
+    assert {"Grid", "Map", "MarkerArray", "PointCloud2"} <= own["studio_display"].keys()
+    for kind, pattern in (("studio_panel", "panels/*_panel.tsx"), ("studio_display", "displays/types/*.ts")):
+        files = [path for path in (typescript.WEB / "src").glob(pattern) if ".test." not in path.name]
+        assert len(own[kind]) == len(files)
+
+
+def test_a_package_does_not_replace_a_panel_of_the_page(install: Install, monkeypatch, tmp_path: Path) -> None:
+    (tmp_path / "built_in.json").write_text('{"studio_panel": {"plot": "curves"}, "studio_display": {}}')
+    monkeypatch.setattr(extensions, "STATIC", tmp_path)
+    install("plots", PANEL_GROUP, {"plot": "plots_of_test:plot.js"})
+    assert [(each.name, each.origin) for each in listing(PANELS)] == [("plot", BUILT_IN)]
+    assert page_modules().panels == ()
 
 
 @pytest.mark.parametrize(

@@ -23,10 +23,10 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 from daidalos.studio import typescript
+from daidalos.studio.files import BUILT_IN_EXTENSIONS, STATIC
 
 STUDIO = Path(__file__).resolve().parent
 WEB = STUDIO / "web"
-STATIC = STUDIO / "static"
 STAMP = "source.sha256"
 CONTRACT = "daidalos-studio.d.ts"
 SKIP = "DAIDALOS_SKIP_STUDIO"  # environment variable: set it to leave the page as it is
@@ -219,6 +219,7 @@ def _build_into(static: Path, web: Path, node: _Node) -> None:
             raise BuildError("Vite wrote no index.html")
         if (web / "src" / "contract.ts").is_file():
             (fresh / CONTRACT).write_text(typescript.contract(web), encoding="utf-8", newline="\n")
+        (fresh / BUILT_IN_EXTENSIONS).write_text(json.dumps(typescript.built_in(web), indent=2), encoding="utf-8")
         _compress(fresh)
         (fresh / STAMP).write_text(digest + "\n")
         if static.exists():

@@ -6,6 +6,7 @@ page loads it from this server, and with it whatever it imports from below the s
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import partial
@@ -14,8 +15,8 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import quote
 
-from daidalos.common.extensions import Extension, Kind, from_entry_points, listing
-from daidalos.studio.files import find_file
+from daidalos.common.extensions import BUILT_IN, Extension, Kind, from_entry_points, listing
+from daidalos.studio.files import BUILT_IN_EXTENSIONS, STATIC, find_file
 
 _SUFFIXES = frozenset({".js", ".mjs"})
 
@@ -44,7 +45,7 @@ class PageModules:
 
 def page_modules() -> PageModules:
     """Return what the installed packages bring."""
-    return PageModules(*(tuple(_served(kind, each) for each in listing(kind)) for kind in KINDS))
+    return PageModules(*(tuple(_served(kind, each) for each in _brought(kind)) for kind in KINDS))
 
 
 def module_file(kind: str, name: str, path: str) -> Path | None:
@@ -59,13 +60,17 @@ def module_file(kind: str, name: str, path: str) -> Path | None:
     path : str
         Below the folder of the module.
     """
-    found = (each for known in KINDS if known.name == kind for each in listing(known) if each.name == name)
+    found = (each for known in KINDS if known.name == kind for each in _brought(known) if each.name == name)
     for extension in found:
         try:
             return find_file(_file(extension).parent, path)
         except PageModuleError:
             return None
     return None
+
+
+def _brought(kind: Kind[Any]) -> Iterator[Extension]:
+    return (each for each in listing(kind) if each.origin != BUILT_IN)
 
 
 def _served(kind: Kind[Any], extension: Extension) -> PageModule:
@@ -94,9 +99,16 @@ def _file(extension: Extension) -> Path:
     raise PageModuleError(f"the package {package} has no file {file}")
 
 
-def _installed(group: str) -> Iterator[Extension]:
+def _known(name: str, group: str) -> Iterator[Extension]:
+    """Yield the page's own panels or displays, then those of packages, with their descriptions."""
+    own: dict[str, str] = {}
+    if (STATIC / BUILT_IN_EXTENSIONS).is_file():
+        own = json.loads((STATIC / BUILT_IN_EXTENSIONS).read_text(encoding="utf-8"))[name]
+    for each, description in own.items():
+        yield Extension((each,), "", description)
     for extension in from_entry_points(group):
-        yield extension._replace(description=_description(extension))
+        if extension.name not in own:
+            yield extension._replace(description=_description(extension))
 
 
 def _description(extension: Extension) -> str:
@@ -109,11 +121,13 @@ def _description(extension: Extension) -> str:
     return first.strip("/* ").removesuffix(".") if first.startswith(("//", "/*")) else extension.target
 
 
-def _kind(name: str, description: str) -> Kind[Any]:
+def _kind(name: str, contract: str, description: str) -> Kind[Any]:
     group = f"daidalos.{name}s"
-    return Kind(name, group, "daidalos.studio.extensions:PageModule", description, partial(_installed, group))
+    return Kind(name, group, f"daidalos-studio.d.ts:{contract}", description, partial(_known, name, group))
 
 
-PANELS = _kind("studio_panel", "shows and does something in the studio's page; an ES module, package:file.js")
-DISPLAYS = _kind("studio_display", "draws messages into the studio's 3-D view; an ES module, package:file.js")
+PANELS = _kind("studio_panel", "Panel", "a part of the studio's page; an ES module, package:file.js")
+DISPLAYS = _kind(
+    "studio_display", "DisplayModule", "draws messages in the studio's 3-D view; an ES module, package:file.js"
+)
 KINDS = (PANELS, DISPLAYS)

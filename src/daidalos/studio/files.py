@@ -1,8 +1,12 @@
-"""Which files of a folder browsers may have, and of which type."""
+"""The built page's files, and which files of a folder browsers may have."""
 
 from __future__ import annotations
 
 from pathlib import Path
+
+STATIC = Path(__file__).resolve().parent / "static"
+BUILT_IN_EXTENSIONS = "built_in.json"
+"""File of the built page: what its own panels and displays do, by name."""
 
 # The registry of a system may name other types, which browsers refuse for modules and workers.
 CONTENT_TYPES = {

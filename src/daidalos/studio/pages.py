@@ -12,8 +12,6 @@ from daidalos.studio.extensions import module_file, page_modules
 from daidalos.studio.files import CONTENT_TYPES, find_file
 from daidalos.studio.records import to_json
 
-STATIC = Path(__file__).parent / "static"
-
 HEADERS = {
     "Content-Security-Policy": (
         "default-src 'self'; script-src 'self' 'wasm-unsafe-eval'; style-src 'self' 'unsafe-inline'; "

@@ -20,11 +20,11 @@ from daidalos.studio.access import AccessPolicy
 from daidalos.studio.arrangement import Arrangement
 from daidalos.studio.assets import AssetResolver
 from daidalos.studio.client import Client
+from daidalos.studio.files import STATIC
 from daidalos.studio.hub import Changes, Hub
 from daidalos.studio.pages import (
     ARRANGEMENT_KEY,
     HEADERS,
-    STATIC,
     STATIC_KEY,
     arrangement_of,
     extension_module,

@@ -104,6 +104,19 @@ def _aliases(names: str, package: str) -> str:
     return "".join(f"import {name.strip()} = {package}.{name.strip()};\n" for name in names.split(","))
 
 
+def built_in(web: Path = WEB) -> dict[str, dict[str, str]]:
+    """Return what the page's own panels and displays do, by their ids, by the names of their kinds."""
+    found: dict[str, dict[str, str]] = {extensions.PANELS.name: {}, extensions.DISPLAYS.name: {}}
+    for kind, pattern in zip(found, ("panels/*_panel.tsx", "displays/types/*.ts"), strict=True):
+        for path in sorted((web / "src").glob(pattern)):
+            text = path.read_text(encoding="utf-8")
+            # "// Plot: fields of messages over time." at the top, and further down what the module exports.
+            described, exported = re.match(r"// \w+: (.+?)\.?\n", text), re.search(r'\n  id: "(\w+)"', text)
+            if described and exported:
+                found[kind][exported[1]] = described[1]
+    return found
+
+
 # Interfaces ----------------------------------------------------------------------------------------------
 
 

@@ -1,4 +1,4 @@
-// Marker and MarkerArray: shapes that programs put into the scene.
+// Marker: shapes that programs put into the scene.
 import { Group } from "three";
 import { Marker, type MarkerArray } from "../../generated/visualization_msgs";
 import { toSeconds } from "../../ros/time";
