@@ -26,7 +26,8 @@ from rosgraph_msgs.msg import Clock
 from tf2_msgs.msg import TFMessage
 
 from daidalos.common.kernels import warm_up
-from daidalos.nodes.conversions import time_message, transform_stamped
+from daidalos.nodes.conversions import transform_stamped
+from daidalos.samples.fields import time_message
 
 TIMEOUT_S = 30.0
 """How long [s] of real time anything may take that is expected to happen."""

@@ -16,20 +16,6 @@ FINITE = st.floats(-1e4, 1e4)
 STAMP = Time(sec=7, nanosec=5)
 
 
-@given(st.integers(0, 2**31 * 10**9 - 1))
-def test_stamps_come_back(stamp_ns: int) -> None:
-    message = conversions.time_message(stamp_ns)
-    assert conversions.nanoseconds(message) == stamp_ns
-    assert conversions.seconds(message) == pytest.approx(1e-9 * stamp_ns)
-
-
-@given(st.floats(-1e6, 1e6))
-def test_durations_are_rounded_to_nanoseconds_and_keep_their_sign(value: float) -> None:
-    message = conversions.duration_message(value)
-    assert 0 <= message.nanosec < 10**9
-    assert conversions.seconds(message) == pytest.approx(value, abs=1e-9, rel=1e-9)
-
-
 @given(FINITE, FINITE, st.floats(-math.pi + 1e-9, math.pi))
 def test_poses_come_back(x: float, y: float, yaw: float) -> None:
     pose = conversions.pose2_of(conversions.pose_message((x, y, yaw)))

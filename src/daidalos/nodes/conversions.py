@@ -15,32 +15,6 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 
-def time_message(stamp_ns: int) -> Any:
-    """Return nanoseconds as a ``builtin_interfaces/msg/Time``."""
-    from builtin_interfaces.msg import Time
-
-    seconds, nanoseconds = divmod(int(stamp_ns), 1_000_000_000)
-    return Time(sec=seconds, nanosec=nanoseconds)
-
-
-def nanoseconds(stamp: Any) -> int:
-    """Return a ``builtin_interfaces/msg/Time`` or ``Duration`` as nanoseconds."""
-    return int(stamp.sec) * 1_000_000_000 + int(stamp.nanosec)
-
-
-def seconds(stamp: Any) -> float:
-    """Return a ``builtin_interfaces/msg/Time`` or ``Duration`` as seconds."""
-    return float(stamp.sec) + 1e-9 * float(stamp.nanosec)
-
-
-def duration_message(value: float) -> Any:
-    """Return seconds as a ``builtin_interfaces/msg/Duration``."""
-    from builtin_interfaces.msg import Duration
-
-    whole, nanosec = divmod(round(value * 1e9), 1_000_000_000)
-    return Duration(sec=whole, nanosec=nanosec)
-
-
 def twist_message(velocity: Any, frame: str | None, stamp: Any) -> Any:
     """Return (x, y, yaw) velocities as a ``Twist``, or a ``TwistStamped`` where a frame is given."""
     from geometry_msgs.msg import Twist, TwistStamped, Vector3

@@ -8,7 +8,8 @@ from rclpy.time import Time
 from tf2_py import TransformException
 from tf2_ros import Buffer
 
-from daidalos.nodes.conversions import nanoseconds, pose2_of_transform
+from daidalos.nodes.conversions import pose2_of_transform
+from daidalos.samples.fields import nanoseconds
 
 if TYPE_CHECKING:
     from geometry_msgs.msg import TransformStamped

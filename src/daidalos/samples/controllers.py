@@ -215,10 +215,10 @@ class DofState:
     name: str
     reference: float
     feedback: float
-    feedback_rate: float
+    feedback_dot: float
     error: float
-    error_rate: float
-    period: float
+    error_dot: float
+    time_step: float
     output: float
 
 

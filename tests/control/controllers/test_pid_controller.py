@@ -37,7 +37,7 @@ def test_each_loop_has_its_gains() -> None:
     dof = said[0].dofs[1]
     assert (dof.name, dof.reference, dof.feedback, dof.error) == ("b", 2.0, 0.0, 2.0)
     assert dof.output == pytest.approx(2.2)
-    assert dof.period == pytest.approx(0.01)
+    assert dof.time_step == pytest.approx(0.01)
 
 
 def test_names_and_strangers() -> None:

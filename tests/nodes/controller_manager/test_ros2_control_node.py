@@ -17,8 +17,8 @@ from rosgraph_msgs.msg import Clock
 from std_msgs.msg import String
 
 from daidalos.nodes.controller_manager.ros2_control_node import Ros2ControlNode
-from daidalos.nodes.conversions import time_message
 from daidalos.nodes.runner import UserError
+from daidalos.samples.fields import time_message
 from ros.graph import graph  # noqa: F401
 
 URDF = """<robot name="r"><link name="a"/><link name="b"/>

@@ -18,9 +18,10 @@ from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
 from sensor_msgs.msg import LaserScan
 from tf2_msgs.msg import TFMessage
 
-from daidalos.nodes.conversions import grid_array, grid_message, time_message, transform_stamped
+from daidalos.nodes.conversions import grid_array, grid_message, transform_stamped
 from daidalos.nodes.nav2_costmap_2d._costmap_messages import costmap_of
 from daidalos.nodes.nav2_planner.planner_server import PlannerServer
+from daidalos.samples.fields import time_message
 from nodes.stepped import LATCHED, Stage
 
 pytestmark = [pytest.mark.usefixtures("compiled"), pytest.mark.timeout(300)]

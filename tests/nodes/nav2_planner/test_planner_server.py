@@ -15,8 +15,9 @@ from nav2_msgs.msg import Costmap
 from nav_msgs.msg import Path
 from rclpy.lifecycle import TransitionCallbackReturn
 
-from daidalos.nodes.conversions import grid_message, path_array, pose_stamped, time_message
+from daidalos.nodes.conversions import grid_message, path_array, pose_stamped
 from daidalos.nodes.nav2_planner.planner_server import PlannerServer
+from daidalos.samples.fields import time_message
 from nodes.stepped import LATCHED, Stage
 
 pytestmark = [pytest.mark.usefixtures("compiled"), pytest.mark.timeout(300)]

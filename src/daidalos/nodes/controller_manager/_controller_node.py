@@ -13,8 +13,9 @@ from rclpy.task import Future
 
 from daidalos.control.controllers.base import Action, Controller, Goal
 from daidalos.nodes.controller_manager._entries import ActionEntry
-from daidalos.nodes.controller_manager._messages import ACTIONS, INCOMING, OUTGOING, SERVICES
+from daidalos.nodes.controller_manager._messages import ACTIONS, SERVICES
 from daidalos.nodes.parameters import declare, warn_of_undeclared
+from daidalos.samples.messages import MESSAGES
 from daidalos.samples.sensors import Sample
 
 
@@ -83,13 +84,13 @@ class ControllerNode(Node):
         self.disconnect()
         self._controller, self._is_active = controller, is_active
         for topic, kind in controller.publications.items():
-            outgoing = OUTGOING[kind]
-            publisher = self.create_publisher(outgoing.message(), topic, QoSProfile(depth=10))
-            self._outgoing[topic] = (publisher, outgoing.convert)
+            outgoing = MESSAGES[kind]
+            publisher = self.create_publisher(outgoing.message_class, topic, QoSProfile(depth=10))
+            self._outgoing[topic] = (publisher, outgoing.to_message)
         for topic, subscription in controller.subscriptions.items():
-            incoming = INCOMING[subscription.type]
-            take = self._taker(incoming.convert, subscription.take)
-            made = self.create_subscription(incoming.message(), topic, take, QoSProfile(depth=10))
+            incoming = MESSAGES[subscription.type]
+            take = self._taker(incoming.from_message, subscription.take)
+            made = self.create_subscription(incoming.message_class, topic, take, QoSProfile(depth=10))
             self._entities.append(lambda made=made: self.destroy_subscription(made))  # type: ignore[misc]
         for name, service in controller.services.items():
             server = self.create_service(

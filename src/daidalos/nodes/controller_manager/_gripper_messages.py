@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from daidalos.nodes.controller_manager._entries import ActionEntry
-from daidalos.nodes.conversions import time_message
 from daidalos.samples import controllers as samples
+from daidalos.samples.fields import time_message
 
 
 def _single_type() -> Any:

@@ -1,59 +1,13 @@
-"""Trajectories of joints as messages."""
+"""Trajectories of joints as goals, feedback and results of their action, and answers of their service."""
 
 from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-
 from daidalos.nodes.controller_manager._entries import ActionEntry, ServiceEntry
-from daidalos.nodes.conversions import duration_message, nanoseconds, seconds, time_message
-from daidalos.nodes.gazebo_ros._conversion import header
 from daidalos.samples import controllers as samples
-
-_FIELDS = ("positions", "velocities", "accelerations")
-
-
-def trajectory_command(message: Any) -> samples.TrajectoryCommand:
-    """Return a ``trajectory_msgs/msg/JointTrajectory``."""
-    points = tuple(trajectory_point_command(point) for point in message.points)
-    return samples.TrajectoryCommand(tuple(message.joint_names), points, nanoseconds(message.header.stamp))
-
-
-def trajectory_point_command(point: Any) -> samples.TrajectoryPoint:
-    """Return a ``trajectory_msgs/msg/JointTrajectoryPoint``."""
-
-    def row(values: Any) -> Any:
-        return np.array(values, dtype=np.float64) if len(values) else None
-
-    return samples.TrajectoryPoint(
-        seconds(point.time_from_start), *(row(getattr(point, name)) for name in (*_FIELDS, "effort"))
-    )
-
-
-def _point(point: samples.TrajectoryPoint) -> Any:
-    from trajectory_msgs.msg import JointTrajectoryPoint
-
-    given = {name: getattr(point, name) for name in _FIELDS} | {"effort": point.efforts}
-    return JointTrajectoryPoint(
-        time_from_start=duration_message(point.time),
-        **{name: values for name, values in given.items() if values is not None},
-    )
-
-
-def trajectory_state(sample: samples.TrajectorySample) -> Any:
-    """Return a ``control_msgs/msg/JointTrajectoryControllerState``."""
-    from control_msgs.msg import JointTrajectoryControllerState
-
-    return JointTrajectoryControllerState(
-        header=header(sample),
-        joint_names=list(sample.joints),
-        reference=_point(sample.desired),
-        feedback=_point(sample.actual),
-        error=_point(sample.error),
-        output=_point(sample.output),
-        speed_scaling_factor=sample.speed,
-    )
+from daidalos.samples.fields import nanoseconds, seconds, time_message
+from daidalos.samples.special_messages import trajectory_of, trajectory_point
 
 
 def _action_type() -> Any:
@@ -67,7 +21,7 @@ def _request(goal: Any) -> samples.TrajectoryRequest:
         return {row.name: samples.JointTolerance(row.position, row.velocity, row.acceleration) for row in rows}
 
     return samples.TrajectoryRequest(
-        trajectory_command(goal.trajectory),
+        trajectory_of(goal.trajectory),
         tolerances(goal.path_tolerance),
         tolerances(goal.goal_tolerance),
         seconds(goal.goal_time_tolerance),
@@ -80,9 +34,9 @@ def _feedback(feedback: samples.TrajectoryFeedback) -> Any:
     return _action_type().Feedback(
         header=Header(stamp=time_message(feedback.stamp_ns)),
         joint_names=list(feedback.joints),
-        desired=_point(feedback.desired),
-        actual=_point(feedback.actual),
-        error=_point(feedback.error),
+        desired=trajectory_point(feedback.desired),
+        actual=trajectory_point(feedback.actual),
+        error=trajectory_point(feedback.error),
     )
 
 

@@ -16,7 +16,8 @@ from rclpy.time import Time
 from tf2_ros import Buffer, TransformException
 
 from daidalos.common.pose2 import between
-from daidalos.nodes.conversions import nanoseconds, pose2_of, pose2_of_transform
+from daidalos.nodes.conversions import pose2_of, pose2_of_transform
+from daidalos.samples.fields import nanoseconds
 
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 

@@ -9,8 +9,9 @@ from typing import Any
 from rclpy.node import Node
 from rclpy.task import Future
 
-from daidalos.nodes.conversions import duration_message, pose_stamped
+from daidalos.nodes.conversions import pose_stamped
 from daidalos.nodes.daidalos_demo._measuring import LATCHED
+from daidalos.samples.fields import duration_message
 
 _TURN_LIMIT_S = 30.0
 _RUNNING = (1, 2)  # accepted and executing, of action_msgs/msg/GoalStatus

@@ -9,9 +9,7 @@ from typing import Any
 import numpy as np
 
 from daidalos.description.joint import JointType
-from daidalos.nodes.conversions import nanoseconds, time_message
 from daidalos.nodes.gazebo_ros._entities import Entity, find_entity, find_joint, motion_of, set_motion
-from daidalos.nodes.gazebo_ros._messages import trajectory_of
 from daidalos.nodes.gazebo_ros._states import (
     color_message,
     color_of,
@@ -21,6 +19,8 @@ from daidalos.nodes.gazebo_ros._states import (
     twist_message,
     vector_of,
 )
+from daidalos.samples.fields import nanoseconds, time_message
+from daidalos.samples.special_messages import position_trajectory_of
 from daidalos.simulation import Simulation
 
 _JOINT_TYPES = {
@@ -88,7 +88,7 @@ def set_configuration(simulation: Simulation, request: Any, response: Any) -> No
 def follow(simulation: Simulation, request: Any, response: Any) -> None:
     if request.set_model_pose:
         simulation.set_pose(request.model_name, pose_of(request.model_pose))
-    simulation.follow(request.model_name, trajectory_of(request.joint_trajectory))
+    simulation.follow(request.model_name, position_trajectory_of(request.joint_trajectory))
 
 
 def get_model_properties(simulation: Simulation, request: Any, response: Any) -> None:

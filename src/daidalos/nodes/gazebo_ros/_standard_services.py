@@ -12,13 +12,13 @@ import numpy as np
 
 from daidalos.description.errors import DescriptionError
 from daidalos.description.resolve import default_model_path, resolve_uri
-from daidalos.nodes.conversions import time_message
 from daidalos.nodes.gazebo_ros._entities import find_entity, motion_of, set_motion
 from daidalos.nodes.gazebo_ros._filters import has_tags, matching
 from daidalos.nodes.gazebo_ros._host import Host, read_entity, read_entity_file, read_world
 from daidalos.nodes.gazebo_ros._states import pose_message, pose_of, twist_message, vector_of
 from daidalos.nodes.gazebo_ros._worlds import world_folders, worlds_in
 from daidalos.nodes.packages import package_share
+from daidalos.samples.fields import time_message
 from daidalos.simulation import Simulation
 from daidalos.simulation.errors import NameTakenError, SimulationError, UnknownNameError
 

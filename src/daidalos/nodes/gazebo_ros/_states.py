@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 from daidalos.common.pose3 import Pose, Vector
 from daidalos.description.link import Rgba
-from daidalos.nodes.conversions import time_message
+from daidalos.samples.conversion import nested_message
+from daidalos.samples.fields import time_message
 
 if TYPE_CHECKING:
     from daidalos.simulation.contacts import Touch
@@ -16,12 +17,9 @@ if TYPE_CHECKING:
 
 def pose_message(pose: Pose) -> Any:
     """Return a pose as a ``geometry_msgs/msg/Pose``."""
-    from geometry_msgs.msg import Point, Quaternion
     from geometry_msgs.msg import Pose as PoseMessage
 
-    x, y, z = (float(value) for value in pose.position)
-    qx, qy, qz, qw = (float(value) for value in pose.orientation)
-    return PoseMessage(position=Point(x=x, y=y, z=z), orientation=Quaternion(x=qx, y=qy, z=qz, w=qw))
+    return nested_message(PoseMessage, pose)
 
 
 def pose_of(message: Any) -> Pose:

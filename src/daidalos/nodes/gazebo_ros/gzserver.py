@@ -20,11 +20,11 @@ from rclpy.utilities import remove_ros_args
 
 from daidalos.common.rate_gate import RateGate
 from daidalos.description.errors import DescriptionError
-from daidalos.nodes.conversions import time_message
 from daidalos.nodes.gazebo_ros._command_line import parse
 from daidalos.nodes.gazebo_ros._worlds import find_world
 from daidalos.nodes.runner import UserError, run
 from daidalos.nodes.warming import warm_up_in_background
+from daidalos.samples.fields import time_message
 
 if TYPE_CHECKING:
     from daidalos.description.world import World
@@ -189,9 +189,9 @@ class GzServer(Node):
     def _publish_transforms(self, transforms: list[Any]) -> None:
         from tf2_msgs.msg import TFMessage
 
-        from daidalos.nodes.gazebo_ros._messages import transform
+        from daidalos.samples.messages import TRANSFORM
 
-        self._outgoing["/tf"][0].publish(TFMessage(transforms=[transform(one) for one in transforms]))
+        self._outgoing["/tf"][0].publish(TFMessage(transforms=[TRANSFORM.to_message(one) for one in transforms]))
 
     def _publish_states(self) -> None:
         """Tell where models and links are, to whom it may concern."""
@@ -224,29 +224,32 @@ class GzServer(Node):
 
     def _connect(self, simulation: Simulation) -> None:
         """Make a publisher or subscription for every topic of the simulation, and remove those it lost."""
-        from daidalos.nodes.gazebo_ros._messages import INCOMING, outgoing
+        from daidalos.samples.messages import MESSAGES, conversion_of
         from daidalos.samples.sensors import ImageSample
 
         wanted = simulation.publications
         for topic in [topic for topic in self._outgoing if topic not in wanted]:
             self.destroy_publisher(self._outgoing.pop(topic)[0])
         for topic, kind in wanted.items():
-            entry = outgoing(kind)
-            if entry is None:
+            conversion = conversion_of(kind)
+            if conversion is None:
                 self._warn_once(f"{topic} is not published: no message is known for {kind.__name__}")
             elif topic not in self._outgoing:
-                self._outgoing[topic] = (self.create_publisher(entry.message(), topic, 10), entry.convert)
+                self._outgoing[topic] = (
+                    self.create_publisher(conversion.message_class, topic, 10),
+                    conversion.to_message,
+                )
                 self.get_logger().debug(f"publishes {topic}")
         commands = simulation.subscriptions
         for topic in [topic for topic in self._incoming if topic not in commands]:
             self.destroy_subscription(self._incoming.pop(topic))
         for topic, command in commands.items():
-            accepted = INCOMING.get(command)
+            accepted = MESSAGES.get(command)
             if accepted is None:
                 self._warn_once(f"{topic} is not listened to: no message is known for {command.__name__}")
             elif topic not in self._incoming:
-                take = self._taker(topic, accepted.convert)
-                self._incoming[topic] = self.create_subscription(accepted.message(), topic, take, 10)
+                take = self._taker(topic, accepted.from_message)
+                self._incoming[topic] = self.create_subscription(accepted.message_class, topic, take, 10)
                 self.get_logger().debug(f"listens to {topic}")
 
         self._connect_switches(simulation)

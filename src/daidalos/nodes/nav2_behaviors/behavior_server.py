@@ -22,12 +22,13 @@ from daidalos.navigation.costmap.costmap import Costmap
 from daidalos.navigation.costmap.footprint import Footprint
 from daidalos.navigation.plugins import find_plugin
 from daidalos.nodes.action_results import TransformFailed
-from daidalos.nodes.conversions import duration_message, pose2_of_transform, seconds, twist_message
+from daidalos.nodes.conversions import pose2_of_transform, twist_message
 from daidalos.nodes.cycles import Cycle, wait_until
 from daidalos.nodes.managed import ManagedNode
 from daidalos.nodes.nav2_costmap_2d._costmap_messages import costmap_of
 from daidalos.nodes.parameters import declare_plugin
 from daidalos.nodes.runner import run
+from daidalos.samples.fields import duration_message, seconds
 
 _LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 _TIMEOUT_S = 10.0

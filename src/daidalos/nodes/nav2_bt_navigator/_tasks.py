@@ -11,7 +11,7 @@ from rclpy.node import Node
 
 from daidalos.navigation.trees.services import Outcome, Task
 from daidalos.nodes.action_results import error_name
-from daidalos.nodes.conversions import duration_message
+from daidalos.samples.fields import duration_message
 
 _SUCCEEDED = 4
 

@@ -34,7 +34,6 @@ from daidalos.nodes.conversions import (
     pose2_of,
     pose2_of_transform,
     scan_data,
-    seconds,
 )
 from daidalos.nodes.cycles import wait_until
 from daidalos.nodes.managed import ManagedNode
@@ -42,6 +41,7 @@ from daidalos.nodes.nav2_costmap_2d._costmap_messages import costmap_message, fo
 from daidalos.nodes.parameters import declare, declare_plugin
 from daidalos.nodes.transforms import BlockingBuffer, SensorPoses
 from daidalos.nodes.warming import warm_up_in_background
+from daidalos.samples.fields import seconds
 
 _LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 _POLL_HZ = 20.0

@@ -14,11 +14,12 @@ from daidalos.navigation.errors import NavigationError
 from daidalos.navigation.planners.planner import GlobalPlanner
 from daidalos.navigation.plugins import find_plugin
 from daidalos.nodes.action_results import TransformFailed
-from daidalos.nodes.conversions import path_message, pose2_of, pose2_of_transform, time_message
+from daidalos.nodes.conversions import path_message, pose2_of, pose2_of_transform
 from daidalos.nodes.managed import ContainedNode, ManagedNode
 from daidalos.nodes.nav2_costmap_2d._costmap_node import CostmapNode
 from daidalos.nodes.parameters import declare_plugin
 from daidalos.nodes.runner import run
+from daidalos.samples.fields import time_message
 
 
 class UnknownPlanner(NavigationError):

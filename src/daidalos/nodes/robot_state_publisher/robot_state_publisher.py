@@ -15,10 +15,10 @@ from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.utilities import remove_ros_args
 
 from daidalos.description.kinematics import KinematicTree
-from daidalos.nodes.conversions import nanoseconds
 from daidalos.nodes.description_files import parse_description, read_description
 from daidalos.nodes.robot_state_publisher._transform_bytes import TransformBytes
 from daidalos.nodes.runner import UserError, run
+from daidalos.samples.fields import nanoseconds
 
 _KEPT = 100
 """Sets of joints that are told of together; a robot has a few."""

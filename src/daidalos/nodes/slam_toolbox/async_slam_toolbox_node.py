@@ -14,17 +14,11 @@ from rclpy.task import Future
 
 from daidalos.common.parameters import parameter
 from daidalos.mapping.config import SlamConfig
-from daidalos.nodes.conversions import (
-    grid_message,
-    nanoseconds,
-    pose2_of_transform,
-    scan_data,
-    time_message,
-    transform_stamped,
-)
+from daidalos.nodes.conversions import grid_message, pose2_of_transform, scan_data, transform_stamped
 from daidalos.nodes.parameters import declare, warn_of_undeclared
 from daidalos.nodes.runner import run
 from daidalos.nodes.warming import warm_up_in_background
+from daidalos.samples.fields import nanoseconds, time_message
 
 _LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 _SCANS_A_MAP = 100
