@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from control_robots import from_values
 
+from control.control_robots import from_values
 from daidalos.control.controllers.base import ControllerContext
 from daidalos.control.errors import HardwareError, SwitchError
 from daidalos.control.hardware.base import HardwareContext
