@@ -32,9 +32,7 @@ def _by_names(conversion):
     return not functions and not any(map(callable, conversion.sources.values()))
 
 
-@pytest.mark.parametrize(
-    "kind", filter(lambda kind: _by_names(MESSAGES[kind]), MESSAGES), ids=lambda kind: kind.__name__
-)
+@pytest.mark.parametrize("kind", [kind for kind in MESSAGES if _by_names(MESSAGES[kind])])
 def test_every_field_of_a_sample_is_in_its_message(kind):
     conversion = MESSAGES[kind]
     fields = {field.name for field in dataclasses.fields(kind)} - {"topic", "stamp_ns", "frame_id"}

@@ -16,8 +16,8 @@ from rclpy.lifecycle import TransitionCallbackReturn
 from rclpy.task import Future
 
 from daidalos.nodes.conversions import path_message, pose2_of, pose_stamped
-from daidalos.samples.fields import time_message
 from daidalos.nodes.nav2_bt_navigator.bt_navigator import BtNavigator
+from daidalos.samples.fields import time_message
 from nodes.stepped import Stage
 
 TREE = """
