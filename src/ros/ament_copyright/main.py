@@ -15,7 +15,7 @@ _LICENSE = re.compile(r"licen[sc]e|spdx-license-identifier|redistribution|permis
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run the command; returns the exit status."""
+    """Run the command, and return the exit status."""
     parser = argparse.ArgumentParser(description="Check that source files have a notice of copyright and a licence.")
     parser.add_argument("paths", nargs="*", default=["."], help="files, and folders that are searched for them")
     args = parser.parse_args(sys.argv[1:] if argv is None else argv)

@@ -13,12 +13,12 @@ _IGNORED = "B902,C816,D100,D101,D102,D103,D104,D105,D106,D107,D203,D212,D404,I20
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run the command; returns the exit status."""
+    """Run the command, and return the exit status."""
     return main_with_errors(argv)[0]
 
 
 def main_with_errors(argv: Sequence[str] | None = None) -> tuple[int, list[str]]:
-    """Run the command; returns the exit status and what was found, as ``file:line:column: code text``."""
+    """Run the command, and return the exit status and what was found, as ``file:line:column: code text``."""
     parser = argparse.ArgumentParser(description="Check code against PEP 8 with flake8.")
     parser.add_argument("paths", nargs="*", default=["."], help="files, and folders that are searched for them")
     parser.add_argument("--config", metavar="path", help="the configuration of flake8")

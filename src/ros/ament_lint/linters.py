@@ -52,7 +52,7 @@ def run(tool: str, arguments: Sequence[str], files: Sequence[Path]) -> list[str]
 
 
 def report(files: Sequence[Path], errors: Sequence[str]) -> int:
-    """Print what was found; returns the exit status."""
+    """Print what was found, and return the exit status."""
     end = f"{len(errors)} errors" if errors else "No problems found"
     sys.stdout.writelines(f"{line}\n" for line in (*errors, "", f"{len(files)} files checked", end))
     return 1 if errors else 0

@@ -12,7 +12,7 @@ _IGNORED = "D100,D101,D102,D103,D104,D105,D106,D107,D203,D212,D404"
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run the command; returns the exit status."""
+    """Run the command, and return the exit status."""
     parser = argparse.ArgumentParser(description="Check docstrings against PEP 257 with pydocstyle.")
     parser.add_argument("paths", nargs="*", default=["."], help="files, and folders that are searched for them")
     parser.add_argument("--add-ignore", metavar="codes", default="", help="further codes to ignore, with commas")

@@ -149,7 +149,7 @@ def cleanup_controller(
     service_timeout: float = 0.0,
     call_timeout: float = 10.0,
 ) -> Any:
-    """Take a controller back to unconfigured."""
+    """Change a controller back to unconfigured."""
     timeouts = service_timeout, call_timeout
     return _ask(
         node, controller_manager_name, srv.CleanupController, "cleanup_controller", timeouts, name=controller_name
@@ -190,7 +190,7 @@ def set_hardware_component_state(
     service_timeout: float = 0.0,
     call_timeout: float = 10.0,
 ) -> Any:
-    """Bring hardware to a state."""
+    """Set the state of a hardware component."""
     kind, timeouts = srv.SetHardwareComponentState, (service_timeout, call_timeout)
     request = {"name": component_name, "target_state": lifecyle_state}
     return _ask(node, controller_manager_name, kind, "set_hardware_component_state", timeouts, **request)

@@ -67,7 +67,7 @@ def check_if_js_published(topic: str, joint_names: Iterable[str]) -> None:
 
 
 def _comes(node: Node, there: Callable[[], bool], timeout: float) -> bool:
-    """Ask until something is so, or for a time."""
+    """Check a condition until it holds, or until a time has passed."""
     end = time.monotonic() + timeout
     while not there():
         if time.monotonic() > end:

@@ -30,7 +30,7 @@ def decompress(data: bytes) -> tuple[Image, str]:
     Raises
     ------
     RuntimeError
-        When the data is no image, or nothing is installed that reads it.
+        When the data is not an image, or nothing is installed that reads it.
     """
     cv2 = opencv()
     if cv2 is not None:

@@ -52,7 +52,7 @@ def cvtColor2(image: Image, encoding_in: str, encoding_out: str) -> Image:
 
 
 def _check(source: Encoding, target: Encoding, name_in: str, name_out: str) -> None:
-    """Refuse conversions that make no sense."""
+    """Check that a conversion is possible."""
     if not source.order and target.order:
         raise RuntimeError(
             f"[{name_in}] is not a color format. but [{name_out}] is. The conversion does not make sense"

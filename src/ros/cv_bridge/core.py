@@ -152,7 +152,7 @@ class CvBridge:
         Raises
         ------
         TypeError
-            When it is no array.
+            When it is not an array.
         CvBridgeError
             When its type does not fit the encoding.
         """
@@ -218,7 +218,7 @@ class CvBridge:
         Raises
         ------
         TypeError
-            When it is no array.
+            When it is not an array.
         CvBridgeError
             When it cannot be written in that format.
         """

@@ -39,7 +39,7 @@ class FunctionDiagnosticTask(DiagnosticTask):
         self.fn = fn
 
     def run(self, stat: DiagnosticStatusWrapper) -> DiagnosticStatusWrapper:
-        """Have the function fill in a status."""
+        """Call the function to fill in a status."""
         return self.fn(stat)
 
 
@@ -51,7 +51,7 @@ class CompositeDiagnosticTask(DiagnosticTask):
         self.tasks: list[DiagnosticTask] = []
 
     def run(self, stat: DiagnosticStatusWrapper) -> DiagnosticStatusWrapper:
-        """Have all tasks fill in a status; each of them finds the summary as it was at first."""
+        """Run all tasks on a status; each of them finds the summary as it was at first."""
         original, combined = DiagnosticStatusWrapper(), DiagnosticStatusWrapper()
         original.summary(stat)
         for task in self.tasks:
@@ -86,7 +86,7 @@ class DiagnosticTaskVector:
         self.lock = threading.Lock()
 
     def addedTaskCallback(self, task: DiagnosticTaskVector.DiagnosticTaskInternal) -> None:
-        """Do what is to be done when a task was added; subclasses say what."""
+        """React to a task that was added; subclasses override this."""
 
     def add(self, *args: Any) -> None:
         """Add a task: ``add(task)``, or ``add(name, function)``.
@@ -106,7 +106,7 @@ class DiagnosticTaskVector:
         self.addedTaskCallback(task)
 
     def removeByName(self, name: str) -> bool:
-        """Remove the first task of that name; tell whether there was one."""
+        """Remove the first task of that name; return whether there was one."""
         with self.lock:
             for task in self.tasks:
                 if task.name == name:

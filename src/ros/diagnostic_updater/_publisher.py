@@ -35,11 +35,11 @@ class HeaderlessTopicDiagnostic(CompositeDiagnosticTask):
         self.diag.add(self)
 
     def tick(self) -> None:
-        """Note that a message was published."""
+        """Count a published message."""
         self.freq.tick()
 
     def clear_window(self) -> None:
-        """Begin to count anew."""
+        """Reset the counts."""
         self.freq.clear()
 
 
@@ -62,7 +62,7 @@ class TopicDiagnostic(HeaderlessTopicDiagnostic):
         self.addTask(self.stamp)
 
     def tick(self, stamp: Any) -> None:  # type: ignore[override]
-        """Note that a message with this stamp was published."""
+        """Count a published message with this stamp."""
         self.stamp.tick(stamp)
         super().tick()
 

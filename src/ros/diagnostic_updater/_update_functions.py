@@ -52,7 +52,7 @@ class FrequencyStatus(DiagnosticTask):
         self.clear()
 
     def clear(self) -> None:
-        """Begin to count anew."""
+        """Reset the counts."""
         with self.lock:
             self.count = 0
             self.times = [self._clock.now()] * self.params.window_size
@@ -60,7 +60,7 @@ class FrequencyStatus(DiagnosticTask):
             self.hist_indx = 0
 
     def tick(self) -> None:
-        """Note that it happened."""
+        """Count an event."""
         with self.lock:
             self.count += 1
 
@@ -146,7 +146,7 @@ class TimeStampStatus(DiagnosticTask):
         self.deltas_valid = False
 
     def tick(self, stamp: Any) -> None:
-        """Note a stamp: a time, a message or seconds."""
+        """Record a stamp: a time, a message or seconds."""
         seconds = _seconds(stamp)
         with self.lock:
             if seconds == 0:

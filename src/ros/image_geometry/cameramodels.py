@@ -63,7 +63,7 @@ class PinholeCameraModel:
         self._maps: Any = None
 
     def from_camera_info(self, msg: CameraInfo) -> None:
-        """Take the camera from a message.
+        """Set the camera's model from a message.
 
         Raises
         ------
@@ -309,7 +309,7 @@ class StereoCameraModel:
         self.Q: Any = None
 
     def from_camera_info(self, left_msg: CameraInfo, right_msg: CameraInfo) -> None:
-        """Take the cameras from their messages.
+        """Set the cameras' models from their messages.
 
         Raises
         ------

@@ -148,7 +148,7 @@ class InteractiveMarkerServer:
             self.setCallback(marker.name, feedback_callback, feedback_type)
 
     def setPose(self, name: str, pose: Pose, header: Header | None = None) -> bool:
-        """Move a marker, with `applyChanges`; tells whether there is one of this name.
+        """Move a marker, with `applyChanges`; return whether there is one of this name.
 
         Parameters
         ----------
@@ -168,7 +168,7 @@ class InteractiveMarkerServer:
             return True
 
     def erase(self, name: str) -> bool:
-        """Take a marker away, with `applyChanges`; tells whether there is one of this name."""
+        """Remove a marker, with `applyChanges`; return whether there is one of this name."""
         with self.mutex:
             if name in self.marker_contexts:
                 self.pending_updates[name] = UpdateContext(UpdateContext.ERASE)
@@ -176,7 +176,7 @@ class InteractiveMarkerServer:
             return self.pending_updates.pop(name, None) is not None
 
     def clear(self) -> None:
-        """Take all markers away, with `applyChanges`."""
+        """Remove all markers, with `applyChanges`."""
         with self.mutex:
             self.pending_updates = {name: UpdateContext(UpdateContext.ERASE) for name in self.marker_contexts}
 
@@ -186,7 +186,7 @@ class InteractiveMarkerServer:
         feedback_callback: FeedbackCallback | None,
         feedback_type: int = DEFAULT_FEEDBACK_CALLBACK,
     ) -> bool:
-        """Say who is told what people do with a marker, at once; tells whether there is one of this name.
+        """Set the callback for feedback about a marker, at once; return whether there is one of this name.
 
         Parameters
         ----------
@@ -209,7 +209,7 @@ class InteractiveMarkerServer:
             return bool(holders)
 
     def applyChanges(self) -> None:
-        """Make the changes since the last call take effect, and tell the clients."""
+        """Apply the changes since the last call, and publish them to the clients."""
         with self.mutex:
             if not self.pending_updates:
                 return
@@ -221,7 +221,7 @@ class InteractiveMarkerServer:
             self.publish(message)
 
     def _apply(self, name: str, update: UpdateContext, message: InteractiveMarkerUpdate) -> None:
-        """Make one change take effect, and add it to what the clients are told."""
+        """Apply one change, and add it to the update for the clients."""
         if update.update_type == UpdateContext.ERASE:
             del self.marker_contexts[name]
             message.erases.append(name)
@@ -252,7 +252,7 @@ class InteractiveMarkerServer:
             return list(self.marker_contexts)
 
     def processFeedback(self, feedback: InteractiveMarkerFeedback) -> None:
-        """Take in what somebody did with a marker, and tell who wants to know.
+        """Process feedback about a marker, and pass it to the callbacks.
 
         While one client moves a marker, others are not heard: for a second after its last word.
         """
@@ -285,20 +285,20 @@ class InteractiveMarkerServer:
             callback(feedback)
 
     def getInteractiveMarkersCallback(self, request: Any, response: Any) -> Any:
-        """Answer a client that wants all markers."""
+        """Return all markers to a client."""
         with self.mutex:
             response.sequence_number = self.sequence_number
             response.markers = [copy.deepcopy(context.int_marker) for context in self.marker_contexts.values()]
         return response
 
     def publish(self, update: InteractiveMarkerUpdate) -> None:
-        """Tell the clients of changes."""
+        """Publish changes to the clients."""
         update.server_id = self.server_id
         update.seq_num = self.sequence_number
         self.update_pub.publish(update)
 
     def doSetPose(self, update: UpdateContext | None, name: str, pose: Pose, header: Header) -> None:
-        """Note that a marker moves; who calls it holds the mutex.
+        """Schedule a new pose of a marker; the caller holds the mutex.
 
         Parameters
         ----------

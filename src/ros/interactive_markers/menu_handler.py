@@ -76,14 +76,14 @@ class MenuHandler:
         return handle
 
     def setVisible(self, handle: int, visible: bool) -> bool:
-        """Show or hide an entry and those below it; tells whether there is such an entry."""
+        """Show or hide an entry and those below it; return whether there is such an entry."""
         if handle not in self.entry_contexts_:
             return False
         self.entry_contexts_[handle].visible = visible
         return True
 
     def setCheckState(self, handle: int, check_state: int) -> bool:
-        """Set the check mark of an entry; tells whether there is such an entry.
+        """Set the check mark of an entry; return whether there is such an entry.
 
         Parameters
         ----------
@@ -108,7 +108,7 @@ class MenuHandler:
         return None if entry is None else entry.title
 
     def apply(self, server: InteractiveMarkerServer, marker_name: str) -> bool:
-        """Give a marker the menu as it is now; tells whether there is such a marker.
+        """Set the present menu on a marker; return whether there is such a marker.
 
         Clients see it after the server's `applyChanges`.
         """
@@ -127,7 +127,7 @@ class MenuHandler:
         return True
 
     def reApply(self, server: InteractiveMarkerServer) -> bool:
-        """Give the menu as it is now to all markers that have it; tells whether they are all there."""
+        """Set the present menu on all markers that have it; return whether they are all there."""
         managed = set(self.managed_markers_)
         return len([name for name in sorted(managed) if self.apply(server, name)]) == len(managed)
 

@@ -128,7 +128,7 @@ class ChildProcess(asyncio.SubprocessProtocol):
         return _POSIX and not self.running and _group_exists(self.pid) and bool(_running_members(self.pid))
 
     def close(self) -> None:
-        """Let go of the pipes."""
+        """Close the pipes."""
         for stream in self._streams:
             stream.close()
         self._transport.close()
@@ -136,11 +136,11 @@ class ChildProcess(asyncio.SubprocessProtocol):
     # Called by asyncio ----------------------------------------------------------------------------
 
     def connection_made(self, transport: Any) -> None:
-        """Keep the transport."""
+        """Store the transport."""
         self._transport = transport
 
     def pipe_data_received(self, fd: int, data: bytes) -> None:
-        """Pass output on, where asyncio itself reads it."""
+        """Process output that asyncio itself reads."""
         self._on_output(fd, data)
 
     def pipe_connection_lost(self, fd: int, exc: Exception | None) -> None:
@@ -154,7 +154,7 @@ class ChildProcess(asyncio.SubprocessProtocol):
             self._finish()
 
     def connection_lost(self, exc: Exception | None) -> None:
-        """Let `wait` return, where asyncio itself reads the output to its end."""
+        """Complete `wait`, where asyncio itself reads the output to its end."""
         self._finish()
 
     def _finish(self) -> None:
@@ -235,7 +235,7 @@ async def _spawn(child: ChildProcess, cmd: list[str], shell: bool, options: dict
 def _first_step_in(
     context: AbstractContextManager[None], starting: Coroutine[Any, Any, Any]
 ) -> Generator[Any, Any, Any]:
-    """Await a coroutine, of which the first step, which makes the process, is done within a context.
+    """Await a coroutine, whose first step, which creates the process, runs within a context.
 
     While the rest waits for the process's pipes, the loop makes other processes, which would inherit a signal that is
     still blocked.

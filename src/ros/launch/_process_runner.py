@@ -101,7 +101,7 @@ class ProcessRunner:
         self._handler = _ProcessEventHandler(action, self._react)
 
     def start(self) -> None:
-        """Begin to run the process."""
+        """Start the process."""
         self._context.register_event_handler(self._handler)
         self._life = self._context.running_loop.create_task(self._run())
 
@@ -117,7 +117,7 @@ class ProcessRunner:
                 self.completed.set_result(None)
 
     async def _run_once(self) -> bool:
-        """Run the process until it ends; tell whether it could be started."""
+        """Run the process until it ends; return whether it could be started."""
         if self._stopping.done():
             return False
         program = self._program
@@ -270,7 +270,7 @@ class TextOutput:
         return "".join(self._kept)
 
     def feed(self, data: bytes) -> list[str]:
-        """Take bytes and return the lines that are complete with them."""
+        """Decode bytes and return the lines that are complete with them."""
         text = self._decoder.decode(data)
         if self._keep:
             self._kept.append(text)

@@ -79,7 +79,7 @@ class Action(LaunchDescriptionEntity):
             self.__announce_completion(context)
 
     def execute(self, context: LaunchContext) -> list[LaunchDescriptionEntity] | None:
-        """Do the action's work and return the entities to visit next, or None."""
+        """Execute the action and return the entities to visit next, or None."""
         return None
 
     def __announce_completion(self, context: LaunchContext) -> None:

@@ -26,5 +26,5 @@ class Condition:
         return repr(self)
 
     def evaluate(self, context: LaunchContext) -> bool:
-        """Answer the question now."""
+        """Evaluate the condition."""
         return True if self._predicate is None else self._predicate(context)

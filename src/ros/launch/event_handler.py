@@ -44,7 +44,7 @@ class BaseEventHandler:
         return None
 
     def matches(self, event: Event) -> bool:
-        """Tell whether the handler is for this event."""
+        """Return whether the handler is for this event."""
         return self.__matcher(event)
 
     def describe(self) -> tuple[str, list[SomeEntitiesType]]:

@@ -82,12 +82,12 @@ class LaunchContext:
         self.__asyncio_loop = loop
 
     def add_completion_future(self, completion_future: asyncio.Future[None]) -> None:
-        """Keep the launch going until this future is done, too."""
+        """Extend the launch until this future is done, too."""
         self._completion_futures.append(completion_future)
         completion_future.add_done_callback(lambda _: self._wake())
 
     def _wake(self) -> None:
-        """Make the launch service look again whether anything is left to do."""
+        """Wake the launch service, which checks whether anything is left to do."""
         self._event_queue.put_nowait(None)
 
     # Variables ------------------------------------------------------------------------------------
@@ -141,7 +141,7 @@ class LaunchContext:
         self.__replace_environment(_pop(self.__environment_stack, "environment"))
 
     def _reset_environment(self) -> None:
-        """Go back to the environment that was there when the context was made."""
+        """Restore the environment that the context was created with."""
         self.__replace_environment(self.__initial_environment)
 
     def __replace_environment(self, environment: Mapping[str, str]) -> None:
@@ -151,7 +151,7 @@ class LaunchContext:
     # Events ---------------------------------------------------------------------------------------
 
     def would_handle_event(self, event: Event) -> bool:
-        """Tell whether any handler is for this event."""
+        """Return whether any handler is for this event."""
         # Another thread may add or remove handlers meanwhile.
         return any(handler.matches(event) for handler in tuple(self._event_handlers))
 
@@ -196,7 +196,7 @@ class LaunchContext:
     # Substitutions --------------------------------------------------------------------------------
 
     def perform_substitution(self, substitution: Substitution) -> str:
-        """Work out the text of a substitution."""
+        """Evaluate the text of a substitution."""
         return substitution.perform(self)
 
 

@@ -27,7 +27,7 @@ class LaunchDescriptionEntity:
         return []
 
     def visit(self, context: LaunchContext) -> list[LaunchDescriptionEntity] | None:
-        """Do the entity's work and return the entities to visit next, or None."""
+        """Execute the entity and return the entities to visit next, or None."""
         return None
 
     def get_asyncio_future(self) -> Future[None] | None:

@@ -40,7 +40,7 @@ class LaunchFileError(InvalidLaunchFileError):
 
     @classmethod
     def from_exception(cls, error: BaseException, file: str | None = None) -> LaunchFileError:
-        """Tell where `error` came from; `file` is the launch file to name when nothing better is known."""
+        """Describe where `error` came from; `file` is the launch file to name when nothing better is known."""
         if isinstance(error, LaunchFileError):
             return error
         likely = getattr(error, "_likely_errors", [])
@@ -55,7 +55,7 @@ class LaunchFileError(InvalidLaunchFileError):
 
 
 def add_location(error: BaseException, file: str | None, line: int | None) -> None:
-    """Note on an exception where in a launch file it happened, unless something closer to it already did."""
+    """Attach to an exception where in a launch file it happened, unless something closer to it already did."""
     known = hasattr(error, _LOCATION_ATTRIBUTE) or _innermost_launch_frame(error)[0] is not None
     if not known and (file is not None or line is not None):
         setattr(error, _LOCATION_ATTRIBUTE, (file, line))

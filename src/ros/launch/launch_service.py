@@ -82,7 +82,7 @@ class LaunchService:
         self.__context.emit_event_sync(event)
 
     def include_launch_description(self, launch_description: LaunchDescription) -> None:
-        """Have a launch description visited; may be called from any thread."""
+        """Visit a launch description; may be called from any thread."""
         self.emit_event(IncludeLaunchDescription(launch_description))
 
     # Running --------------------------------------------------------------------------------------
@@ -288,7 +288,7 @@ class LaunchService:
 
 @contextlib.contextmanager
 def _event_loop() -> Iterator[asyncio.AbstractEventLoop]:
-    """Give the event loop of the main thread, which all services run in one after another, or one for once."""
+    """Return the event loop of the main thread, which all services run in one after another, or one for once."""
     global _main_loop
     if threading.current_thread() is not threading.main_thread():
         loop = asyncio.new_event_loop()

@@ -16,5 +16,5 @@ class Substitution:
         return repr(self)
 
     def perform(self, context: LaunchContext) -> str:
-        """Work the text out."""
+        """Evaluate the text."""
         raise NotImplementedError(f"{type(self).__name__} does not implement perform()")

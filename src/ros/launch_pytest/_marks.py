@@ -9,17 +9,17 @@ import pytest
 
 
 def is_launch_test(item: Any) -> bool:
-    """Tell whether an item is marked as a launch test."""
+    """Return whether an item is marked as a launch test."""
     return item.get_closest_marker("launch") is not None
 
 
 def is_launch_test_mark_valid(item: Any) -> bool:
-    """Tell whether the mark of a launch test names a fixture."""
+    """Return whether the mark of a launch test names a fixture."""
     return "fixture" in item.get_closest_marker("launch").kwargs
 
 
 def has_shutdown_kwarg(item: Any) -> bool:
-    """Tell whether a launch test is to run after the launch has ended."""
+    """Return whether a launch test is to run after the launch has ended."""
     return bool(item.get_closest_marker("launch").kwargs.get("shutdown", False))
 
 
@@ -40,22 +40,22 @@ def fixture_name(fixture: Any) -> str:
 
 
 def is_valid_test_item(obj: Any) -> bool:
-    """Tell whether something can be a launch test: a function, coroutine, generator or asynchronous generator."""
+    """Return whether something can be a launch test: a function, coroutine, generator or asynchronous generator."""
     return inspect.isfunction(obj) or inspect.ismethod(obj)
 
 
 def need_shutdown_test_item(obj: Any) -> bool:
-    """Tell whether a launch test has a second part that runs after the launch has ended."""
+    """Return whether a launch test has a second part that runs after the launch has ended."""
     return inspect.isgeneratorfunction(obj) or inspect.isasyncgenfunction(obj)
 
 
 def is_shutdown_test(item: Any) -> bool:
-    """Tell whether an item runs after the launch has ended."""
+    """Return whether an item runs after the launch has ended."""
     return bool(getattr(item, "_launch_pytest_is_shutdown", False))
 
 
 def is_same_launch_test_fixture(left_item: Any, right_item: Any) -> bool:
-    """Tell whether two items run beside the same launch."""
+    """Return whether two items run beside the same launch."""
     return bool(launch_of(left_item) == launch_of(right_item))
 
 

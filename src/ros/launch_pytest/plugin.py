@@ -137,7 +137,7 @@ def get_ready_to_test_action(launch_description: Any) -> Any:
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_pycollect_makeitem(collector: Any, name: str, obj: Any) -> Any:
-    """Make the items of a launch test: a second one for what follows the end of a launch that others share."""
+    """Create the items of a launch test: a second one for what follows the end of a launch that others share."""
     if not (is_valid_test_item(obj) and collector.funcnamefilter(name)):
         return None
     marks = [mark for mark in getattr(obj, "pytestmark", []) if mark.name == "launch"]
@@ -232,7 +232,7 @@ def _invalid_items(collector: Any, name: str, obj: Any) -> list[Any]:
 
 @pytest.hookimpl(trylast=True)
 def pytest_collection_modifyitems(session: Any, config: Any, items: list[Any]) -> None:
-    """Put the tests that run after a launch behind those that run beside it."""
+    """Sort the tests that run after a launch behind those that run beside it."""
     places: dict[Any, list[int]] = {}
     for place, item in enumerate(items):
         if isinstance(item, pytest.Function) and is_launch_test(item) and is_launch_test_mark_valid(item):

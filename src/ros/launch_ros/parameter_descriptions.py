@@ -55,7 +55,7 @@ class ParameterValue:
         return self.__value_type
 
     def evaluate(self, context: LaunchContext) -> EvaluatedParameterValue:
-        """Work out the value."""
+        """Evaluate the value."""
         self.__evaluated = perform_typed_substitution(context, self.__value, self.value_type)
         return self.__evaluated
 
@@ -94,7 +94,7 @@ class Parameter:
         return self.__value.value_type
 
     def evaluate(self, context: LaunchContext) -> tuple[str, EvaluatedParameterValue]:
-        """Work out name and value."""
+        """Evaluate name and value."""
         self.__evaluated_name = perform_substitutions(context, self.__name)
         return self.__evaluated_name, self.__value.evaluate(context)
 

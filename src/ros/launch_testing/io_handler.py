@@ -21,7 +21,7 @@ class IoHandler:
         self._by_name: dict[str, list[ProcessIO]] = {}
 
     def track(self, process_name: str) -> None:
-        """Know of a process, which may never print anything."""
+        """Register a process, which may never print anything."""
         self._by_name.setdefault(process_name, [])
 
     def append(self, process_io: ProcessIO) -> None:
@@ -59,7 +59,7 @@ class ActiveIoHandler:
         return self._sync_lock
 
     def track(self, process_name: str) -> None:
-        """Know of a process, which may never print anything."""
+        """Register a process, which may never print anything."""
         with self._sync_lock:
             self._io_handler.track(process_name)
             self._sync_lock.notify_all()

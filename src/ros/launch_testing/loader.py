@@ -72,7 +72,7 @@ class TestRun:
         injected_attributes: dict[str, Any] | None = None,
         injected_args: dict[str, Any] | None = None,
     ) -> None:
-        """Give tests what they ask for.
+        """Bind the arguments that tests ask for.
 
         Parameters
         ----------

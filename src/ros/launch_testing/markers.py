@@ -12,7 +12,7 @@ T = TypeVar("T", bound=Callable[..., Any])
 
 
 def keep_alive(test_description: T) -> T:
-    """Keep a launch going until its tests are done, although its processes have all ended."""
+    """Extend a launch until its tests are done, although its processes have all ended."""
     markers = getattr(test_description, "__markers__", {})
     markers["keep_alive"] = True
     test_description.__markers__ = markers  # type: ignore[attr-defined]  # marks the function

@@ -31,13 +31,13 @@ class TestResult(unittest.TextTestResult):
         return self.__times
 
     def startTest(self, test: unittest.TestCase) -> None:
-        """Begin to measure."""
+        """Start measuring a test."""
         self.__test_cases.append(test)
         self.__starts[test] = time.perf_counter()
         super().startTest(test)
 
     def stopTest(self, test: unittest.TestCase) -> None:
-        """End to measure."""
+        """Stop measuring a test."""
         self.__times[test] = time.perf_counter() - self.__starts[test]
         super().stopTest(test)
 

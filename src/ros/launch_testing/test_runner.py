@@ -53,7 +53,7 @@ class LaunchTestRunner:
         return []
 
     def run(self) -> dict[TestRun, unittest.TestResult]:
-        """Make the runs and return the results of each."""
+        """Execute the runs and return the results of each."""
         results: dict[TestRun, unittest.TestResult] = {}
         for number, run in enumerate(self._test_runs, 1):
             sys.stdout.write(f"Starting test run {number} of {len(self._test_runs)}: {run}\n")
@@ -108,7 +108,7 @@ class _RunnerWorker:
         self._timeout = getattr(test_run.test_description_function, TIMEOUT_ATTRIBUTE, DEFAULT_TIMEOUT)
 
     def run(self) -> TestResult:
-        """Make the run and return its results."""
+        """Execute the run and return its results."""
         description, context = self._test_run.normalized_test_description(ready_fn=self._processes_launched.set)
         self.proc_info = ActiveProcInfoHandler()
         self.proc_output = ActiveIoHandler()

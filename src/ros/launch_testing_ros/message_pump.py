@@ -29,7 +29,7 @@ class MessagePump:
         self._thread = threading.Thread(target=self._spin, daemon=True)
 
     def start(self) -> None:
-        """Begin to run them."""
+        """Start running them."""
         self._executor.add_node(self._node)
         self._thread.start()
 

@@ -84,7 +84,7 @@ class WaitForTopics:
         return listen
 
     def wait(self, *args: Any, **kwargs: Any) -> bool:
-        """Wait until a message has come on every topic; tells whether that was before the timeout.
+        """Wait until a message has come on every topic; return whether that was before the timeout.
 
         Parameters
         ----------

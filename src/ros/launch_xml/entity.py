@@ -55,7 +55,7 @@ class Entity(BaseEntity):
         return [Entity(child, parent=self) for child in self.__element]
 
     def without_children(self, leave_out: Callable[[Entity], bool], ignored: tuple[str, ...]) -> Entity:
-        """Hand over to a copy: nothing of this element is left to be read.
+        """Return a copy without some of the elements inside, and mark this element as read.
 
         Parameters
         ----------

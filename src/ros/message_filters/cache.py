@@ -41,7 +41,7 @@ class Cache(SimpleFilter):
         self.incoming_connection = f.registerCallback(self.add)
 
     def add(self, msg: Any) -> None:
-        """Take in a message."""
+        """Process a message."""
         time = get_time_from_message_header(msg)
         if time is None:
             if not self.allow_headerless:

@@ -37,14 +37,14 @@ class Chain(SimpleFilter):
         self.incoming_connection = message_filter.registerCallback(self.add)
 
     def add(self, message: Any) -> None:
-        """Take in a message."""
+        """Process a message."""
         if self._filters:
             self._filters[0].add(message)
         else:
             self.signalMessage(message)
 
     def addFilter(self, message_filter: Any) -> None:
-        """Put a filter, one that has a method ``add``, behind the others."""
+        """Append a filter, which has a method ``add``."""
         if self._filters:
             last = self._filters[-1]
             last.unregisterCallback(self._output_connection)

@@ -17,7 +17,7 @@ class ComparisonHandler(ABC):
 
     @abstractmethod
     def message_fits(self, message: Any) -> bool:
-        """Tell whether a message may pass."""
+        """Return whether a message may pass."""
 
 
 class CachedComparisonHandler(ComparisonHandler):
@@ -34,7 +34,7 @@ class CachedComparisonHandler(ComparisonHandler):
         self._message_cache: Any = None
 
     def message_fits(self, message: Any) -> bool:
-        """Tell whether a message may pass, and remember it if so."""
+        """Return whether a message may pass, and remember it if so."""
         last = self._message_cache
         if last is not None and not any(self.do_fields_fit(get(last), get(message)) for get in self._field_getters):
             return False
@@ -42,7 +42,7 @@ class CachedComparisonHandler(ComparisonHandler):
         return True
 
     def do_fields_fit(self, field_a: Any, field_b: Any) -> bool:
-        """Tell whether a message may pass for the sake of a value, of the last message and of this one."""
+        """Return whether a message may pass for the sake of a value, of the last message and of this one."""
         raise NotImplementedError(f"{type(self).__name__} does not implement do_fields_fit")
 
 
@@ -50,7 +50,7 @@ class DeltaCompare(CachedComparisonHandler):
     """Lets a message pass when a value has changed."""
 
     def do_fields_fit(self, field_a: Any, field_b: Any) -> bool:
-        """Tell whether two values differ.
+        """Return whether two values differ.
 
         Raises
         ------
@@ -93,12 +93,12 @@ class ComparisonFilter(SimpleFilter):
         self.incoming_connection = message_filter.registerCallback(self.add)
 
     def add(self, message: Any) -> None:
-        """Take in a message."""
+        """Process a message."""
         if self.message_fits(message):
             self.signalMessage(message)
 
     def message_fits(self, message: Any) -> bool:
-        """Tell whether a message may pass."""
+        """Return whether a message may pass."""
         return self._comparison_handler.message_fits(message)
 
 

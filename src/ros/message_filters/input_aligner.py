@@ -88,11 +88,11 @@ class InputAligner(SimpleFilter):
         self.input_connections = []
 
     def registerCallback(self, index: int, callback: Callable[..., Any], *args: Any) -> int:  # type: ignore[override]
-        """Call ``callback(message, *args)`` with the messages of an input; returns the connection."""
+        """Call ``callback(message, *args)`` with the messages of an input, and return the connection."""
         return self._inputs[index].output.registerCallback(callback, *args)
 
     def setName(self, name: str) -> None:
-        """Name the filter."""
+        """Set the name of the filter."""
         self.name = name
 
     def getName(self) -> str:
@@ -100,7 +100,7 @@ class InputAligner(SimpleFilter):
         return self.name
 
     def setInputPeriod(self, index: int, period: Duration) -> None:
-        """Say how far apart the stamps of an input are."""
+        """Set the period of the stamps of an input."""
         self._inputs[index].period_ns = period.nanoseconds
 
     def getQueueStatus(self, index: int) -> QueueStatus:
@@ -108,7 +108,7 @@ class InputAligner(SimpleFilter):
         return self._inputs[index].status
 
     def add(self, msg: Any, queue_index: int) -> None:
-        """Take in a message of an input.
+        """Process a message of an input.
 
         Raises
         ------
@@ -129,18 +129,18 @@ class InputAligner(SimpleFilter):
             source.status.queue_size += 1
 
     def setupDispatchTimer(self, node: Node, update_rate: Duration) -> None:
-        """Have a node call `dispatchMessages` periodically."""
+        """Create a timer of a node that calls `dispatchMessages`."""
         self.dispatch_timer = node.create_timer(update_rate.nanoseconds / 1e9, self.dispatchMessages)
 
     def dispatchMessages(self) -> None:
-        """Pass on everything whose turn has come."""
+        """Dispatch all messages whose turn has come."""
         with self._lock:
             if any(source.waiting for source in self._inputs):
                 while self._dispatch_one():
                     pass
 
     def _dispatch_one(self) -> bool:
-        """Pass on a message, or give up an input; False when neither is due."""
+        """Dispatch a message, or give up an input; return False when neither is due."""
         expected = [(stamp, place) for place, one in enumerate(self._inputs) if (stamp := one.next_stamp()) is not None]
         if not expected:
             return False

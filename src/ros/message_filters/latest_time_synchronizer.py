@@ -41,7 +41,7 @@ class LatestTimeSynchronizer(SimpleFilter):
         self.input_connections = [one.registerCallback(self.add, index) for index, one in enumerate(fs)]
 
     def add(self, msg: Any, index: int) -> None:
-        """Take in a message of one of the filters."""
+        """Process a message of one of the filters."""
         with self._lock:
             self._latest[index] = msg
             self._measure(index)

@@ -21,16 +21,16 @@ class SimpleFilter:
         self._number = itertools.count().__next__
 
     def registerCallback(self, cb: Callable[..., Any], *args: Any) -> int:
-        """Call ``cb(*messages, *args)`` with everything the filter puts out; returns the connection."""
+        """Call ``cb(*messages, *args)`` with everything the filter puts out, and return the connection."""
         connection = self._number()
         self.callbacks[connection] = (cb, args)
         return connection
 
     def unregisterCallback(self, conn: int) -> None:
-        """End a connection."""
+        """Disconnect a callback."""
         self.callbacks.pop(conn, None)
 
     def signalMessage(self, *msg: Any) -> None:
-        """Put out a message, or several that belong together."""
+        """Pass a message, or several that belong together, to the callbacks."""
         for callback, arguments in list(self.callbacks.values()):
             callback(*msg, *arguments)

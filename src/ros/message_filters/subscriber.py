@@ -37,7 +37,7 @@ class Subscriber(SimpleFilter):
         self.sub = node.create_subscription(msg_type, topic, self.callback, qos_profile, **options)
 
     def callback(self, msg: Any) -> None:
-        """Put out a message."""
+        """Pass a message to the callbacks."""
         self.signalMessage(msg)
 
     def getTopic(self) -> str:

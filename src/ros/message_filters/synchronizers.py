@@ -48,7 +48,7 @@ class TimeSynchronizer(SimpleFilter):
         ]
 
     def add(self, msg: Any, my_queue: Queue, my_queue_index: int | None = None) -> None:
-        """Take in a message of one of the filters.
+        """Process a message of one of the filters.
 
         Raises
         ------
@@ -111,7 +111,7 @@ class ApproximateTimeSynchronizer(TimeSynchronizer):
         self.sync_arrival_time = sync_arrival_time
 
     def add(self, msg: Any, my_queue: Queue, my_queue_index: int | None = None) -> None:
-        """Take in a message of one of the filters."""
+        """Process a message of one of the filters."""
         time = None if self.sync_arrival_time else self.time_getter(msg)
         if time is None:
             if not (self.allow_headerless or self.sync_arrival_time):
@@ -164,7 +164,7 @@ def _first_combination(candidates: list[list[int]], stamp: int, slop: int) -> li
 
 
 def _is_possible(ordered: list[list[int]], low: int, high: int, slop: int) -> bool:
-    """Tell whether every list has a stamp within a span of less than `slop` that also covers `low` and `high`."""
+    """Return whether every list has a stamp within a span of less than `slop` that also covers `low` and `high`."""
     begins = {low}.union(*(stamps[bisect_right(stamps, high - slop) : bisect_right(stamps, low)] for stamps in ordered))
     return high - low < slop and any(
         all(_has_between(stamps, begin, begin + slop) for stamps in ordered) for begin in begins

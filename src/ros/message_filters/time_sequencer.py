@@ -50,7 +50,7 @@ class TimeSequencer(SimpleFilter):
         self.incoming_connection = f.registerCallback(self.add)
 
     def add(self, msg: Any) -> None:
-        """Take in a message.
+        """Process a message.
 
         Raises
         ------
@@ -71,7 +71,7 @@ class TimeSequencer(SimpleFilter):
             self._timer.reset()
 
     def dispatch(self) -> None:
-        """Pass on the messages whose time has come."""
+        """Dispatch the messages whose time has come."""
         due = []
         with self._lock:
             until = self._clock.now().nanoseconds - self.delay.nanoseconds

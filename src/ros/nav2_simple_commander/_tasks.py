@@ -77,7 +77,7 @@ class Tasks(Node):
         self.clearTaskError()
 
     def isTaskComplete(self, task: RunningTask = RunningTask.NONE) -> bool:
-        """Tell whether the task is over, after at most 0.1 s.
+        """Return whether the task is over, after at most 0.1 s.
 
         Parameters
         ----------
@@ -109,16 +109,16 @@ class Tasks(Node):
         return TaskResult.UNKNOWN if self._status is None else _RESULTS.get(self._status, TaskResult.UNKNOWN)
 
     def clearPreviousState(self) -> None:
-        """Forget the task before."""
+        """Clear the state of the task before."""
         self._main, self._route, self._status = Progress(), Progress(), None
         self.clearTaskError()
 
     def setTaskError(self, error_code: int, error_msg: str) -> None:
-        """Note why a task failed."""
+        """Set the error of a task."""
         self.last_action_error_code, self.last_action_error_msg = error_code, error_msg
 
     def clearTaskError(self) -> None:
-        """Forget why a task failed."""
+        """Clear the error of a task."""
         self.setTaskError(0, "")
 
     def getTaskError(self) -> tuple[int, str]:
@@ -168,7 +168,7 @@ class Tasks(Node):
         return task
 
     def _ask(self, kind: Any, name: str, **fields: Any) -> Any:
-        """Have an action done, and return its result; None where it failed or was rejected."""
+        """Send a goal, and return its result; None where it failed or was rejected."""
         self.clearTaskError()
         handle = self._finish(self._action_client(kind, name).send_goal_async(_goal(kind, fields)))
         if not handle.accepted:

@@ -26,7 +26,7 @@ class FootprintCollisionChecker:
         self.costmap_: PyCostmap2D | None = None
 
     def setCostmap(self, costmap: PyCostmap2D) -> None:
-        """Say on which costmap."""
+        """Set the costmap that footprints are checked on."""
         self.costmap_ = costmap
 
     def footprintCost(self, footprint: Polygon) -> float:

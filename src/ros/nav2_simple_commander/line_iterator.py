@@ -36,11 +36,11 @@ class LineIterator:
         self._steps = 0
 
     def isValid(self) -> bool:
-        """Tell whether the end has not been passed."""
+        """Return whether the end has not been passed."""
         return self.valid_
 
     def advance(self) -> None:
-        """Go one step, at most to the end; at the end the walk is over."""
+        """Advance one step, at most to the end; at the end the iteration is over."""
         if (self.x_, self.y_) == (self.x1_, self.y1_):
             self.valid_ = False
             return

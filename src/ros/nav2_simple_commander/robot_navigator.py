@@ -77,7 +77,7 @@ class BasicNavigator(Costmaps):
         super().destroy_node()
 
     def setInitialPose(self, initial_pose: PoseStamped) -> None:
-        """Tell the localisation where the robot is."""
+        """Publish the robot's pose to the localisation."""
         self.initial_pose_received = False
         self.initial_pose = initial_pose
         message = PoseWithCovarianceStamped(header=initial_pose.header)
@@ -299,7 +299,7 @@ class BasicNavigator(Costmaps):
         self.info("Nav2 is ready for use!")
 
     def changeMap(self, map_filepath: str) -> bool:
-        """Have the map server load another map; tells whether it did."""
+        """Load another map in the map server; return whether it did."""
         response = self._call(LoadMap, "map_server/load_map", map_url=map_filepath)
         if response.result == LoadMap.Response.RESULT_SUCCESS:
             self.info("Change map request was successful!")
@@ -315,11 +315,11 @@ class BasicNavigator(Costmaps):
             self.error(f"Toggle collision monitor request failed: {response.message}")
 
     def lifecycleStartup(self) -> None:
-        """Have all lifecycle managers start their nodes."""
+        """Start the nodes of all lifecycle managers."""
         self._manage(ManageLifecycleNodes.Request.STARTUP, "Starting up")
 
     def lifecycleShutdown(self) -> None:
-        """Have all lifecycle managers shut their nodes down."""
+        """Shut down the nodes of all lifecycle managers."""
         self._manage(ManageLifecycleNodes.Request.SHUTDOWN, "Shutting down")
 
     def _manage(self, command: int, words: str) -> None:

@@ -26,7 +26,7 @@ def find_os_processes(name: str) -> list[tuple[int, str]]:
 
 
 def kill_process(pid: int) -> None:
-    """End a process at once; one that is not there is no mistake."""
+    """Kill a process; one that does not exist is not an error."""
     import contextlib
 
     import psutil
@@ -36,6 +36,6 @@ def kill_process(pid: int) -> None:
 
 
 def kill_os_processes(name: str) -> None:
-    """End at once all processes in whose command line a name is."""
+    """Kill all processes with a name in their command line."""
     for pid, _ in find_os_processes(name):
         kill_process(pid)

@@ -83,23 +83,28 @@ def init(
     domain_id: int | None = None,
     signal_handler_options: SignalHandlerOptions | None = None,
 ) -> InitContextManager:
-    """Begin.
+    """Initialize ROS communications for a context and install the signal handlers.
 
     Parameters
     ----------
     args
         Command-line arguments; those of the process where None.
     context
-        The default context where None.
+        The context; the default one where None.
     domain_id
-        The domain; ``ROS_DOMAIN_ID`` where None.
+        The number of the ROS domain; ``ROS_DOMAIN_ID`` where None.
     signal_handler_options
-        Which signals to handle; all with the default context, none with another where None.
+        Which signals to handle; where None, all with the default context and none with another.
+
+    Returns
+    -------
+    InitContextManager
+        Shuts the context down at the end of a ``with`` block.
 
     Raises
     ------
     RuntimeError
-        When the context was begun before, or an argument cannot be understood.
+        When the context is initialized already, or an argument is not valid.
     """
     default = context is None
     target = get_default_context() if context is None else context
@@ -131,19 +136,19 @@ def _reset_global_executor() -> None:
 
 
 def shutdown(*, context: Context | None = None, uninstall_handlers: bool | None = None) -> None:
-    """End.
+    """Shut down a context.
 
     Parameters
     ----------
     context
-        The default context where None.
+        The context; the default one where None.
     uninstall_handlers
-        Whether signals are handled no more; only after the default context where None.
+        Whether to uninstall the signal handlers; where None, only with the default context.
 
     Raises
     ------
     RuntimeError
-        When there is nothing to end.
+        When the context is not initialized.
     """
     _shutdown(context=context)
     if uninstall_handlers or (uninstall_handlers is None and context is None):

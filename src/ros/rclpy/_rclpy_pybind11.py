@@ -125,7 +125,7 @@ def rclpy_logging_get_logger_effective_level(name: str) -> LoggingSeverity:
 
 
 def _nothing() -> None:
-    """Stand in for an executor: what is made here is waited for by wait sets."""
+    """Ignore a notification: what is made here is waited for by wait sets."""
 
 
 class rmw_qos_profile_t(QoSProfile):

@@ -15,23 +15,23 @@ class CallbackGroup:
         self.entities: weakref.WeakSet[Any] = weakref.WeakSet()
 
     def add_entity(self, entity: Any) -> None:
-        """Take an entity in."""
+        """Add an entity."""
         self.entities.add(entity)
 
     def has_entity(self, entity: Any) -> bool:
-        """Tell whether an entity belongs to the group."""
+        """Return whether an entity belongs to the group."""
         return entity in self.entities
 
     def can_execute(self, entity: Any) -> bool:
-        """Tell whether the entity's callback may begin now."""
+        """Return whether the entity's callback may begin now."""
         raise NotImplementedError
 
     def beginning_execution(self, entity: Any) -> bool:
-        """Note that the callback is to begin; False when it may not."""
+        """Reserve the group for a callback; return False when it may not begin."""
         raise NotImplementedError
 
     def ending_execution(self, entity: Any) -> None:
-        """Note that the callback has ended."""
+        """Release the group after a callback."""
         raise NotImplementedError
 
 
@@ -47,7 +47,7 @@ class ReentrantCallbackGroup(CallbackGroup):
         return True
 
     def ending_execution(self, entity: Any) -> None:
-        """Do nothing."""
+        """Release nothing: any number of callbacks may run."""
 
 
 class MutuallyExclusiveCallbackGroup(CallbackGroup):
@@ -59,11 +59,11 @@ class MutuallyExclusiveCallbackGroup(CallbackGroup):
         self._lock = threading.Lock()
 
     def can_execute(self, entity: Any) -> bool:
-        """Tell whether no callback of the group runs."""
+        """Return whether no callback of the group runs."""
         return self._active_entity is None
 
     def beginning_execution(self, entity: Any) -> bool:
-        """Note that the callback is to begin; False when another one runs."""
+        """Reserve the group for a callback; return False when another one runs."""
         with self._lock:
             if self._active_entity is None:
                 self._active_entity = entity
@@ -71,7 +71,7 @@ class MutuallyExclusiveCallbackGroup(CallbackGroup):
         return False
 
     def ending_execution(self, entity: Any) -> None:
-        """Note that the callback has ended."""
+        """Release the group after a callback."""
         with self._lock:
             if self._active_entity is entity:
                 self._active_entity = None

@@ -100,7 +100,7 @@ class Client(ServiceEnd[ClientHandle]):
         return future
 
     def remove_pending_request(self, future: Future) -> None:
-        """Forget a request; its response will be dropped."""
+        """Remove a request; its response will be dropped."""
         with self._lock:
             for number, pending in list(self._pending_requests.items()):
                 if pending is future:
@@ -108,7 +108,7 @@ class Client(ServiceEnd[ClientHandle]):
                     return
 
     def service_is_ready(self) -> bool:
-        """Tell whether somebody serves the service."""
+        """Return whether somebody serves the service."""
         with self.handle as handle:
             return handle.service_server_is_available()
 
@@ -121,7 +121,7 @@ class Client(ServiceEnd[ClientHandle]):
             return self.service_is_ready()
 
     def _on_ready(self) -> None:
-        """Hand a response to who waits in `call`, which may be the executor itself, or make the client ready."""
+        """Pass a response to the thread that waits in `call`, which may be the executor's, or make the client ready."""
         if self._has_own_waiter:
             work = self._rcl_take_unbound()
             while work is not None:

@@ -112,17 +112,17 @@ class JumpHandle:
         clock.handle.add_clock_callback(self, threshold.on_clock_change, forward, backward)
 
     def call_pre(self) -> None:
-        """Tell of a jump before it takes place."""
+        """Call the callback before a jump."""
         if self._pre:
             self._pre()
 
     def call_post(self, change: ClockChange, delta_ns: int) -> None:
-        """Tell of a jump after it took place."""
+        """Call the callback after a jump."""
         if self._post:
             self._post(TimeJump(change, Duration(nanoseconds=delta_ns)))
 
     def unregister(self) -> None:
-        """End the callbacks."""
+        """Unregister the callbacks."""
         if self._clock is not None:
             self._clock.handle.remove_clock_callback(self)
             self._clock = None
@@ -143,7 +143,7 @@ class Clock:
     _handle: ClockHandle
 
     def __new__(cls, *, clock_type: ClockType = ClockType.SYSTEM_TIME) -> Any:
-        """Make a clock of the kind.
+        """Create a clock of the kind.
 
         Raises
         ------
@@ -182,7 +182,7 @@ class Clock:
         pre_callback: Callable[[], None] | None = None,
         post_callback: Callable[[TimeJump], None] | None = None,
     ) -> JumpHandle:
-        """Be told of time jumps.
+        """Register callbacks for time jumps.
 
         Raises
         ------
@@ -239,7 +239,7 @@ class ROSClock(Clock):
     """ROS time: the system's time, or a simulator's."""
 
     def __new__(cls) -> Any:
-        """Make a clock."""
+        """Create a clock."""
         return Clock.__new__(cls, clock_type=ClockType.ROS_TIME)
 
     @property
@@ -251,7 +251,7 @@ class ROSClock(Clock):
         self._handle.set_ros_time_override_is_enabled(enabled)
 
     def set_ros_time_override(self, time: Time) -> None:
-        """Tell the clock its time.
+        """Set the time that the clock shows.
 
         Raises
         ------

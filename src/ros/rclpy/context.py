@@ -46,7 +46,7 @@ class Context(AbstractContextManager["Context"]):
         initialize_logging: bool = True,
         domain_id: int | None = None,
     ) -> None:
-        """Begin.
+        """Initialize the context from command-line arguments.
 
         Parameters
         ----------
@@ -71,7 +71,7 @@ class Context(AbstractContextManager["Context"]):
                 self.destroy()
             arguments = list(sys.argv if args is None else args)
             for argument in arguments:
-                argument.encode()  # UnicodeEncodeError for what is no text
+                argument.encode()  # UnicodeEncodeError for what is not valid text
             try:
                 self.__handle = ContextHandle(arguments, domain_id)
             except ValueError as error:
@@ -106,7 +106,7 @@ class Context(AbstractContextManager["Context"]):
                 OUTPUT.close()
 
     def ok(self) -> bool:
-        """Tell whether the context is between `init` and `shutdown`."""
+        """Return whether the context is between `init` and `shutdown`."""
         handle = self.__handle
         return handle is not None and handle.ok()
 
@@ -119,12 +119,12 @@ class Context(AbstractContextManager["Context"]):
                 callback()
 
     def shutdown(self) -> None:
-        """End.
+        """Shut down the context and leave the graph.
 
         Raises
         ------
         RuntimeError
-            When there is nothing to end. After an end by Ctrl-C, one call is allowed: programs make it.
+            When the context is not initialized. After a shutdown by Ctrl-C, one call is allowed: programs make it.
         """
         handle = self._initialised_handle("shut down")
         if not handle.try_shutdown() and not self._ended_by_signal:
@@ -134,7 +134,7 @@ class Context(AbstractContextManager["Context"]):
         self._finalize_logging()
 
     def try_shutdown(self) -> None:
-        """End unless that was done before."""
+        """Shut down the context unless that was done before."""
         handle = self.__handle
         if handle is not None:
             handle.try_shutdown()
@@ -142,7 +142,7 @@ class Context(AbstractContextManager["Context"]):
             self._finalize_logging()
 
     def shutdown_by_signal(self) -> None:
-        """End because the process was asked to; the graph is left later, by who runs outside the signal's handler."""
+        """Shut down the context after a signal; the graph is left later, outside the signal's handler."""
         handle = self.__handle
         if handle is not None and handle.try_shutdown():
             self._ended_by_signal = True

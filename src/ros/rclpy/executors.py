@@ -94,7 +94,7 @@ class Executor(CallbackRunner, AbstractContextManager["Executor"]):
     # Tasks and nodes.
 
     def create_task(self, callback: Callable[..., Any] | Coroutine[Any, Any, Any], *args: Any, **kwargs: Any) -> Task:
-        """Have a function or coroutine carried out; returns the task, whose result it will be."""
+        """Schedule a function or coroutine, and return the task, whose result it will be."""
         task = Task(callback, args, kwargs, executor=self)
         task._requeue = self._put
         self._ready.put_first(task)
@@ -130,7 +130,7 @@ class Executor(CallbackRunner, AbstractContextManager["Executor"]):
         node._rcl_detach_executor(self)
 
     def _forget(self, node: Node) -> None:
-        """Let go of a node that is being destroyed."""
+        """Remove a node that is being destroyed."""
         with self._nodes_lock:
             self._nodes.pop(node, None)
         node._rcl_detach_executor(self)
@@ -141,7 +141,7 @@ class Executor(CallbackRunner, AbstractContextManager["Executor"]):
             return list(self._nodes)
 
     def wake(self) -> None:
-        """Have the waiting thread look again at what it waits for."""
+        """Wake the waiting thread, so that it checks again what it waits for."""
         self._put(None)
 
     def shutdown(self, timeout_sec: float | None = None) -> bool:
@@ -240,7 +240,7 @@ class Executor(CallbackRunner, AbstractContextManager["Executor"]):
         self._run_one(_deadline(timeout_sec), future._pending_over)
 
     def can_execute(self, entity: Any) -> bool:
-        """Tell whether the entity's callback group lets it run now."""
+        """Return whether the entity's callback group lets it run now."""
         group = entity.callback_group
         return group is None or group.can_execute(entity)
 
@@ -285,7 +285,7 @@ class Executor(CallbackRunner, AbstractContextManager["Executor"]):
 
     @contextmanager
     def _blocked(self, entity: Any, services: Iterable[str]) -> Iterator[None]:
-        """Note that the callback of `entity` waits for `services`."""
+        """Mark the callback of `entity`, for the length of a block, as waiting for `services`."""
         with self._calls.waiting(services, entity.callback_group if entity is not None else None):
             self._retry_deferred()
             if entity is not None and entity._rcl_has_more():

@@ -32,7 +32,7 @@ class GuardCondition:
         self.callback_group = callback_group
 
     def trigger(self) -> None:
-        """Have the callback run.
+        """Schedule the callback.
 
         Raises
         ------
@@ -48,7 +48,7 @@ class GuardCondition:
         return self.__handle
 
     def destroy(self) -> None:
-        """Let go; use `Node.destroy_guard_condition` instead."""
+        """Destroy the handle; use `Node.destroy_guard_condition` instead."""
         self.__handle.destroy_when_not_in_use()
 
     def _rcl_take(self) -> tuple[Callable[..., Any], tuple[Any, ...]] | None:

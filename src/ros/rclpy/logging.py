@@ -39,16 +39,16 @@ def get_logger(name: str) -> RcutilsLogger:
 
 
 def initialize() -> None:
-    """Do nothing: logging is ready from the start."""
+    """Accept the call without effect: logging is ready from the start."""
 
 
 def shutdown() -> None:
-    """Finish the log file."""
+    """Close the log file."""
     OUTPUT.close()
 
 
 def clear_config() -> None:
-    """Forget levels and outputs; everything is as at the start."""
+    """Reset levels and outputs to those of the start."""
     OUTPUT.close()
     OUTPUT.reset()
 

@@ -194,7 +194,7 @@ class Node(NodeEntities, NodeGraph):
     if not TYPE_CHECKING:  # for a type checker, a class with this method has every attribute
 
         def __getattr__(self, name: str) -> Any:
-            """Say what is missing in a class whose ``__init__`` forgot this one's."""
+            """Raise an AttributeError that names a forgotten ``super().__init__``."""
             kind = type(self).__name__
             text = f"'{kind}' object has no attribute '{name}'"
             if "_default_callback_group" not in self.__dict__:
@@ -243,7 +243,7 @@ class Node(NodeEntities, NodeGraph):
             self.__executor_weakref = weakref.ref(new_executor)
 
     def _rcl_attach_executor(self, executor: Executor) -> None:
-        """Direct everything that becomes ready to an executor."""
+        """Attach all entities of the node to an executor."""
         current = self.executor
         if current is not None and current is not executor:
             current.remove_node(self)

@@ -67,7 +67,7 @@ class ParameterType(IntEnum):
         raise TypeError(f"The given value is not a list of one of the allowed types '{values}'.")
 
     def check(self, parameter_value: Any) -> bool:
-        """Tell whether a value is of this type; an empty list is of every list type."""
+        """Return whether a value is of this type; an empty list is of every list type."""
         if isinstance(parameter_value, (list, tuple, array.array)) and len(parameter_value) == 0:
             return self >= ParameterType.BYTE_ARRAY
         try:
@@ -104,7 +104,7 @@ class Parameter(Generic[T]):
     Raises
     ------
     TypeError
-        When `type_` is not a type, or no parameter can hold the value.
+        When `type_` is not a parameter type, or no parameter can hold the value.
     ValueError
         When type and value do not agree.
     """

@@ -68,7 +68,7 @@ class AsyncParameterClient:
         }
 
     def services_are_ready(self) -> bool:
-        """Tell whether every service is there."""
+        """Return whether every service is there."""
         return all(client.service_is_ready() for client in self._clients.values())
 
     def wait_for_services(self, timeout_sec: float | None = None) -> bool:
@@ -100,7 +100,7 @@ class AsyncParameterClient:
         return self._call("list_parameters", request, callback)
 
     def get_parameters(self, names: list[str], callback: Callback | None = None) -> Future:
-        """Get values."""
+        """Request values."""
         from rcl_interfaces.srv import GetParameters
 
         return self._call("get_parameters", GetParameters.Request(names=names), callback)
@@ -112,13 +112,13 @@ class AsyncParameterClient:
         return self._call("set_parameters", SetParameters.Request(parameters=_messages(parameters)), callback)
 
     def describe_parameters(self, names: list[str], callback: Callback | None = None) -> Future:
-        """Get descriptors."""
+        """Request descriptors."""
         from rcl_interfaces.srv import DescribeParameters
 
         return self._call("describe_parameters", DescribeParameters.Request(names=names), callback)
 
     def get_parameter_types(self, names: list[str], callback: Callback | None = None) -> Future:
-        """Get types."""
+        """Request types."""
         from rcl_interfaces.srv import GetParameterTypes
 
         return self._call("get_parameter_types", GetParameterTypes.Request(names=names), callback)

@@ -69,7 +69,7 @@ class ParameterEventHandler:
             return handle
 
         def remove_parameter_callback(self, handle: ParameterCallbackHandle) -> None:
-            """Undo that; RuntimeError when it was not added."""
+            """Remove a callback; raise RuntimeError when it was not added."""
             key = (handle.parameter_name, handle.node_name)
             handles = self.parameter_callbacks.get(key, [])
             if handle not in handles:
@@ -87,7 +87,7 @@ class ParameterEventHandler:
             return handle
 
         def remove_parameter_event_callback(self, handle: ParameterEventCallbackHandle) -> None:
-            """Undo that; RuntimeError when it was not added."""
+            """Remove a callback; raise RuntimeError when it was not added."""
             if handle not in self.event_callbacks:
                 raise RuntimeError("Callback doesn't exist")
             self.event_callbacks.remove(handle)
@@ -118,7 +118,7 @@ class ParameterEventHandler:
         )
 
     def destroy(self) -> None:
-        """Follow no more."""
+        """Stop following parameter events."""
         self.node.destroy_subscription(self.parameter_event_subscription)
 
     @staticmethod
@@ -135,7 +135,7 @@ class ParameterEventHandler:
         yield from (*event.new_parameters, *event.changed_parameters)
 
     def configure_nodes_filter(self, node_names: list[str] | None = None) -> bool:
-        """Receive events of these nodes only, of all where None; tells whether that is so now."""
+        """Receive events of these nodes only, of all where None; return whether that is so now."""
         names = [self._resolve_path(name) for name in node_names or ()]
         expression = " OR ".join(f"node = %{number}" for number in range(len(names)))
         self.parameter_event_subscription.set_content_filter(expression, [f"'{name}'" for name in names])
@@ -148,7 +148,7 @@ class ParameterEventHandler:
         return self._callbacks.add_parameter_callback(parameter_name, self._resolve_path(node_name), callback)
 
     def remove_parameter_callback(self, handle: ParameterCallbackHandle) -> None:
-        """Undo `add_parameter_callback`; RuntimeError when it was not added."""
+        """Remove a callback that `add_parameter_callback` added; raise RuntimeError when it was not."""
         self._callbacks.remove_parameter_callback(handle)
 
     def add_parameter_event_callback(self, callback: Callable[[ParameterEvent], None]) -> ParameterEventCallbackHandle:
@@ -156,7 +156,7 @@ class ParameterEventHandler:
         return self._callbacks.add_parameter_event_callback(callback)
 
     def remove_parameter_event_callback(self, handle: ParameterEventCallbackHandle) -> None:
-        """Undo `add_parameter_event_callback`; RuntimeError when it was not added."""
+        """Remove a callback that `add_parameter_event_callback` added; raise RuntimeError when it was not."""
         self._callbacks.remove_parameter_event_callback(handle)
 
     def _resolve_path(self, node_path: str | None = None) -> str:

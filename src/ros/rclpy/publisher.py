@@ -72,13 +72,13 @@ class Publisher:
         return self.__publisher.node.logger_name()
 
     def destroy(self) -> None:
-        """Let go; use `Node.destroy_publisher` instead."""
+        """Destroy the handle; use `Node.destroy_publisher` instead."""
         for handler in self.event_handlers:
             handler.destroy()
         self.__publisher.destroy_when_not_in_use()
 
     def assert_liveliness(self) -> None:
-        """Show that the publisher is alive (for the liveliness policy MANUAL_BY_TOPIC)."""
+        """Assert that the publisher is alive (for the liveliness policy MANUAL_BY_TOPIC)."""
         with self.handle:
             self.__publisher.assert_liveliness()
 

@@ -328,7 +328,7 @@ class QoSCheckCompatibleResult(NamedTuple):
 
 
 def qos_check_compatible(publisher_qos: QoSProfile, subscription_qos: QoSProfile) -> QoSCheckCompatibleResult:
-    """Tell whether a publisher and a subscription with these profiles can talk.
+    """Return whether a publisher and a subscription with these profiles can talk.
 
     A profile with an unknown or system-default policy gives at best a warning: it may turn out either way.
     """

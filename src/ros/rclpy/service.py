@@ -33,7 +33,7 @@ class Service(ServiceEnd[ServiceHandle]):
         service_impl.set_on_ready(self._rcl_hook)
 
     def send_response(self, response: Any, header: Any) -> None:
-        """Answer the request with that header.
+        """Send the response to the request with that header.
 
         Raises
         ------

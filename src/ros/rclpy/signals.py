@@ -102,19 +102,19 @@ def _on_signal(number: int, frame: FrameType | None) -> None:
 
 
 def _quiet_excepthook(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
-    """Show no traceback when a program ends because it was asked to."""
+    """Suppress the traceback when a program ends because it was asked to."""
     if not is_orderly(error):
         (_previous_hook or sys.__excepthook__)(kind, error, trace)
 
 
 def _quiet_thread_excepthook(arguments: threading.ExceptHookArgs) -> None:
-    """Do the same for a thread that spins."""
+    """Suppress the traceback of a thread that spins."""
     if arguments.exc_value is None or not is_orderly(arguments.exc_value):
         threading.__excepthook__(arguments)
 
 
 def is_orderly(error: BaseException) -> bool:
-    """Tell whether an exception only says that the program is to end.
+    """Return whether an exception only says that the program is to end.
 
     An interrupt while a compiled module is being imported arrives as the cause of an ImportError.
     """
@@ -131,6 +131,6 @@ class SignalHandlerGuardCondition(GuardCondition):
         _guards.add(self)
 
     def destroy(self) -> None:
-        """Let go."""
+        """Destroy the guard condition."""
         _guards.discard(self)
         super().destroy()

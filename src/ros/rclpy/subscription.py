@@ -82,7 +82,7 @@ class Subscription:
         return self.__subscription
 
     def destroy(self) -> None:
-        """Let go; use `Node.destroy_subscription` instead."""
+        """Destroy the handle; use `Node.destroy_subscription` instead."""
         for handler in self.event_handlers:
             handler.destroy()
         self.__subscription.destroy_when_not_in_use()
@@ -181,7 +181,7 @@ class Subscription:
 
 
 def _callback_type(callback: Callable[..., Any]) -> Subscription.CallbackType:
-    """Tell by its signature whether a callback takes the message's info as well.
+    """Return by its signature whether a callback takes the message's info as well.
 
     Raises
     ------

@@ -35,7 +35,7 @@ class TaskRunner(Protocol):
     """What a future needs of an executor."""
 
     def create_task(self, callback: Callable[..., Any] | Coroutine[Any, Any, Any], *args: Any, **kwargs: Any) -> Task:
-        """Carry a function or coroutine out later, and return it as a task."""
+        """Schedule a function or coroutine, and return it as a task."""
 
 
 class Future:
@@ -87,7 +87,7 @@ class Future:
         return self._done or self._cancelled
 
     def cancel(self) -> None:
-        """Give up; does nothing when it is done."""
+        """Cancel the future; without effect when it is done."""
         with self._lock:
             if self._done:
                 return
@@ -95,11 +95,11 @@ class Future:
         self._schedule_or_invoke_done_callbacks()
 
     def cancelled(self) -> bool:
-        """Tell whether it was given up."""
+        """Return whether it was given up."""
         return self._cancelled
 
     def done(self) -> bool:
-        """Tell whether there is a result or an exception."""
+        """Return whether there is a result or an exception."""
         return self._done
 
     def result(self) -> Any:
@@ -115,7 +115,7 @@ class Future:
         return self._exception
 
     def set_result(self, result: Any) -> None:
-        """Finish with a result."""
+        """Complete the future with a result."""
         with self._lock:
             self._result = result
             self._done = True
@@ -123,7 +123,7 @@ class Future:
         self._schedule_or_invoke_done_callbacks()
 
     def set_exception(self, exception: BaseException) -> None:
-        """Finish with an exception."""
+        """Complete the future with an exception."""
         with self._lock:
             self._exception = exception
             self._exception_fetched = False
@@ -143,7 +143,7 @@ class Future:
                 _call(callback, self)
 
     def _set_executor(self, executor: TaskRunner | None) -> None:
-        """Have callbacks called by an executor."""
+        """Set the executor that calls the callbacks."""
         self._executor = _no_executor if executor is None else weakref.ref(executor)
 
     def add_done_callback(self, callback: Callable[[Future], None]) -> None:
@@ -159,7 +159,7 @@ class Future:
             _call(callback, self)
 
     def remove_done_callback(self, callback: Callable[[Future], None]) -> bool:
-        """Do not call `callback` after all; tell whether it was waiting."""
+        """Remove a callback; return whether it was waiting."""
         with self._lock:
             before = len(self._callbacks)
             self._callbacks = [other for other in self._callbacks if other != callback]
@@ -229,7 +229,7 @@ class Task(Future):
         self._entity: Any = None  # whose callback group the task holds
 
     def __call__(self) -> None:
-        """Go on until it is done, or until it waits for something."""
+        """Run until it is done, or until it waits for something."""
         if self._done or self._executing or not self._task_lock.acquire(blocking=False):
             return
         waits_for = None
@@ -278,7 +278,7 @@ class Task(Future):
         return None
 
     def _requeue_on(self, waits_for: Any) -> None:
-        """Have the task queued again when it can go on."""
+        """Queue the task again when it can continue."""
         requeue = self._requeue
         if requeue is None:
             return
@@ -291,16 +291,16 @@ class Task(Future):
             requeue(self)  # an awaitable of another kind: ask again
 
     def _complete_task(self) -> None:
-        """Let go of what the handler refers to."""
+        """Release what the handler refers to."""
         self._handler = None
         self._args, self._kwargs = [], {}
 
     def executing(self) -> bool:
-        """Tell whether it is being carried out right now."""
+        """Return whether it is being carried out right now."""
         return self._executing
 
     def cancel(self) -> None:
-        """Give up; a coroutine is closed where it waits."""
+        """Cancel the task; a coroutine is closed where it waits."""
         super().cancel()
         if not self._done and inspect.iscoroutine(self._handler) and self._task_lock.acquire(blocking=False):
             try:

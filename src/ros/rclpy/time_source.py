@@ -102,7 +102,7 @@ class TimeSource:
         node.add_on_set_parameters_callback(self._on_parameter_event)
 
     def detach_node(self) -> None:
-        """Follow no node."""
+        """Stop following the node."""
         self._unsubscribe()
         self._node_weak_ref = None
         self._ros_time_is_active = False
@@ -113,7 +113,7 @@ class TimeSource:
         Raises
         ------
         ValueError
-            When it is no ROS clock.
+            When it is not a ROS clock.
         """
         if not isinstance(clock, ROSClock):
             raise ValueError("Only clocks with type ROS_TIME can be attached.")

@@ -71,7 +71,7 @@ class Timer:
         return self.__timer
 
     def destroy(self) -> None:
-        """Let go; use `Node.destroy_timer` instead."""
+        """Destroy the handle; use `Node.destroy_timer` instead."""
         self.__timer.destroy_when_not_in_use()
 
     @property
@@ -101,17 +101,17 @@ class Timer:
         self._with_info = _takes_info(value)
 
     def is_ready(self) -> bool:
-        """Tell whether a call is due."""
+        """Return whether a call is due."""
         with self.__timer:
             return self.__timer.is_timer_ready()
 
     def is_canceled(self) -> bool:
-        """Tell whether the timer is cancelled."""
+        """Return whether the timer is cancelled."""
         with self.__timer:
             return self.__timer.is_timer_canceled()
 
     def cancel(self) -> None:
-        """Make no more calls until `reset`."""
+        """Cancel all calls until `reset`."""
         with self.__timer:
             self.__timer.cancel_timer()
 
@@ -158,7 +158,7 @@ class Timer:
 
 
 def _takes_info(callback: Callable[..., Any] | None) -> bool:
-    """Tell whether a callback has a parameter annotated as `TimerInfo`."""
+    """Return whether a callback has a parameter annotated as `TimerInfo`."""
     try:
         parameters = inspect.signature(callback).parameters if callback is not None else {}
     except (TypeError, ValueError):
@@ -187,7 +187,7 @@ class Rate:
         self.destroy()
 
     def destroy(self) -> None:
-        """End; a sleeper wakes with an exception."""
+        """Destroy the rate; a sleeper wakes with an exception."""
         self._is_destroyed = True
         changed = self._clock.handle.changed
         with changed:

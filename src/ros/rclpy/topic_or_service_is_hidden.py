@@ -4,5 +4,5 @@ HIDDEN_TOPIC_PREFIX = "_"
 
 
 def topic_or_service_is_hidden(name: str) -> bool:
-    """Tell whether a token of the name begins with an underscore."""
+    """Return whether a token of the name begins with an underscore."""
     return any(token.startswith(HIDDEN_TOPIC_PREFIX) for token in name.split("/") if token)

@@ -54,7 +54,7 @@ class TypeDescriptionService:
         return fill_response(request, response)
 
     def destroy(self) -> None:
-        """Serve no more."""
+        """Stop serving."""
         node = self._node_weak_ref()
         if self._service is not None and node is not None:
             node.destroy_service(self._service)

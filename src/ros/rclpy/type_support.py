@@ -14,7 +14,7 @@ def check_for_type_support(msg_or_srv_type: Any) -> None:
     Raises
     ------
     AttributeError
-        When it is no generated class.
+        When it is not a generated class.
     NoTypeSupportImportedException
         When it lacks what sending needs.
     """

@@ -57,12 +57,12 @@ def remove_ros_args(args: Sequence[str] | None = None) -> list[str]:
 
 
 def ok(*, context: Context | None = None) -> bool:
-    """Tell whether a context (the default one where None) is between `init` and `shutdown`."""
+    """Return whether a context (the default one where None) is between `init` and `shutdown`."""
     return (context or get_default_context()).ok()
 
 
 def shutdown(*, context: Context | None = None) -> None:
-    """End a context, by default the default one.
+    """Shut down a context, by default the default one.
 
     Raises
     ------
@@ -73,7 +73,7 @@ def shutdown(*, context: Context | None = None) -> None:
 
 
 def try_shutdown(*, context: Context | None = None) -> None:
-    """End a context, by default the default one, unless that was done before."""
+    """Shut down a context, by default the default one, unless that was done before."""
     (context or get_default_context()).try_shutdown()
 
 

@@ -74,25 +74,25 @@ class Waitable:
         self._rcl_node: Any = None
 
     def __enter__(self) -> Any:
-        """Keep what is behind the waitable alive."""
+        """Mark what is behind the waitable as in use."""
         raise NotImplementedError("Must be implemented by subclass")
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """End that."""
+        """Mark it as no longer in use."""
         raise NotImplementedError("Must be implemented by subclass")
 
     def add_future(self, future: Future) -> None:
-        """Have a future's callbacks called by the executor that runs the waitable."""
+        """Call a future's callbacks by the executor that runs the waitable."""
         self._futures.append(future)
 
     def remove_future(self, future: Future) -> None:
-        """End that."""
+        """Remove a future that `add_future` added."""
         self._futures.remove(future)
 
     def is_ready(self, wait_set: Any) -> bool:
-        """Tell whether something is ready in the wait set."""
+        """Return whether something is ready in the wait set."""
         raise NotImplementedError("Must be implemented by subclass")
 
     def take_data(self) -> Any:
@@ -100,7 +100,7 @@ class Waitable:
         raise NotImplementedError("Must be implemented by subclass")
 
     async def execute(self, taken_data: Any) -> None:
-        """Do the work with what was taken."""
+        """Process what was taken."""
         raise NotImplementedError("Must be implemented by subclass")
 
     def get_num_entities(self) -> NumberOfEntities:

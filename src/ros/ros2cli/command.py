@@ -25,7 +25,7 @@ class CommandExtension:
         """Declare the command's arguments; `cli_name` is such as ``ros2 greet``."""
 
     def main(self, *, parser: ArgumentParser, args: Namespace) -> Any:
-        """Do it; returns the exit status, or a message for standard error."""
+        """Run it, and return the exit status, or a message for standard error."""
         raise NotImplementedError
 
 
@@ -38,7 +38,7 @@ def add_subparsers_on_demand(
     required: bool = True,
     argv: Sequence[str] | None = None,
 ) -> None:
-    """Have a command take the verbs of a group of entry points, each imported when it is chosen.
+    """Add the verbs of a group of entry points to a command, each imported when it is chosen.
 
     Parameters
     ----------

@@ -17,7 +17,7 @@ class Subcommand(Protocol):
     """
 
     def main(self, *args: Any, **keywords: Any) -> Any:
-        """Do it; returns the exit status, or a message for standard error."""
+        """Run it, and return the exit status, or a message for standard error."""
 
 
 def built_in(descriptions: Mapping[str, str], package: str, suffix: str) -> Iterable[Extension]:

@@ -73,7 +73,7 @@ def class_of(
 
 
 def is_set(parsed_args: Namespace, key: str | None) -> bool:
-    """Tell whether a switch was given, if there is such a switch."""
+    """Return whether a switch was given, if there is such a switch."""
     return bool(key and getattr(parsed_args, key, False))
 
 

@@ -27,7 +27,7 @@ class Parser(argparse.ArgumentParser):
         hidden: Collection[str] = (),
         required: bool = False,
     ) -> None:
-        """Take a subcommand.
+        """Add subcommands, of which one may be chosen.
 
         Parameters
         ----------

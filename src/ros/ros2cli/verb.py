@@ -21,5 +21,5 @@ class VerbExtension:
         """Declare the verb's arguments; `cli_name` is such as ``ros2 topic list``."""
 
     def main(self, *, args: Namespace) -> Any:
-        """Do it; returns the exit status, or a message for standard error."""
+        """Run it, and return the exit status, or a message for standard error."""
         raise NotImplementedError

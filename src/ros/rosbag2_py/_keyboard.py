@@ -46,7 +46,7 @@ class Keyboard:
         self._ended = threading.Event()
 
     def start(self) -> None:
-        """Begin to listen."""
+        """Start listening to the keyboard."""
         if not sys.stdin or not sys.stdin.isatty():
             return
         self._wake, self._waker = os.pipe()

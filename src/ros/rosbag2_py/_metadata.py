@@ -56,7 +56,7 @@ class TopicMetadata:
         )
 
     def equals(self, other: TopicMetadata) -> bool:
-        """Tell whether both are the same."""
+        """Return whether both are the same."""
         return self.topic() == other.topic()
 
     def __eq__(self, other: object) -> bool:
@@ -176,7 +176,7 @@ class MetadataIo:
         bags.write_metadata(uri, to_bag(metadata))
 
     def metadata_file_exists(self, uri: str) -> bool:
-        """Tell whether a folder has a description."""
+        """Return whether a folder has a description."""
         return (Path(uri) / bags.FILE_NAME).is_file()
 
     def serialize_metadata(self, metadata: BagMetadata) -> str:

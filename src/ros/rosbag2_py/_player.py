@@ -120,7 +120,7 @@ class Player:
         storage_options: StorageOptions | Sequence[StorageOptions] | None = None,
         play_options: PlayOptions | None = None,
     ) -> None:
-        """Begin to play; with options, play to the end, `cancel` or Ctrl-C."""
+        """Start playing; with options, play until the end, `cancel` or Ctrl-C."""
         if storage_options is None or play_options is None:
             self._begin()
             return
@@ -176,7 +176,7 @@ class Player:
             self.stop_spin()
 
     def burst_sync(self, num_messages: int) -> int:
-        """Play, burst so many messages and go on to the end, `cancel` or Ctrl-C; returns their number."""
+        """Play, burst so many messages and go on to the end, `cancel` or Ctrl-C, and return their number."""
         self.start_spin()
         self._begin()
         done = self._node.burst(num_messages)
@@ -188,15 +188,15 @@ class Player:
         return self._node.play_next()
 
     def pause(self) -> None:
-        """Let time stand still."""
+        """Stop the player's clock."""
         self._node.pause()
 
     def resume(self) -> None:
-        """Let time go on."""
+        """Continue the player's clock."""
         self._node.resume()
 
     def is_paused(self) -> bool:
-        """Tell whether time stands still."""
+        """Return whether time stands still."""
         return self._node.is_paused
 
     def set_rate(self, rate: float) -> bool:
@@ -208,7 +208,7 @@ class Player:
         return self._node.rate
 
     def seek(self, time_point: int) -> None:
-        """Go on from another time of the bag [ns]."""
+        """Continue from another time of the bag [ns]."""
         self._node.seek(time_point)
 
     def stop(self) -> None:
@@ -222,7 +222,7 @@ class Player:
         running.ignore_keys()
 
     def interrupt(self) -> None:
-        """Note that playing is to stop; for handlers of signals, `stop` is to follow."""
+        """Request that playing stops; for handlers of signals, `stop` is to follow."""
         if self._running_node is not None:
             self._running_node.node.interrupt()
 
@@ -241,7 +241,7 @@ class Player:
 
     @staticmethod
     def cancel() -> None:
-        """End every playing of this process."""
+        """Stop every player of this process."""
         for player in list(Player._running):
             player._cancelled.set()
             if player._running_node is not None:

@@ -85,7 +85,7 @@ class PlayerNode(Node):
         self.get_logger().info(f"Set rate to {options.rate:g}")
 
     def _set_limits(self) -> None:
-        """Note what of the bag is played."""
+        """Set the part of the bag that is played."""
         options = self._options
         offset = round(options.start_offset * _SECOND)
         if offset < 0:
@@ -149,7 +149,7 @@ class PlayerNode(Node):
     # Beginning and ending.
 
     def play(self) -> bool:
-        """Begin to play in a thread; False when it plays already."""
+        """Start playing in a thread; return False when it plays already."""
         with self._changed:
             if self._playing:
                 self.get_logger().warning("Trying to play rosbag while in playback")
@@ -194,7 +194,7 @@ class PlayerNode(Node):
             thread.join()
 
     def interrupt(self) -> None:
-        """Note that playing is to stop, and nothing else: this may be called by a signal's handler."""
+        """Request that playing stops, and nothing else: this may be called by a signal's handler."""
         self._stopping = True
 
     def destroy_node(self) -> None:
@@ -251,7 +251,7 @@ class PlayerNode(Node):
             return anything
 
     def _go_to(self, time_ns: int) -> None:
-        """Go on from a time of the bag."""
+        """Continue from a time of the bag."""
         self._end_stream()
         wanted = [name for name in self._publishers.names if name in self._bags.topics]
         messages = self._bags.messages(wanted, start_ns=max(time_ns, 0), stop_ns=self._stop)
@@ -290,14 +290,14 @@ class PlayerNode(Node):
         return self._clock_of_bag.rate
 
     def pause(self) -> None:
-        """Let time stand still."""
+        """Stop the player's clock."""
         with self._changed:
             self._clock_of_bag.pause(_steady())
             self._changed.notify_all()
         self.get_logger().info("Pausing play.")
 
     def resume(self) -> None:
-        """Let time go on."""
+        """Continue the player's clock."""
         with self._changed:
             self._clock_of_bag.resume(_steady())
             self._changed.notify_all()
@@ -360,7 +360,7 @@ class PlayerNode(Node):
         return done
 
     def seek(self, time_ns: int) -> bool:
-        """Go on from another time of the bag; False when nothing is played."""
+        """Continue from another time of the bag; return False when nothing is played."""
         with self._changed:
             if not self._playing:
                 return False

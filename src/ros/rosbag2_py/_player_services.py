@@ -13,7 +13,7 @@ _SECOND = 1_000_000_000
 
 
 def create_services(player: PlayerNode) -> None:
-    """Let others control a player."""
+    """Create the services that control a player."""
     from rosbag2_interfaces import srv
 
     group = ReentrantCallbackGroup()

@@ -27,7 +27,7 @@ class StatusLine:
         self._thread: threading.Thread | None = None
 
     def start(self, *heading: str) -> None:
-        """Begin, with lines that stay above."""
+        """Start the display, below lines that stay."""
         if self._period_s == 0.0 or not sys.stdout.isatty():
             return
         for line in heading:
@@ -36,7 +36,7 @@ class StatusLine:
         self._thread.start()
 
     def stop(self) -> None:
-        """End; the last text stays."""
+        """Stop the display; the last text stays."""
         if self._thread is None:
             return
         self._ended.set()

@@ -39,11 +39,11 @@ class QoS:
         return self
 
     def keep_last(self, depth: int) -> QoS:
-        """Keep so many samples."""
+        """Set the history to keep last, with this depth."""
         return self._changed(history=History.KEEP_LAST, depth=depth)
 
     def keep_all(self) -> QoS:
-        """Keep all samples."""
+        """Set the history to keep all."""
         return self._changed(history=History.KEEP_ALL)
 
     def history(self, history: int) -> QoS:
@@ -51,11 +51,11 @@ class QoS:
         return self._changed(history=History(history))
 
     def reliable(self) -> QoS:
-        """Lose nothing."""
+        """Set the reliability to reliable."""
         return self._changed(reliability=Reliability.RELIABLE)
 
     def best_effort(self) -> QoS:
-        """Let samples be lost."""
+        """Set the reliability to best effort."""
         return self._changed(reliability=Reliability.BEST_EFFORT)
 
     def reliability(self, reliability: int) -> QoS:
@@ -63,11 +63,11 @@ class QoS:
         return self._changed(reliability=Reliability(reliability))
 
     def transient_local(self) -> QoS:
-        """Give late subscriptions earlier samples."""
+        """Set the durability to transient local: late subscriptions get earlier samples."""
         return self._changed(durability=Durability.TRANSIENT_LOCAL)
 
     def durability_volatile(self) -> QoS:
-        """Give late subscriptions what comes from then on."""
+        """Set the durability to volatile: late subscriptions get no earlier samples."""
         return self._changed(durability=Durability.VOLATILE)
 
     def durability(self, durability: int) -> QoS:
@@ -91,7 +91,7 @@ class QoS:
         return self._changed(liveliness_lease_ns=liveliness_lease_duration.nanoseconds)
 
     def avoid_ros_namespace_conventions(self, avoid: bool) -> QoS:
-        """Do nothing: bags hold topics of ROS."""
+        """Accept the setting without effect: bags hold topics of ROS."""
         return self
 
     def __eq__(self, other: object) -> bool:

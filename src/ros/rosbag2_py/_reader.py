@@ -46,7 +46,7 @@ class SequentialReader:
         self.open(StorageOptions(uri), ConverterOptions())
 
     def close(self) -> None:
-        """Let the bag go."""
+        """Close the bag."""
         if self._bag is not None:
             self._messages = iter(())
             self._is_ahead, self._next = False, None
@@ -81,7 +81,7 @@ class SequentialReader:
         return self._next
 
     def has_next(self) -> bool:
-        """Tell whether there is another message."""
+        """Return whether there is another message."""
         self._opened()
         return self._ahead() is not None
 
@@ -129,7 +129,7 @@ class SequentialReader:
         self._begin()
 
     def seek(self, timestamp: int) -> None:
-        """Go to the first message at or after a time [ns]; in reverse order, to the last at or before it."""
+        """Continue at the first message at or after a time [ns]; in reverse order, at the last at or before it."""
         self._opened()
         self._position = timestamp
         self._begin()

@@ -97,7 +97,7 @@ class Recorder:
         record_options: RecordOptions | None = None,
         node_name: str = NODE_NAME,
     ) -> None:
-        """Begin to record; with options, record until `cancel` or Ctrl-C and complete the bag."""
+        """Start recording; with options, record until `cancel` or Ctrl-C and complete the bag."""
         if storage_options is None or record_options is None:
             self._begin()
             return
@@ -142,7 +142,7 @@ class Recorder:
         self._cancelled.set()
 
     def pause(self) -> None:
-        """Pass over what comes."""
+        """Ignore what comes."""
         self.node.pause()
 
     def resume(self) -> None:
@@ -150,11 +150,11 @@ class Recorder:
         self.node.resume()
 
     def is_paused(self) -> bool:
-        """Tell whether what comes is passed over."""
+        """Return whether what comes is passed over."""
         return self.node.is_paused
 
     @staticmethod
     def cancel() -> None:
-        """End every recording of this process."""
+        """Stop every recorder of this process."""
         for recorder in list(Recorder._running):
             recorder._cancelled.set()

@@ -96,7 +96,7 @@ class RecorderNode(Node):
         return self._bag
 
     def record(self, uri: str = "") -> None:
-        """Begin a bag and subscribe to what is there.
+        """Open a bag and subscribe to the topics that exist.
 
         Raises
         ------
@@ -145,7 +145,7 @@ class RecorderNode(Node):
             self.get_logger().info("Recording stopped")
 
     def _take_pending(self) -> None:
-        """Take the messages that have come but were not taken yet."""
+        """Record the messages that have come but were not taken yet."""
         for subscription in self._subscribed.values():
             for _ in range(len(subscription.handle.impl)):
                 waiting = subscription._rcl_take()
@@ -172,7 +172,7 @@ class RecorderNode(Node):
         return self._paused
 
     def pause(self) -> None:
-        """Pass over what comes from now on."""
+        """Ignore what comes from now on."""
         self._paused = True
         self.get_logger().info("Pausing recording.")
 
@@ -189,7 +189,7 @@ class RecorderNode(Node):
             self.pause()
 
     def split(self) -> None:
-        """Begin the next file of the bag."""
+        """Start the next file of the bag."""
         bag, sink = self._bag, self._sink
         if bag is not None and sink is not None:
             sink.call(bag.split)
@@ -227,7 +227,7 @@ class RecorderNode(Node):
             self.stop_discovery()
 
     def stop_discovery(self) -> None:
-        """Look no more at topics that appear."""
+        """Ignore topics that appear from now on."""
         with self._changing:
             if not self._discovering:
                 return
@@ -346,7 +346,7 @@ class RecorderNode(Node):
         )
 
     def _check_publishers(self, name: str, publishers: list[EndpointInfo]) -> None:
-        """Tell of publishers that came later and are not heard."""
+        """Log the publishers that came later and do not match the subscription."""
         requested = self._subscribed[name].qos_profile.resolved()
         for publisher in publishers:
             policies = incompatibilities(publisher.qos, requested)

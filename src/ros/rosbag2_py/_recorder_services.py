@@ -9,7 +9,7 @@ from rosbag2_py._services import create_common_services, serve
 
 
 def create_services(recorder: RecorderNode) -> None:
-    """Let others control a recorder."""
+    """Create the services that control a recorder."""
     from rosbag2_interfaces import srv
 
     def record(request: Any) -> dict[str, Any]:

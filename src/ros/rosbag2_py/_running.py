@@ -87,14 +87,14 @@ class RunningNode(Generic[NodeT]):
             raise
 
     def listen_to_keys(self, *help_lines: str) -> None:
-        """Say what the keys do, and obey them."""
+        """Print what the keys do, and react to them."""
         if self._keyboard is not None:
             for line in help_lines:
                 self.node.get_logger().info(line)
             self._keyboard.start()
 
     def ignore_keys(self) -> None:
-        """Obey no key any more."""
+        """Stop reacting to keys."""
         if self._keyboard is not None:
             self._keyboard.stop()
 

@@ -25,7 +25,7 @@ class Pausable(Protocol):
 
 
 def create_common_services(pausable: Pausable, node: Node, group: CallbackGroup | None = None) -> None:
-    """Let others pause, resume and stop a recorder or a player, which is the node."""
+    """Create the services that pause, resume and stop a recorder or a player, which is the node."""
     from rosbag2_interfaces import srv
 
     for kind, name, work in (

@@ -27,7 +27,7 @@ class SequentialWriter:
         self._completion: finalize[[], SequentialWriter] | None = None
 
     def open(self, storage_options: StorageOptions, converter_options: ConverterOptions) -> None:
-        """Begin a bag; RuntimeError where the folder is there already."""
+        """Open a bag; raise RuntimeError where the folder exists already."""
         converter_options.check()
         if self._bag is not None:
             raise RuntimeError("A bag is open already. Call close() before opening another.")
@@ -55,7 +55,7 @@ class SequentialWriter:
         self._opened().add_topic(topic.topic(definition_of(topic.type)))
 
     def remove_topic(self, topic: TopicMetadata) -> None:
-        """Forget a topic."""
+        """Remove a topic."""
         self._opened().remove_topic(topic.name)
 
     def write(self, topic_name: str, message: bytes, timestamp: int, send_timestamp: int | None = None) -> None:
@@ -77,7 +77,7 @@ class SequentialWriter:
         return self._snapshot.take() if self._snapshot is not None else False
 
     def split_bagfile(self) -> None:
-        """Begin the next file."""
+        """Start the next file."""
         self._opened().split()
 
 

@@ -59,7 +59,7 @@ class AbstractGenericString(AbstractNestableType):
     __slots__ = ()
 
     def has_maximum_size(self) -> bool:
-        """Tell whether the string is bounded."""
+        """Return whether the string is bounded."""
         return hasattr(self, "maximum_size")
 
 
@@ -140,7 +140,7 @@ class AbstractNestedType(AbstractType):
         self.value_type = value_type
 
     def has_maximum_size(self) -> bool:
-        """Tell whether the number of values is limited."""
+        """Return whether the number of values is limited."""
         return hasattr(self, "maximum_size") or hasattr(self, "size")
 
 

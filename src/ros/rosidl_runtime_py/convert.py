@@ -69,7 +69,7 @@ def _plain_sequence(values: Any, kind: str, limit: int | None, no_arr: bool, no_
 
 
 def _value_type(kind: str) -> str:
-    """``sequence<double, 3>`` -> ``double``; ``double[3]`` -> ``double``."""
+    """Return the type of a sequence's items: ``double`` for ``sequence<double, 3>`` and ``double[3]``."""
     if kind.startswith("sequence<"):
         inner = kind.removeprefix("sequence<").removesuffix(">")
         head, comma, bound = inner.rpartition(", ")

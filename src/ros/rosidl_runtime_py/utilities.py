@@ -107,15 +107,15 @@ def _full(identifier: str, kind: str) -> str:
 
 
 def is_message(interface: Any) -> bool:
-    """Tell whether something is a message or a message class."""
+    """Return whether something is a message or a message class."""
     return isinstance(interface, Message) or (isinstance(interface, type) and issubclass(interface, Message))
 
 
 def is_service(interface: Any) -> bool:
-    """Tell whether something is a service class."""
+    """Return whether something is a service class."""
     return isinstance(interface, type) and issubclass(interface, Service)
 
 
 def is_action(interface: Any) -> bool:
-    """Tell whether something is an action class."""
+    """Return whether something is an action class."""
     return isinstance(interface, type) and issubclass(interface, Action)

@@ -57,7 +57,7 @@ def read_points(
     Raises
     ------
     AssertionError
-        When it is no cloud, or has no such field.
+        When it is not a point cloud, or has no such field.
     ValueError
         When it holds less data than it says.
     """

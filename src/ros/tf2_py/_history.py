@@ -29,7 +29,7 @@ class History:
         self.items: list[Item] = []
 
     def insert(self, stamp: int, item: Item) -> bool:
-        """Take in a transform; False when it is too old."""
+        """Insert a transform; return False when it is too old."""
         stamps = self.stamps
         if not stamps:
             stamps.append(stamp)
@@ -68,7 +68,7 @@ class History:
         self.items.insert(place, item)
 
     def clear(self) -> None:
-        """Forget everything."""
+        """Remove all transforms."""
         self.stamps.clear()
         self.items.clear()
 
@@ -140,7 +140,7 @@ class Fixed:
         return True
 
     def clear(self) -> None:
-        """Keep the transform: what is fixed outlives a jump in time."""
+        """Ignore the request: a static transform outlives a jump in time."""
 
     def latest(self) -> tuple[int, str]:
         """Return zero, for any time, and the parent."""

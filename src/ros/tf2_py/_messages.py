@@ -37,7 +37,7 @@ def read(transform: Any) -> tuple[int, str, str, Rigid]:
 
 
 def _read_any(transform: Any) -> tuple[int, str, str, Rigid]:
-    """Do the same for anything that looks like the message."""
+    """Read anything that has the fields of the message."""
     header, moved = transform.header, transform.transform
     parent, child = header.frame_id, transform.child_frame_id
     for frame in (parent, child):
@@ -74,12 +74,12 @@ def message(stamp: int, target: str, source: str, motion: Rigid) -> TransformSta
 
 
 def check_name(frame: object) -> None:
-    """Refuse what cannot be the name of a frame.
+    """Check that a text can be the name of a frame.
 
     Raises
     ------
     TypeError
-        When it is no str.
+        When it is not a str.
     """
     if not isinstance(frame, str):
         raise TypeError(f"a frame's name must be a str, not {type(frame).__name__}")

@@ -50,7 +50,7 @@ class BufferCore:
     # Taking transforms in.
 
     def set_transform(self, transform: TransformStamped, authority: str) -> None:
-        """Take in a transform; one that makes no sense is logged and ignored.
+        """Insert a transform; an invalid one is logged and ignored.
 
         Parameters
         ----------
@@ -62,7 +62,7 @@ class BufferCore:
         self._set(transform, authority, History)
 
     def set_transform_static(self, transform: TransformStamped, authority: str) -> None:
-        """Take in a transform that holds at all times; see `set_transform`."""
+        """Insert a transform that holds at all times; see `set_transform`."""
         self._set(transform, authority, Fixed)
 
     def _set(self, transform: Any, authority: str, kind: type[History] | type[Fixed]) -> None:
@@ -97,7 +97,7 @@ class BufferCore:
             self._notify_listeners()
 
     def clear(self) -> None:
-        """Forget all transforms, except those that hold at all times."""
+        """Remove all transforms, except those that hold at all times."""
         with self._lock:
             for history in self._frames.values():
                 if history is not None:
@@ -110,7 +110,7 @@ class BufferCore:
             self._watchers = (*self._watchers, watcher)
 
     def _unwatch(self, watcher: Callable[[], None]) -> bool:
-        """Call it no more; tell whether it was watching."""
+        """Call it no more; return whether it was watching."""
         with self._lock:
             before = len(self._watchers)
             self._watchers = tuple(other for other in self._watchers if other != watcher)
@@ -166,14 +166,14 @@ class BufferCore:
         return message(stamp, target_frame, source_frame, canonical(compose(from_fixed, to_fixed)))
 
     def can_transform_core(self, target_frame: str, source_frame: str, time: Time) -> tuple[bool, str]:
-        """Tell whether `lookup_transform_core` would find the transform, and if not, why."""
+        """Return whether `lookup_transform_core` would find the transform, and if not, why."""
         problem = self._problem(target_frame, source_frame, time_ns(time))
         return not problem, problem
 
     def can_transform_full_core(
         self, target_frame: str, target_time: Time, source_frame: str, source_time: Time, fixed_frame: str
     ) -> tuple[bool, str]:
-        """Tell whether `lookup_transform_full_core` would find the transform, and if not, why."""
+        """Return whether `lookup_transform_full_core` would find the transform, and if not, why."""
         target_ns, source_ns = time_ns(target_time), time_ns(source_time)
         with self._lock:
             problem = (

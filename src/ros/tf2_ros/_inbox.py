@@ -54,7 +54,7 @@ class Inbox(Subscription):
 
 
 def _do_nothing() -> None:
-    """Stand for a callback that has already run."""
+    """Stand in for a callback that has already run."""
 
 
 def create_inbox(

@@ -151,7 +151,7 @@ class Buffer(BufferCore, BufferInterface):
         timeout: Duration = NO_WAIT,
         return_debug_tuple: bool = False,
     ) -> bool | tuple[bool, str]:
-        """Tell whether `lookup_transform` would find the transform.
+        """Return whether `lookup_transform` would find the transform.
 
         Returns
         -------
@@ -171,7 +171,7 @@ class Buffer(BufferCore, BufferInterface):
         timeout: Duration = NO_WAIT,
         return_debug_tuple: bool = False,
     ) -> bool | tuple[bool, str]:
-        """Tell whether `lookup_transform_full` would find the transform; see `can_transform`."""
+        """Return whether `lookup_transform_full` would find the transform; see `can_transform`."""
         asked = (target_frame, target_time, source_frame, source_time, fixed_frame)
         result = self._wait(lambda: self.can_transform_full_core(*asked), timeout)
         return result if return_debug_tuple else result[0]
@@ -268,7 +268,7 @@ class _Deadline:
         self._timer.cancel_timer()
 
     def passed(self) -> bool:
-        """Tell whether it is over, or has lost its meaning since the clock was set back or replaced."""
+        """Return whether it is over, or has lost its meaning since the clock was set back or replaced."""
         if self._clock.overridden is not self._simulated:
             return True
         if self._simulated:

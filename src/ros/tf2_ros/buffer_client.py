@@ -99,7 +99,7 @@ class BufferClient(BufferInterface):
         )
 
     def can_transform(self, target_frame: str, source_frame: str, time: Time, timeout: Duration = NO_WAIT) -> bool:
-        """Tell whether `lookup_transform` finds the transform."""
+        """Return whether `lookup_transform` finds the transform."""
         try:
             self.lookup_transform(target_frame, source_frame, time, timeout)
         except tf2.TransformException:
@@ -115,7 +115,7 @@ class BufferClient(BufferInterface):
         fixed_frame: str,
         timeout: Duration = NO_WAIT,
     ) -> bool:
-        """Tell whether `lookup_transform_full` finds the transform."""
+        """Return whether `lookup_transform_full` finds the transform."""
         try:
             self.lookup_transform_full(target_frame, target_time, source_frame, source_time, fixed_frame, timeout)
         except tf2.TransformException:
@@ -123,7 +123,7 @@ class BufferClient(BufferInterface):
         return True
 
     def destroy(self) -> None:
-        """Let go of the action client."""
+        """Destroy the action client."""
         self.action_client.destroy()
 
     def _ask(self, goal: Any) -> TransformStamped:

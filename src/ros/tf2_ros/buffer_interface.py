@@ -100,7 +100,7 @@ class BufferInterface:
         raise NotImplementedException()
 
     def can_transform(self, target_frame: str, source_frame: str, time: Time, timeout: Duration = NO_WAIT) -> bool:
-        """Tell whether `lookup_transform` would find the transform."""
+        """Return whether `lookup_transform` would find the transform."""
         raise NotImplementedException()
 
     def can_transform_full(
@@ -112,12 +112,12 @@ class BufferInterface:
         fixed_frame: str,
         timeout: Duration = NO_WAIT,
     ) -> bool:
-        """Tell whether `lookup_transform_full` would find the transform."""
+        """Return whether `lookup_transform_full` would find the transform."""
         raise NotImplementedException()
 
 
 def Stamped(obj: Any, stamp: Any, frame_id: str) -> Any:
-    """Give an object a header; returns the object."""
+    """Add a header to an object, and return the object."""
     from std_msgs.msg import Header
 
     obj.header = Header(frame_id=frame_id, stamp=stamp)

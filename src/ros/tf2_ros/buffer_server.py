@@ -55,7 +55,7 @@ class BufferServer:
         )
 
     def destroy(self) -> None:
-        """Serve no more."""
+        """Stop serving."""
         self.action_server.destroy()
 
     async def _execute(self, goal_handle: ServerGoalHandle) -> Any:

@@ -98,12 +98,12 @@ class TransformListener:
                 self.node.destroy_subscription(getattr(self, name))
 
     def callback(self, data: Any) -> None:
-        """Put the transforms of a ``tf2_msgs/msg/TFMessage`` into the buffer."""
+        """Insert the transforms of a ``tf2_msgs/msg/TFMessage`` into the buffer."""
         for transform in data.transforms:
             self.buffer.set_transform(transform, _AUTHORITY)
 
     def static_callback(self, data: Any) -> None:
-        """Put them into the buffer as transforms that hold at all times."""
+        """Insert transforms that hold at all times into the buffer."""
         for transform in data.transforms:
             self.buffer.set_transform_static(transform, _AUTHORITY)
 

@@ -182,7 +182,7 @@ class ExecuteLocal(Action):
         return None if self.__runner is None else self.__runner.completed
 
     def prepare(self, context: LaunchContext) -> None:
-        """Work out what to execute."""
+        """Evaluate what to execute."""
         self.__process_description.prepare(context, self)
 
     def execute(self, context: LaunchContext) -> list[LaunchDescriptionEntity] | None:

@@ -17,5 +17,5 @@ class PopEnvironment(Action):
         super().__init__(**kwargs)
 
     def execute(self, context: LaunchContext) -> None:
-        """Bring the environment back."""
+        """Restore the environment."""
         context._pop_environment()

@@ -17,5 +17,5 @@ class PopLaunchConfigurations(Action):
         super().__init__(**kwargs)
 
     def execute(self, context: LaunchContext) -> None:
-        """Bring the launch configurations back."""
+        """Restore the launch configurations."""
         context._pop_launch_configurations()

@@ -17,5 +17,5 @@ class PushEnvironment(Action):
         super().__init__(**kwargs)
 
     def execute(self, context: LaunchContext) -> None:
-        """Keep the environment."""
+        """Save the environment."""
         context._push_environment()

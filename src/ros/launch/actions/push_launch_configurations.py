@@ -17,5 +17,5 @@ class PushLaunchConfigurations(Action):
         super().__init__(**kwargs)
 
     def execute(self, context: LaunchContext) -> None:
-        """Keep the launch configurations."""
+        """Save the launch configurations."""
         context._push_launch_configurations()

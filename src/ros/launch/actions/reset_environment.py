@@ -27,5 +27,5 @@ class ResetEnvironment(Action):
         return cls, kwargs
 
     def execute(self, context: LaunchContext) -> None:
-        """Undo the changes."""
+        """Restore the environment of the launch's start."""
         context._reset_environment()

@@ -109,13 +109,13 @@ class TimerAction(Action):
         context.environment.update(self.__environment)
 
     def cancel(self) -> None:
-        """End the wait; the actions are not executed."""
+        """Cancel the wait; the actions are not executed."""
         self.__canceled = True
         if self._canceled_future is not None and not self._canceled_future.done():
             self._canceled_future.set_result(True)
 
     def execute(self, context: LaunchContext) -> list[LaunchDescriptionEntity] | None:
-        """Begin to wait."""
+        """Start waiting."""
         self.__context_locals = dict(context.get_locals_as_dict())
         self.__launch_configurations = dict(context.launch_configurations)
         self.__environment = dict(context.environment)

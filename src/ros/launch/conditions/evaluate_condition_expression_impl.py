@@ -16,7 +16,7 @@ VALID_FALSE_EXPRESSIONS = ["false", "0"]
 
 
 def evaluate_condition_expression(context: LaunchContext, expression: list[Substitution]) -> bool:
-    """Work out a text and tell whether it means true: `true` or `1`, against `false` or `0`, in any case.
+    """Evaluate a text and return whether it means true: `true` or `1`, against `false` or `0`, in any case.
 
     Raises
     ------

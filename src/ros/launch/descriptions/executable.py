@@ -176,7 +176,7 @@ class Executable:
         self.__program = os.path.basename(name)
 
     def prepare(self, context: LaunchContext, action: Action) -> None:
-        """Work out all texts for an action that is about to execute this.
+        """Evaluate all texts for an action that is about to execute this.
 
         Parameters
         ----------

@@ -23,7 +23,7 @@ substitution_parse_methods: dict[str, Callable[..., Any]] = {}
 
 
 def instantiate_action(entity: Entity, parser: Parser) -> Action:
-    """Make the action that an element stands for.
+    """Create the action that an element stands for.
 
     Raises
     ------
@@ -40,7 +40,7 @@ def instantiate_action(entity: Entity, parser: Parser) -> Action:
 
 
 def instantiate_substitution(type_name: str, args: Iterable[SomeSubstitutionsType] | None = None) -> Substitution:
-    """Make the substitution that `$(type_name args...)` stands for.
+    """Create the substitution that `$(type_name args...)` stands for.
 
     Raises
     ------

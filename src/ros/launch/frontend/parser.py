@@ -57,7 +57,7 @@ class Parser:
     # From elements to actions ---------------------------------------------------------------------
 
     def parse_action(self, entity: Entity) -> Action:
-        """Make the action that an element stands for."""
+        """Create the action that an element stands for."""
         location = getattr(entity, "location", (None, None))
         try:
             action = instantiate_action(entity, self)
@@ -82,7 +82,7 @@ class Parser:
         return replace_escaped_characters(value)
 
     def parse_description(self, entity: Entity) -> LaunchDescription:
-        """Make the launch description of a whole file, given its root element.
+        """Create the launch description of a whole file, given its root element.
 
         Raises
         ------
@@ -106,7 +106,7 @@ class Parser:
 
     @classmethod
     def is_extension_valid(cls, extension: str) -> bool:
-        """Tell whether some parser is for this file extension."""
+        """Return whether some parser is for this file extension."""
         return extension in cls.get_file_extensions_from_parsers()
 
     @classmethod
@@ -125,12 +125,12 @@ class Parser:
 
     @classmethod
     def may_parse(cls, filename: str) -> bool:
-        """Tell from a file's name whether this parser may be for it."""
+        """Return by a file's name whether this parser may be for it."""
         return filename.endswith(tuple(f".{extension}" for extension in cls.get_file_extensions()))
 
     @classmethod
     def is_filename_valid(cls, filename: str) -> bool:
-        """Tell whether some parser may be for a file of this name."""
+        """Return whether some parser may be for a file of this name."""
         return any(parser.may_parse(filename) for parser in cls._parsers())
 
     @classmethod

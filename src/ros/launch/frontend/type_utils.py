@@ -9,7 +9,7 @@ from .entity import Entity
 
 
 def check_is_list_entity(data_type: Any) -> bool:
-    """Tell whether a type is a list of elements."""
+    """Return whether a type is a list of elements."""
     return get_origin(data_type) is list and get_args(data_type)[0] is Entity
 
 

@@ -52,7 +52,7 @@ class LaunchConfig:
         self.reset()
 
     def reset(self) -> None:
-        """Go back to the defaults; handlers are made anew."""
+        """Restore the defaults; handlers are created anew."""
         self._log_dir: str | None = None
         self._screen_handler: Any = None
         self._file_handlers: dict[str, Any] = {}
@@ -165,7 +165,7 @@ launch_config = LaunchConfig()
 
 
 def log_launch_config(*, logger: logging.Logger = logging.root) -> None:
-    """Say where the log files are and what is logged."""
+    """Log where the log files are and what is logged."""
     logger.info(f"All log files can be found below {launch_config.log_dir}")
     logger.info(f"Default logging verbosity is set to {logging.getLevelName(launch_config.level)}")
 
@@ -204,7 +204,7 @@ def get_output_loggers(
 
 
 def reset() -> None:
-    """Forget all loggers' handlers and levels and go back to the default configuration."""
+    """Reset all loggers' handlers and levels to the default configuration."""
     for logger in (*LaunchLogger.all_loggers, logging.root):
         for handler in list(logger.handlers):
             ours = handler is launch_config._screen_handler or handler in launch_config._file_handlers.values()

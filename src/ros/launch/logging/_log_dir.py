@@ -18,7 +18,7 @@ def get_logging_directory() -> str:
 
 
 def create_log_dir(base: str) -> str:
-    """Make the folder of this launch below `base`, let the link `latest` beside it point to it; returns its path."""
+    """Create the folder of this launch below `base` and the link `latest` to it, and return its path."""
     now = datetime.datetime.now().strftime("%Y-%m-%d-%H-%M-%S-%f")
     name = f"{now}-{socket.gethostname()}-{os.getpid()}"
     folder = os.path.join(base, name)

@@ -63,7 +63,7 @@ class _ReadStreamHandler(logging.StreamHandler[Any]):
             super().flush()
 
     def handleError(self, record: logging.LogRecord) -> None:
-        """Say what went wrong, unless nobody reads."""
+        """Report an error, unless the stream is no longer read."""
         if isinstance(sys.exc_info()[1], BrokenPipeError):
             self._is_read = False
         else:

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def perform_bool(context: LaunchContext, value: list[Substitution]) -> bool:
-    """Work out a text that means true or false.
+    """Evaluate a text that means true or false.
 
     Raises
     ------

@@ -46,7 +46,7 @@ class FindExecutable(Substitution):
         return f"FindExec({describe_text(self.name)})"
 
     def perform(self, context: LaunchContext) -> str:
-        """Look the program up."""
+        """Find the program."""
         name = perform_substitutions(context, self.name)
         path = which(name, context.environment)
         if path is None:

@@ -8,17 +8,17 @@ T = TypeVar("T")
 
 
 def isclassinstance(obj: Any) -> bool:
-    """Tell whether an object is an instance of a class, and not a class itself."""
+    """Return whether an object is an instance of a class, and not a class itself."""
     return not isinstance(obj, type)
 
 
 def is_a(obj: Any, entity_type: type[T]) -> bool:
-    """Tell whether an object is an instance of a class."""
+    """Return whether an object is an instance of a class."""
     return isinstance(obj, entity_type)
 
 
 def is_a_subclass(obj: Any, entity_type: type[T]) -> bool:
-    """Tell whether an object is an instance of a class, or itself a subclass of it."""
+    """Return whether an object is an instance of a class, or itself a subclass of it."""
     if is_a(obj, entity_type):
         return True
     return isinstance(obj, type) and issubclass(obj, entity_type)

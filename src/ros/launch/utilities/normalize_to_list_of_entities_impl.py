@@ -16,7 +16,7 @@ def normalize_to_list_of_entities(
     Raises
     ------
     TypeError
-        If something among them is no entity.
+        If something among them is not an entity.
     """
     if isinstance(entities, LaunchDescriptionEntity):
         return [entities]

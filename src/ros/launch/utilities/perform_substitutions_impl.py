@@ -12,5 +12,5 @@ if TYPE_CHECKING:
 
 
 def perform_substitutions(context: LaunchContext, subs: Iterable[Substitution]) -> str:
-    """Work out each substitution and join the texts."""
+    """Evaluate each substitution and join the texts."""
     return "".join(context.perform_substitution(sub) for sub in subs)

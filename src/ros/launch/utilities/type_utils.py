@@ -77,12 +77,12 @@ SomeValueType = SomeSubstitutionsType | AllowedValueType | NormalizedValueType
 
 
 def is_typing_list(data_type: Any) -> bool:
-    """Tell whether a type is one of the list types."""
+    """Return whether a type is one of the list types."""
     return get_origin(data_type) is list and get_args(data_type)[0] in ScalarTypesTuple
 
 
 def is_valid_scalar_type(data_type: Any) -> TypeGuard[ScalarType]:
-    """Tell whether a type is one of the scalar types."""
+    """Return whether a type is one of the scalar types."""
     return data_type in ScalarTypesTuple
 
 
@@ -102,14 +102,14 @@ def extract_type(data_type: AllowedTypesType) -> tuple[ScalarType, bool]:
 
 
 def is_instance_of_valid_type(value: Any, *, can_be_str: bool = False) -> bool:
-    """Tell whether a value is a scalar or a uniform list; with `can_be_str` strings may be in any list."""
+    """Return whether a value is a scalar or a uniform list; with `can_be_str` strings may be in any list."""
     if not isinstance(value, list):
         return any(_is_scalar(value, scalar) for scalar in ScalarTypesTuple)
     return any(_is_list(value, scalar, can_be_str) for scalar in ScalarTypesTuple)
 
 
 def is_instance_of(value: Any, data_type: AllowedTypesType | None = None, *, can_be_str: bool = False) -> bool:
-    """Tell whether a value is of a type (None: of any); with `can_be_str` a string may stand for a scalar."""
+    """Return whether a value is of a type (None: of any); with `can_be_str` a string may stand for a scalar."""
     if data_type is None:
         return is_instance_of_valid_type(value, can_be_str=can_be_str)
     scalar, is_list = extract_type(data_type)
@@ -247,7 +247,7 @@ def get_typed_value(value: str | list[str], data_type: AllowedTypesType | None, 
 
 
 def is_substitution(x: Any) -> TypeGuard[Substitution | list[str | Path | Substitution]]:
-    """Tell whether a value is a substitution, or substitutions and strings in a row."""
+    """Return whether a value is a substitution, or substitutions and strings in a row."""
     if isinstance(x, Substitution):
         return True
     if isinstance(x, str) or not isinstance(x, Iterable):
@@ -259,12 +259,12 @@ def is_substitution(x: Any) -> TypeGuard[Substitution | list[str | Path | Substi
 
 
 def is_normalized_substitution(x: Any) -> TypeGuard[list[Substitution]]:
-    """Tell whether a value is a non-empty list of substitutions."""
+    """Return whether a value is a non-empty list of substitutions."""
     return isinstance(x, list) and len(x) > 0 and all(isinstance(item, Substitution) for item in x)
 
 
 def normalize_typed_substitution(value: SomeValueType, data_type: AllowedTypesType | None) -> NormalizedValueType:
-    """Bring a value that may hold substitutions into the form that `perform_typed_substitution` takes.
+    """Convert a value that may hold substitutions to the form that `perform_typed_substitution` takes.
 
     Scalars stay what they are, a text becomes a list of substitutions, and a list becomes a list of these
     two.
@@ -335,7 +335,7 @@ def perform_typed_substitution(
     context: LaunchContext, value: NormalizedValueType, data_type: AllowedTypesType | None
 ) -> AllowedValueType: ...
 def perform_typed_substitution(context: LaunchContext, value: NormalizedValueType, data_type: Any) -> Any:
-    """Work out a value that `normalize_typed_substitution` prepared.
+    """Evaluate a value that `normalize_typed_substitution` prepared.
 
     Raises
     ------

@@ -21,7 +21,7 @@ Validate = Callable[[str], Any]
 
 @contextlib.contextmanager
 def register_event_handler(context: LaunchContext, event_handler: BaseEventHandler) -> Iterator[None]:
-    """Have an event handler registered for a while."""
+    """Register an event handler for the length of a block."""
     context.register_event_handler(event_handler)
     try:
         yield
@@ -35,7 +35,7 @@ async def wait_for_output(
     validate_output: Validate,
     timeout: float | None = None,
 ) -> bool:
-    """Wait for output of a process, and tell whether it came.
+    """Wait for output of a process, and return whether it came.
 
     Parameters
     ----------
@@ -76,7 +76,7 @@ def wait_for_output_sync(
     validate_output: Validate,
     timeout: float | None = None,
 ) -> bool:
-    """Wait for output of a process, and tell whether it came; parameters as for `wait_for_output`."""
+    """Wait for output of a process, and return whether it came; parameters as for `wait_for_output`."""
     return _wait_sync(
         launch_context, _on_output(execute_process_action), _stdout(execute_process_action, validate_output), timeout
     )
@@ -105,7 +105,7 @@ async def wait_for_stderr(
     validate_output: Validate,
     timeout: float | None = None,
 ) -> bool:
-    """Wait for errors that a process prints, and tell whether they came; as `wait_for_output`."""
+    """Wait for errors that a process prints, and return whether they came; as `wait_for_output`."""
     return await _wait(
         launch_context, _on_output(execute_process_action), _stderr(execute_process_action, validate_output), timeout
     )
@@ -128,7 +128,7 @@ def wait_for_stderr_sync(
     validate_output: Validate,
     timeout: float | None = None,
 ) -> bool:
-    """Wait for errors that a process prints, and tell whether they came; as `wait_for_output`."""
+    """Wait for errors that a process prints, and return whether they came; as `wait_for_output`."""
     return _wait_sync(
         launch_context, _on_output(execute_process_action), _stderr(execute_process_action, validate_output), timeout
     )
@@ -148,7 +148,7 @@ def assert_stderr_sync(
 async def wait_for_start(
     launch_context: LaunchContext, execute_process_action: ExecuteProcess, timeout: float | None = None
 ) -> bool:
-    """Wait for the start of a process, and tell whether it came.
+    """Wait for the start of a process, and return whether it came.
 
     Parameters
     ----------
@@ -165,21 +165,21 @@ async def wait_for_start(
 def wait_for_start_sync(
     launch_context: LaunchContext, execute_process_action: ExecuteProcess, timeout: float | None = None
 ) -> bool:
-    """Wait for the start of a process, and tell whether it came; as `wait_for_start`."""
+    """Wait for the start of a process, and return whether it came; as `wait_for_start`."""
     return _wait_sync(launch_context, _on_start(execute_process_action), _started(execute_process_action), timeout)
 
 
 async def wait_for_exit(
     launch_context: LaunchContext, execute_process_action: ExecuteProcess, timeout: float | None = None
 ) -> bool:
-    """Wait for the end of a process, and tell whether it came; as `wait_for_start`."""
+    """Wait for the end of a process, and return whether it came; as `wait_for_start`."""
     return await _wait(launch_context, _on_exit(execute_process_action), _exited(execute_process_action), timeout)
 
 
 def wait_for_exit_sync(
     launch_context: LaunchContext, execute_process_action: ExecuteProcess, timeout: float | None = None
 ) -> bool:
-    """Wait for the end of a process, and tell whether it came; as `wait_for_start`."""
+    """Wait for the end of a process, and return whether it came; as `wait_for_start`."""
     return _wait_sync(launch_context, _on_exit(execute_process_action), _exited(execute_process_action), timeout)
 
 

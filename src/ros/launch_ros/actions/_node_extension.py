@@ -27,7 +27,7 @@ class NodeActionExtension:
     def prepare_for_execute(
         self, context: LaunchContext, ros_specific_arguments: dict[str, Any], node_action: Node
     ) -> tuple[list[SomeSubstitutionsType], dict[str, Any]]:
-        """Take part in what happens before a node is run.
+        """Add to a node's command line before it is run.
 
         Parameters
         ----------

@@ -95,7 +95,7 @@ class LifecycleTransition(Action):
         return cls(lifecycle_node_names=[node_name], transition_ids=[CONFIGURE, ACTIVATE])
 
     def execute(self, context: LaunchContext) -> list[LaunchDescriptionEntity] | None:
-        """Ask for the first transition, and have each next one asked for when its time comes."""
+        """Request the first transition, and each next one when its time comes."""
         names = [perform_substitutions(context, name) for name in self.__names]
         transitions = [int(perform_substitutions(context, number)) for number in self.__transitions]
         entities: list[LaunchDescriptionEntity] = []

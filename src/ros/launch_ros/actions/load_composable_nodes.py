@@ -81,7 +81,7 @@ class LoadComposableNodes(Action):
         return self.__loading
 
     def execute(self, context: LaunchContext) -> list[LaunchDescriptionEntity] | None:
-        """Begin to load the nodes."""
+        """Start loading the nodes."""
         wanted = [
             description
             for description in self.__descriptions

@@ -183,7 +183,7 @@ class Node(ExecuteProcess):
         return self.__final_node_name
 
     def is_node_name_fully_specified(self) -> bool:
-        """Tell whether nothing of the full name is left to the program."""
+        """Return whether nothing of the full name is left to the program."""
         unspecified = (self.UNSPECIFIED_NODE_NAME, self.UNSPECIFIED_NODE_NAMESPACE)
         return all(mark not in self.node_name for mark in unspecified)
 
@@ -216,7 +216,7 @@ class Node(ExecuteProcess):
         return entities
 
     def _perform_substitutions(self, context: LaunchContext) -> None:
-        """Work out the node's names, parameters and remappings, and append them to the command line."""
+        """Evaluate the node's names, parameters and remappings, and append them to the command line."""
         if self.__substitutions_performed:
             return
         self.__substitutions_performed = True

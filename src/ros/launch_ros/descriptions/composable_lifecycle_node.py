@@ -42,7 +42,7 @@ class ComposableLifecycleNode(ComposableNode):
         return cls, kwargs
 
     def autostarts(self, context: LaunchContext) -> bool:
-        """Tell whether the node is to be configured and activated at once."""
+        """Return whether the node is to be configured and activated at once."""
         return bool(perform_typed_substitution(context, self.__autostart, bool))
 
 

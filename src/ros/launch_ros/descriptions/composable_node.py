@@ -131,5 +131,5 @@ class ComposableNode:
         return self.__condition
 
     def autostarts(self, context: LaunchContext) -> bool:
-        """Tell whether the node is to be configured and activated at once: it has no life cycle."""
+        """Return whether the node is to be configured and activated at once: it has no life cycle."""
         return False

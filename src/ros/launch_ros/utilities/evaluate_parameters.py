@@ -19,7 +19,7 @@ _SCALARS = (bool, int, float, str, bytes)
 
 
 def evaluate_parameters(context: LaunchContext, parameters: Parameters) -> EvaluatedParameters:
-    """Work out parameters that `normalize_parameters` prepared.
+    """Evaluate parameters that `normalize_parameters` prepared.
 
     Returns
     -------
@@ -39,7 +39,7 @@ def evaluate_parameters(context: LaunchContext, parameters: Parameters) -> Evalu
 
 
 def evaluate_parameter_dict(context: LaunchContext, parameters: ParametersDict) -> dict[str, EvaluatedParameterValue]:
-    """Work out a dictionary that `normalize_parameter_dict` prepared.
+    """Evaluate a dictionary that `normalize_parameter_dict` prepared.
 
     Texts become what they look like by the rules of YAML; in quotes they stay texts.
 

@@ -61,7 +61,7 @@ class LifecycleEventManager:
             self.__logger.error(f"Exception in handling of 'lifecycle.StateTransition': {error}")
 
     def on_change_state_event(self, context: LaunchContext, event: ChangeState) -> None:
-        """Ask the node for a transition, if it is meant."""
+        """Request a transition of the node, if the event is for it."""
         if not event.lifecycle_node_matcher(self.__action):
             return
         import lifecycle_msgs.srv

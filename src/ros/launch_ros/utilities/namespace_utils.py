@@ -9,12 +9,12 @@ from launch.substitutions import SubstitutionFailure
 
 
 def is_root_namespace(ns: str) -> bool:
-    """Tell whether a namespace is the root."""
+    """Return whether a namespace is the root."""
     return ns == "/"
 
 
 def is_namespace_absolute(ns: str) -> bool:
-    """Tell whether a namespace begins at the root."""
+    """Return whether a namespace begins at the root."""
     return ns.startswith("/")
 
 

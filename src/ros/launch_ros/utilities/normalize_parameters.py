@@ -60,7 +60,7 @@ def normalize_parameter_dict(
     Raises
     ------
     TypeError
-        If a name is no text, or if a value is of no type that a parameter may have.
+        If a name is not text, or if a value is of no type that a parameter may have.
     """
     if not isinstance(parameters, Mapping):
         raise TypeError(f"expected a dictionary of parameters, got {parameters!r}")

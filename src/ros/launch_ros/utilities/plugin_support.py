@@ -8,7 +8,7 @@ class PluginException(Exception):
 
 
 def satisfies_version(version: str, caret_range: str) -> bool:
-    """Tell whether a version is in a range like `^1.2`: from that version to the next that may break things.
+    """Return whether a version is in a range like `^1.2`: from that version to the next that may break things.
 
     Raises
     ------

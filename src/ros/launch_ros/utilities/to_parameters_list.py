@@ -69,7 +69,7 @@ def _sections(content: Mapping[str, Any], path: str) -> Any:
 
 
 def _matches(pattern: str, full_name: str) -> bool:
-    """Tell whether a pattern (`*` one level, `**` any number of levels) is for a node."""
+    """Return whether a pattern (`*` one level, `**` any number of levels) is for a node."""
     return _match_parts(pattern.strip("/").split("/"), full_name.strip("/").split("/"))
 
 

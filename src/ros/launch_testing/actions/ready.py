@@ -16,7 +16,7 @@ class ReadyToTest(Action):
         self.__callbacks: list[Callable[[], None]] = []
 
     def _add_callback(self, callback: Callable[[], None]) -> None:
-        """Have a function called when the action is executed."""
+        """Call a function when the action is executed."""
         self.__callbacks.append(callback)
 
     def execute(self, context: LaunchContext) -> list[LaunchDescriptionEntity] | None:

@@ -49,7 +49,7 @@ class SequentialTextChecker:
 
 @contextmanager
 def assertSequentialStdout(proc_output: Any, process: Any, cmd_args: Any = None) -> Iterator[SequentialTextChecker]:
-    """Give a checker of the order in which one process printed to its standard output.
+    """Yield a checker of the order in which one process printed to its standard output.
 
     Parameters
     ----------

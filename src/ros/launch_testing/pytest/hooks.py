@@ -92,7 +92,7 @@ class LaunchTestItem(pytest.Item):
         return item
 
     def runtest(self) -> None:
-        """Make the runs."""
+        """Execute the runs."""
         from launch_testing.test_runner import LaunchTestRunner
 
         runner = (self.runner_cls or LaunchTestRunner)(

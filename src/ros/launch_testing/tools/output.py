@@ -77,7 +77,7 @@ def expect_output(
     strip_ansi_escape_sequences: bool = True,
     strict: bool = False,
 ) -> bool:
-    """Tell whether output is, or has in it, what is expected.
+    """Return whether output is, or has in it, what is expected.
 
     Parameters
     ----------

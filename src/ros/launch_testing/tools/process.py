@@ -41,12 +41,12 @@ class ProcessProxy:
         self._output_filter = output_filter
 
     def wait_for_shutdown(self, timeout: float | None = None) -> bool:
-        """Wait for its end, and tell whether it came in time."""
+        """Wait for its end, and return whether it came in time."""
         with self._proc_info.proc_event:
             return bool(self._proc_info.proc_event.wait_for(lambda: self.terminated, timeout))
 
     def wait_for_output(self, condition: Callable[[str], bool] | None = None, timeout: float | None = None) -> bool:
-        """Wait for any output, or for some of which `condition` is true, and tell whether it came in time."""
+        """Wait for any output, or for some of which `condition` is true, and return whether it came in time."""
         is_enough = condition or bool
         with self._proc_output.io_event:
             return bool(self._proc_output.io_event.wait_for(lambda: is_enough(self.output), timeout))
@@ -108,7 +108,7 @@ class ProcessProxy:
 def launch_process(
     launch_service: LaunchService, process_action: ExecuteProcess, proc_info: Any, proc_output: Any, **kwargs: Any
 ) -> Iterator[ProcessProxy]:
-    """Have a running launch service run a process, and stop it in the end.
+    """Run a process in a running launch service, and stop it in the end.
 
     Parameters
     ----------

@@ -54,7 +54,7 @@ class IncludeMapping:
 
 
 def _map_file(arguments: str) -> tuple[str, dict[str, str]]:
-    """Take `map_server`'s argument for the parameter that it is today; nobody else activates the node."""
+    """Convert `map_server`'s argument to today's parameter; no lifecycle manager activates the node."""
     words = _words(arguments)
     return "", {"autostart_node": "true", **({"yaml_filename": words[0]} if words else {})}
 
@@ -66,7 +66,7 @@ def _without_period(arguments: str) -> tuple[str, dict[str, str]]:
 
 
 def _spawn(arguments: str) -> tuple[str, dict[str, str]]:
-    """Name the model and its source as they are named today; the pose keeps its names."""
+    """Rename the arguments of the model and its source to today's; those of the pose keep their names."""
     words = _words(arguments)
     new: list[str] = []
     while words:

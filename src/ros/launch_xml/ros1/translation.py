@@ -21,7 +21,7 @@ _PARAMETER_TYPES = {"str": "str", "string": "str", "int": "int", "double": "floa
 
 
 def is_ros1(root: LocatedElement) -> bool:
-    """Tell whether a launch file is one of ROS 1: by elements and attributes that ROS 2 does not have."""
+    """Return whether a launch file is one of ROS 1: by elements and attributes that ROS 2 does not have."""
     return any(_is_old(element, root) for element in root.iter()) or any(
         child.tag == "arg" and "value" in child.attrib for child in root
     )
@@ -315,7 +315,7 @@ class _Translator:
 
 
 def _parameters_first(children: list[LocatedElement]) -> list[LocatedElement]:
-    """Put parameters before the nodes beside them, as ROS 1 set them all before it started any node.
+    """Sort parameters before the nodes beside them, as ROS 1 set them all before it started any node.
 
     None is put before an argument, which it may need.
     """

@@ -34,6 +34,6 @@ class HasNodeParams(Substitution):
         return f"HasNodeParams('{self.__node_name}')"
 
     def perform(self, context: LaunchContext) -> str:
-        """Look into the file."""
+        """Search the file for parameters of the node."""
         data = read_yaml(context, self.__source_file)
         return str(isinstance(data, dict) and self.__node_name in data)

@@ -32,5 +32,5 @@ class LaunchConfigAsBool(Substitution):
         return f"LaunchConfigAsBool('{self.__name}')"
 
     def perform(self, context: LaunchContext) -> str:
-        """Look at the argument."""
+        """Convert the argument to a Boolean text."""
         return str(self.__configuration.perform(context).strip().lower() in _TRUE)

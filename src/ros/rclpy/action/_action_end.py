@@ -88,7 +88,7 @@ class ActionEnd(Waitable):
     def configure_introspection(
         self, clock: Clock, service_event_qos_profile: QoSProfile, introspection_state: ServiceIntrospectionState
     ) -> None:
-        """Tell of what passes the action's three services; see `Service.configure_introspection`."""
+        """Publish events of the action's three services; see `Service.configure_introspection`."""
         impl = self._action_type.Impl
         kinds = (impl.SendGoalService, impl.CancelGoalService, impl.GetResultService)
         for service, kind in zip(self._services, kinds, strict=True):

@@ -53,11 +53,11 @@ class ClientGoalHandle:
         return self._status
 
     def cancel_goal(self) -> Any:
-        """Ask for cancellation and wait for the ``CancelGoal`` response."""
+        """Request cancellation and wait for the ``CancelGoal`` response."""
         return self._action_client._cancel_goal(self)
 
     def cancel_goal_async(self) -> Future:
-        """Ask for cancellation; the future's result will be the ``CancelGoal`` response."""
+        """Request cancellation; the future's result will be the ``CancelGoal`` response."""
         return self._action_client._cancel_goal_async(self)
 
     def get_result(self) -> Any:
@@ -65,5 +65,5 @@ class ClientGoalHandle:
         return self._action_client._get_result(self)
 
     def get_result_async(self) -> Future:
-        """Ask for the result; the future's result will be an object with ``status`` and ``result``."""
+        """Request the result; the future's result will be an object with ``status`` and ``result``."""
         return self._action_client._get_result_async(self)

@@ -71,7 +71,7 @@ class ServerGoalHandle:
             self._action_server.notify_goal_done()
 
     def execute(self, execute_callback: Callable[[ServerGoalHandle], Any] | None = None) -> None:
-        """Have the goal carried out, by the server's callback where None.
+        """Execute the goal by a callback, the server's where None.
 
         Raises
         ------
@@ -82,12 +82,12 @@ class ServerGoalHandle:
         self._action_server.notify_execute(self, execute_callback)
 
     def executing(self) -> None:
-        """Note that the goal is carried out, by whom it may be; RCLError when it is already, or over."""
+        """Mark the goal as executing; raise RCLError when it is already, or over."""
         if not self.is_cancel_requested:
             self._update_state(GoalEvent.EXECUTE)
 
     def publish_feedback(self, feedback: Any) -> None:
-        """Tell the client how far it got.
+        """Publish feedback to the client.
 
         Raises
         ------
@@ -102,15 +102,15 @@ class ServerGoalHandle:
         self._action_server._feedback_end.impl.publish(message)
 
     def succeed(self, response: Any = None) -> None:
-        """End the goal as reached, with a result if it is given here instead of being returned."""
+        """Complete the goal as succeeded, with a result if it is given here instead of being returned."""
         self._finish(GoalEvent.SUCCEED, response)
 
     def abort(self, response: Any = None) -> None:
-        """End the goal as failed; see `succeed`."""
+        """Complete the goal as aborted; see `succeed`."""
         self._finish(GoalEvent.ABORT, response)
 
     def canceled(self, response: Any = None) -> None:
-        """End the goal as cancelled; see `succeed`."""
+        """Complete the goal as cancelled; see `succeed`."""
         self._finish(GoalEvent.CANCELED, response)
 
     def _finish(self, event: GoalEvent, response: Any) -> None:
@@ -120,6 +120,6 @@ class ServerGoalHandle:
             self._action_server._set_result(self, response)
 
     def destroy(self) -> None:
-        """Forget the goal."""
+        """Remove the goal."""
         self._destroyed = True
         self._action_server._forget(bytes(self.goal_id.uuid))

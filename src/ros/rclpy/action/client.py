@@ -97,7 +97,7 @@ status_sub_qos_profile
     # The executor's side.
 
     def _on_ready(self) -> None:
-        """Do at once what a blocking call waits for, which may hold up the executor, or make the client ready."""
+        """Process at once what a blocking call waits for, which may hold up the executor, or make the client ready."""
         if not self._own_waiters:
             self._rcl_hook()
             return
@@ -302,7 +302,7 @@ status_sub_qos_profile
         return future
 
     def server_is_ready(self) -> bool:
-        """Tell whether the action is served."""
+        """Return whether the action is served."""
         if self._destroyed:
             raise InvalidHandle("the action client was destroyed")
         served = all(service.service_server_is_available() for service in self._services)

@@ -42,7 +42,7 @@ class CancelResponse(Enum):
 
 
 def default_handle_accepted_callback(goal_handle: ServerGoalHandle) -> None:
-    """Carry the goal out at once."""
+    """Execute the goal at once."""
     goal_handle.execute()
 
 
@@ -52,7 +52,7 @@ def default_goal_callback(goal_request: Any) -> GoalResponse:
 
 
 def default_cancel_callback(cancel_request: Any) -> CancelResponse:
-    """Refuse to cancel."""
+    """Reject the cancellation."""
     return CancelResponse.REJECT
 
 
@@ -235,7 +235,7 @@ status_pub_qos_profile
     def notify_execute(
         self, goal_handle: ServerGoalHandle, execute_callback: Callable[[ServerGoalHandle], Any] | None
     ) -> None:
-        """Have a goal carried out by the node's executor, or by the next one that runs the node."""
+        """Execute a goal by the node's executor, or by the next one that runs the node."""
         callback = execute_callback or self._execute_callback
         if callback is None:
             raise RuntimeError("the action server has no execute_callback, and none was given")
@@ -247,7 +247,7 @@ status_pub_qos_profile
             self._rcl_hook()
 
     def notify_goal_done(self) -> None:
-        """Note that a goal is over: its result is kept for a while from now."""
+        """Schedule the expiry of a goal that is over."""
         self._expiry.plan()
 
     # Cancelling.
@@ -325,7 +325,7 @@ status_pub_qos_profile
             self._result_futures.pop(key, None)
 
     def expire_goals(self) -> None:
-        """Forget the goals whose results were kept long enough."""
+        """Remove the goals whose results were kept long enough."""
         if self._result_timeout < 0:
             return
         limit = self._now_ns() - int(self._result_timeout * 1e9)
@@ -379,7 +379,7 @@ status_pub_qos_profile
         self._execute_callback = execute_callback
 
     def destroy(self) -> None:
-        """Serve no more; goals that are not over end as they are."""
+        """Stop serving; goals that are not over end as they are."""
         if self._destroyed:
             return
         super().destroy()

@@ -35,7 +35,7 @@ class CallbackRunner:
         self._spins = False  # within `spin`, where nobody counts the callbacks that run
 
     def create_task(self, callback: Callable[..., Any] | Coroutine[Any, Any, Any], *args: Any, **kwargs: Any) -> Task:
-        """Carry a function or coroutine out later; see `Executor.create_task`."""
+        """Schedule a function or coroutine; see `Executor.create_task`."""
         raise NotImplementedError
 
     def _help_until_done(self, future: Future, entity: Any, services: Iterable[str], timeout_s: float | None) -> None:
@@ -43,11 +43,11 @@ class CallbackRunner:
         raise NotImplementedError
 
     def _blocked(self, entity: Any, services: Iterable[str]) -> AbstractContextManager[None]:
-        """Note, for the length of a block, that the callback of `entity` waits for `services`."""
+        """Mark the callback of `entity`, for the length of a block, as waiting for `services`."""
         raise NotImplementedError
 
     def _begin(self, hook: ReadyHook) -> Any:
-        """Reserve the entity's callback group; returns the entity, None when it must wait or is no longer ours."""
+        """Reserve the entity's callback group, and return the entity, None when it must wait or is no longer ours."""
         entity = hook.entity()
         if entity is None or hook.sink is not self._put:
             return None  # removed meanwhile; it stays marked and is queued where it is attached next
@@ -107,7 +107,7 @@ class CallbackRunner:
                 self._end(entity)
 
     def _may_run_again(self, hook: ReadyHook) -> bool:
-        """Tell whether the entity that just ran may run again before all others."""
+        """Return whether the entity that just ran may run again before all others."""
         return self._ready.empty() and hook.sink is self._put and not self._is_shutdown and self._context.ok()
 
     def _run_coroutine(self, coroutine: Coroutine[Any, Any, Any], entity: Any) -> bool:

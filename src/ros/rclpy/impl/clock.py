@@ -78,11 +78,11 @@ class ClockHandle(Destroyable):
         return Time(nanoseconds=self.now_ns(), clock_type=self.clock_type)
 
     def get_ros_time_override_is_enabled(self) -> bool:
-        """Tell whether the clock is overridden."""
+        """Return whether the clock is overridden."""
         return self.overridden
 
     def set_ros_time_override_is_enabled(self, enabled: bool) -> None:
-        """Begin or end showing what the clock is told."""
+        """Switch the override of the clock's time on or off."""
         with self.changed:
             if enabled == self.overridden:
                 return
@@ -94,11 +94,11 @@ class ClockHandle(Destroyable):
             timer.reschedule()
 
     def set_ros_time_override(self, time_point: Any) -> None:
-        """Tell the clock its time: a `Time` or nanoseconds."""
+        """Set the time that the clock shows: a `Time` or nanoseconds."""
         self.set_override_ns(getattr(time_point, "nanoseconds", time_point))
 
     def set_override_ns(self, now_ns: int) -> None:
-        """Tell the clock its time; due timers become ready."""
+        """Set the time that the clock shows; due timers become ready."""
         with self.changed:
             self._last_override = now_ns
             if self._override is None:
@@ -148,11 +148,11 @@ class ClockHandle(Destroyable):
     def add_clock_callback(
         self, pyjump_handle: Any, on_clock_change: bool, min_forward: int, min_backward: int
     ) -> None:
-        """Have the handle's `call_pre` and `call_post` called at jumps over these thresholds (0: never)."""
+        """Call the handle's `call_pre` and `call_post` at jumps over these thresholds (0: never)."""
         with self.changed:
             self._jumps.append(_JumpCallback(pyjump_handle, on_clock_change, min_forward, min_backward))
 
     def remove_clock_callback(self, pyjump_handle: Any) -> None:
-        """End that."""
+        """Remove a handle that `add_clock_callback` added."""
         with self.changed:
             self._jumps = [jump for jump in self._jumps if jump.owner is not pyjump_handle]

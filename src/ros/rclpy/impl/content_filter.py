@@ -174,7 +174,7 @@ class _Conditions(Transformer[Token, Condition]):
 
 
 def _constant(text: str) -> Any:
-    """Return the value of a literal; what is not a number, no boolean and in no quotes is a string as it stands."""
+    """Return the value of a literal; what is neither a number nor a Boolean nor in quotes is a string as it stands."""
     text = text.strip()
     if len(text) >= 2 and text[0] in "'`" and text[-1] == "'":
         return text[1:-1]

@@ -44,7 +44,7 @@ class ContextHandle(Destroyable):
         self._on_shutdown: list[weakref.ref[Callable[[], None]]] = []
 
     def ok(self) -> bool:
-        """Tell whether the context is still valid."""
+        """Return whether the context is still valid."""
         return self._ok
 
     @property
@@ -53,7 +53,7 @@ class ContextHandle(Destroyable):
         return self._released
 
     def own(self, node: NodeHandle) -> None:
-        """Have a node leave the graph with the context."""
+        """Register a node that leaves the graph with the context."""
         self._nodes.add(node)
 
     def get_domain_id(self) -> int:
@@ -66,7 +66,7 @@ class ContextHandle(Destroyable):
         self._on_shutdown.append(reference)
 
     def shutdown(self) -> None:
-        """Make the context invalid and wake everyone who waits on it.
+        """Invalidate the context and wake all threads that wait on it.
 
         Raises
         ------
@@ -77,7 +77,7 @@ class ContextHandle(Destroyable):
             raise RCLError("failed to shutdown: rcl_shutdown already called on the given context")
 
     def try_shutdown(self) -> bool:
-        """Shut down unless that was done before; tell whether it was done now."""
+        """Shut down unless that was done before; return whether it was done now."""
         with self._lock:
             if not self._ok:
                 return False

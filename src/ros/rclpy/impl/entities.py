@@ -90,7 +90,7 @@ class NodeHandle(Destroyable):
         return names.remap_name(self.remaps, kind, full, self.name, self.namespace)
 
     def own(self, handle: EndpointHandle) -> None:
-        """Have a handle destroyed with the node.
+        """Register a handle that is destroyed with the node.
 
         Raises
         ------
@@ -280,7 +280,7 @@ class PublisherHandle(EndpointHandle):
         return self.impl.has_subscribers
 
     def assert_liveliness(self) -> None:
-        """Show that the publisher is alive, though it publishes nothing."""
+        """Assert that the publisher is alive, though it publishes nothing."""
         if self.endpoint.qos.liveliness is not Liveliness.MANUAL_BY_TOPIC:
             return
         from rmw_dds_common.msg import Gid
@@ -337,7 +337,7 @@ class SubscriptionHandle(QueueHandle):
         self._set_on_new(callback)
 
     def clear_on_new_message_callback(self) -> None:
-        """Undo that."""
+        """Remove the callback."""
         self._clear_on_new()
 
 
@@ -369,11 +369,11 @@ class ServiceHandle(ServiceEndHandle):
         self._set_on_new(callback)
 
     def clear_on_new_request_callback(self) -> None:
-        """Undo that."""
+        """Remove the callback."""
         self._clear_on_new()
 
     def send_response(self, response: Any, header: Any) -> None:
-        """Answer a request; `header` is what `take_request` gave, or its `request_id`."""
+        """Send the response to a request; `header` is what `take_request` returned, or its `request_id`."""
         identity = getattr(header, "request_id", header).identity
         if self.introspection is not None:
             self.introspection.tell("RESPONSE_SENT", identity.client, identity.sequence, response=response)
@@ -390,7 +390,7 @@ class ClientHandle(ServiceEndHandle):
         self.impl = node.session.create_client(node.info, name, service_type, qos.resolved())
 
     def send_request(self, request: Any) -> int:
-        """Send a request; returns its sequence number."""
+        """Send a request, and return its sequence number."""
         number = self.impl.send(request)
         if self.introspection is not None:
             self.introspection.tell("REQUEST_SENT", self.endpoint.gid, number, request=request)
@@ -401,7 +401,7 @@ class ClientHandle(ServiceEndHandle):
         self._set_on_new(callback)
 
     def clear_on_new_response_callback(self) -> None:
-        """Undo that."""
+        """Remove the callback."""
         self._clear_on_new()
 
     def take_response(self, response_type: Any = None) -> tuple[ServiceInfo, Any] | None:
@@ -415,7 +415,7 @@ class ClientHandle(ServiceEndHandle):
         return ServiceInfo(RequestHeader(number, None), source_ns, received_ns), response
 
     def service_server_is_available(self) -> bool:
-        """Tell whether somebody serves the service."""
+        """Return whether somebody serves the service."""
         return self.node.session.server_is_ready(self.impl)
 
 
@@ -437,6 +437,6 @@ class GuardConditionHandle(ReadyNotifier, Destroyable):
         self._on_ready()
 
     def take_trigger(self) -> bool:
-        """Tell whether it was triggered since the last call."""
+        """Return whether it was triggered since the last call."""
         triggered, self._triggered = self._triggered, False
         return triggered

@@ -68,7 +68,7 @@ class EventSource(ReadyNotifier):
             return status
 
     def close(self) -> None:
-        """Watch no more."""
+        """Stop watching."""
 
     def _change(self, **steps: int) -> None:
         """Add to counts of the status, and to their changes; a field without one is set."""
@@ -94,7 +94,7 @@ class GraphSource(EventSource):
         self._stop = handle.node.session.watch(self._mine.name, weakly(self._on_change))
 
     def close(self) -> None:
-        """Watch no more."""
+        """Stop watching."""
         self._stop()
 
     def _on_change(self, added: bool, other: EndpointInfo) -> None:
@@ -103,7 +103,7 @@ class GraphSource(EventSource):
             self._note(added, other)
 
     def _note(self, added: bool, other: EndpointInfo) -> None:
-        """Look at an endpoint of the other kind that came or went."""
+        """Count an endpoint of the other kind that came or went."""
         raise NotImplementedError
 
     def _same_type(self, other: EndpointInfo) -> bool:
@@ -194,7 +194,7 @@ class LivelinessChangedSource(GraphSource):
             self._change(alive_count=1, not_alive_count=-1)
 
     def close(self) -> None:
-        """Watch no more."""
+        """Stop watching."""
         super().close()
         if self._assertions is not None:
             self._assertions.close()
@@ -215,7 +215,7 @@ class _Lease:
         self.renew()
 
     def renew(self) -> bool:
-        """Begin the span anew; tell whether it had not ended."""
+        """Restart the span; return whether it had not ended."""
         with self._lock:
             was, self._valid = self._valid, True
             self._until = time.monotonic_ns() + self._span
@@ -234,7 +234,7 @@ class _Lease:
         self._on_lapse()
 
     def end(self) -> bool:
-        """Watch no more; tell whether it had not ended."""
+        """Stop watching; return whether it had not ended."""
         with self._lock:
             was, self._valid = self._valid, False
             timer, self._timer = self._timer, None
@@ -258,7 +258,7 @@ class LivelinessLostSource(EventSource):
         self._change(total_count=1)
 
     def close(self) -> None:
-        """Watch no more."""
+        """Stop watching."""
         if self._lease:
             self._lease.end()
 
@@ -281,7 +281,7 @@ class DeadlineSource(EventSource):
             self._plan()
 
     def _plan(self) -> None:
-        """Have the deadline looked at that the last sample began."""
+        """Schedule the check of the deadline that the last sample began."""
         with self._lock:
             if not self._closed:
                 self._start = self._last
@@ -295,13 +295,13 @@ class DeadlineSource(EventSource):
         self._plan()
 
     def _has_counterparts(self) -> bool:
-        """Tell whether somebody could have sent: a subscription without publishers misses nothing."""
+        """Return whether somebody could have sent: a subscription without publishers misses nothing."""
         return self._mine.kind is EndpointKind.PUBLISHER or bool(
             self._handle.node.session.matching_endpoints(self._mine)
         )
 
     def close(self) -> None:
-        """Watch no more."""
+        """Stop watching."""
         with self._lock:
             self._closed = True
             timer, self._timer = self._timer, None

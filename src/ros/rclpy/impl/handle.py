@@ -58,4 +58,4 @@ class Destroyable:
         return self._please_destroy
 
     def _destroy(self) -> None:
-        """Let go of what is behind the handle."""
+        """Release what is behind the handle."""

@@ -11,7 +11,7 @@ _depth = 0
 
 @contextmanager
 def uninterrupted() -> Iterator[None]:
-    """Have signals change nothing meanwhile, in the main thread: the process is about to end anyway."""
+    """Ignore signals meanwhile, in the main thread: the process is about to end anyway."""
     global _depth
     is_main = threading.current_thread() is threading.main_thread()
     _depth += is_main
@@ -22,5 +22,5 @@ def uninterrupted() -> Iterator[None]:
 
 
 def is_uninterrupted() -> bool:
-    """Tell whether the main thread is in such a section."""
+    """Return whether the main thread is in such a section."""
     return _depth > 0

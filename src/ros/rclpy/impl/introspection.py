@@ -49,5 +49,5 @@ class Introspection:
         publisher.publish(event)
 
     def close(self) -> None:
-        """Tell no more."""
+        """Stop publishing events."""
         self._publisher.destroy_when_not_in_use()

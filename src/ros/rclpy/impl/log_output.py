@@ -48,7 +48,7 @@ class Output:
         self.reset()
 
     def reset(self) -> None:
-        """Take everything from the environment again."""
+        """Read all settings from the environment again."""
         self.levels: dict[str, LoggingSeverity] = {}
         self.default_level = LoggingSeverity.INFO
         self.to_console = True
@@ -132,7 +132,7 @@ class Output:
         return path.open("w", encoding="utf-8", errors="backslashreplace")
 
     def close(self) -> None:
-        """Finish the log file."""
+        """Close the log file."""
         with self._lock:
             file, self._file = self._file, None
             if file:

@@ -166,7 +166,7 @@ def _asked_name(handle: NodeHandle, name: str, *, is_service: bool) -> str:
     Raises
     ------
     TypeError
-        When it is no string.
+        When it is not a string.
     ValueError
         When it breaks the rules.
     """

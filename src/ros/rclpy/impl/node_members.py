@@ -29,7 +29,7 @@ class NodeMembers:
     _rcl_members: dict[str, list[Any]]
 
     def _wake_executor(self) -> None:
-        """Have the node's executor, if there is one, look again at what it waits for."""
+        """Wake the node's executor, if there is one, so that it checks again what it waits for."""
         raise NotImplementedError
 
     @property
@@ -68,7 +68,7 @@ class NodeMembers:
         yield from self._rcl_members["waitable"]
 
     def _rcl_add(self, kind: str, entity: Any, group: CallbackGroup | None = None) -> Any:
-        """Take an entity in: it belongs to the node and is run by the node's executor."""
+        """Add an entity: it belongs to the node and is run by the node's executor."""
         if group is not None:
             group.add_entity(entity)
         entity._rcl_node = weakref.ref(self)
@@ -87,7 +87,7 @@ class NodeMembers:
         return True
 
     def add_waitable(self, waitable: Waitable) -> None:
-        """Have the node's executor wait for a waitable."""
+        """Add a waitable that the node's executor waits for."""
         if not hasattr(waitable, "_rcl_hook"):
             from rclpy.impl.wait_set import adapt
 
@@ -95,7 +95,7 @@ class NodeMembers:
         self._rcl_add("waitable", waitable)
 
     def remove_waitable(self, waitable: Waitable) -> None:
-        """Undo `add_waitable`."""
+        """Remove a waitable that `add_waitable` added."""
         self._rcl_remove("waitable", waitable)
         self._wake_executor()
 
@@ -146,7 +146,7 @@ class NodeMembers:
 
 
 def attach(entity: Any, executor: Executor) -> None:
-    """Direct what becomes ready in an entity to an executor."""
+    """Attach an entity to an executor."""
     entity = _ready_part(entity)
     hook = getattr(entity, "_rcl_hook", None)
     if hook is None:
@@ -159,7 +159,7 @@ def attach(entity: Any, executor: Executor) -> None:
 
 
 def detach(entity: Any) -> None:
-    """Direct it nowhere."""
+    """Detach an entity from its executor."""
     entity = _ready_part(entity)
     hook = getattr(entity, "_rcl_hook", None)
     if hook is None:

@@ -138,13 +138,13 @@ class NodeParameterSetting:
         self._post_set_parameters_callbacks.insert(0, callback)
 
     def remove_pre_set_parameters_callback(self, callback: PreSet) -> None:
-        """Undo `add_pre_set_parameters_callback`; ValueError when it was not added."""
+        """Remove a callback that `add_pre_set_parameters_callback` added; raise ValueError when it was not."""
         self._pre_set_parameters_callbacks.remove(callback)
 
     def remove_on_set_parameters_callback(self, callback: OnSet) -> None:
-        """Undo `add_on_set_parameters_callback`; ValueError when it was not added."""
+        """Remove a callback that `add_on_set_parameters_callback` added; raise ValueError when it was not."""
         self._on_set_parameters_callbacks.remove(callback)
 
     def remove_post_set_parameters_callback(self, callback: PostSet) -> None:
-        """Undo `add_post_set_parameters_callback`; ValueError when it was not added."""
+        """Remove a callback that `add_post_set_parameters_callback` added; raise ValueError when it was not."""
         self._post_set_parameters_callbacks.remove(callback)

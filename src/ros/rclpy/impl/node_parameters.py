@@ -133,7 +133,7 @@ class NodeParameters(NodeParameterSetting):
         self._descriptors[parameter.name] = descriptor
 
     def undeclare_parameter(self, name: str) -> None:
-        """Forget a parameter.
+        """Remove a parameter.
 
         Raises
         ------
@@ -152,7 +152,7 @@ class NodeParameters(NodeParameterSetting):
     # Getting.
 
     def has_parameter(self, name: str) -> bool:
-        """Tell whether a parameter was declared."""
+        """Return whether a parameter was declared."""
         return name in self._parameters
 
     def get_parameter_types(self, names: list[str]) -> list[ParameterType]:

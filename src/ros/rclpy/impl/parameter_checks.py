@@ -15,7 +15,7 @@ REL_TOL = 1e-6
 
 
 def check_change(parameter: Parameter[Any], descriptor: ParameterDescriptor) -> SetParametersResult:
-    """Tell whether a parameter that is declared may become this one."""
+    """Return whether a parameter that is declared may become this one."""
     from rcl_interfaces.msg import SetParametersResult
 
     if descriptor.read_only:
@@ -26,7 +26,7 @@ def check_change(parameter: Parameter[Any], descriptor: ParameterDescriptor) -> 
 
 
 def check_value(parameter: Parameter[Any], descriptor: ParameterDescriptor) -> SetParametersResult:
-    """Tell whether a value is of the declared type and in its range."""
+    """Return whether a value is of the declared type and in its range."""
     from rcl_interfaces.msg import SetParametersResult
 
     expected = ParameterType(descriptor.type)

@@ -198,7 +198,7 @@ def _walk_parameters(tree: dict[_Name, Any], prefix: str, node: str, found: list
 
 
 def node_matches(pattern: str, full_name: str) -> bool:
-    """Tell whether a node name in a file means the node `full_name` (such as ``/lab/talker``)."""
+    """Return whether a node name in a file means the node `full_name` (such as ``/lab/talker``)."""
     if not pattern.startswith("/"):
         pattern = f"/{pattern}"
     if pattern == full_name or pattern == "/**":

@@ -50,7 +50,7 @@ class LoggingFilter:
 
     @classmethod
     def initialize_context(cls, context: dict[str, Any], **kwargs: Any) -> None:
-        """Take the filter's arguments of a call site's first call."""
+        """Store the filter's arguments of a call site's first call."""
         for param, default in cls.params.items():
             context[param] = kwargs.get(param, default)
             if context[param] is None:
@@ -58,7 +58,7 @@ class LoggingFilter:
 
     @staticmethod
     def should_log(context: dict[str, Any]) -> bool:
-        """Tell whether this call is carried out, and note that it was made."""
+        """Return whether this call is carried out, and note that it was made."""
         raise NotImplementedError
 
 
@@ -75,7 +75,7 @@ class Once(LoggingFilter):
 
     @staticmethod
     def should_log(context: dict[str, Any]) -> bool:
-        """Tell whether this is the first call."""
+        """Return whether this is the first call."""
         logged: bool = context["has_been_logged_once"]
         context["has_been_logged_once"] = True
         return not logged
@@ -102,7 +102,7 @@ class Throttle(LoggingFilter):
 
     @staticmethod
     def should_log(context: dict[str, Any]) -> bool:
-        """Tell whether the last call carried out is long enough ago."""
+        """Return whether the last call carried out is long enough ago."""
         source = context["throttle_time_source_type"]
         if hasattr(source, "now"):
             now = source.now().nanoseconds
@@ -130,7 +130,7 @@ class SkipFirst(LoggingFilter):
 
     @staticmethod
     def should_log(context: dict[str, Any]) -> bool:
-        """Tell whether there was a call before."""
+        """Return whether there was a call before."""
         skipped: bool = context["first_has_been_skipped"]
         context["first_has_been_skipped"] = True
         return skipped
@@ -206,7 +206,7 @@ class RcutilsLogger:
         return OUTPUT.effective_level(self.name)
 
     def is_enabled_for(self, severity: int | LoggingSeverity) -> bool:
-        """Tell whether messages of this severity are logged."""
+        """Return whether messages of this severity are logged."""
         return LoggingSeverity(severity) >= OUTPUT.effective_level(self.name)
 
     def log(self, message: str, severity: int | LoggingSeverity, **kwargs: Any) -> bool:

@@ -27,7 +27,7 @@ class ReadyHook:
         self.sink: Callable[[ReadyHook], None] | None = None
 
     def __call__(self) -> None:
-        """Make the entity ready."""
+        """Mark the entity as ready."""
         if not self.queued:
             self.queued = True
             sink = self.sink
@@ -35,18 +35,18 @@ class ReadyHook:
                 sink(self)
 
     def attach(self, sink: Callable[[ReadyHook], None]) -> None:
-        """Direct the hook to an executor's queue."""
+        """Attach the hook to an executor's queue."""
         self.sink = sink
         if self.queued:
             sink(self)
 
     def detach(self) -> None:
-        """Direct the hook nowhere."""
+        """Detach the hook from its queue."""
         self.sink = None
 
 
 def _nothing() -> None:
-    """Stand in for a function that nobody gave."""
+    """Stand in for a function that was not set."""
 
 
 class ReadyNotifier:
@@ -84,7 +84,7 @@ class ReadyNotifier:
         return call
 
     def _wire(self, call: Callable[[], None]) -> None:
-        """Have `call` called when something becomes ready."""
+        """Connect `call`, which is called when something becomes ready."""
         raise NotImplementedError
 
 

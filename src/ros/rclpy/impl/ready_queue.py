@@ -35,7 +35,7 @@ class ReadyQueue:
         self._waiting_thread: int | None = None
 
     def empty(self) -> bool:
-        """Tell whether nothing waits to be taken."""
+        """Return whether nothing waits to be taken."""
         return not self._items and not self._first
 
     def put(self, item: Any) -> None:
@@ -54,7 +54,7 @@ class ReadyQueue:
             self._gate.release()
 
     def schedule(self, deadline_ns: int, timer: TimerHandle) -> None:
-        """Have a timer told when ``time.monotonic_ns()`` reaches a deadline."""
+        """Notify a timer when ``time.monotonic_ns()`` reaches a deadline."""
         with self._timers_lock:
             timers = self._timers
             if len(timers) >= self._tidy_at:
@@ -96,7 +96,7 @@ class ReadyQueue:
                 raise TimeoutError
 
     def _notify_timers(self, until: int | None) -> int | None:
-        """Tell the timers that are due; returns the earliest of `until` and the next timer's deadline."""
+        """Notify the timers that are due, and return the earliest of `until` and the next timer's deadline."""
         timers = self._timers
         while True:
             with self._timers_lock:

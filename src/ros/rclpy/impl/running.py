@@ -34,7 +34,7 @@ class BlockedCalls:
 
     @contextmanager
     def waiting(self, services: Iterable[str], group: CallbackGroup | None) -> Iterator[None]:
-        """Note a call that waits, and the group that cannot be free meanwhile."""
+        """Register a call that waits, and the group that cannot be free meanwhile."""
         call = (frozenset(services), group)
         self._calls.append(call)
         try:
@@ -43,7 +43,7 @@ class BlockedCalls:
             self._calls.remove(call)
 
     def may_enter(self, entity: Any) -> bool:
-        """Tell whether an entity serves a call whose caller holds the entity's group: the caller only waits for it."""
+        """Return whether an entity serves a call whose caller holds the entity's group and only waits for it."""
         serves = getattr(entity, "_rcl_serves", ())
         return any(
             group is entity.callback_group and not services.isdisjoint(serves) for services, group in self._calls
@@ -82,7 +82,7 @@ class _Gate:
         self._lock.acquire()
 
     def open(self) -> None:
-        """Let through who waits."""
+        """Open the gate, for a thread that waits or is about to."""
         with suppress(RuntimeError):  # it is open
             self._lock.release()
 

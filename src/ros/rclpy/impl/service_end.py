@@ -67,7 +67,7 @@ class ServiceEnd(Generic[Handle]):
     def configure_introspection(
         self, clock: Clock, service_event_qos_profile: QoSProfile, introspection_state: ServiceIntrospectionState
     ) -> None:
-        """Tell of requests and responses on ``<service>/_service_event``.
+        """Publish events of requests and responses on ``<service>/_service_event``.
 
         Parameters
         ----------
@@ -82,7 +82,7 @@ class ServiceEnd(Generic[Handle]):
             handle.configure_introspection(clock, self.srv_type, service_event_qos_profile, introspection_state)
 
     def destroy(self) -> None:
-        """Let go; use `Node.destroy_client` or `Node.destroy_service` instead."""
+        """Destroy the handle; use `Node.destroy_client` or `Node.destroy_service` instead."""
         self.__handle.destroy_when_not_in_use()
 
     def _rcl_has_more(self) -> bool:

@@ -36,7 +36,7 @@ def watched(handler: Callable[[int, FrameType | None], Any]) -> Callable[[int, F
 
 
 def start() -> None:
-    """Watch from now on, unless somebody else, such as asyncio, is told of signals; only the main thread can."""
+    """Start watching, unless other code, such as asyncio, receives the signals; only the main thread can."""
     global _writer
     if _writer is not None or not hasattr(signal, "pthread_kill"):
         return
@@ -53,7 +53,7 @@ def start() -> None:
 
 
 def stop() -> None:
-    """Watch no more; only the main thread can."""
+    """Stop watching; only the main thread can."""
     global _writer
     if _writer is None:
         return
@@ -97,7 +97,7 @@ def _watch(reader: int) -> None:
 
 
 def _forget() -> None:
-    """Tell nobody of the signals of a forked process: the thread is not there, the other process's is."""
+    """Disconnect a forked process: the watching thread exists only in its parent."""
     global _writer
     if _writer is not None:
         signal.set_wakeup_fd(-1)

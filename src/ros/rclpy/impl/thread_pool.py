@@ -23,7 +23,7 @@ class ThreadPool:
         self._closed = False
 
     def submit(self, function: Callable[..., Any], *arguments: Any) -> None:
-        """Have a function carried out, which must raise nothing."""
+        """Run a function, which must raise nothing, in a thread of the pool."""
         self._work.put((function, arguments))
         with self._lock:
             self._load += 1
@@ -49,7 +49,7 @@ class ThreadPool:
 
     @contextmanager
     def blocked(self) -> Iterator[None]:
-        """Note, in a thread of the pool, that the function only waits: another one may take its place."""
+        """Mark the function of a thread of the pool as waiting: another one may take its place."""
         with self._lock:
             self._blocked += 1
             self._load -= 1
@@ -64,7 +64,7 @@ class ThreadPool:
                 self._threads += 1
 
     def close(self) -> None:
-        """End the threads, after what they carry out."""
+        """Stop the threads, after the functions that they run."""
         with self._lock:
             if self._closed:
                 return

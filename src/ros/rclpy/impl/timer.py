@@ -45,12 +45,12 @@ class TimerHandle(ReadyNotifier, Destroyable):
     # The clock's and the executor's side.
 
     def attach(self, schedule: Schedule | None) -> None:
-        """Note who waits for wall time (an executor), and ask it for the next call."""
+        """Set the executor that waits for wall time, and schedule the next call."""
         self._schedule = schedule
         self.reschedule()
 
     def reschedule(self) -> None:
-        """Ask for the next call anew; whatever was asked for before is void."""
+        """Schedule the next call anew, in place of the one before."""
         with self._lock:
             self.version += 1
             if self._canceled or self.is_destroyed:
@@ -64,7 +64,7 @@ class TimerHandle(ReadyNotifier, Destroyable):
             schedule(deadline, self)
 
     def on_backward_jump(self, now_ns: int) -> None:
-        """Count the period from the new time: the old deadline may be far away."""
+        """Restart the period at the new time: the old deadline may be far away."""
         with self._lock:
             self._last_call = now_ns
             self._next_call = now_ns + self._period
@@ -73,7 +73,7 @@ class TimerHandle(ReadyNotifier, Destroyable):
     # The timer's own.
 
     def call_timer(self) -> tuple[int, int]:
-        """Note a call; returns when it was due and when it was made. Periods that were missed are skipped.
+        """Record a call, and return when it was due and when it was made. Periods that were missed are skipped.
 
         Raises
         ------
@@ -94,11 +94,11 @@ class TimerHandle(ReadyNotifier, Destroyable):
         return expected, now
 
     def is_timer_ready(self) -> bool:
-        """Tell whether a call is due."""
+        """Return whether a call is due."""
         return not self._canceled and self.clock.now_ns() >= self._next_call
 
     def is_timer_canceled(self) -> bool:
-        """Tell whether the timer is cancelled."""
+        """Return whether the timer is cancelled."""
         return self._canceled
 
     def cancel_timer(self) -> None:

@@ -38,37 +38,37 @@ class WaitSet:
         return len(self._entities[kind]) - 1
 
     def add_subscription(self, subscription: Any) -> int:
-        """Add a subscription; returns its index."""
+        """Add a subscription, and return its index."""
         return self._add("subscription", subscription)
 
     def add_guard_condition(self, guard_condition: Any) -> int:
-        """Add a guard condition; returns its index."""
+        """Add a guard condition, and return its index."""
         return self._add("guard_condition", guard_condition)
 
     def add_timer(self, timer: Any) -> int:
-        """Add a timer; returns its index."""
+        """Add a timer, and return its index."""
         return self._add("timer", timer)
 
     def add_client(self, client: Any) -> int:
-        """Add a client; returns its index."""
+        """Add a client, and return its index."""
         return self._add("client", client)
 
     def add_service(self, service: Any) -> int:
-        """Add a service; returns its index."""
+        """Add a service, and return its index."""
         return self._add("service", service)
 
     def add_event(self, event: Any) -> int:
-        """Add an event; returns its index."""
+        """Add an event, and return its index."""
         return self._add("event", event)
 
     def clear_entities(self) -> None:
-        """Make the set empty."""
+        """Remove all entities."""
         for kind in _KINDS:
             self._entities[kind].clear()
             self._ready[kind].clear()
 
     def is_ready(self, kind: str, index: int) -> bool:
-        """Tell whether an entity was ready at the end of the last `wait`."""
+        """Return whether an entity was ready at the end of the last `wait`."""
         if kind not in _KINDS:
             raise RuntimeError(f"'{kind}' is not a known entity; expected one of {', '.join(_KINDS)}")
         return self._ready[kind][index]
@@ -83,7 +83,7 @@ class WaitSet:
         return [entity for kind in _KINDS for entity in self._entities[kind]]
 
     def look(self) -> bool:
-        """Note which entities are ready; tell whether any is. A guard condition is ready once for each trigger."""
+        """Check which entities are ready; return whether any is. A guard condition is ready once for each trigger."""
         for kind in _KINDS:
             self._ready[kind] = [_is_ready(entity) for entity in self._entities[kind]]
         return any(any(flags) for flags in self._ready.values())
@@ -131,7 +131,7 @@ def _listen(entity: Any, listener: Callable[[], None]) -> Callable[[], None]:
 
 
 def adapt(waitable: Any) -> None:
-    """Make a waitable that speaks of wait sets one that its entities make ready."""
+    """Adapt a waitable written for wait sets to one that its entities make ready."""
     waitable._rcl_adapter = _Adapter(waitable)
     waitable._rcl_hook = waitable._rcl_adapter.hook
     waitable._rcl_take = waitable._rcl_adapter.take
@@ -151,7 +151,7 @@ class _Adapter:
         self.hook()  # something may be ready already
 
     def _ask(self, waitable: Any) -> WaitSet:
-        """Ask the waitable for its entities, and listen to those that are new."""
+        """Request the waitable's entities, and listen to those that are new."""
         wait_set = WaitSet()
         waitable.add_to_wait_set(wait_set)
         entities = wait_set.entities()
@@ -166,7 +166,7 @@ class _Adapter:
         return wait_set
 
     def attach(self, schedule: Any) -> None:
-        """Note who waits for wall time on behalf of the waitable's timers."""
+        """Set the executor that waits for wall time on behalf of the waitable's timers."""
         self._schedule = schedule
         for timer in self._timers:
             timer.attach(schedule)

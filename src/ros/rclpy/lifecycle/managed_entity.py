@@ -13,23 +13,23 @@ class ManagedEntity:
     """Base of what goes through the transitions of its node."""
 
     def on_configure(self, state: Any) -> TransitionCallbackReturn:
-        """Get ready."""
+        """Prepare for activation."""
         return TransitionCallbackReturn.SUCCESS
 
     def on_cleanup(self, state: Any) -> TransitionCallbackReturn:
-        """Undo `on_configure`."""
+        """Release what `on_configure` created."""
         return TransitionCallbackReturn.SUCCESS
 
     def on_shutdown(self, state: Any) -> TransitionCallbackReturn:
-        """End for good."""
+        """Shut down for good."""
         return TransitionCallbackReturn.SUCCESS
 
     def on_activate(self, state: Any) -> TransitionCallbackReturn:
-        """Begin to work."""
+        """Start working."""
         return TransitionCallbackReturn.SUCCESS
 
     def on_deactivate(self, state: Any) -> TransitionCallbackReturn:
-        """Cease to work."""
+        """Stop working."""
         return TransitionCallbackReturn.SUCCESS
 
     def on_error(self, state: Any) -> TransitionCallbackReturn:
@@ -44,12 +44,12 @@ class SimpleManagedEntity(ManagedEntity):
         self._enabled = False
 
     def on_activate(self, state: Any) -> TransitionCallbackReturn:
-        """Become active."""
+        """Set the entity active."""
         self._enabled = True
         return TransitionCallbackReturn.SUCCESS
 
     def on_deactivate(self, state: Any) -> TransitionCallbackReturn:
-        """Become inactive."""
+        """Set the entity inactive."""
         self._enabled = False
         return TransitionCallbackReturn.SUCCESS
 

@@ -80,49 +80,49 @@ class LifecycleNodeMixin(ManagedEntity):
         return LifecycleState(self._state_machine.state.label, self._state_machine.state.state_id)
 
     def trigger_configure(self) -> TransitionCallbackReturn:
-        """Go from unconfigured to inactive; RCLError when the state does not allow it."""
+        """Change from unconfigured to inactive; raise RCLError when the state does not allow it."""
         return self._rcl_change_state(self._state_machine.by_label("configure"))
 
     def trigger_cleanup(self) -> TransitionCallbackReturn:
-        """Go from inactive to unconfigured; RCLError when the state does not allow it."""
+        """Change from inactive to unconfigured; raise RCLError when the state does not allow it."""
         return self._rcl_change_state(self._state_machine.by_label("cleanup"))
 
     def trigger_shutdown(self) -> TransitionCallbackReturn:
-        """Go to finalized; RCLError when the state does not allow it."""
+        """Change to finalized; raise RCLError when the state does not allow it."""
         return self._rcl_change_state(self._state_machine.by_label("shutdown"))
 
     def trigger_activate(self) -> TransitionCallbackReturn:
-        """Go from inactive to active; RCLError when the state does not allow it."""
+        """Change from inactive to active; raise RCLError when the state does not allow it."""
         return self._rcl_change_state(self._state_machine.by_label("activate"))
 
     def trigger_deactivate(self) -> TransitionCallbackReturn:
-        """Go from active to inactive; RCLError when the state does not allow it."""
+        """Change from active to inactive; raise RCLError when the state does not allow it."""
         return self._rcl_change_state(self._state_machine.by_label("deactivate"))
 
     def add_managed_entity(self, entity: ManagedEntity) -> None:
-        """Take an entity through the node's transitions from now on."""
+        """Add an entity that follows the node's transitions."""
         self._rcl_managed_entities.add(entity)
 
     # What a node does at transitions: by default, its managed entities do it.
 
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Get ready: declare, create, allocate."""
+        """Prepare for activation: declare, create, allocate."""
         return self._rcl_all("on_configure", state)
 
     def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Undo `on_configure`."""
+        """Release what `on_configure` created."""
         return self._rcl_all("on_cleanup", state)
 
     def on_shutdown(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """End for good."""
+        """Shut down for good."""
         return self._rcl_all("on_shutdown", state)
 
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Begin to work."""
+        """Start working."""
         return self._rcl_all("on_activate", state)
 
     def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Cease to work."""
+        """Stop working."""
         return self._rcl_all("on_deactivate", state)
 
     def on_error(self, state: LifecycleState) -> TransitionCallbackReturn:

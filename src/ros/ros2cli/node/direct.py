@@ -64,7 +64,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 @contextmanager
 def direct_node(args: argparse.Namespace, name: str | None = None, **options: Any) -> Iterator[Node]:
-    """Give a node of our own, after everybody on this machine has told of itself.
+    """Yield a node of our own, after all processes of this machine were discovered.
 
     Parameters
     ----------

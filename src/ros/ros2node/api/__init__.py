@@ -63,13 +63,13 @@ def parse_node_name(node_name: str) -> NodeName:
 
 
 def has_duplicates(values: Iterable[Any]) -> bool:
-    """Tell whether a value is there more than once."""
+    """Return whether a value is there more than once."""
     listed = list(values)
     return len(set(listed)) < len(listed)
 
 
 def wait_for_node(node: Any, node_name: str, include_hidden_nodes: bool = False, timeout: float = 1.0) -> bool:
-    """Wait until a node is in the graph; tells whether it is.
+    """Wait until a node is in the graph; return whether it is.
 
     Parameters
     ----------

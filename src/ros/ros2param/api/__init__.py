@@ -34,7 +34,7 @@ def get_parameter_type_string(parameter_type: int) -> str:
 
 
 def call_list_parameters(*, node: Any, node_name: str, prefixes: Sequence[str] | None = None) -> Any:
-    """Ask a node for the names of its parameters, and return the response of its service.
+    """Request the names of a node's parameters, and return the response of its service.
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ def call_list_parameters(*, node: Any, node_name: str, prefixes: Sequence[str] |
 
 
 def call_get_parameters(*, node: Any, node_name: str, parameter_names: Sequence[str]) -> Any:
-    """Ask a node for the values of parameters; see `call_list_parameters`."""
+    """Request the values of a node's parameters; see `call_list_parameters`."""
     from rcl_interfaces.srv import GetParameters
 
     request = GetParameters.Request(names=list(parameter_names))
@@ -65,7 +65,7 @@ def call_get_parameters(*, node: Any, node_name: str, parameter_names: Sequence[
 
 
 def call_describe_parameters(*, node: Any, node_name: str, parameter_names: Sequence[str] | None = None) -> Any:
-    """Ask a node for the descriptions of parameters; see `call_list_parameters`."""
+    """Request the descriptions of a node's parameters; see `call_list_parameters`."""
     from rcl_interfaces.srv import DescribeParameters
 
     request = DescribeParameters.Request(names=list(parameter_names or []))
@@ -73,7 +73,7 @@ def call_describe_parameters(*, node: Any, node_name: str, parameter_names: Sequ
 
 
 def call_set_parameters(*, node: Any, node_name: str, parameters: Sequence[Parameter]) -> Any:
-    """Have a node set parameters; see `call_list_parameters`."""
+    """Set parameters of a node; see `call_list_parameters`."""
     from rcl_interfaces.srv import SetParameters
 
     request = SetParameters.Request(parameters=list(parameters))
@@ -81,7 +81,7 @@ def call_set_parameters(*, node: Any, node_name: str, parameters: Sequence[Param
 
 
 def load_parameter_file(*, node: Any, node_name: str, parameter_file: str, use_wildcard: bool) -> None:
-    """Have a node set what a file says of it, and print what became of each parameter.
+    """Set the parameters of a node that a file holds, and print what became of each.
 
     Parameters
     ----------

@@ -17,7 +17,7 @@ class AsyncClient(Client):
     _calls: set[asyncio.Future[Any]]
 
     async def call(self, request: Any, timeout_sec: float | None = None) -> Any:
-        """Call the service; returns the response.
+        """Call the service, and return the response.
 
         Raises
         ------
@@ -60,7 +60,7 @@ class AsyncClient(Client):
         return True
 
     def destroy(self) -> None:
-        """Let go; calls that wait for an answer are cancelled."""
+        """Destroy the handle; calls that wait for a response are cancelled."""
         super().destroy()
         for answer in getattr(self, "_calls", ()):
             answer.cancel()

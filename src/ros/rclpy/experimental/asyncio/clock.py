@@ -16,7 +16,7 @@ class AsyncClock(ROSClock):
     _sleepers: set[_Sleeper] | None
 
     def __new__(cls) -> Any:
-        """Make a clock."""
+        """Create a clock."""
         self = super().__new__(cls)
         self._sleepers = set()
         return self
@@ -69,7 +69,7 @@ class _Sleeper:
         self.version = 0
 
     def start(self) -> None:
-        """Begin to wait for the time."""
+        """Start waiting for the time."""
         if self._handle.overridden:
             self._handle.schedule(self._until, self)  # type: ignore[arg-type]
         else:
@@ -99,7 +99,7 @@ class _Sleeper:
     # What a clock calls, on whatever thread.
 
     def on_due(self) -> None:
-        """Wake: the time has come."""
+        """Wake the sleeper: the time has come."""
         post(self._loop, self._wake)
 
     def on_backward_jump(self, now_ns: int) -> None:
@@ -109,5 +109,5 @@ class _Sleeper:
     reschedule = on_due
 
     def on_change(self, jump: TimeJump) -> None:
-        """Wake with an error: the time has no meaning any more."""
+        """Wake the sleeper with an error: the source of the time changed."""
         post(self._loop, self._wake, TimeSourceChangedError())

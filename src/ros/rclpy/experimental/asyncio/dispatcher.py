@@ -47,16 +47,16 @@ class Dispatcher:
         self._put((deadline_ns, timer, timer.version))
 
     def wake(self) -> None:
-        """Do nothing: there is nobody who waits."""
+        """Accept the call without effect: no thread waits."""
 
     def remove_node(self, node: Any) -> None:
-        """Let go of the node."""
+        """Detach the node."""
         node._rcl_detach_executor(self)
 
     _forget = remove_node
 
     def create_task(self, callback: Any, *args: Any, **kwargs: Any) -> Task:
-        """Have a function or coroutine carried out; returns the task, whose result it will be."""
+        """Schedule a function or coroutine, and return the task, whose result it will be."""
         task = Task(callback, args, kwargs)
         task._requeue = self._put
         self._put(task)

@@ -9,6 +9,6 @@ from typing import Any
 
 
 def post(loop: asyncio.AbstractEventLoop, function: Callable[..., Any], *arguments: Any) -> None:
-    """Have a loop call a function; nothing is to be done any more when the loop is closed."""
+    """Call a function in an event loop, unless the loop is closed."""
     with suppress(RuntimeError):
         loop.call_soon_threadsafe(function, *arguments)
