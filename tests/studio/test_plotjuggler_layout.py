@@ -60,7 +60,7 @@ def test_plots_and_their_places(tmp_path):
     ("text", "error"),
     [
         ("<root>\n<tabbed_widget>", r"plots.xml:2: "),
-        ("<robot/>", r"plots.xml: no layout of PlotJuggler"),
+        ("<robot/>", r"plots.xml: not a layout of PlotJuggler"),
         ("plain text", r"plots.xml:1: "),
     ],
 )

@@ -94,7 +94,7 @@ def test_displays_of_ros_1(tmp_path):
 @pytest.mark.parametrize(
     ("text", "error"),
     [
-        ("Panels: []", "view.rviz: no display configuration: 'Visualization Manager' is missing"),
+        ("Panels: []", "view.rviz: not a display configuration: 'Visualization Manager' is missing"),
         ("- 1\n- [", "view.rviz:2: not YAML"),
         ("just words", "'Visualization Manager' is missing"),
     ],

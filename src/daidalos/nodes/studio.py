@@ -26,7 +26,7 @@ from daidalos.transport.graph import EndpointInfo, EndpointKind, NodeInfo
 
 
 class Studio:
-    """Serves the page, and the graph for it, from now on.
+    """The studio's server, with the graph of a node; it serves from its construction until `close`.
 
     Parameters
     ----------
@@ -37,7 +37,7 @@ class Studio:
     hosts
         Addresses to listen on.
     arrangement
-        What the page shows when it opens; None leaves that to the page.
+        The layout with which the page opens; None: the page's default.
 
     Raises
     ------
@@ -65,10 +65,10 @@ class Studio:
             metadata={"ROS_DISTRO": os.environ.get("ROS_DISTRO", DISTRIBUTION)},
         )
         self._server.start()
-        self._read: set[str] = set()
-        self._unread = node.create_guard_condition(self._read_descriptions)
-        self._stop_noting = self._graph.listen(self._note)
-        self._unread.trigger()
+        self._seen: set[str] = set()
+        self._description_found = node.create_guard_condition(self._read_descriptions)
+        self._stop_watching = self._graph.listen(self._on_graph_change)
+        self._description_found.trigger()
 
     def url(self, panel: str = "", front: str = "", **details: str) -> str:
         """Return the page's address for a browser on this machine.
@@ -76,11 +76,11 @@ class Studio:
         Parameters
         ----------
         panel : str
-            One panel as a window of its own.
+            The panel to open as a window of its own.
         front : str
-            Of the whole page the panel that is to be in front.
+            The panel of the whole page to bring to the front.
         **details
-            For the panel.
+            Further query parameters, for the panel.
         """
         asked = {"panel": panel, **details} if panel else {"front": front} if front else {}
         query = urlencode(asked, safe="/")
@@ -88,26 +88,26 @@ class Studio:
 
     def close(self) -> None:
         """Close the page's connections and the port."""
-        self._stop_noting()
+        self._stop_watching()
         self._server.stop()
         self._source.close()
 
-    def _note(self, added: bool, what: NodeInfo | EndpointInfo) -> None:
+    def _on_graph_change(self, added: bool, what: NodeInfo | EndpointInfo) -> None:
         if added and isinstance(what, EndpointInfo) and what.name.endswith("/robot_description"):
-            self._unread.trigger()
+            self._description_found.trigger()
 
     def _read_descriptions(self) -> None:
-        """Let the page have the meshes of every robot that is described in the graph."""
+        """Allow the page the meshes of every robot that is described in the graph."""
         from std_msgs.msg import String
 
         latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
         published = {endpoint.name for endpoint in self._graph.endpoints(EndpointKind.PUBLISHER)}
-        for topic in {name for name in published if name.endswith("/robot_description")} - self._read:
-            self._read.add(topic)
+        for topic in {name for name in published if name.endswith("/robot_description")} - self._seen:
+            self._seen.add(topic)
             self._node.create_subscription(String, topic, lambda text: self._assets.allow_meshes_of(text.data), latched)
 
     def _read_shapes(self, response: Any) -> None:
-        """Let the page have the meshes and textures of what a simulator shows it."""
+        """Allow the page the meshes and textures of the shapes that a simulator returns."""
         from daidalos_msgs.srv import GetShapes
 
         if isinstance(response, GetShapes.Response):
@@ -117,7 +117,7 @@ class Studio:
 
 
 def open_in_browser(url: str) -> bool:
-    """Show an address in the user's browser, where there is a screen to show it on."""
+    """Open an address in the user's browser where there is a screen; return whether there is one."""
     if "WSL_DISTRO_NAME" in os.environ and "BROWSER" not in os.environ:
         opener = shutil.which("wslview") or shutil.which("explorer.exe")  # the browser is that of Windows
         if opener is not None:

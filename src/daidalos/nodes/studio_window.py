@@ -1,4 +1,4 @@
-"""The studio as the window of a program: served by a hidden node beside the program's own."""
+"""The studio as the window of a program, served by a hidden node."""
 
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ if TYPE_CHECKING:
 
 
 def run_with_window(make_node: Callable[[], NodeT], panel: str, details: Callable[[NodeT], Mapping[str, str]]) -> int:
-    """Spin a node until the process is asked to end; meanwhile its window can be looked at.
+    """Spin a node and serve its window until the process is asked to end.
 
     Parameters
     ----------
     make_node
-        Makes the node once rclpy is ready.
+        Creates the node after rclpy is initialised.
     panel
-        The studio's panel that is the window.
+        The studio's panel to open.
     details
-        Tells what else the address of the window says, from the node.
+        Returns further query parameters of the window's address, from the node.
 
     Returns
     -------
@@ -48,7 +48,7 @@ def run_with_window(make_node: Callable[[], NodeT], panel: str, details: Callabl
             node = make_node()
         except RuntimeError as error:  # such as a parameter that is not valid
             raise UserError(str(error)) from error
-        # Remappings and parameters on the command line are meant for the node, not for its window.
+        # Remappings and parameters on the command line are for the node, not for its window.
         hidden = Node(
             f"_{panel}_window_{os.getpid()}",
             use_global_arguments=False,
@@ -77,7 +77,7 @@ def run_with_window(make_node: Callable[[], NodeT], panel: str, details: Callabl
 
 
 def show(url: str, *, open_it: bool = True) -> None:
-    """Open a page in the browser, and say where it is for those who have it elsewhere."""
+    """Print the address of a page, and open it in the browser."""
     from daidalos.nodes.studio import open_in_browser
 
     print(f"window: {url}", file=sys.stderr, flush=True)
@@ -88,7 +88,7 @@ def show(url: str, *, open_it: bool = True) -> None:
 def run_studio(
     name: str, panel: str, arguments: argparse.Namespace, arrangement: Arrangement | None = None, **details: str
 ) -> int:
-    """Serve the studio until the process is asked to end, and open it at a panel.
+    """Open the studio at a panel, and serve it until the process is asked to end.
 
     Parameters
     ----------
@@ -97,11 +97,11 @@ def run_studio(
     panel
         The panel, empty for the whole studio.
     arguments
-        What a parser of `studio_parser` read.
+        Parsed by a parser of `studio_parser`.
     arrangement
-        What the page shows when it opens; None leaves that to the page.
+        The layout with which the page opens; None: the page's default.
     **details
-        What else the address says.
+        Further query parameters of the address.
 
     Returns
     -------
@@ -135,12 +135,12 @@ def run_studio(
 def read_arrangement(
     path: str, read: Callable[[Path], Arrangement], parser: argparse.ArgumentParser
 ) -> tuple[Arrangement, dict[str, str]]:
-    """Read a file that says what to show; a mistake in it ends the program.
+    """Read a layout file; an error in it ends the program.
 
     Returns
     -------
     arrangement
-        What it says; what the studio does not have of it is named on the terminal.
+        The layout; what the studio does not have of it is printed.
     details
         For the page's address.
     """
@@ -158,12 +158,12 @@ def read_arrangement(
 
 
 def rqt_node_name() -> str:
-    """Return the name that nodes of rqt have: there may be many at a time."""
+    """Return a node name as rqt's nodes have; it is unique on this machine."""
     return f"rqt_gui_py_node_{os.getpid()}"
 
 
 def studio_parser(program: str, description: str) -> argparse.ArgumentParser:
-    """Return a parser of what every command that opens the studio takes."""
+    """Return a parser of the options that every command of the studio has."""
     parser = argparse.ArgumentParser(prog=program, description=description, allow_abbrev=False)
     parser.add_argument("--headless", action="store_true", help="serve the page, but open no browser")
     parser.add_argument("--port", type=int, default=8765, metavar="N", help="the page's, or the next free one above")
@@ -171,7 +171,7 @@ def studio_parser(program: str, description: str) -> argparse.ArgumentParser:
 
 
 def parse(parser: argparse.ArgumentParser) -> argparse.Namespace:
-    """Read the command line of a command that opens the studio, without what is ROS's."""
+    """Parse the command line of a command of the studio, without ROS's arguments."""
     from rclpy.utilities import remove_ros_args
 
     return parser.parse_args(remove_ros_args(sys.argv)[1:])

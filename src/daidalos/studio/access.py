@@ -1,7 +1,7 @@
-"""Who may talk to the server: defence against other web pages in the same browser.
+"""Access control: which hosts and origins may use the server.
 
-A page from anywhere may try to reach a server on loopback. Two headers tell: ``Origin`` names the page that
-asks, and ``Host`` the name under which the server was looked up. With DNS rebinding both carry the
+A web page from anywhere may send requests to a server on loopback. Two headers identify it: ``Origin`` names the page,
+and ``Host`` the name under which the server was looked up. With DNS rebinding both carry the
 attacker's name, so a name is trusted only when it is known; a bare address can not be rebound.
 """
 
@@ -15,7 +15,7 @@ LOOPBACK_NAMES = frozenset({"localhost", "127.0.0.1", "::1"})
 
 
 class AccessPolicy:
-    """Decides by the ``Host`` and ``Origin`` headers of a request.
+    """Decides by the ``Host`` and ``Origin`` headers whether a request is served.
 
     Parameters
     ----------
@@ -33,7 +33,7 @@ class AccessPolicy:
         self._exposed = exposed
 
     def refusal_reason(self, host: str | None, origin: str | None) -> str | None:
-        """Say why a request is refused, or None when it is welcome."""
+        """Return why a request is refused, or None where it is allowed."""
         name = _host_name(f"//{host}") if host else None
         if name is None or not self._knows(name):
             return (

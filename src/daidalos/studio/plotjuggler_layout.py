@@ -1,4 +1,4 @@
-"""PlotJuggler's layouts (``.xml``): the plots and curves of them."""
+"""Reader of PlotJuggler's layouts (``.xml``)."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def read_plotjuggler(path: Path) -> Arrangement:
     Raises
     ------
     ArrangementError
-        When it is no such file.
+        When it is not a layout of PlotJuggler.
     OSError
         When it can not be read.
     """
@@ -29,7 +29,7 @@ def read_plotjuggler(path: Path) -> Arrangement:
         raise ArrangementError(path, error.line, error.message) from None
     sheets = [tab for widget in root.walk() if widget.tag == "tabbed_widget" for tab in widget.all("Tab")]
     if root.tag != "root" or not sheets:
-        raise ArrangementError(path, None, "no layout of PlotJuggler: <tabbed_widget> with a <Tab> is missing")
+        raise ArrangementError(path, None, "not a layout of PlotJuggler: <tabbed_widget> with a <Tab> is missing")
     left_out: list[str] = []
     tabs = []
     for number, sheet in enumerate(sheets, 1):

@@ -7,7 +7,7 @@ import socket
 import sys
 from collections.abc import Sequence
 
-PORTS_TRIED = 64
+MAX_PORTS_TRIED = 64
 BACKLOG = 128
 
 _USED = {errno.EADDRINUSE, errno.EACCES}
@@ -19,7 +19,7 @@ class PortError(Exception):
 
 
 def open_port(hosts: Sequence[str], wanted: int) -> list[socket.socket]:
-    """Listen on all of the hosts at one port.
+    """Open a port on all of the hosts.
 
     Parameters
     ----------
@@ -38,7 +38,7 @@ def open_port(hosts: Sequence[str], wanted: int) -> list[socket.socket]:
     PortError
         When a host is unknown, none can be listened on, or no port is free.
     """
-    ports = range(wanted, min(wanted + PORTS_TRIED, 1 << 16)) if wanted else [0] * PORTS_TRIED
+    ports = range(wanted, min(wanted + MAX_PORTS_TRIED, 1 << 16)) if wanted else [0] * MAX_PORTS_TRIED
     for port in ports:
         sockets = _open_on_all(hosts, port)
         if sockets is not None:
@@ -52,7 +52,7 @@ def _open_on_all(hosts: Sequence[str], port: int) -> list[socket.socket] | None:
     reason = ""
     for host in hosts:
         try:
-            sockets.append(_listen(host, port))
+            sockets.append(_bind(host, port))
         except OSError as error:
             reason = f"can not listen on {host}: {error.strerror or error}"
             if error.errno not in _ABSENT:
@@ -68,7 +68,7 @@ def _open_on_all(hosts: Sequence[str], port: int) -> list[socket.socket] | None:
     return sockets
 
 
-def _listen(host: str, port: int) -> socket.socket:
+def _bind(host: str, port: int) -> socket.socket:
     family, kind, number, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE)[
         0
     ]

@@ -1,4 +1,4 @@
-"""RViz's display configurations (``.rviz``, of ROS 2 and of ROS 1): what of them the studio can show."""
+"""Reader of RViz's display configurations (``.rviz``, of ROS 2 and of ROS 1)."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def read_rviz(path: Path) -> Arrangement:
     Raises
     ------
     ArrangementError
-        When it is no such file.
+        When it is not a display configuration.
     OSError
         When it can not be read.
     """
@@ -38,7 +38,7 @@ def read_rviz(path: Path) -> Arrangement:
         raise ArrangementError(path, line, f"not YAML: {error.problem or error.context}") from None
     manager = document.get("Visualization Manager") if isinstance(document, Mapping) else None
     if not isinstance(manager, Mapping):
-        raise ArrangementError(path, None, "no display configuration: 'Visualization Manager' is missing")
+        raise ArrangementError(path, None, "not a display configuration: 'Visualization Manager' is missing")
     displays, images, left_out = [], [], []
     for node, name, enabled in _walk(manager.get("Displays"), "", True):
         kind = str(node.get("Class", "")).rpartition("/")[2]

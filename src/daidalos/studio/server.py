@@ -38,9 +38,9 @@ from daidalos.studio.source import GraphSource, Parameter, Topic
 DEFAULT_PORT = 8765
 LOOPBACK = ("127.0.0.1", "::1")
 MAX_FRAME_BYTES = 64 << 20  # what a client may send at once; a published image or cloud fits
-SETTLE_S = 0.05  # a graph changes in bursts when nodes start
+REFRESH_DELAY_S = 0.05  # a graph changes in bursts when nodes start
 TIME_PERIOD_S = 1 / 60  # a screen shows no more
-GOODBYE_S = 0.3
+CLOSE_TIMEOUT_S = 0.3
 
 
 class StudioServer:
@@ -94,9 +94,9 @@ class StudioServer:
         self._hub = Hub(source)
         self._clients: set[Client] = set()
         self._sockets: set[web.WebSocketResponse] = set()
-        self._settling = False
+        self._refresh_pending = False
         self._time: int | None = None
-        self._time_waits = False
+        self._time_pending = False
         self._thread: threading.Thread | None = None
         self._loop: asyncio.AbstractEventLoop | None = None
         self._stopping: asyncio.Event | None = None
@@ -133,10 +133,10 @@ class StudioServer:
         ready.result()
 
     def stop(self) -> None:
-        """Take leave of the clients, close the port and end the thread; within a second."""
+        """Close the connections and the port, and end the thread; within a second."""
         thread, self._thread = self._thread, None
         if thread is not None:
-            self._soon(self._leave)
+            self._soon(self._request_stop)
             thread.join()
 
     def __enter__(self) -> StudioServer:
@@ -152,15 +152,15 @@ class StudioServer:
 
     def graph_changed(self) -> None:
         """See `Observer`."""
-        self._soon(self._settle)
+        self._soon(self._schedule_refresh)
 
     def time_advanced(self, nanoseconds: int) -> None:
         """See `Observer`."""
         first, self._time = self._time is None, nanoseconds
         if first:
-            self._soon(self._introduce_time)
-        if not self._time_waits:
-            self._time_waits = True
+            self._soon(self._announce_time)
+        if not self._time_pending:
+            self._time_pending = True
             self._soon(self._schedule_time)
 
     def parameters_changed(self, parameters: Sequence[Parameter]) -> None:
@@ -170,7 +170,7 @@ class StudioServer:
     def _soon(self, call: Callable[[], object]) -> None:
         loop = self._loop
         if loop is not None:
-            with contextlib.suppress(RuntimeError):  # the loop has ended, and with it every client
+            with contextlib.suppress(RuntimeError):  # the loop has ended, and every client with it
                 loop.call_soon_threadsafe(call)
 
     # The server's thread ----------------------------------------------------------------------------------
@@ -194,7 +194,7 @@ class StudioServer:
         app.router.add_get("/extensions.json", extensions_of)
         app.router.add_get("/extensions/{kind}/{name}/{path:.*}", extension_module)
         app.router.add_get("/{path:.*}", page)
-        runner = web.AppRunner(app, access_log=None, handle_signals=False, shutdown_timeout=GOODBYE_S)
+        runner = web.AppRunner(app, access_log=None, handle_signals=False, shutdown_timeout=CLOSE_TIMEOUT_S)
         observing = None
         try:
             await runner.setup()
@@ -208,20 +208,20 @@ class StudioServer:
         finally:
             if observing is not None:
                 observing.close()
-            await self._take_leave()
+            await self._close_connections()
             await runner.cleanup()
             self._loop = None
 
-    def _leave(self) -> None:
+    def _request_stop(self) -> None:
         if self._stopping is not None:
             self._stopping.set()
 
-    async def _take_leave(self) -> None:
-        goodbyes = [asyncio.create_task(each.close(code=1001)) for each in self._sockets]
-        if goodbyes:
-            _, late = await asyncio.wait(goodbyes, timeout=GOODBYE_S)
-            for goodbye in late:
-                goodbye.cancel()
+    async def _close_connections(self) -> None:
+        closing = [asyncio.create_task(each.close(code=1001)) for each in self._sockets]
+        if closing:
+            _, late = await asyncio.wait(closing, timeout=CLOSE_TIMEOUT_S)
+            for task in late:
+                task.cancel()
 
     @web.middleware
     async def _guard(self, request: web.Request, handler: Handler) -> web.StreamResponse:
@@ -233,9 +233,9 @@ class StudioServer:
     async def _root(self, request: web.Request) -> web.StreamResponse:
         if "websocket" not in request.headers.get("Upgrade", "").lower():
             return await page(request)
-        return await self._converse(request)
+        return await self._serve_client(request)
 
-    async def _converse(self, request: web.Request) -> web.StreamResponse:
+    async def _serve_client(self, request: web.Request) -> web.StreamResponse:
         offered = {name.strip() for name in request.headers.get("Sec-WebSocket-Protocol", "").split(",")}
         if not offered & set(protocol.SUBPROTOCOLS):
             known = " or ".join(protocol.SUBPROTOCOLS)
@@ -245,11 +245,11 @@ class StudioServer:
             compress=False,  # costs more than loopback and local networks give back
             heartbeat=30,
             max_msg_size=MAX_FRAME_BYTES,
-            timeout=GOODBYE_S,
+            timeout=CLOSE_TIMEOUT_S,
         )
         await connection.prepare(request)
         client = Client(connection, self._source, self._hub, self._assets)
-        for frame in self._greeting():
+        for frame in self._first_frames():
             client.outbox.put_reply(frame)
         if self._time is not None:
             client.outbox.put_time(self._time)
@@ -262,7 +262,7 @@ class StudioServer:
             self._sockets.discard(connection)
         return connection
 
-    def _greeting(self) -> list[str]:
+    def _first_frames(self) -> list[str]:
         frames = [self._server_info()]
         if self._hub.topics:
             frames += _announce(self._hub.topics)
@@ -273,13 +273,13 @@ class StudioServer:
     def _server_info(self) -> str:
         return protocol.server_info(self._name, self._session, self._time is not None, self._metadata)
 
-    def _settle(self) -> None:
-        if not self._settling:
-            self._settling = True
-            asyncio.get_running_loop().call_later(SETTLE_S, self._poll_graph)
+    def _schedule_refresh(self) -> None:
+        if not self._refresh_pending:
+            self._refresh_pending = True
+            asyncio.get_running_loop().call_later(REFRESH_DELAY_S, self._refresh)
 
-    def _poll_graph(self) -> None:
-        self._settling = False
+    def _refresh(self) -> None:
+        self._refresh_pending = False
         changes = self._hub.refresh()
         graph = self._source.graph()
         frames = _changes(changes)
@@ -293,7 +293,7 @@ class StudioServer:
         for client in self._clients:
             client.parameters_changed(parameters)
 
-    def _introduce_time(self) -> None:
+    def _announce_time(self) -> None:
         # The same session with one capability more: clients keep what they have.
         for client in self._clients:
             client.outbox.put_reply(self._server_info())
@@ -302,7 +302,7 @@ class StudioServer:
         asyncio.get_running_loop().call_later(TIME_PERIOD_S, self._send_time)
 
     def _send_time(self) -> None:
-        self._time_waits = False
+        self._time_pending = False
         if self._time is not None:
             for client in self._clients:
                 client.outbox.put_time(self._time)

@@ -1,6 +1,6 @@
-"""What the studio's server asks of a ROS graph: the one boundary between it and whatever runs the graph.
+"""The interface between the studio's server and a ROS graph.
 
-Nothing here knows a middleware: messages, requests and responses are CDR bytes with their encapsulation
+Nothing here depends on a middleware: messages, requests and responses are CDR bytes with their encapsulation
 header, types are spelled ``package/msg/Name``, and a schema is the text of a definition followed by those
 of its dependencies (the ``ros2msg`` schema of MCAP and Foxglove).
 """
@@ -61,7 +61,7 @@ class Parameter:
 
 @dataclass(frozen=True)
 class Graph:
-    """Who publishes, who listens and who serves: names of topics and services to names of nodes."""
+    """Publishers, subscribers and servers: names of topics and services to names of nodes."""
 
     publishers: Mapping[str, frozenset[str]] = field(default_factory=dict)
     subscribers: Mapping[str, frozenset[str]] = field(default_factory=dict)
@@ -69,10 +69,10 @@ class Graph:
 
 
 class Handle(Protocol):
-    """Something that was opened and can be closed; closing twice is harmless."""
+    """An opened resource; closing it twice is harmless."""
 
     def close(self) -> None:
-        """Give it back; no callback starts after this returns."""
+        """Close it; no callback starts after this returns."""
 
 
 class Publication(Handle, Protocol):
@@ -83,16 +83,16 @@ class Publication(Handle, Protocol):
 
 
 class Observer(Protocol):
-    """Hears of changes; a source may call it from any thread, and it returns at once."""
+    """Receives changes; a source may call it from any thread, and it returns at once."""
 
     def graph_changed(self) -> None:
-        """Hear that topics, services or who uses them are no longer what they were."""
+        """Receive that topics, services or their nodes have changed."""
 
     def time_advanced(self, nanoseconds: int) -> None:
-        """Hear that simulated time is now this; never called where there is none."""
+        """Receive the simulated time in ns; never called where time is not simulated."""
 
     def parameters_changed(self, parameters: Sequence[Parameter]) -> None:
-        """Hear that these parameters have new values."""
+        """Receive new values of parameters."""
 
 
 class GraphSource(Protocol):
@@ -103,25 +103,25 @@ class GraphSource(Protocol):
     """
 
     def attach(self, observer: Observer) -> Handle:
-        """Tell the observer of every change until the handle is closed."""
+        """Call the observer at every change until the handle is closed."""
 
     def topics(self) -> Sequence[Topic]:
-        """List what can be subscribed to."""
+        """Return the topics that can be subscribed to."""
 
     def services(self) -> Sequence[Service]:
-        """List what can be called."""
+        """Return the services that can be called."""
 
     def graph(self) -> Graph:
-        """Tell who publishes, listens and serves."""
+        """Return the nodes that publish, subscribe and serve."""
 
     def time(self) -> int | None:
-        """Return simulated time in ns, or None where there is none (yet)."""
+        """Return simulated time in ns, or None where time is not simulated (yet)."""
 
     def subscribe(self, topic: Topic, received: MessageCallback) -> Handle:
-        """Listen to a topic; what a latched topic keeps arrives first, for every subscription anew."""
+        """Subscribe to a topic; every subscription to a latched topic receives its kept messages first."""
 
     def advertise(self, topic: str, type_name: str) -> Publication:
-        """Announce that a client publishes; raises `SourceError` when that can not be."""
+        """Advertise a topic for a client; raises `SourceError` where that is not possible."""
 
     def call(self, service: str, request: bytes) -> Future[bytes]:
         """Call a service; the future holds the response or a `SourceError`."""

@@ -1,4 +1,4 @@
-"""The ROS graph as the studio's server asks for it, through a node of ours."""
+"""The ROS graph for the studio's server, read through a node."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class RosGraphSource:
     ----------
     node : Node
     answered : callable
-        Takes every response to a client's call, before the client does.
+        Called with every response to a client's call, before the client gets it.
     """
 
     def __init__(self, node: Node, answered: Callable[[Any], None] = lambda response: None) -> None:
@@ -55,12 +55,12 @@ class RosGraphSource:
         self._time: int | None = None
         self._observers: list[Observer] = []
         self._lock = threading.Lock()
-        self._clock_found = node.create_guard_condition(self._listen_to_clock)
+        self._clock_found = node.create_guard_condition(self._subscribe_to_clock)
 
     # Changes.
 
     def attach(self, observer: Observer) -> _Closing:
-        """Tell an observer of changes of the graph and of simulated time."""
+        """Call an observer at changes of the graph and of simulated time."""
         self._observers.append(observer)
 
         def note(added: bool, what: NodeInfo | EndpointInfo) -> None:
@@ -78,8 +78,8 @@ class RosGraphSource:
 
         return _Closing(close)
 
-    def _listen_to_clock(self) -> None:
-        """Listen to the clock once somebody publishes it: before that, a listener would only make a topic of it."""
+    def _subscribe_to_clock(self) -> None:
+        """Subscribe to the clock once it is published: an earlier subscription would create the topic."""
         if self._clock is not None or not self._graph.endpoints(EndpointKind.PUBLISHER, name=_CLOCK):
             return
         from rosgraph_msgs.msg import Clock
@@ -116,7 +116,7 @@ class RosGraphSource:
         """List every service whose type is known."""
         found: dict[str, str] = {}
         for endpoint in self._graph.endpoints(EndpointKind.SERVICE):
-            # Clients call by name: of several types under one name they are told the one that `call` takes.
+            # Clients call by name: of several types of one name, the one that `call` uses is listed.
             found[endpoint.name] = min(endpoint.type_name, found.get(endpoint.name, endpoint.type_name))
         result = []
         for name, kind in sorted(found.items()):
@@ -126,7 +126,7 @@ class RosGraphSource:
         return result
 
     def graph(self) -> Graph:
-        """Tell who publishes, listens and serves."""
+        """Return the nodes that publish, subscribe and serve."""
         kinds = (EndpointKind.PUBLISHER, EndpointKind.SUBSCRIPTION, EndpointKind.SERVICE)
         sides: dict[EndpointKind, dict[str, set[str]]] = {kind: {} for kind in kinds}
         for endpoint in self._graph.endpoints(*kinds):
@@ -137,7 +137,7 @@ class RosGraphSource:
     # Messages.
 
     def subscribe(self, topic: Topic, received: MessageCallback) -> _Closing:
-        """Hand on a topic's messages as they come, on the thread that receives them."""
+        """Subscribe to a topic; messages are passed on in the thread that receives them."""
         kind = _class_of(get_message, topic.type)
         publishers = self._graph.endpoints(EndpointKind.PUBLISHER, name=topic.name)
         handle = SubscriptionHandle(self._handle, kind, topic.name, _matching_qos(publishers))
@@ -161,7 +161,7 @@ class RosGraphSource:
         return _Closing(close)
 
     def advertise(self, topic: str, type_name: str) -> _Publication:
-        """Publish for a client."""
+        """Advertise a topic for a client."""
         return _Publication(
             PublisherHandle(self._handle, _class_of(get_message, type_name), topic, QoSProfile(depth=_DEPTH))
         )
@@ -218,7 +218,7 @@ class RosGraphSource:
                 client = self._client_of(node)
                 if client.services_are_ready():
                     found += await work(client, node, names)
-            if answer.set_running_or_notify_cancel():  # who asked may have left
+            if answer.set_running_or_notify_cancel():  # the client may be gone
                 answer.set_result(found)
 
         executor.create_task(gather)
@@ -239,7 +239,7 @@ class RosGraphSource:
         ]
 
     def close(self) -> None:
-        """Give back what was opened for the clock and for calls."""
+        """Close what was opened for the clock and for calls."""
         for caller in self._callers.values():
             caller.close()
         clock, self._clock = self._clock, None
@@ -248,13 +248,13 @@ class RosGraphSource:
 
 
 class _Closing:
-    """Something that was opened; closing it twice is harmless."""
+    """An opened resource; closing it twice is harmless."""
 
     def __init__(self, close: Callable[[], None]) -> None:
         self._close: Callable[[], None] | None = close
 
     def close(self) -> None:
-        """Give it back."""
+        """Close it."""
         close, self._close = self._close, None
         if close is not None:
             close()
@@ -297,12 +297,12 @@ class _Caller:
                 answer = self._waiting.pop(header.request_id.sequence_number, None)
             if answer is not None:
                 self._answered(response)
-                if answer.set_running_or_notify_cancel():  # who asked may have left
+                if answer.set_running_or_notify_cancel():  # the client may be gone
                     answer.set_result(self._response.encode(response))
             taken = self._handle.take_response()
 
     def close(self) -> None:
-        """Wait for no more answers."""
+        """Close the client; calls that wait get no answer."""
         self._handle.destroy_when_not_in_use()
 
 
