@@ -152,7 +152,7 @@ def warn_of_undeclared(node: Node) -> None:
     for file, names in unused.items():
         name = node.get_fully_qualified_name()
         node.get_logger().warning(
-            f"{file}: parameters of {name} that are not declared and do nothing: {', '.join(names)}"
+            f"{file}: parameters of {name} that are not declared and have no effect: {', '.join(names)}"
         )
     state.warned.update(one.name for one in unknown)
 
