@@ -154,7 +154,8 @@ def test_values_stay_when_they_are_declared_again(make: Make) -> None:
 def test_undeclared_names_are_warned_of_once(make: Make, tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     node = make(
         "/**:\n  ros__parameters:\n    use_sim_time: false\n    limits.siize: 1.0\n    for_another: 2\n"
-        "settings:\n  ros__parameters:\n    limits:\n      sped: 0.1\n    nothing.like.it: 1\n    qos_overrides./a.b: 1\n"
+        "settings:\n  ros__parameters:\n    limits:\n      sped: 0.1\n    nothing.like.it: 1\n"
+        "    qos_overrides./a.b: 1\n"
     )
     declare(node, Settings)
     for _ in range(2):

@@ -361,6 +361,14 @@ def leaves(kind: type[Parameters], prefix: str = "") -> Iterator[Leaf]:
             yield from leaves(entry.kind, f"{prefix}{entry.prefix}{by}")
 
 
+def group_kinds(kind: type[Parameters]) -> Iterator[type[Parameters]]:
+    """Yield the classes of a class's groups, and of theirs."""
+    for entry in _entries(kind):
+        if entry.kind is not None:
+            yield entry.kind
+            yield from group_kinds(entry.kind)
+
+
 def table(kind: type[Parameters]) -> str:
     """Return a Markdown table of all parameters."""
     lines = ["| Parameter | Type | Default | Unit | Allowed | What it does |", "|---|---|---|---|---|---|"]
