@@ -16,7 +16,7 @@ import numpy as np
 from daidalos.common.kernels import warm_up
 from daidalos.localization.amcl import Amcl
 from daidalos.localization.config import AmclConfig
-from daidalos.navigation.controllers.controller import ControlInput
+from daidalos.navigation.contracts import ControlInput, NavigationContext
 from daidalos.navigation.controllers.mppi_controller import MppiController
 from daidalos.navigation.controllers.regulated_pure_pursuit_controller import RegulatedPurePursuitController
 from daidalos.navigation.costmap.costmap import Costmap
@@ -65,7 +65,7 @@ def measure_planner() -> dict[str, float | str]:
 def measure_costmaps() -> dict[str, float | str]:
     """Inflation of a whole map, and updates of a robot's costmaps with a new scan of 820 beams each time."""
     bare = rooms(500, 500, inflated=False)
-    inflation = InflationLayer(0.22, InflationLayerParameters(0.55, 4.0))
+    inflation = InflationLayer(InflationLayerParameters(0.55, 4.0), NavigationContext(footprint=Footprint.circle(0.22)))
     world = arena()
     stack = turtlebot(world, [1.5, 1.5, 0.0], world)
 
@@ -91,7 +91,10 @@ def measure_controllers() -> dict[str, float | str]:
     pose = np.array([*costmap.map_to_world(30, 30), 0.0])
     path = pose + np.stack([np.linspace(0.0, 1.2, 25), np.linspace(0.0, 0.3, 25), np.zeros(25)], axis=-1)
     control = ControlInput(pose, np.array([0.3, 0.0, 0.1]), path, path[-1], 3.0, costmap)
-    mppi, pursuit = MppiController(ROBOT), RegulatedPurePursuitController(ROBOT)
+    mppi, pursuit = (
+        MppiController(None, NavigationContext(footprint=ROBOT)),
+        RegulatedPurePursuitController(None, NavigationContext(footprint=ROBOT)),
+    )
     return {
         "navigation.mppi_cycle_1000x56_ms": median_ms(lambda _: mppi.compute_velocity_commands(control), count=100),
         "navigation.pure_pursuit_cycle_ms": median_ms(lambda _: pursuit.compute_velocity_commands(control), count=100),
@@ -178,7 +181,9 @@ def rooms(height: int, width: int, boxes: int | None = None, *, inflated: bool =
         costs[row : row + tall, column : column + wide] = 254
     costmap = Costmap(costs, 0.05, (0.0, 0.0))
     if inflated:
-        InflationLayer(0.22, InflationLayerParameters(0.55, 4.0)).update_costs(costmap, costmap.window)
+        InflationLayer(
+            InflationLayerParameters(0.55, 4.0), NavigationContext(footprint=Footprint.circle(0.22))
+        ).update_costs(costmap, costmap.window)
     return costmap
 
 

@@ -9,7 +9,7 @@ import pytest
 
 from daidalos.common.extensions import classes_in, describe, listing, load
 
-LAYERS = ("simulation", "control", "nodes")
+LAYERS = ("simulation", "control", "navigation", "nodes")
 KINDS = {kind.name: kind for layer in LAYERS for kind in import_module(f"daidalos.{layer}.extensions").KINDS}
 
 

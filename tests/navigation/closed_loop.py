@@ -9,18 +9,17 @@ from py_trees.common import Status
 from daidalos.common.pose2 import wrap
 from daidalos.mapping.grid import OccupancyGrid
 from daidalos.navigation.behaviors.back_up import BackUp, BackUpCommand
-from daidalos.navigation.behaviors.behavior import BehaviorError
 from daidalos.navigation.behaviors.spin import Spin, SpinCommand
 from daidalos.navigation.behaviors.wait import Wait, WaitCommand
-from daidalos.navigation.controllers.controller import ControllerError
+from daidalos.navigation.contracts import NavigationContext
 from daidalos.navigation.controllers.follow_path import FollowPath
-from daidalos.navigation.controllers.mppi.critics.cost_critic import CostCritic, CostCriticParameters
-from daidalos.navigation.controllers.mppi_controller import MppiController, MppiParameters, default_critics
-from daidalos.navigation.controllers.plugins.simple_goal_checker import (
+from daidalos.navigation.controllers.goal_checkers.simple_goal_checker import (
     SimpleGoalChecker,
     SimpleGoalCheckerParameters,
 )
-from daidalos.navigation.controllers.plugins.simple_progress_checker import SimpleProgressChecker
+from daidalos.navigation.controllers.mppi.critics.cost_critic import CostCritic, CostCriticParameters
+from daidalos.navigation.controllers.mppi_controller import MppiController, MppiParameters
+from daidalos.navigation.controllers.progress_checkers.simple_progress_checker import SimpleProgressChecker
 from daidalos.navigation.controllers.regulated_pure_pursuit_controller import RegulatedPurePursuitController
 from daidalos.navigation.controllers.rotation_shim_controller import RotationShimController
 from daidalos.navigation.costmap.footprint import Footprint
@@ -33,8 +32,8 @@ from daidalos.navigation.costmap.layers.obstacle_layer import (
     ObstacleLayerParameters,
 )
 from daidalos.navigation.costmap.layers.static_layer import StaticLayer
+from daidalos.navigation.errors import BehaviorError, ControllerError, PlannerError
 from daidalos.navigation.planners.navfn_planner import NavfnPlanner
-from daidalos.navigation.planners.planner import PlannerError
 from daidalos.navigation.trees.behavior_tree import DEFAULT_TREE, BehaviorTree
 from daidalos.navigation.trees.blackboard import Blackboard
 from daidalos.navigation.trees.services import Outcome
@@ -125,9 +124,9 @@ class Stack:
     def now(self):
         return self.time
 
-    def start(self, action, goal):
-        self.started.append(action)
-        return getattr(self, f"_{action}")(goal)
+    def start(self, node, goal):
+        self.started.append(node.__name__)
+        return getattr(self, f"_{node.__name__}")(goal)
 
     def drive_to(self, goal, limit=120.0, stop_within=0.0):
         """Drive to a goal with the default tree; `stop_within` ends the drive at a distance from it."""
@@ -195,14 +194,16 @@ class Stack:
 
     def _Spin(self, goal):
         command = SpinCommand(goal["spin_dist"], goal["time_allowance"])
-        return self._behave(Spin(self.footprint, cycle_frequency=1.0 / PERIOD), command)
+        return self._behave(Spin(None, NavigationContext(footprint=self.footprint, frequency=1.0 / PERIOD)), command)
 
     def _BackUp(self, goal):
         command = BackUpCommand(goal["backup_dist"], goal["backup_speed"], goal["time_allowance"])
-        return self._behave(BackUp(self.footprint, cycle_frequency=1.0 / PERIOD), command)
+        return self._behave(BackUp(None, NavigationContext(footprint=self.footprint, frequency=1.0 / PERIOD)), command)
 
     def _Wait(self, goal):
-        return self._behave(Wait(self.footprint), WaitCommand(goal["wait_duration"]))
+        return self._behave(
+            Wait(None, NavigationContext(footprint=self.footprint, frequency=10.0)), WaitCommand(goal["wait_duration"])
+        )
 
     def _ClearEntireCostmap(self, goal):
         costmap = self.global_costmap if "global" in goal["service_name"] else self.local_costmap
@@ -230,17 +231,24 @@ def turtlebot(world, pose, known, seed=0, kind="mppi"):
     inflation = InflationLayerParameters(0.55, 4.0)
     everywhere = LayeredCostmap(
         CostmapParameters(track_unknown_space=True),
-        [static, ObstacleLayer(footprint, sources), InflationLayer(0.22, inflation)],
+        [
+            static,
+            ObstacleLayer(sources, NavigationContext(footprint=footprint)),
+            InflationLayer(inflation, NavigationContext(footprint=Footprint.circle(0.22))),
+        ],
     )
     around = LayeredCostmap(
         CostmapParameters(3.0, 3.0, 0.05, rolling_window=True),
-        [ObstacleLayer(footprint, sources, track_unknown_space=False), InflationLayer(0.22, inflation)],
+        [
+            ObstacleLayer(sources, NavigationContext(footprint=footprint, track_unknown_space=False)),
+            InflationLayer(inflation, NavigationContext(footprint=Footprint.circle(0.22))),
+        ],
     )
-    mppi = MppiController(footprint, seed=seed)
+    mppi = MppiController(None, NavigationContext(footprint=footprint, seed=seed))
     controller = {
         "mppi": mppi,
-        "shim": RotationShimController(mppi, footprint),
-        "rpp": RegulatedPurePursuitController(footprint),
+        "shim": RotationShimController(None, NavigationContext(footprint=footprint), primary=mppi),
+        "rpp": RegulatedPurePursuitController(None, NavigationContext(footprint=footprint)),
     }[kind]
     return Stack(robot, footprint, controller, everywhere, around)
 
@@ -267,8 +275,8 @@ def jackal(world, pose, seed=0):
     inflation = InflationLayerParameters(0.6, 4.0)
 
     def layers():
-        obstacles = ObstacleLayer(footprint, sources, track_unknown_space=False)
-        return [obstacles, InflationLayer(footprint.inscribed_radius, inflation)]
+        obstacles = ObstacleLayer(sources, NavigationContext(footprint=footprint, track_unknown_space=False))
+        return [obstacles, InflationLayer(inflation, NavigationContext(footprint=footprint))]
 
     everywhere = LayeredCostmap(CostmapParameters(9.0, 18.0, 0.05, origin_x=-6.5, origin_y=-1.0), layers())
     around = LayeredCostmap(CostmapParameters(8.0, 8.0, 0.05, rolling_window=True), layers())
@@ -283,8 +291,8 @@ def jackal(world, pose, seed=0):
         prune_distance=3.0,
     )
     outline = CostCritic(CostCriticParameters(consider_footprint=True))
-    critics = (outline, *(critic for critic in default_critics() if not isinstance(critic, CostCritic)))
-    controller = MppiController(footprint, parameters, critics, seed=seed)
+    critics = (outline, *(critic for critic in MppiController().critics if not isinstance(critic, CostCritic)))
+    controller = MppiController(parameters, NavigationContext(footprint=footprint, seed=seed), critics=critics)
     return Stack(robot, footprint, controller, everywhere, around, 0.9, math.pi)
 
 

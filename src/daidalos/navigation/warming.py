@@ -6,9 +6,9 @@ import numpy as np
 
 from daidalos.mapping.grid import OccupancyGrid
 from daidalos.mapping.scan import LaserScanData
-from daidalos.navigation.controllers.controller import ControlInput
+from daidalos.navigation.contracts import ControlInput, NavigationContext
 from daidalos.navigation.controllers.mppi.critics.cost_critic import CostCritic, CostCriticParameters
-from daidalos.navigation.controllers.mppi_controller import MppiController, MppiParameters, default_critics
+from daidalos.navigation.controllers.mppi_controller import MppiController, MppiParameters
 from daidalos.navigation.costmap.costmap import Costmap
 from daidalos.navigation.costmap.footprint import Footprint, FootprintCollisionChecker
 from daidalos.navigation.costmap.layered_costmap import CostmapParameters, LayeredCostmap
@@ -35,12 +35,15 @@ def _costmap() -> Costmap:
     """Return a costmap of a map, a scan and inflation."""
     data = np.zeros((80, 80), dtype=np.int8)
     data[0] = 100
-    static, obstacles = StaticLayer(), ObstacleLayer(OUTLINE)
+    static, obstacles = StaticLayer(), ObstacleLayer(None, NavigationContext(footprint=OUTLINE))
     static.set_map(OccupancyGrid(data, 0.05, (0.0, 0.0, 0.0)))
     scan = LaserScanData(np.array([1.0, np.inf, 1.0]), 0.0, 0.1, 0.1, 10.0)
     pose = np.array([1.0, 2.0, 0.0])
     obstacles.add_observation(Observation.from_scan(scan, pose, 0.0))
-    layered = LayeredCostmap(CostmapParameters(), [static, obstacles, InflationLayer(0.2)])
+    layered = LayeredCostmap(
+        CostmapParameters(),
+        [static, obstacles, InflationLayer(None, NavigationContext(footprint=Footprint.circle(0.2)))],
+    )
     layered.update(pose, 0.0)
     return layered.costmap
 
@@ -59,7 +62,11 @@ def _control(costmap: Costmap) -> None:
     pose, rest = np.array([1.0, 2.0, 0.0]), np.zeros(3)
     path = np.stack([np.linspace(1.0, 3.0, 41), np.full(41, 2.0), np.zeros(41)], axis=-1)
     outline = CostCritic(CostCriticParameters(consider_footprint=True))
-    controller = MppiController(OUTLINE, MppiParameters(batch_size=20), (outline, *default_critics()))
+    controller = MppiController(
+        MppiParameters(batch_size=20),
+        NavigationContext(footprint=OUTLINE),
+        critics=(outline, *MppiController().critics),
+    )
     for distance in (2.0, 0.7):
         control = ControlInput(pose, rest, path, path[-1], distance, costmap)
         controller.compute_velocity_commands(control)

@@ -20,7 +20,6 @@ from rclpy.parameter import Parameter
 from daidalos.common.errors import Location
 from daidalos.common.parameters import Leaf, ParameterError, Parameters, build, replace
 from daidalos.common.suggestions import near
-from daidalos.navigation.plugins import Plugin
 
 if TYPE_CHECKING:
     from rcl_interfaces.msg import ParameterDescriptor, SetParametersResult
@@ -237,6 +236,6 @@ def _is_for_all_nodes(name: str) -> bool:
     return name == "use_sim_time" or name.startswith(("qos_overrides.", "start_type_description_service"))
 
 
-def declare_plugin(node: Node, plugin: Plugin, name: str) -> Any:
-    """Declare the parameters of a plugin below its name; None where it has none."""
-    return None if plugin.parameters is None else declare(node, plugin.parameters, name)
+def declare_plugin(node: Node, kind: Any, name: str) -> Any:
+    """Declare the parameters of a plugin's class, its `Parameters`, below a name; None where it has none."""
+    return None if kind.Parameters is None else declare(node, kind.Parameters, name)

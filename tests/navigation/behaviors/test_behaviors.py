@@ -6,11 +6,13 @@ import numpy as np
 import pytest
 
 from daidalos.navigation.behaviors.back_up import BackUp, BackUpCommand
-from daidalos.navigation.behaviors.behavior import CollisionAhead, InvalidInput, TimedOut, contact_ahead
+from daidalos.navigation.behaviors.collision import contact_ahead
 from daidalos.navigation.behaviors.drive_on_heading import DriveOnHeading, DriveOnHeadingCommand
 from daidalos.navigation.behaviors.spin import Spin, SpinCommand
 from daidalos.navigation.behaviors.wait import Wait, WaitCommand
+from daidalos.navigation.contracts import NavigationContext
 from daidalos.navigation.costmap.footprint import Footprint
+from daidalos.navigation.errors import CollisionAhead, InvalidInput, TimedOut
 
 from ..controllers.scenes import ground
 
@@ -38,7 +40,9 @@ def run(behavior, command, costmap, pose=(0.0, 0.0, 0.3), limit=30.0):
 
 @pytest.mark.parametrize("angle", [1.57, -1.57, 6.28, -9.0, 0.1])
 def test_a_spin_turns_by_its_angle_however_large(angle):
-    _, now, velocities = run(Spin(ROUND), SpinCommand(angle, 20.0), ground())
+    _, now, velocities = run(
+        Spin(None, NavigationContext(footprint=ROUND, frequency=10.0)), SpinCommand(angle, 20.0), ground()
+    )
     assert PERIOD * velocities[:, 2].sum() == pytest.approx(angle, abs=0.025)
     assert not velocities[:, :2].any()
     assert np.abs(velocities[:, 2]).max() <= 1.0 + 1e-9
@@ -47,24 +51,32 @@ def test_a_spin_turns_by_its_angle_however_large(angle):
 
 def test_a_spin_that_takes_too_long_is_ended():
     with pytest.raises(TimedOut, match=r"rad of 6\.28 in time"):
-        run(Spin(ROUND), SpinCommand(6.28, 2.0), ground())
+        run(Spin(None, NavigationContext(footprint=ROUND, frequency=10.0)), SpinCommand(6.28, 2.0), ground())
 
 
 def test_a_long_robot_does_not_spin_into_a_wall():
     wall = ground([(x, 0.4) for x in np.arange(-1.0, 1.0, 0.04)], radius=0.1)
     with pytest.raises(CollisionAhead):
-        run(Spin(LONG), SpinCommand(1.57), wall, pose=(0.0, 0.0, 0.0))
-    run(Spin(ROUND), SpinCommand(1.57), wall, pose=(0.0, 0.0, 0.0))
+        run(
+            Spin(None, NavigationContext(footprint=LONG, frequency=10.0)), SpinCommand(1.57), wall, pose=(0.0, 0.0, 0.0)
+        )
+    run(Spin(None, NavigationContext(footprint=ROUND, frequency=10.0)), SpinCommand(1.57), wall, pose=(0.0, 0.0, 0.0))
 
 
 def test_backing_up_goes_straight_back():
-    pose, now, _ = run(BackUp(ROUND), BackUpCommand(0.3, 0.1), ground())
+    pose, now, _ = run(
+        BackUp(None, NavigationContext(footprint=ROUND, frequency=10.0)), BackUpCommand(0.3, 0.1), ground()
+    )
     assert np.allclose(pose, [-0.3 * math.cos(0.3), -0.3 * math.sin(0.3), 0.3], atol=0.011)
     assert now == pytest.approx(3.0, abs=0.3)
 
 
 def test_driving_on_heading_goes_straight_ahead():
-    pose, _, velocities = run(DriveOnHeading(ROUND), DriveOnHeadingCommand(0.4, 0.2), ground())
+    pose, _, velocities = run(
+        DriveOnHeading(None, NavigationContext(footprint=ROUND, frequency=10.0)),
+        DriveOnHeadingCommand(0.4, 0.2),
+        ground(),
+    )
     assert math.hypot(pose[0], pose[1]) == pytest.approx(0.4, abs=0.011)
     assert velocities[:, 0].max() == pytest.approx(0.2)
 
@@ -72,28 +84,43 @@ def test_driving_on_heading_goes_straight_ahead():
 def test_an_obstacle_behind_is_seen_before_it_is_touched():
     costmap = ground([(-0.5, 0.0)])
     with pytest.raises(CollisionAhead):
-        run(BackUp(ROUND), BackUpCommand(0.5, 0.1), costmap, pose=(0.0, 0.0, 0.0))
-    run(BackUp(ROUND), BackUpCommand(0.2, 0.1), costmap, pose=(0.0, 0.0, 0.0))
+        run(
+            BackUp(None, NavigationContext(footprint=ROUND, frequency=10.0)),
+            BackUpCommand(0.5, 0.1),
+            costmap,
+            pose=(0.0, 0.0, 0.0),
+        )
+    run(
+        BackUp(None, NavigationContext(footprint=ROUND, frequency=10.0)),
+        BackUpCommand(0.2, 0.1),
+        costmap,
+        pose=(0.0, 0.0, 0.0),
+    )
 
 
 def test_a_robot_that_touches_an_obstacle_may_back_away():
-    run(BackUp(ROUND), BackUpCommand(0.2, 0.1), ground([(0.15, 0.0)]), pose=(0.0, 0.0, 0.0))
+    run(
+        BackUp(None, NavigationContext(footprint=ROUND, frequency=10.0)),
+        BackUpCommand(0.2, 0.1),
+        ground([(0.15, 0.0)]),
+        pose=(0.0, 0.0, 0.0),
+    )
 
 
 def test_backing_up_too_slowly_is_ended():
     with pytest.raises(TimedOut, match="in time"):
-        run(BackUp(ROUND), BackUpCommand(1.0, 0.01, 5.0), ground())
+        run(BackUp(None, NavigationContext(footprint=ROUND, frequency=10.0)), BackUpCommand(1.0, 0.01, 5.0), ground())
 
 
 @pytest.mark.parametrize(
     ("behavior", "command"),
     [
-        (BackUp(ROUND), BackUpCommand(-0.1, 0.1)),
-        (BackUp(ROUND), BackUpCommand(0.1, 0.0)),
-        (DriveOnHeading(ROUND), DriveOnHeadingCommand(0.1, -0.1)),
-        (Spin(ROUND), SpinCommand(math.nan)),
-        (Wait(ROUND), WaitCommand(-1.0)),
-        (Wait(ROUND), WaitCommand(math.nan)),
+        (BackUp(None, NavigationContext(footprint=ROUND, frequency=10.0)), BackUpCommand(-0.1, 0.1)),
+        (BackUp(None, NavigationContext(footprint=ROUND, frequency=10.0)), BackUpCommand(0.1, 0.0)),
+        (DriveOnHeading(None, NavigationContext(footprint=ROUND, frequency=10.0)), DriveOnHeadingCommand(0.1, -0.1)),
+        (Spin(None, NavigationContext(footprint=ROUND, frequency=10.0)), SpinCommand(math.nan)),
+        (Wait(None, NavigationContext(footprint=ROUND, frequency=10.0)), WaitCommand(-1.0)),
+        (Wait(None, NavigationContext(footprint=ROUND, frequency=10.0)), WaitCommand(math.nan)),
     ],
 )
 def test_commands_that_make_no_sense_are_refused(behavior, command):
@@ -102,7 +129,7 @@ def test_commands_that_make_no_sense_are_refused(behavior, command):
 
 
 def test_waiting_takes_its_time():
-    _, now, velocities = run(Wait(ROUND), WaitCommand(2.0), ground())
+    _, now, velocities = run(Wait(None, NavigationContext(footprint=ROUND, frequency=10.0)), WaitCommand(2.0), ground())
     assert now == pytest.approx(2.0, abs=PERIOD)
     assert not velocities.any()
 

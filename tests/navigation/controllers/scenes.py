@@ -2,8 +2,9 @@
 
 import numpy as np
 
-from daidalos.navigation.controllers.controller import ControlInput
+from daidalos.navigation.contracts import ControlInput, NavigationContext
 from daidalos.navigation.costmap.costmap import Costmap
+from daidalos.navigation.costmap.footprint import Footprint
 from daidalos.navigation.costmap.layers.inflation_layer import InflationLayer, InflationLayerParameters
 from daidalos.navigation.paths import path_length, with_headings
 
@@ -15,7 +16,9 @@ def ground(obstacles=(), size=6.0, radius=0.2):
     for x, y in obstacles:
         column, row = costmap.world_to_map(x, y)
         costmap.costs[row, column] = 254
-    InflationLayer(radius, InflationLayerParameters(0.55, 4.0)).update_costs(costmap, costmap.window)
+    InflationLayer(
+        InflationLayerParameters(0.55, 4.0), NavigationContext(footprint=Footprint.circle(radius))
+    ).update_costs(costmap, costmap.window)
     return costmap
 
 

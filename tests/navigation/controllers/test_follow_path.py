@@ -3,16 +3,11 @@
 import numpy as np
 import pytest
 
-from daidalos.navigation.controllers.controller import (
-    Controller,
-    FailedToMakeProgress,
-    InvalidPath,
-    NoValidControl,
-    PatienceExceeded,
-)
+from daidalos.navigation.contracts import Controller
 from daidalos.navigation.controllers.follow_path import FollowPath
-from daidalos.navigation.controllers.plugins.simple_goal_checker import SimpleGoalChecker
-from daidalos.navigation.controllers.plugins.simple_progress_checker import SimpleProgressChecker
+from daidalos.navigation.controllers.goal_checkers.simple_goal_checker import SimpleGoalChecker
+from daidalos.navigation.controllers.progress_checkers.simple_progress_checker import SimpleProgressChecker
+from daidalos.navigation.errors import FailedToMakeProgress, InvalidPath, NoValidControl, PatienceExceeded
 
 from .scenes import ground, line
 

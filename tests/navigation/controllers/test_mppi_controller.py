@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
-from daidalos.navigation.controllers.controller import NoValidControl
+from daidalos.navigation.contracts import NavigationContext
 from daidalos.navigation.controllers.mppi_controller import MppiController, MppiParameters
 from daidalos.navigation.costmap.footprint import Footprint
+from daidalos.navigation.errors import NoValidControl
 
 from .scenes import control, ground, line
 
@@ -14,7 +15,7 @@ ROBOT = Footprint.circle(0.2)
 
 def drive(path, costmap, cycles=120, **more):
     """Let a perfect robot follow; returns its poses and velocities."""
-    controller = MppiController(ROBOT, MppiParameters(**more))
+    controller = MppiController(MppiParameters(**more), NavigationContext(footprint=ROBOT))
     pose, velocity, poses, velocities = np.zeros(3), np.zeros(3), [], []
     for _ in range(cycles):
         passed = int(np.argmin(np.hypot(*(path[:, :2] - pose[:2]).T)))
@@ -59,7 +60,7 @@ def test_contact_that_can_not_be_avoided_is_told():
     wall = ground([(0.33, y) for y in np.arange(-2.0, 2.0, 0.04)])
     fast = control(line((2.5, 0.0)), wall, velocity=(1.0, 0.0, 0.0))
     with pytest.raises(NoValidControl, match="touch an obstacle"):
-        MppiController(ROBOT, MppiParameters(vx_max=1.0)).compute_velocity_commands(fast)
+        MppiController(MppiParameters(vx_max=1.0), NavigationContext(footprint=ROBOT)).compute_velocity_commands(fast)
 
 
 def test_in_a_closet_it_stands():
@@ -75,7 +76,7 @@ def test_the_same_seed_drives_the_same_way():
 
 
 def test_speed_limits_and_their_end():
-    controller = MppiController(ROBOT)
+    controller = MppiController(None, NavigationContext(footprint=ROBOT))
     given = control(line((2.5, 0.0)), velocity=(0.1, 0.0, 0.0))
     controller.set_speed_limit(0.1, percentage=False)
     assert controller.compute_velocity_commands(given)[0] <= 0.1 + 1e-6
@@ -84,7 +85,7 @@ def test_speed_limits_and_their_end():
 
 
 def test_the_predicted_trajectory_begins_at_the_robot():
-    controller = MppiController(ROBOT)
+    controller = MppiController(None, NavigationContext(footprint=ROBOT))
     controller.compute_velocity_commands(control(line((2.5, 0.0))))
     assert controller.trajectory.shape == (56, 3)
     assert np.hypot(*controller.trajectory[0, :2]) < 0.05

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from daidalos.common.pose2 import between
-from daidalos.navigation.controllers.controller import InvalidPath
 from daidalos.navigation.controllers.path_handler import PathHandler
+from daidalos.navigation.errors import InvalidPath
 from daidalos.navigation.paths import with_headings
 
 from .scenes import line

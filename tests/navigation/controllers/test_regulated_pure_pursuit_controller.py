@@ -5,12 +5,13 @@ import math
 import numpy as np
 import pytest
 
-from daidalos.navigation.controllers.controller import NoValidControl
+from daidalos.navigation.contracts import NavigationContext
 from daidalos.navigation.controllers.regulated_pure_pursuit_controller import (
     RegulatedPurePursuitController,
     RegulatedPurePursuitParameters,
 )
 from daidalos.navigation.costmap.footprint import Footprint
+from daidalos.navigation.errors import NoValidControl
 
 from .scenes import control, ground, line
 
@@ -19,7 +20,9 @@ MOVING = (0.5, 0.0, 0.0)
 
 
 def drive(path, **more):
-    return RegulatedPurePursuitController(ROBOT).compute_velocity_commands(control(path, **more))
+    return RegulatedPurePursuitController(None, NavigationContext(footprint=ROBOT)).compute_velocity_commands(
+        control(path, **more)
+    )
 
 
 def test_straight_ahead_at_full_speed():
@@ -53,7 +56,9 @@ def test_narrow_places_are_slow():
 
 def test_near_the_goal_it_is_slow():
     path = line((0.3, 0.0))
-    velocity = RegulatedPurePursuitController(ROBOT, RegulatedPurePursuitParameters(max_linear_accel=100.0))
+    velocity = RegulatedPurePursuitController(
+        RegulatedPurePursuitParameters(max_linear_accel=100.0), NavigationContext(footprint=ROBOT)
+    )
     assert velocity.compute_velocity_commands(control(path, velocity=MOVING))[0] == pytest.approx(0.25, abs=0.02)
 
 
@@ -64,11 +69,11 @@ def test_a_path_to_the_side_begins_with_a_turn():
 
 
 def test_a_turn_goes_on_until_the_path_is_ahead():
-    controller = RegulatedPurePursuitController(ROBOT)
+    controller = RegulatedPurePursuitController(None, NavigationContext(footprint=ROBOT))
     assert controller.compute_velocity_commands(control(line((0.0, 2.0))))[0] == 0.0
     nearly = control(line((0.0, 2.0)), pose=(0.0, 0.0, math.pi / 2 - 0.4))
     assert controller.compute_velocity_commands(nearly)[0] == 0.0
-    fresh = RegulatedPurePursuitController(ROBOT)
+    fresh = RegulatedPurePursuitController(None, NavigationContext(footprint=ROBOT))
     assert fresh.compute_velocity_commands(nearly)[0] > 0.0
 
 
@@ -90,7 +95,7 @@ def test_a_robot_that_touches_already_may_drive_away():
 
 
 def test_speed_limits_and_their_end():
-    controller = RegulatedPurePursuitController(ROBOT)
+    controller = RegulatedPurePursuitController(None, NavigationContext(footprint=ROBOT))
     given = control(line((3.0, 0.0)), velocity=(0.2, 0.0, 0.0))
     controller.set_speed_limit(50.0, percentage=True)
     assert controller.compute_velocity_commands(given)[0] == pytest.approx(0.25)

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from daidalos.navigation.controllers.controller import Controller
+from daidalos.navigation.contracts import Controller, NavigationContext
 from daidalos.navigation.controllers.rotation_shim_controller import RotationShimController, RotationShimParameters
 from daidalos.navigation.costmap.footprint import Footprint
 
@@ -32,7 +32,9 @@ class Ahead(Controller):
 
 
 def shim(footprint=ROUND, **parameters):
-    return RotationShimController(Ahead(), footprint, RotationShimParameters(**parameters))
+    return RotationShimController(
+        RotationShimParameters(**parameters), NavigationContext(footprint=footprint), primary=Ahead()
+    )
 
 
 def test_it_turns_first_and_then_lets_drive_whatever_the_path_does():

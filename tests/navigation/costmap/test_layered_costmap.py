@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from daidalos.mapping.grid import OccupancyGrid
+from daidalos.navigation.contracts import NavigationContext
 from daidalos.navigation.costmap.costmap import CostmapError
 from daidalos.navigation.costmap.footprint import Footprint
 from daidalos.navigation.costmap.layered_costmap import CostmapParameters, LayeredCostmap
@@ -16,8 +17,8 @@ HERE = np.array([1.0, 1.0, 0.0])
 
 
 def build(track_unknown=True):
-    static, obstacles = StaticLayer(), ObstacleLayer(ROBOT)
-    inflation = InflationLayer(0.2, InflationLayerParameters(0.5, 3.0))
+    static, obstacles = StaticLayer(), ObstacleLayer(None, NavigationContext(footprint=ROBOT))
+    inflation = InflationLayer(InflationLayerParameters(0.5, 3.0), NavigationContext(footprint=Footprint.circle(0.2)))
     layered = LayeredCostmap(CostmapParameters(track_unknown_space=track_unknown), [static, obstacles, inflation])
     return layered, static, obstacles
 
@@ -98,8 +99,11 @@ def test_before_the_first_map_all_is_unknown_or_free():
 
 
 def test_a_rolling_window_follows_the_robot_without_smearing():
-    obstacles = ObstacleLayer(ROBOT, track_unknown_space=False)
-    layered = LayeredCostmap(CostmapParameters(3.0, 3.0, 0.05, rolling_window=True), [obstacles, InflationLayer(0.2)])
+    obstacles = ObstacleLayer(None, NavigationContext(footprint=ROBOT, track_unknown_space=False))
+    layered = LayeredCostmap(
+        CostmapParameters(3.0, 3.0, 0.05, rolling_window=True),
+        [obstacles, InflationLayer(None, NavigationContext(footprint=Footprint.circle(0.2)))],
+    )
     obstacles.add_observation(hit(1.53, 1.03))
     layered.update(HERE, 0.0)
     for step in range(1, 60):

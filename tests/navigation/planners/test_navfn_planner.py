@@ -7,11 +7,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from daidalos.navigation.contracts import NavigationContext
 from daidalos.navigation.costmap.costmap import LETHAL_OBSTACLE, NO_INFORMATION, Costmap
+from daidalos.navigation.costmap.footprint import Footprint
 from daidalos.navigation.costmap.layers.inflation_layer import InflationLayer, InflationLayerParameters
-from daidalos.navigation.paths import path_length
-from daidalos.navigation.planners.navfn_planner import NavfnPlanner, NavfnPlannerParameters
-from daidalos.navigation.planners.planner import (
+from daidalos.navigation.errors import (
     GoalOccupied,
     GoalOutsideMap,
     NoPath,
@@ -19,6 +19,8 @@ from daidalos.navigation.planners.planner import (
     StartOccupied,
     StartOutsideMap,
 )
+from daidalos.navigation.paths import path_length
+from daidalos.navigation.planners.navfn_planner import NavfnPlanner, NavfnPlannerParameters
 
 from .worlds import cluttered, random_pose
 
@@ -172,7 +174,9 @@ def test_paths_go_through_the_middle_of_doors():
     costmap, _ = cluttered(0, 80, 80, boxes=0, inflated=False)
     costmap.costs[:, 40] = 254
     costmap.costs[32:48, 40] = 0
-    InflationLayer(0.22, InflationLayerParameters(0.55, 3.0)).update_costs(costmap, costmap.window)
+    InflationLayer(
+        InflationLayerParameters(0.55, 3.0), NavigationContext(footprint=Footprint.circle(0.22))
+    ).update_costs(costmap, costmap.window)
     path = EXACT.create_plan(costmap, pose(0.0, 3.0), pose(2.5, 5.5))
     door_x, door_y = costmap.map_to_world(40, 39)
     crossing = path[np.argmin(np.abs(path[:, 0] - door_x)), 1]

@@ -2,7 +2,9 @@
 
 import numpy as np
 
+from daidalos.navigation.contracts import NavigationContext
 from daidalos.navigation.costmap.costmap import Costmap
+from daidalos.navigation.costmap.footprint import Footprint
 from daidalos.navigation.costmap.layers.inflation_layer import InflationLayer, InflationLayerParameters
 
 
@@ -18,7 +20,7 @@ def cluttered(seed, height=60, width=70, boxes=10, inflated=True):
         costs[row : row + tall, column : column + wide] = 254
     costmap = Costmap(costs, 0.05, (-1.0, 2.0))
     if inflated:
-        layer = InflationLayer(0.1, InflationLayerParameters(0.4, 5.0))
+        layer = InflationLayer(InflationLayerParameters(0.4, 5.0), NavigationContext(footprint=Footprint.circle(0.1)))
         layer.update_costs(costmap, costmap.window)
     return costmap, generator
 

@@ -36,7 +36,8 @@ class ScriptedRobot:
     def now(self):
         return self.time
 
-    def start(self, action, goal):
+    def start(self, node, goal):
+        action = node.__name__
         self.log.append(action)
         self.goals[action] = dict(goal)
         script = self.scripts.get(action, [(0, SUCCESS)])

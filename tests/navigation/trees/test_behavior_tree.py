@@ -19,7 +19,7 @@ ROBOT = ScriptedRobot()
         ("<root><BehaviorTree>", r"tree:1: not well-formed"),
         ("<tree/>", r"tree:1: the outermost element must be <root>, not <tree>"),
         ("<root/>", r"tree:1: there is no <BehaviorTree>"),
-        (document("<Wiat/>"), r"<Wiat>: there is no node 'Wiat'; did you mean 'Wait'\?"),
+        (document("<Wiat/>"), r"tree:1: '<Wiat>': there is no tree node 'Wiat'; did you mean 'Wait'\?"),
         (document('\n\n<Wait duration="3"/>'), r"tree:3: <Wait>: there is no port 'duration'; the ports are: wait_dur"),
         (document('<Wait wait_duration="long"/>'), r"'wait_duration' must be a float, not 'long'"),
         (document('<Spin is_recovery="maybe"/>'), r"'is_recovery' must be a flag, not 'maybe'"),

@@ -18,6 +18,7 @@ my_package.my_module.MyClass, wherever a name is asked for."""
 _DECLARED_IN = (
     "daidalos.simulation.extensions",
     "daidalos.control.extensions",
+    "daidalos.navigation.extensions",
     "daidalos.studio.extensions",
     "daidalos.nodes.extensions",
 )

@@ -1,18 +1,19 @@
 """Drive straight backwards for a distance."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from daidalos.navigation.behaviors.behavior import Behavior, BehaviorStep, InvalidInput
 from daidalos.navigation.behaviors.drive_on_heading import (
     DriveOnHeading,
     DriveOnHeadingCommand,
     DriveOnHeadingParameters,
 )
+from daidalos.navigation.contracts import Behavior, BehaviorStep, NavigationContext
 from daidalos.navigation.costmap.costmap import Costmap
-from daidalos.navigation.costmap.footprint import Footprint
+from daidalos.navigation.errors import InvalidInput
 
 Array = NDArray[np.float64]
 
@@ -29,16 +30,22 @@ class BackUpCommand:
 class BackUp(Behavior[BackUpCommand]):
     """Drives on the robot's heading, backwards."""
 
+    names = ("nav2_behaviors::BackUp",)
     Parameters = DriveOnHeadingParameters
+    parameters: DriveOnHeadingParameters
+    action = "nav2_msgs/action/BackUp"
+    feedback = "distance_traveled"
 
     def __init__(
-        self,
-        footprint: Footprint,
-        parameters: DriveOnHeadingParameters | None = None,
-        cycle_frequency: float = 10.0,
+        self, parameters: DriveOnHeadingParameters | None = None, context: NavigationContext | None = None
     ) -> None:
-        super().__init__(footprint, cycle_frequency)
-        self._drive = DriveOnHeading(footprint, parameters, cycle_frequency)
+        super().__init__(parameters, context)
+        self._drive = DriveOnHeading(self.parameters, self.context)
+
+    @classmethod
+    def command(cls, goal: Any) -> BackUpCommand:
+        """See `Behavior.command`; the signs of distance and speed do not matter."""
+        return BackUpCommand(abs(goal.target.x), abs(goal.speed), goal.time_allowance)
 
     def start(self, command: BackUpCommand, pose: Array, now: float) -> None:
         """See `Behavior.start`."""

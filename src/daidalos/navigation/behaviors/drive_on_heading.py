@@ -2,21 +2,16 @@
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from daidalos.common.parameters import Parameters, parameter
-from daidalos.navigation.behaviors.behavior import (
-    Behavior,
-    BehaviorStep,
-    CollisionAhead,
-    InvalidInput,
-    TimedOut,
-    contact_ahead,
-)
+from daidalos.navigation.behaviors.collision import contact_ahead
+from daidalos.navigation.contracts import Behavior, BehaviorStep, NavigationContext
 from daidalos.navigation.costmap.costmap import Costmap
-from daidalos.navigation.costmap.footprint import Footprint
+from daidalos.navigation.errors import CollisionAhead, InvalidInput, TimedOut
 
 Array = NDArray[np.float64]
 
@@ -42,19 +37,24 @@ class DriveOnHeadingCommand:
 class DriveOnHeading(Behavior[DriveOnHeadingCommand]):
     """Drives straight until the robot is a distance away from where it began."""
 
+    names = ("nav2_behaviors::DriveOnHeading",)
     Parameters = DriveOnHeadingParameters
+    parameters: DriveOnHeadingParameters
+    action = "nav2_msgs/action/DriveOnHeading"
+    feedback = "distance_traveled"
 
     def __init__(
-        self,
-        footprint: Footprint,
-        parameters: DriveOnHeadingParameters | None = None,
-        cycle_frequency: float = 10.0,
+        self, parameters: DriveOnHeadingParameters | None = None, context: NavigationContext | None = None
     ) -> None:
-        super().__init__(footprint, cycle_frequency)
-        self.parameters = parameters or DriveOnHeadingParameters()
+        super().__init__(parameters, context)
         self._command = DriveOnHeadingCommand()
         self._deadline = 0.0
         self._from = np.zeros(3)
+
+    @classmethod
+    def command(cls, goal: Any) -> DriveOnHeadingCommand:
+        """See `Behavior.command`."""
+        return DriveOnHeadingCommand(goal.target.x, goal.speed, goal.time_allowance)
 
     def start(self, command: DriveOnHeadingCommand, pose: Array, now: float) -> None:
         """See `Behavior.start`."""
@@ -77,7 +77,7 @@ class DriveOnHeading(Behavior[DriveOnHeadingCommand]):
             raise TimedOut(f"drove {driven:.2f} m of {abs(self._command.distance):.2f} in time")
         speed = self._command.speed
         ahead = min(self.parameters.simulate_ahead_time, left / abs(speed))
-        if contact_ahead(costmap, self.footprint, pose, speed, 0.0, ahead):
+        if contact_ahead(costmap, self.context.footprint, pose, speed, 0.0, ahead):
             raise CollisionAhead(f"the robot would touch something within {left:.2f} m")
         slower = math.copysign(min(abs(speed), left / self.period), speed)
         return BehaviorStep(np.array([slower, 0.0, 0.0]), False, driven)

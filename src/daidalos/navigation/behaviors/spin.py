@@ -1,23 +1,18 @@
 """Turn on the spot by an angle."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from daidalos.common.parameters import ParameterError, Parameters, parameter
 from daidalos.common.pose2 import wrap
-from daidalos.navigation.behaviors.behavior import (
-    Behavior,
-    BehaviorStep,
-    CollisionAhead,
-    InvalidInput,
-    TimedOut,
-    contact_ahead,
-)
+from daidalos.navigation.behaviors.collision import contact_ahead
+from daidalos.navigation.contracts import Behavior, BehaviorStep, NavigationContext
 from daidalos.navigation.controllers.rotation import rotation_speed
 from daidalos.navigation.costmap.costmap import Costmap
-from daidalos.navigation.costmap.footprint import Footprint
+from daidalos.navigation.errors import CollisionAhead, InvalidInput, TimedOut
 
 Array = NDArray[np.float64]
 
@@ -53,17 +48,23 @@ class SpinCommand:
 class Spin(Behavior[SpinCommand]):
     """Turns by an angle of any size, measured by the turns of the robot's pose."""
 
+    names = ("nav2_behaviors::Spin",)
     Parameters = SpinParameters
+    parameters: SpinParameters
+    action = "nav2_msgs/action/Spin"
+    feedback = "angular_distance_traveled"
 
-    def __init__(
-        self, footprint: Footprint, parameters: SpinParameters | None = None, cycle_frequency: float = 10.0
-    ) -> None:
-        super().__init__(footprint, cycle_frequency)
-        self.parameters = parameters or SpinParameters()
+    def __init__(self, parameters: SpinParameters | None = None, context: NavigationContext | None = None) -> None:
+        super().__init__(parameters, context)
         self._command = SpinCommand()
         self._deadline = 0.0
         self._last_yaw = 0.0
         self._turned = 0.0
+
+    @classmethod
+    def command(cls, goal: Any) -> SpinCommand:
+        """See `Behavior.command`."""
+        return SpinCommand(goal.target_yaw, goal.time_allowance)
 
     def start(self, command: SpinCommand, pose: Array, now: float) -> None:
         """See `Behavior.start`."""
@@ -85,7 +86,7 @@ class Spin(Behavior[SpinCommand]):
             raise TimedOut(f"turned {abs(self._turned):.2f} rad of {abs(self._command.target_yaw):.2f} in time")
         turn = self._speed(left, float(velocity[2]))
         ahead = min(self.parameters.simulate_ahead_time, abs(left) / max(abs(turn), 1e-3))
-        if contact_ahead(costmap, self.footprint, pose, 0.0, turn, ahead):
+        if contact_ahead(costmap, self.context.footprint, pose, 0.0, turn, ahead):
             raise CollisionAhead("the robot would touch something while it turns")
         return BehaviorStep(np.array([0.0, 0.0, turn]), False, abs(self._turned))
 

@@ -1,12 +1,14 @@
 """Stand still for a while."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from daidalos.navigation.behaviors.behavior import Behavior, BehaviorStep, InvalidInput
+from daidalos.navigation.contracts import Behavior, BehaviorStep
 from daidalos.navigation.costmap.costmap import Costmap
+from daidalos.navigation.errors import InvalidInput
 
 Array = NDArray[np.float64]
 
@@ -21,7 +23,15 @@ class WaitCommand:
 class Wait(Behavior[WaitCommand]):
     """Stands until its time is over."""
 
+    names = ("nav2_behaviors::Wait",)
+    action = "nav2_msgs/action/Wait"
+    feedback = "time_left"
     _until = 0.0
+
+    @classmethod
+    def command(cls, goal: Any) -> WaitCommand:
+        """See `Behavior.command`."""
+        return WaitCommand(goal.time)
 
     def start(self, command: WaitCommand, pose: Array, now: float) -> None:
         """See `Behavior.start`."""

@@ -5,19 +5,16 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from daidalos.navigation.controllers.controller import (
-    ControlInput,
-    Controller,
+from daidalos.navigation.contracts import ControlInput, Controller, GoalChecker, ProgressChecker
+from daidalos.navigation.controllers.path_handler import PathHandler
+from daidalos.navigation.costmap.costmap import Costmap
+from daidalos.navigation.errors import (
     ControllerError,
     FailedToMakeProgress,
     InvalidPath,
     NoValidControl,
     PatienceExceeded,
 )
-from daidalos.navigation.controllers.path_handler import PathHandler
-from daidalos.navigation.controllers.plugins.goal_checker import GoalChecker
-from daidalos.navigation.controllers.plugins.progress_checker import ProgressChecker
-from daidalos.navigation.costmap.costmap import Costmap
 
 Array = NDArray[np.float64]
 

@@ -1,27 +1,20 @@
 """MPPI: sampled control sequences, judged by critics and averaged by their costs."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from daidalos.common.kernels import compiled
-from daidalos.common.parameters import ParameterError, Parameters, parameter
-from daidalos.navigation.controllers.controller import ControlInput, Controller, NoValidControl
-from daidalos.navigation.controllers.mppi.critics.cost_critic import CostCritic
-from daidalos.navigation.controllers.mppi.critics.critic import Critic, Scene
-from daidalos.navigation.controllers.mppi.critics.goal_angle_critic import GoalAngleCritic
-from daidalos.navigation.controllers.mppi.critics.goal_critic import GoalCritic
-from daidalos.navigation.controllers.mppi.critics.path_align_critic import PathAlignCritic
-from daidalos.navigation.controllers.mppi.critics.path_angle_critic import PathAngleCritic
-from daidalos.navigation.controllers.mppi.critics.path_follow_critic import PathFollowCritic
-from daidalos.navigation.controllers.mppi.critics.prefer_forward_critic import PreferForwardCritic
+from daidalos.common.parameters import ParameterError, Parameters, parameter, per_name
+from daidalos.navigation.contracts import ControlInput, Controller, Critic, NavigationContext, Scene
 from daidalos.navigation.controllers.mppi.proposals import turn_then_drive
 from daidalos.navigation.controllers.mppi.rollouts import Limits, Rollouts, Samples, correlated_noise
 from daidalos.navigation.costmap.costmap import INSCRIBED_INFLATED_OBSTACLE, NO_INFORMATION
-from daidalos.navigation.costmap.footprint import Footprint
+from daidalos.navigation.errors import NoValidControl
+from daidalos.navigation.extensions import CRITICS
 from daidalos.navigation.paths import distances_along
 
 Array = NDArray[np.float64]
@@ -31,6 +24,13 @@ TURN_TO = 0.5
 
 NOISE_POOL = 8
 """Batches of noise that are drawn once; each cycle takes a random part of them."""
+
+
+@dataclass(frozen=True)
+class CriticSwitch(Parameters):
+    """Whether a critic of the controller is used."""
+
+    enabled: bool = parameter(True, "Whether the critic is used.", read_only=True)
 
 
 @dataclass(frozen=True)
@@ -61,24 +61,20 @@ class MppiParameters(Parameters):
     retry_attempt_limit: int = parameter(1, "Number of further optimisations when all trajectories collide.", minimum=0)
     open_loop: bool = parameter(True, "Whether rollouts begin with the last command instead of odometry's velocity.")
     noise_correlation_time: float = parameter(0.5, "How long a sampled deviation lasts.", unit="s", minimum=0.0)
+    critics: tuple[str, ...] = parameter(
+        (
+            *("CostCritic", "GoalCritic", "GoalAngleCritic", "PathAlignCritic", "PathFollowCritic"),
+            *("PathAngleCritic", "PreferForwardCritic"),
+        ),
+        "What judges trajectories.",
+        read_only=True,
+    )
+    switches: Mapping[str, CriticSwitch] = per_name(CriticSwitch, by="critics", at="")
 
     def check(self) -> None:
         """Refuse a least speed above the largest."""
         if self.vx_min > self.vx_max:
             raise ParameterError("vx_min", f"is above vx_max: {self.vx_min:g} > {self.vx_max:g}")
-
-
-def default_critics() -> tuple[Critic, ...]:
-    """Critics of a robot that drives forwards."""
-    return (
-        CostCritic(),
-        GoalCritic(),
-        GoalAngleCritic(),
-        PathAlignCritic(),
-        PathFollowCritic(),
-        PathAngleCritic(),
-        PreferForwardCritic(),
-    )
 
 
 class MppiController(Controller):
@@ -92,33 +88,28 @@ class MppiController(Controller):
 
     Parameters
     ----------
-    footprint : Footprint
-        Outline of the robot.
     parameters : MppiParameters, optional
         Horizon, samples and limits.
+    context : NavigationContext, optional
     critics : sequence of Critic, optional
-        What makes a trajectory good.
-    control_frequency : float
-        Cycles per second.
-    seed : int
-        Of the noise.
+        What makes a trajectory good; the parameter `critics` names them where they are left out.
     """
 
+    names = ("nav2_mppi_controller::MPPIController",)
     Parameters = MppiParameters
+    parameters: MppiParameters
 
     def __init__(
         self,
-        footprint: Footprint,
         parameters: MppiParameters | None = None,
+        context: NavigationContext | None = None,
         critics: Sequence[Critic] | None = None,
-        control_frequency: float = 20.0,
-        seed: int = 0,
     ) -> None:
-        self.footprint = footprint
-        self.parameters = p = parameters or MppiParameters()
-        self.critics = tuple(critics) if critics is not None else default_critics()
-        self.period = 1.0 / control_frequency
-        self._generator = np.random.default_rng(seed)
+        super().__init__(parameters, context)
+        p = self.parameters
+        self.critics = self._make_critics() if critics is None else tuple(critics)
+        self.period = 1.0 / self.context.frequency
+        self._generator = np.random.default_rng(self.context.seed)
         self._speed_limit = p.vx_max
         self._controls: Samples = np.zeros((p.time_steps, 2), dtype=np.float32)
         self._last_command: Array | None = None
@@ -128,6 +119,14 @@ class MppiController(Controller):
         correlation = math.exp(-p.model_dt / p.noise_correlation_time) if p.noise_correlation_time > 0.0 else 0.0
         self._pool = correlated_noise(self._generator, NOISE_POOL * p.batch_size, p.time_steps, correlation)
         self._pool *= np.array([p.vx_std, p.wz_std], dtype=np.float32)
+
+    def _make_critics(self) -> tuple[Critic, ...]:
+        """Make the critics that the parameters name; those that are not enabled are left out."""
+        return tuple(
+            self.context.make(CRITICS, name, "critics", below=name)
+            for name in self.parameters.critics
+            if self.parameters.switches.get(name, CriticSwitch()).enabled
+        )
 
     @property
     def look_ahead(self) -> float:
@@ -227,7 +226,7 @@ class MppiController(Controller):
         costs = control.costmap.costs[cells[inside, 1], cells[inside, 0]]
         free[inside] = (costs < INSCRIBED_INFLATED_OBSTACLE) | (costs == NO_INFORMATION)
         furthest = furthest_reached(self._rollouts.x, self._rollouts.y, np.ascontiguousarray(path[:, :2]))
-        return Scene(control, self.footprint, distances_along(path), free, furthest, self.parameters.model_dt)
+        return Scene(control, self.context.footprint, distances_along(path), free, furthest, self.parameters.model_dt)
 
 
 def _weights(rollouts: Rollouts, temperature: float) -> Samples:

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daidalos.common.pose2 import compose
-from daidalos.navigation.controllers.controller import InvalidPath
+from daidalos.navigation.errors import InvalidPath
 from daidalos.navigation.paths import distances_along
 
 Array = NDArray[np.float64]

@@ -8,10 +8,11 @@ from numpy.typing import NDArray
 
 from daidalos.common.parameters import Parameters, parameter
 from daidalos.common.pose2 import between
-from daidalos.navigation.controllers.controller import ControlInput, Controller, NoValidControl
+from daidalos.navigation.contracts import ControlInput, Controller, NavigationContext
 from daidalos.navigation.controllers.rotation import rotation_speed
 from daidalos.navigation.costmap.costmap import INSCRIBED_INFLATED_OBSTACLE, MAX_NON_OBSTACLE, NO_INFORMATION
-from daidalos.navigation.costmap.footprint import Footprint, FootprintCollisionChecker
+from daidalos.navigation.costmap.footprint import FootprintCollisionChecker
+from daidalos.navigation.errors import NoValidControl
 
 Array = NDArray[np.float64]
 
@@ -65,28 +66,17 @@ class RegulatedPurePursuitController(Controller):
     the path at the look-ahead distance. The arc that leaves the robot along its heading and meets the carrot
     has the curvature `2 y / (x^2 + y^2)`. The speed is reduced on tight arcs, near obstacles and towards the
     goal; a carrot far to the side, and the yaw of the goal, are reached by a turn on the spot.
-
-    Parameters
-    ----------
-    footprint : Footprint
-        Outline of the robot.
-    parameters : RegulatedPurePursuitParameters, optional
-        Speeds, distances and regulations.
-    control_frequency : float
-        Cycles per second.
     """
 
+    names = ("nav2_regulated_pure_pursuit_controller::RegulatedPurePursuitController",)
     Parameters = RegulatedPurePursuitParameters
+    parameters: RegulatedPurePursuitParameters
 
     def __init__(
-        self,
-        footprint: Footprint,
-        parameters: RegulatedPurePursuitParameters | None = None,
-        control_frequency: float = 20.0,
+        self, parameters: RegulatedPurePursuitParameters | None = None, context: NavigationContext | None = None
     ) -> None:
-        self.footprint = footprint
-        self.parameters = parameters or RegulatedPurePursuitParameters()
-        self.period = 1.0 / control_frequency
+        super().__init__(parameters, context)
+        self.period = 1.0 / self.context.frequency
         self._speed_limit = self.parameters.desired_linear_vel
         self._at_goal = False
         self._rotating = False
@@ -189,7 +179,7 @@ class RegulatedPurePursuitController(Controller):
         cost = control.costmap.cost_at(float(control.pose[0]), float(control.pose[1]))
         if cost in (0, NO_INFORMATION):
             return 1.0
-        inscribed = self.footprint.inscribed_radius
+        inscribed = self.context.footprint.inscribed_radius
         cost = min(cost, INSCRIBED_INFLATED_OBSTACLE)
         away = inscribed - math.log(cost / MAX_NON_OBSTACLE) / p.inflation_cost_scaling_factor
         if away >= p.cost_scaling_dist:
@@ -198,7 +188,7 @@ class RegulatedPurePursuitController(Controller):
 
     def _refuse_collision(self, control: ControlInput, speed: float, turn: float, reach: float) -> None:
         """Follow the arc as far as the carrot, or as long as allowed, and look for contact."""
-        checker = FootprintCollisionChecker(control.costmap, self.footprint)
+        checker = FootprintCollisionChecker(control.costmap, self.context.footprint)
         if checker.in_collision(control.pose):
             return
         step = control.costmap.resolution / max(abs(speed), 0.05)

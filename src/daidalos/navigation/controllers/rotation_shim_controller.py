@@ -8,9 +8,10 @@ from numpy.typing import NDArray
 
 from daidalos.common.parameters import Parameters, parameter
 from daidalos.common.pose2 import between
-from daidalos.navigation.controllers.controller import ControlInput, Controller
+from daidalos.navigation.contracts import ControlInput, Controller, NavigationContext
 from daidalos.navigation.controllers.rotation import rotation_speed
-from daidalos.navigation.costmap.footprint import Footprint, FootprintCollisionChecker
+from daidalos.navigation.costmap.footprint import FootprintCollisionChecker
+from daidalos.navigation.extensions import CONTROLLERS
 from daidalos.navigation.paths import distances_along
 
 Array = NDArray[np.float64]
@@ -35,6 +36,11 @@ class RotationShimParameters(Parameters):
         1.0, "How far ahead the turn is checked for collisions.", unit="s", minimum=0.0
     )
     rotate_to_goal_heading: bool = parameter(True, "Whether to turn on the spot at the goal.")
+    primary_controller: str = parameter(
+        "nav2_regulated_pure_pursuit_controller::RegulatedPurePursuitController",
+        "Controller that drives; its parameters stand beside these.",
+        read_only=True,
+    )
 
 
 class RotationShimController(Controller):
@@ -46,29 +52,28 @@ class RotationShimController(Controller):
 
     Parameters
     ----------
-    primary : Controller
-        The controller that drives.
-    footprint : Footprint
-        Outline of the robot.
     parameters : RotationShimParameters, optional
         When and how fast to turn.
-    control_frequency : float
-        Cycles per second.
+    context : NavigationContext, optional
+    primary : Controller, optional
+        The controller that drives; the parameter `primary_controller` names it where it is left out.
     """
 
+    names = ("nav2_rotation_shim_controller::RotationShimController",)
     Parameters = RotationShimParameters
+    parameters: RotationShimParameters
 
     def __init__(
         self,
-        primary: Controller,
-        footprint: Footprint,
         parameters: RotationShimParameters | None = None,
-        control_frequency: float = 20.0,
+        context: NavigationContext | None = None,
+        primary: Controller | None = None,
     ) -> None:
-        self.primary = primary
-        self.footprint = footprint
-        self.parameters = parameters or RotationShimParameters()
-        self.period = 1.0 / control_frequency
+        super().__init__(parameters, context)
+        self.primary = primary or self.context.make(
+            CONTROLLERS, self.parameters.primary_controller, "primary_controller"
+        )
+        self.period = 1.0 / self.context.frequency
         self._starting = True
         self._turning = False
         self._at_goal = False
@@ -130,10 +135,10 @@ class RotationShimController(Controller):
 
     def _can_turn(self, control: ControlInput, angle: float) -> bool:
         """Whether the turn, as far as it is simulated, touches nothing that the robot does not touch now."""
-        if self.footprint.circular:
+        if self.context.footprint.circular:
             return True
         p = self.parameters
-        checker = FootprintCollisionChecker(control.costmap, self.footprint)
+        checker = FootprintCollisionChecker(control.costmap, self.context.footprint)
         end = math.copysign(min(abs(angle), p.rotate_to_heading_angular_vel * p.simulate_ahead_time), angle)
         turns = np.linspace(0.0, end, max(int(abs(end) / 0.1), 2))
         return not any(checker.in_collision(control.pose + np.array([0.0, 0.0, turn])) for turn in turns)

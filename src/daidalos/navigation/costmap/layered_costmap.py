@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daidalos.common.parameters import Parameters, parameter
+from daidalos.navigation.contracts import Layer
 from daidalos.navigation.costmap.costmap import (
     EVERYWHERE,
     FREE_SPACE,
@@ -17,7 +18,6 @@ from daidalos.navigation.costmap.costmap import (
 )
 from daidalos.navigation.costmap.footprint import Footprint
 from daidalos.navigation.costmap.layers.inflation_layer import InflationLayer
-from daidalos.navigation.costmap.layers.layer import Layer
 
 Array = NDArray[np.float64]
 

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daidalos.common.parameters import Parameters, parameter
+from daidalos.navigation.contracts import GlobalPlanner
 from daidalos.navigation.costmap.costmap import (
     INSCRIBED_INFLATED_OBSTACLE,
     LETHAL_OBSTACLE,
@@ -14,20 +15,13 @@ from daidalos.navigation.costmap.costmap import (
     NO_INFORMATION,
     Costmap,
 )
+from daidalos.navigation.errors import GoalOccupied, GoalOutsideMap, NoPath, StartOccupied, StartOutsideMap
 from daidalos.navigation.paths import with_headings
 from daidalos.navigation.planners.navigation_function import (
     descend,
     nearest_passable_cell,
     nearest_reached,
     propagate,
-)
-from daidalos.navigation.planners.planner import (
-    GlobalPlanner,
-    GoalOccupied,
-    GoalOutsideMap,
-    NoPath,
-    StartOccupied,
-    StartOutsideMap,
 )
 
 Array = NDArray[np.float64]
@@ -71,10 +65,9 @@ class NavfnPlanner(GlobalPlanner):
     that can be reached.
     """
 
+    names = ("nav2_navfn_planner::NavfnPlanner",)
     Parameters = NavfnPlannerParameters
-
-    def __init__(self, parameters: NavfnPlannerParameters | None = None) -> None:
-        self.parameters = parameters or NavfnPlannerParameters()
+    parameters: NavfnPlannerParameters
 
     def create_plan(self, costmap: Costmap, start: Array, goal: Array) -> Array:
         """Find a path; see `GlobalPlanner.create_plan`."""

@@ -7,9 +7,9 @@ from numpy.typing import NDArray
 
 from daidalos.common.kernels import compiled
 from daidalos.common.parameters import Parameters, parameter
+from daidalos.navigation.contracts import Smoother
 from daidalos.navigation.costmap.costmap import INSCRIBED_INFLATED_OBSTACLE, NO_INFORMATION, Costmap, Costs
 from daidalos.navigation.paths import with_headings
-from daidalos.navigation.smoothers.smoother import Smoother
 
 Array = NDArray[np.float64]
 
@@ -30,10 +30,9 @@ class SimpleSmoother(Smoother):
     A point stays where it is when its next place is one where the robot must not be.
     """
 
+    names = ("nav2_smoother::SimpleSmoother",)
     Parameters = SimpleSmootherParameters
-
-    def __init__(self, parameters: SimpleSmootherParameters | None = None) -> None:
-        self.parameters = parameters or SimpleSmootherParameters()
+    parameters: SimpleSmootherParameters
 
     def smooth(self, path: Array, costmap: Costmap) -> Array:
         """See `Smoother.smooth`."""

@@ -8,13 +8,15 @@ from typing import Any
 import py_trees
 from py_trees.common import Status
 
+from daidalos.common.errors import Location
+from daidalos.common.extensions import ExtensionError, find
 from daidalos.common.suggestions import hint
 from daidalos.description.errors import DescriptionError
 from daidalos.description.markup import Element, parse_markup
+from daidalos.navigation.extensions import TREE_NODES
 from daidalos.navigation.trees.blackboard import Blackboard
 from daidalos.navigation.trees.errors import TreeError
-from daidalos.navigation.trees.node import Ports
-from daidalos.navigation.trees.registry import known_nodes, node_class
+from daidalos.navigation.trees.node import Ports, TreeContext
 from daidalos.navigation.trees.services import Services
 
 DEFAULT_TREE = (
@@ -155,14 +157,16 @@ class _Builder:
         identifier = element.attributes.get("ID", "") if element.tag in _EXPLICIT else element.tag
         if identifier in ("SubTree", "SubTreePlus"):
             return self._inner_tree(element, board, path)
-        made_by = node_class(identifier)
-        if made_by is None:
-            raise TreeError(f"{_place(element)}: there is no node {identifier!r}{hint(identifier, known_nodes())}")
+        location = Location(element.source or None, element.line or None, element.label)
+        try:
+            made_by = find(TREE_NODES, identifier, asked_by=location)
+        except ExtensionError as error:
+            raise TreeError(str(error)) from None
         children = [self._node(child, board, path) for child in element.children]
         _check_number(element, len(children), made_by.CHILDREN)
         attributes = {k: v for k, v in element.attributes.items() if k not in _COMMENTARY}
         ports = Ports(made_by.PORTS, attributes, board, _place(element))
-        return made_by(element.attributes.get("name", identifier), ports, self._services, children)
+        return made_by(ports, TreeContext(element.attributes.get("name", identifier), self._services, children))
 
     def _inner_tree(self, element: Element, board: Blackboard, path: tuple[str, ...]) -> Any:
         """Tree inside of a tree, with a blackboard of its own whose remapped names are this one's."""

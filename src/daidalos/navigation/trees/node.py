@@ -132,39 +132,68 @@ class Ports:
             raise TreeError(f"{self._where}: the port {key!r} must be {wanted}, not {text!r}") from None
 
 
-class Node(py_trees.behaviour.Behaviour):  # type: ignore[misc]
-    """A leaf.
+@dataclass(frozen=True)
+class TreeContext:
+    """What a node of a tree may use beside its ports.
 
     Attributes
     ----------
-    PORTS : mapping of str to Port
-        Its attributes in a file.
-    CHILDREN : tuple of int and int or None
-        Fewest and most children.
+    name : str
+        For people.
+    services : Services
+        What it asks of the robot.
+    children : sequence of py_trees behaviours
+        The nodes below it.
     """
 
+    name: str
+    services: Services
+    children: Sequence[py_trees.behaviour.Behaviour] = ()
+
+
+class TreeNode:
+    """The contract of tree nodes, made with ``(ports, context)``: a `Node`, a `Control` or a `Decorator`.
+
+    Attributes
+    ----------
+    names : tuple of str
+        Class attribute: names of a built-in class in files.
+    PORTS : mapping of str to Port
+        Class attribute: its attributes in a file.
+    CHILDREN : tuple of int and int or None
+        Class attribute: fewest and most children.
+    ports : Ports
+    services : Services
+    """
+
+    names: ClassVar[tuple[str, ...]] = ()
     PORTS: ClassVar[Mapping[str, Port]] = {}
     CHILDREN: ClassVar[tuple[int, int | None]] = (0, 0)
+    ports: Ports
+    services: Services
 
-    def __init__(
-        self, name: str, ports: Ports, services: Services, children: Sequence[py_trees.behaviour.Behaviour]
-    ) -> None:
-        super().__init__(name)
+    def __init__(self, ports: Ports, context: TreeContext) -> None:
+        raise NotImplementedError
+
+
+class Node(TreeNode, py_trees.behaviour.Behaviour):  # type: ignore[misc]
+    """A leaf: `update` returns how it ended, or `RUNNING`."""
+
+    def __init__(self, ports: Ports, context: TreeContext) -> None:
+        py_trees.behaviour.Behaviour.__init__(self, context.name)
         self.ports = ports
-        self.services = services
+        self.services = context.services
 
 
-class Control(py_trees.composites.Composite):  # type: ignore[misc]
-    """A node with children that it ticks as it likes; see `Node` for the attributes."""
+class Control(TreeNode, py_trees.composites.Composite):  # type: ignore[misc]
+    """A node with children that it ticks as it likes; see `TreeNode` for the attributes."""
 
-    PORTS: ClassVar[Mapping[str, Port]] = {}
     CHILDREN: ClassVar[tuple[int, int | None]] = (1, None)
 
-    def __init__(
-        self, name: str, ports: Ports, services: Services, children: Sequence[py_trees.behaviour.Behaviour]
-    ) -> None:
-        super().__init__(name, children=list(children))
+    def __init__(self, ports: Ports, context: TreeContext) -> None:
+        py_trees.composites.Composite.__init__(self, context.name, children=list(context.children))
         self.ports = ports
+        self.services = context.services
 
     def conclude(self, status: Status, runs: Any = None) -> None:
         """End a tick.
@@ -188,16 +217,13 @@ class Control(py_trees.composites.Composite):  # type: ignore[misc]
                 child.stop(Status.INVALID)
 
 
-class Decorator(py_trees.decorators.Decorator):  # type: ignore[misc]
-    """A node with one child; see `Node` for the attributes."""
+class Decorator(TreeNode, py_trees.decorators.Decorator):  # type: ignore[misc]
+    """A node with one child; see `TreeNode` for the attributes."""
 
-    PORTS: ClassVar[Mapping[str, Port]] = {}
     CHILDREN: ClassVar[tuple[int, int | None]] = (1, 1)
     status: Status
 
-    def __init__(
-        self, name: str, ports: Ports, services: Services, children: Sequence[py_trees.behaviour.Behaviour]
-    ) -> None:
-        super().__init__(name, children[0])
+    def __init__(self, ports: Ports, context: TreeContext) -> None:
+        py_trees.decorators.Decorator.__init__(self, context.name, context.children[0])
         self.ports = ports
-        self.services = services
+        self.services = context.services

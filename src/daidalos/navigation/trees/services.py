@@ -1,8 +1,13 @@
 """What a tree asks of the robot: time, and tasks that take a while."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
+
+if TYPE_CHECKING:
+    from daidalos.navigation.trees.action_node import ActionNode
 
 
 @dataclass(frozen=True)
@@ -46,13 +51,13 @@ class Services(Protocol):
     def now(self) -> float:
         """Time [s]."""
 
-    def start(self, action: str, goal: Mapping[str, Any]) -> Task:
+    def start(self, node: type[ActionNode], goal: Mapping[str, Any]) -> Task:
         """Start a task.
 
         Parameters
         ----------
-        action : str
-            Name of the node in BehaviorTree.CPP's files: `ComputePathToPose`, `FollowPath`, `Spin`, ...
+        node : type
+            Class of the leaf that asks.
         goal : mapping of str to object
             Its input ports by name. A port that the tree does not set has the node's default.
         """

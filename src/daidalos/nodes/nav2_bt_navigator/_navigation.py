@@ -8,7 +8,7 @@ from py_trees.common import Status
 from rclpy.task import Future
 from rclpy.time import Time
 
-from daidalos.navigation.trees.action.action_node import RECOVERIES
+from daidalos.navigation.trees.action_node import RECOVERIES
 from daidalos.navigation.trees.behavior_tree import BehaviorTree
 from daidalos.navigation.trees.blackboard import Blackboard
 

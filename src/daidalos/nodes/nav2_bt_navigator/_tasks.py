@@ -2,67 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping
 from typing import Any
 
 from rclpy.action import ActionClient
 from rclpy.node import Node
 
+from daidalos.navigation.trees.action_node import ActionNode
 from daidalos.navigation.trees.services import Outcome, Task
 from daidalos.nodes.action_results import error_name
 from daidalos.samples.fields import duration_message
 
 _SUCCEEDED = 4
-
-
-@dataclass(frozen=True)
-class _Action:
-    """An action behind a leaf: its server's name, how a goal is made and what the result gives."""
-
-    server: str
-    goal: Callable[[Any, Mapping[str, Any]], Any]
-    outputs: Callable[[Any], dict[str, Any]] = lambda result: {}
-
-
-def _plan(kind: Any, ports: Mapping[str, Any]) -> Any:
-    goal = kind.Goal(goal=ports["goal"], planner_id=ports.get("planner_id", ""))
-    if ports.get("start") is not None:
-        goal.start, goal.use_start = ports["start"], True
-    return goal
-
-
-def _follow(kind: Any, ports: Mapping[str, Any]) -> Any:
-    names = {name: ports.get(name, "") for name in ("controller_id", "goal_checker_id", "progress_checker_id")}
-    return kind.Goal(path=ports["path"], **names)
-
-
-def _spin(kind: Any, ports: Mapping[str, Any]) -> Any:
-    return kind.Goal(target_yaw=ports["spin_dist"], time_allowance=duration_message(ports["time_allowance"]))
-
-
-def _drive(distance: str, speed: str) -> Callable[[Any, Mapping[str, Any]], Any]:
-    def make(kind: Any, ports: Mapping[str, Any]) -> Any:
-        goal = kind.Goal(speed=ports[speed], time_allowance=duration_message(ports["time_allowance"]))
-        goal.target.x = ports[distance]
-        return goal
-
-    return make
-
-
-def _wait(kind: Any, ports: Mapping[str, Any]) -> Any:
-    return kind.Goal(time=duration_message(ports["wait_duration"]))
-
-
-_ACTIONS = {
-    "ComputePathToPose": _Action("compute_path_to_pose", _plan, lambda result: {"path": result.path}),
-    "FollowPath": _Action("follow_path", _follow),
-    "Spin": _Action("spin", _spin),
-    "BackUp": _Action("backup", _drive("backup_dist", "backup_speed")),
-    "DriveOnHeading": _Action("drive_on_heading", _drive("dist_to_travel", "speed")),
-    "Wait": _Action("wait", _wait),
-}
-_SERVICES = ("ClearEntireCostmap", "ClearCostmapAroundRobot", "ClearCostmapExceptRegion")
 
 
 class GraphServices:
@@ -77,37 +28,42 @@ class GraphServices:
         """Time of the node's clock [s]."""
         return self._node.get_clock().now().nanoseconds * 1e-9
 
-    def start(self, action: str, goal: Mapping[str, Any]) -> Task:
+    def start(self, node: type[ActionNode], goal: Mapping[str, Any]) -> Task:
         """Start what a leaf asks for."""
-        if action in _SERVICES:
-            return self._call(action, goal)
-        kind = _ACTIONS.get(action)
-        if kind is None:
-            return _Failed(f"the leaf {action} is not known to this navigator")
-        client = self._client_of(action, goal.get("server_name") or kind.server)
-        return _ActionTask(client, kind, goal)
+        return self._call(node, goal) if "/srv/" in node.INTERFACE else self._send(node, goal)
 
-    def _client_of(self, action: str, server: str) -> ActionClient:
+    def _send(self, node: type[ActionNode], goal: Mapping[str, Any]) -> Task:
+        from rosidl_runtime_py.utilities import get_action
+
+        server = goal.get("server_name") or node.SERVER
         if server not in self._actions:
-            import nav2_msgs.action
+            self._actions[server] = ActionClient(self._node, get_action(node.INTERFACE), server)
+        return _ActionTask(self._actions[server], node, server, goal)
 
-            self._actions[server] = ActionClient(self._node, getattr(nav2_msgs.action, action), server)
-        return self._actions[server]
+    def _call(self, node: type[ActionNode], goal: Mapping[str, Any]) -> Task:
+        from rosidl_runtime_py.utilities import get_service
 
-    def _call(self, service: str, ports: Mapping[str, Any]) -> Task:
-        import nav2_msgs.srv
-
-        kind = getattr(nav2_msgs.srv, service)
-        name = ports["service_name"]
+        kind = get_service(node.INTERFACE)
+        name = goal["service_name"]
         if name not in self._clients:
             self._clients[name] = self._node.create_client(kind, name)
         client = self._clients[name]
         if not client.service_is_ready():
             return _Failed(f"the service {name} is not there")
-        request = kind.Request()
-        if "reset_distance" in ports:
-            request.reset_distance = ports["reset_distance"]
-        return _ServiceTask(client.call_async(request))
+        return _ServiceTask(client.call_async(_filled(kind.Request(), node.goal(goal))))
+
+
+def _filled(message: Any, fields: Mapping[str, Any]) -> Any:
+    """Set the fields that a message has, such as ``target.x``, and return it; durations are given in seconds."""
+    for path, value in fields.items():
+        *parents, name = path.split(".")
+        owner = message
+        for parent in parents:
+            owner = getattr(owner, parent, None)
+        if hasattr(owner, name):
+            is_duration = hasattr(getattr(owner, name), "nanosec") and isinstance(value, int | float)
+            setattr(owner, name, duration_message(value) if is_duration else value)
+    return message
 
 
 class _Failed:
@@ -148,22 +104,23 @@ class _ServiceTask:
 class _ActionTask:
     """A goal of an action; another goal takes its place when the leaf's inputs change."""
 
-    def __init__(self, client: ActionClient, kind: _Action, ports: Mapping[str, Any]) -> None:
+    def __init__(self, client: ActionClient, node: type[ActionNode], server: str, inputs: Mapping[str, Any]) -> None:
         self._client = client
-        self._kind = kind
+        self._node = node
+        self._server = server
         self._handle: Any = None
         self._result: Any = None
         self._failure = ""
         self._generation = 0
-        self._send(ports)
+        self._send(inputs)
 
-    def _send(self, ports: Mapping[str, Any]) -> None:
+    def _send(self, inputs: Mapping[str, Any]) -> None:
         self._generation += 1
         if not self._client.server_is_ready():
-            self._failure = f"the action {self._kind.server} is not served"
+            self._failure = f"the action {self._server} is not served"
             return
         generation = self._generation
-        goal = self._kind.goal(self._client.action_type, ports)
+        goal = _filled(self._client.action_type.Goal(), self._node.goal(inputs))
         future = self._client.send_goal_async(goal)
         future.add_done_callback(lambda sent: self._on_sent(sent.result(), generation))
 
@@ -172,7 +129,7 @@ class _ActionTask:
             handle.cancel_goal_async()  # halted, or replaced, before the server answered
             return
         if not handle.accepted:
-            self._failure = f"the goal was rejected by {self._kind.server}"
+            self._failure = f"the goal was rejected by {self._server}"
             return
         self._handle = handle
         handle.get_result_async().add_done_callback(lambda answer: self._on_result(answer.result(), generation))
@@ -189,7 +146,7 @@ class _ActionTask:
             return None
         result = self._result.result
         if self._result.status == _SUCCEEDED:
-            return Outcome(True, self._kind.outputs(result))
+            return Outcome(True, self._node.outputs(result))
         code = error_name(result) if hasattr(result, "error_code") else "UNKNOWN"
         return Outcome(False, error_code=code, error_msg=getattr(result, "error_msg", ""))
 

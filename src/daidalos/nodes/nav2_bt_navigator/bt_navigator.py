@@ -16,7 +16,7 @@ from tf2_ros import Buffer, TransformException, TransformListener
 
 from daidalos.common.parameters import Parameters, parameter
 from daidalos.navigation.paths import path_length
-from daidalos.navigation.trees.action.action_node import RECOVERIES
+from daidalos.navigation.trees.action_node import RECOVERIES
 from daidalos.navigation.trees.behavior_tree import DEFAULT_TREE, BehaviorTree
 from daidalos.navigation.trees.blackboard import Blackboard
 from daidalos.nodes.conversions import path_array, pose2_of_transform, pose_stamped

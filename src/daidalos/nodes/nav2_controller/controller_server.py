@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -11,14 +11,16 @@ from rclpy.lifecycle import LifecycleState, TransitionCallbackReturn
 from rclpy.time import Time
 from tf2_ros import TransformException
 
+from daidalos.common.extensions import Kind
 from daidalos.navigation.controllers.follow_path import FollowPath
 from daidalos.navigation.errors import NavigationError
+from daidalos.navigation.extensions import CONTROLLERS, GOAL_CHECKERS, PROGRESS_CHECKERS
 from daidalos.nodes.action_results import TransformFailed
 from daidalos.nodes.conversions import path_array, path_message, pose2_of_transform, twist_message
 from daidalos.nodes.cycles import Cycle
 from daidalos.nodes.managed import ContainedNode, ManagedNode
-from daidalos.nodes.nav2_controller._plugins import PluginMaker
 from daidalos.nodes.nav2_costmap_2d._costmap_node import CostmapNode
+from daidalos.nodes.navigation_extensions import ExtensionMaker
 from daidalos.nodes.runner import run
 
 
@@ -65,14 +67,15 @@ class ControllerServer(ManagedNode):
         from nav2_msgs.action import FollowPath as FollowPathAction
         from nav_msgs.msg import Odometry, Path
 
-        maker = PluginMaker(self, self._costmap.footprint, self._frequency)
-        for group, default in (
-            ("controller_plugins", "nav2_mppi_controller::MPPIController"),
-            ("goal_checker_plugins", "nav2_controller::SimpleGoalChecker"),
-            ("progress_checker_plugins", "nav2_controller::SimpleProgressChecker"),
-        ):
+        maker = ExtensionMaker(self, replace(self._costmap.extension_context, frequency=self._frequency))
+        kinds: tuple[tuple[str, Kind[Any], str], ...] = (
+            ("controller_plugins", CONTROLLERS, "nav2_mppi_controller::MPPIController"),
+            ("goal_checker_plugins", GOAL_CHECKERS, "nav2_controller::SimpleGoalChecker"),
+            ("progress_checker_plugins", PROGRESS_CHECKERS, "nav2_controller::SimpleProgressChecker"),
+        )
+        for group, kind, default in kinds:
             names = self.get_parameter(group).value
-            self._plugins[group] = {name: maker.make(name, default) for name in names}
+            self._plugins[group] = {name: maker.make(kind, name, default) for name in names}
         self._command = self.create_publisher(TwistStamped if self._stamped else Twist, "cmd_vel", 1)
         self._local_plan = self.create_publisher(Path, "local_plan", 1)
         self.create_subscription(Odometry, self.get_parameter("odom_topic").value, self._on_odometry, 10)

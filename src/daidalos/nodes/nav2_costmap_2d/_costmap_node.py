@@ -13,20 +13,13 @@ from rclpy.time import Time
 from tf2_ros import TransformException, TransformListener
 
 from daidalos.mapping.grid import OccupancyGrid
+from daidalos.mapping.scan import LaserScanData
+from daidalos.navigation.contracts import Input, Layer, NavigationContext
 from daidalos.navigation.costmap.costmap import Costmap
 from daidalos.navigation.costmap.footprint import Footprint
 from daidalos.navigation.costmap.layered_costmap import CostmapParameters, LayeredCostmap
-from daidalos.navigation.costmap.layers.inflation_layer import InflationLayer
-from daidalos.navigation.costmap.layers.layer import Layer
-from daidalos.navigation.costmap.layers.obstacle_layer import (
-    Observation,
-    ObservationSource,
-    ObstacleLayer,
-    ObstacleLayerParameters,
-)
-from daidalos.navigation.costmap.layers.static_layer import StaticLayer
 from daidalos.navigation.costmap.occupancy import to_occupancy
-from daidalos.navigation.plugins import find_plugin
+from daidalos.navigation.extensions import COSTMAP_LAYERS
 from daidalos.nodes.action_results import TransformFailed
 from daidalos.nodes.conversions import (
     grid_array,
@@ -38,7 +31,8 @@ from daidalos.nodes.conversions import (
 from daidalos.nodes.cycles import wait_until
 from daidalos.nodes.managed import ManagedNode
 from daidalos.nodes.nav2_costmap_2d._costmap_messages import costmap_message, footprint_message
-from daidalos.nodes.parameters import declare, declare_plugin
+from daidalos.nodes.navigation_extensions import ExtensionMaker
+from daidalos.nodes.parameters import declare
 from daidalos.nodes.transforms import BlockingBuffer, SensorPoses
 from daidalos.nodes.warming import warm_up_in_background
 from daidalos.samples.fields import seconds
@@ -171,50 +165,38 @@ class CostmapNode(ManagedNode):
 
     # Layers.
 
+    @property
+    def extension_context(self) -> NavigationContext:
+        """What layers, planners and controllers of the costmap may use."""
+        return NavigationContext(
+            footprint=self.footprint,
+            frequency=self.get_parameter("update_frequency").value,
+            global_frame=self.global_frame,
+            base_frame=self.base_frame,
+            track_unknown_space=self._parameters_of_grid.track_unknown_space,
+        )
+
     def _make_layer(self, name: str) -> Layer:
-        kind = self.declare_parameter(f"{name}.plugin", _DEFAULT_PLUGINS.get(name, "")).value
-        plugin = find_plugin(kind)
-        if issubclass(plugin.made_by, ObstacleLayer):
-            return self._make_obstacle_layer(name, plugin.made_by)
-        parameters = declare_plugin(self, plugin, name)
-        if issubclass(plugin.made_by, StaticLayer):
-            return self._make_static_layer(plugin.made_by(parameters))
-        layer: Layer
-        if issubclass(plugin.made_by, InflationLayer):
-            layer = plugin.made_by(self.footprint.inscribed_radius, parameters)
-        else:
-            layer = plugin.made_by(parameters)
+        maker = ExtensionMaker(self, self.extension_context)
+        layer = maker.make(COSTMAP_LAYERS, name, _DEFAULT_PLUGINS.get(name, ""))
+        for one in layer.inputs:
+            {OccupancyGrid: self._listen_to_map, LaserScanData: self._listen_to_scans}[one.type](one)
         return layer
 
-    def _make_static_layer(self, layer: StaticLayer) -> StaticLayer:
+    def _listen_to_map(self, listened: Input) -> None:
         from nav_msgs.msg import OccupancyGrid as GridMessage
-
-        topic = layer.parameters.map_topic or self.get_parameter("map_topic").value
 
         def take(message: Any) -> None:
             info = message.info
             x, y, yaw = (float(value) for value in pose2_of(info.origin))
             grid = OccupancyGrid(grid_array(message), info.resolution, (x, y, yaw))
             with self.lock:
-                layer.set_map(grid)
+                listened.take(grid)
 
-        self.create_subscription(GridMessage, topic, take, _LATCHED)
-        return layer
+        self.create_subscription(GridMessage, listened.topic or self.get_parameter("map_topic").value, take, _LATCHED)
 
-    def _make_obstacle_layer(self, name: str, kind: type[ObstacleLayer]) -> ObstacleLayer:
-        parameters = declare(self, ObstacleLayerParameters, name)
-        unknown = self._parameters_of_grid.track_unknown_space
-        layer = kind(self.footprint, parameters, track_unknown_space=unknown)
-        for source, settings in parameters.sources.items():
-            self._listen(source, layer, settings)
-        return layer
-
-    def _listen(self, source: str, layer: ObstacleLayer, settings: ObservationSource) -> None:
+    def _listen_to_scans(self, listened: Input) -> None:
         from sensor_msgs.msg import LaserScan
-
-        topic = settings.topic or source
-        if not topic.startswith("/"):
-            topic = f"/{topic}"
 
         async def take(scan: Any) -> None:
             sensor_pose = self._sensor_poses.find(scan.header.frame_id)
@@ -224,14 +206,11 @@ class CostmapNode(ManagedNode):
             found = await self.buffer.transform_at(self.global_frame, self.base_frame, stamp)
             if found is None:
                 return
-            base = pose2_of_transform(found.transform)
-            observation = Observation.from_scan(
-                scan_data(scan, sensor_pose), base, seconds(stamp), inf_is_valid=settings.inf_is_valid
-            )
             with self.lock:
-                layer.add_observation(observation, source)
+                listened.take(scan_data(scan, sensor_pose), pose2_of_transform(found.transform), seconds(stamp))
 
         # A scan waits for its transform; updates and services do not wait with it.
+        topic = f"/{listened.topic.removeprefix('/')}"
         group = MutuallyExclusiveCallbackGroup()
         self.create_subscription(LaserScan, topic, take, qos_profile_sensor_data, callback_group=group)
 
@@ -271,7 +250,7 @@ class CostmapNode(ManagedNode):
 
     def _has_maps(self) -> bool:
         layers = self.layered.layers if self.layered is not None else []
-        return all(layer.extent is not None for layer in layers if isinstance(layer, StaticLayer))
+        return all(layer.is_current for layer in layers)
 
     def _missing_inputs(self) -> str:
         if self.robot_pose() is None:

@@ -10,14 +10,14 @@ from rclpy.time import Time
 from tf2_ros import TransformException
 
 from daidalos.common.pose2 import compose
+from daidalos.navigation.contracts import GlobalPlanner
 from daidalos.navigation.errors import NavigationError
-from daidalos.navigation.planners.planner import GlobalPlanner
-from daidalos.navigation.plugins import find_plugin
+from daidalos.navigation.extensions import PLANNERS
 from daidalos.nodes.action_results import TransformFailed
 from daidalos.nodes.conversions import path_message, pose2_of, pose2_of_transform
 from daidalos.nodes.managed import ContainedNode, ManagedNode
 from daidalos.nodes.nav2_costmap_2d._costmap_node import CostmapNode
-from daidalos.nodes.parameters import declare_plugin
+from daidalos.nodes.navigation_extensions import ExtensionMaker
 from daidalos.nodes.runner import run
 from daidalos.samples.fields import time_message
 
@@ -51,9 +51,8 @@ class PlannerServer(ManagedNode):
         self.serve_action(ComputePathToPose, "compute_path_to_pose", self._compute_path)
 
     def _make_planner(self, name: str) -> GlobalPlanner:
-        plugin = find_plugin(self.declare_parameter(f"{name}.plugin", "nav2_navfn_planner::NavfnPlanner").value)
-        planner: GlobalPlanner = plugin.made_by(declare_plugin(self, plugin, name))
-        return planner
+        maker = ExtensionMaker(self, self._costmap.extension_context)
+        return maker.make(PLANNERS, name, "nav2_navfn_planner::NavfnPlanner")
 
     async def _compute_path(self, goal_handle: Any) -> Any:
         from nav2_msgs.action import ComputePathToPose

@@ -9,7 +9,9 @@ from hypothesis import strategies as st
 from scipy.ndimage import distance_transform_edt
 
 from daidalos.common.parameters import ParameterError
+from daidalos.navigation.contracts import NavigationContext
 from daidalos.navigation.costmap.costmap import Costmap, Window
+from daidalos.navigation.costmap.footprint import Footprint
 from daidalos.navigation.costmap.layers.inflation_layer import InflationLayer, InflationLayerParameters
 
 
@@ -39,7 +41,9 @@ def twin(costs, resolution, inscribed, radius, factor):
 def test_costs_follow_the_exact_distance(seed, share, shape, radius, factor):
     generator = np.random.default_rng(seed)
     costs = np.where(generator.random(shape) < share, 254, generator.integers(0, 40, shape)).astype(np.uint8)
-    layer = InflationLayer(0.22, InflationLayerParameters(radius, factor))
+    layer = InflationLayer(
+        InflationLayerParameters(radius, factor), NavigationContext(footprint=Footprint.circle(0.22))
+    )
     costmap = Costmap(costs.copy(), 0.05, (0.0, 0.0))
     layer.update_costs(costmap, costmap.window)
     expected = twin(costs, 0.05, 0.22, radius, factor) if radius > 0.0 else costs
@@ -51,7 +55,7 @@ def test_costs_follow_the_exact_distance(seed, share, shape, radius, factor):
 def test_a_window_gets_what_the_whole_gets(seed, left, bottom):
     generator = np.random.default_rng(seed)
     costs = (generator.random((40, 40)) < 0.01).astype(np.uint8) * 254
-    layer = InflationLayer(0.2, InflationLayerParameters(0.5, 3.0))
+    layer = InflationLayer(InflationLayerParameters(0.5, 3.0), NavigationContext(footprint=Footprint.circle(0.2)))
     whole, part = (Costmap(costs.copy(), 0.05, (0.0, 0.0)) for _ in range(2))
     layer.update_costs(whole, whole.window)
     window = Window(left, bottom, min(left + 10, 40), min(bottom + 10, 40))
@@ -65,9 +69,13 @@ def test_unknown_is_inflated_only_within_contact_unless_asked_for():
     costs = np.full((1, 12), 255, dtype=np.uint8)
     costs[0, 0] = 254
     plain, all_of_it = (Costmap(costs.copy(), 0.1, (0.0, 0.0)) for _ in range(2))
-    InflationLayer(0.2, InflationLayerParameters(0.5, 3.0)).update_costs(plain, plain.window)
+    InflationLayer(InflationLayerParameters(0.5, 3.0), NavigationContext(footprint=Footprint.circle(0.2))).update_costs(
+        plain, plain.window
+    )
     assert plain.costs[0].tolist() == [254, 253, 253] + [255] * 9
-    layer = InflationLayer(0.2, InflationLayerParameters(0.5, 3.0, inflate_unknown=True))
+    layer = InflationLayer(
+        InflationLayerParameters(0.5, 3.0, inflate_unknown=True), NavigationContext(footprint=Footprint.circle(0.2))
+    )
     layer.update_costs(all_of_it, all_of_it.window)
     assert all_of_it.costs[0, 3] == 186
     assert all_of_it.costs[0, 6] == 255
@@ -78,13 +86,15 @@ def test_around_unknown():
     costs[0, 0] = 255
     costmap = Costmap(costs, 0.1, (0.0, 0.0))
     parameters = InflationLayerParameters(0.3, 3.0, inflate_around_unknown=True)
-    InflationLayer(0.15, parameters).update_costs(costmap, costmap.window)
+    InflationLayer(parameters, NavigationContext(footprint=Footprint.circle(0.15))).update_costs(
+        costmap, costmap.window
+    )
     assert costmap.costs[0, 1] == 253
     assert 0 < costmap.costs[0, 3] < 253
 
 
 def test_cost_at_a_distance():
-    layer = InflationLayer(0.2, InflationLayerParameters(0.5, 3.0))
+    layer = InflationLayer(InflationLayerParameters(0.5, 3.0), NavigationContext(footprint=Footprint.circle(0.2)))
     assert [layer.cost_at(d) for d in (0.0, 0.2, 0.3, 0.6)] == [253, 253, 186, 0]
 
 

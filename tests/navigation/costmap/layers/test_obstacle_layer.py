@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from shapely import LineString, box
 
 from daidalos.mapping.scan import LaserScanData
+from daidalos.navigation.contracts import NavigationContext
 from daidalos.navigation.costmap.costmap import Bounds, Costmap
 from daidalos.navigation.costmap.footprint import Footprint
 from daidalos.navigation.costmap.layers.obstacle_layer import (
@@ -27,7 +28,7 @@ def layer_of(**source):
     parameters = ObstacleLayerParameters(
         sources={"scan": ObservationSource(**source)}, footprint_clearing_enabled=False
     )
-    return ObstacleLayer(ROBOT, parameters)
+    return ObstacleLayer(parameters, NavigationContext(footprint=ROBOT))
 
 
 def see(layer, costmap, ends, hits=True, stamp=0.0, now=None):
@@ -114,7 +115,7 @@ def test_readings_persist_as_long_as_told(ground):
 
 def test_the_cells_under_the_robot_are_free():
     ground = Costmap.filled(40, 40, 0.05, (0.0, 0.0), 254)
-    layer = ObstacleLayer(Footprint.circle(0.3))
+    layer = ObstacleLayer(None, NavigationContext(footprint=Footprint.circle(0.3)))
     costmap = refresh(layer, ground, 0.0)
     assert costmap.cost_at(1.0, 1.0) == costmap.cost_at(1.2, 1.0) == 0
     assert costmap.cost_at(1.4, 1.0) == 254
@@ -141,7 +142,10 @@ def test_clearing_inside_and_outside_of_a_window(ground):
 def test_the_higher_cost_wins_unless_told_to_overwrite(ground):
     ground.costs[:] = 100
     assert see(layer_of(), ground, [2.05, 1.05]).cost_at(1.55, 1.05) == 100
-    overwriting = ObstacleLayer(ROBOT, ObstacleLayerParameters(combination_method=0, footprint_clearing_enabled=False))
+    overwriting = ObstacleLayer(
+        ObstacleLayerParameters(combination_method=0, footprint_clearing_enabled=False),
+        NavigationContext(footprint=ROBOT),
+    )
     assert see(overwriting, ground, [2.05, 1.05]).cost_at(1.55, 1.05) == 0
 
 

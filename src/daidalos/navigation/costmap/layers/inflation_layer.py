@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from daidalos.common.kernels import compiled
 from daidalos.common.parameters import Parameters, parameter
+from daidalos.navigation.contracts import Layer, NavigationContext
 from daidalos.navigation.costmap.costmap import (
     FREE_SPACE,
     INSCRIBED_INFLATED_OBSTACLE,
@@ -19,7 +20,6 @@ from daidalos.navigation.costmap.costmap import (
     Costs,
     Window,
 )
-from daidalos.navigation.costmap.layers.layer import Layer
 
 Array = NDArray[np.float64]
 
@@ -42,20 +42,17 @@ class InflationLayer(Layer):
     A cell at distance d of an obstacle costs 253 up to the inscribed radius r, then `252 exp(-k (d - r))`
     with k the cost scaling factor, up to the inflation radius. Distances are exact between the centres of
     cells.
-
-    Parameters
-    ----------
-    inscribed_radius : float
-        Largest circle [m] around the base's origin inside of the robot.
-    parameters : InflationLayerParameters, optional
-        Reach and slope.
     """
 
+    names = ("nav2_costmap_2d::InflationLayer",)
     Parameters = InflationLayerParameters
+    parameters: InflationLayerParameters
 
-    def __init__(self, inscribed_radius: float, parameters: InflationLayerParameters | None = None) -> None:
-        self.inscribed_radius = inscribed_radius
-        self.parameters = parameters or InflationLayerParameters()
+    def __init__(
+        self, parameters: InflationLayerParameters | None = None, context: NavigationContext | None = None
+    ) -> None:
+        super().__init__(parameters, context)
+        self.inscribed_radius = self.context.footprint.inscribed_radius
         self._table: tuple[float, Costs] | None = None
 
     def cost_at(self, distance: float) -> int:

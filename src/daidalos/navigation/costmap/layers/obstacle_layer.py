@@ -3,6 +3,7 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +12,7 @@ from daidalos.common.kernels import compiled
 from daidalos.common.parameters import Parameters, parameter, per_name
 from daidalos.common.pose2 import compose
 from daidalos.mapping.scan import LaserScanData
+from daidalos.navigation.contracts import Input, Layer, NavigationContext
 from daidalos.navigation.costmap.costmap import (
     FREE_SPACE,
     LETHAL_OBSTACLE,
@@ -20,8 +22,7 @@ from daidalos.navigation.costmap.costmap import (
     Costs,
     Window,
 )
-from daidalos.navigation.costmap.footprint import Footprint, fill_polygon
-from daidalos.navigation.costmap.layers.layer import Layer
+from daidalos.navigation.costmap.footprint import fill_polygon
 
 Array = NDArray[np.float64]
 
@@ -31,7 +32,7 @@ class ObservationSource(Parameters):
     """Parameters of one sensor, by their Nav2 names.
 
     `inf_is_valid` is on by default, other than in Nav2: a ray that met nothing shows that its way is free,
-    and obstacles that have gone stay in the costmap for ever without it.
+    and obstacles that have gone stay in the costmap for ever without it. `topic` is the source's name where empty.
     """
 
     obstacle_max_range: float = parameter(2.5, "Range up to which obstacles are marked.", unit="m", minimum=0.0)
@@ -109,32 +110,23 @@ class Observation:
 class ObstacleLayer(Layer):
     """What sensors saw, kept until a ray passes through it.
 
-    Parameters
-    ----------
-    footprint : Footprint
-        The robot; the cells that it stands on are free.
-    parameters : ObstacleLayerParameters, optional
-        Sensors and how they are used.
-    track_unknown_space : bool
-        Whether cells that no ray has touched say nothing, rather than free.
+    The cells that the robot stands on are free.
     """
 
+    names = ("nav2_costmap_2d::ObstacleLayer",)
     clearable = True
-
     Parameters = ObstacleLayerParameters
+    parameters: ObstacleLayerParameters
 
     def __init__(
-        self,
-        footprint: Footprint,
-        parameters: ObstacleLayerParameters | None = None,
-        *,
-        track_unknown_space: bool = True,
+        self, parameters: ObstacleLayerParameters | None = None, context: NavigationContext | None = None
     ) -> None:
-        self.footprint = footprint
-        self.parameters = parameters or ObstacleLayerParameters()
-        self.default = NO_INFORMATION if track_unknown_space else FREE_SPACE
+        super().__init__(parameters, context)
+        names = self.parameters.observation_sources.split()
+        self.sources = self.parameters.sources or {name: ObservationSource() for name in names}
+        self.default = NO_INFORMATION if self.context.track_unknown_space else FREE_SPACE
         self._seen: Costmap | None = None
-        self._buffers: dict[str, list[Observation]] = {name: [] for name in self.parameters.sources}
+        self._buffers: dict[str, list[Observation]] = {name: [] for name in self.sources}
         self._under_robot: Array | None = None
 
     def add_observation(self, observation: Observation, source: str = "scan") -> None:
@@ -146,6 +138,19 @@ class ObstacleLayer(Layer):
             There is no source of that name.
         """
         self._buffers[source].append(observation)
+
+    @property
+    def inputs(self) -> tuple[Input, ...]:
+        """See `Layer.inputs`."""
+        return tuple(
+            Input(source.topic or name, LaserScanData, partial(self.add_scan, name))
+            for name, source in self.sources.items()
+        )
+
+    def add_scan(self, source: str, scan: LaserScanData, base_pose: Array, stamp: float) -> None:
+        """Take a scan of one of the sources; see `Observation.from_scan`."""
+        inf_is_valid = self.sources[source].inf_is_valid
+        self.add_observation(Observation.from_scan(scan, base_pose, stamp, inf_is_valid=inf_is_valid), source)
 
     def match_size(self, costmap: Costmap) -> None:
         """Keep what was seen where the costmap still covers it."""
@@ -159,9 +164,7 @@ class ObstacleLayer(Layer):
         if self._seen is None:
             return bounds
         readings = [
-            (self.parameters.sources[name], observation)
-            for name, buffer in self._buffers.items()
-            for observation in buffer
+            (self.sources[name], observation) for name, buffer in self._buffers.items() for observation in buffer
         ]
         for source, observation in readings:
             if source.clearing:
@@ -170,10 +173,10 @@ class ObstacleLayer(Layer):
             if source.marking:
                 bounds = bounds.including(_mark(self._seen, observation, source))
         for name, buffer in self._buffers.items():
-            oldest = now - self.parameters.sources[name].observation_persistence
+            oldest = now - self.sources[name].observation_persistence
             buffer[:] = [kept for kept in buffer if kept.stamp > oldest]
         if self.parameters.footprint_clearing_enabled:
-            self._under_robot = self.footprint.at(robot_pose)
+            self._under_robot = self.context.footprint.at(robot_pose)
             fill_polygon(self._seen, self._under_robot, FREE_SPACE)
             bounds = bounds.including_points(self._under_robot)
         return bounds

@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 
 from daidalos.common.parameters import Parameters, parameter
 from daidalos.mapping.grid import OccupancyGrid
+from daidalos.navigation.contracts import Input, Layer, NavigationContext
 from daidalos.navigation.costmap.costmap import EVERYWHERE, Bounds, Costmap, CostmapError, Window
-from daidalos.navigation.costmap.layers.layer import Layer
 from daidalos.navigation.costmap.occupancy import from_occupancy
 
 Array = NDArray[np.float64]
@@ -30,12 +30,26 @@ class StaticLayerParameters(Parameters):
 class StaticLayer(Layer):
     """Obstacles of a map; gives the costmap the map's size and place."""
 
+    names = ("nav2_costmap_2d::StaticLayer",)
     Parameters = StaticLayerParameters
+    parameters: StaticLayerParameters
 
-    def __init__(self, parameters: StaticLayerParameters | None = None) -> None:
-        self.parameters = parameters or StaticLayerParameters()
+    def __init__(
+        self, parameters: StaticLayerParameters | None = None, context: NavigationContext | None = None
+    ) -> None:
+        super().__init__(parameters, context)
         self._map: Costmap | None = None
         self._changed = Bounds()
+
+    @property
+    def inputs(self) -> tuple[Input, ...]:
+        """See `Layer.inputs`."""
+        return (Input(self.parameters.map_topic, OccupancyGrid, self.set_map),)
+
+    @property
+    def is_current(self) -> bool:
+        """Return whether a map has come."""
+        return self._map is not None
 
     def set_map(self, grid: OccupancyGrid) -> None:
         """Take a map; only what differs from the last one is put together anew.

@@ -1,14 +1,18 @@
 """Drive backwards for a distance."""
 
-from typing import ClassVar
+from collections.abc import Mapping
+from typing import Any, ClassVar
 
-from daidalos.navigation.trees.action.action_node import ActionNode, with_server
+from daidalos.navigation.trees.action_node import ActionNode, with_server
 from daidalos.navigation.trees.node import Port, flag
 
 
 class BackUp(ActionNode):
     """Succeeds when the robot has driven back by `backup_dist` [m]."""
 
+    names = ("BackUp",)
+    INTERFACE = "nav2_msgs/action/BackUp"
+    SERVER = "backup"
     PORTS: ClassVar[dict[str, Port]] = with_server(
         {
             "backup_dist": Port(float, 0.15),
@@ -18,3 +22,8 @@ class BackUp(ActionNode):
         }
     )
     RECOVERY: ClassVar[bool] = True
+
+    @classmethod
+    def goal(cls, inputs: Mapping[str, Any]) -> dict[str, Any]:
+        """See `ActionNode.goal`."""
+        return {**inputs, "target.x": inputs["backup_dist"], "speed": inputs["backup_speed"]}

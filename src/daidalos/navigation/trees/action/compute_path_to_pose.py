@@ -1,14 +1,18 @@
 """Plan a path to a pose."""
 
-from typing import ClassVar
+from collections.abc import Mapping
+from typing import Any, ClassVar
 
-from daidalos.navigation.trees.action.action_node import ActionNode, with_server
+from daidalos.navigation.trees.action_node import ActionNode, with_server
 from daidalos.navigation.trees.node import Port, entry
 
 
 class ComputePathToPose(ActionNode):
     """Succeeds with a path."""
 
+    names = ("ComputePathToPose",)
+    INTERFACE = "nav2_msgs/action/ComputePathToPose"
+    SERVER = "compute_path_to_pose"
     PORTS: ClassVar[dict[str, Port]] = with_server(
         {
             "goal": Port(entry),
@@ -17,3 +21,8 @@ class ComputePathToPose(ActionNode):
             "path": Port(entry, output=True),
         }
     )
+
+    @classmethod
+    def goal(cls, inputs: Mapping[str, Any]) -> dict[str, Any]:
+        """See `ActionNode.goal`."""
+        return {**inputs, "use_start": "start" in inputs}

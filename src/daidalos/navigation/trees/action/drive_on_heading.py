@@ -1,14 +1,18 @@
 """Drive straight for a distance."""
 
-from typing import ClassVar
+from collections.abc import Mapping
+from typing import Any, ClassVar
 
-from daidalos.navigation.trees.action.action_node import ActionNode, with_server
+from daidalos.navigation.trees.action_node import ActionNode, with_server
 from daidalos.navigation.trees.node import Port, flag
 
 
 class DriveOnHeading(ActionNode):
     """Succeeds when the robot has driven `dist_to_travel` [m]."""
 
+    names = ("DriveOnHeading",)
+    INTERFACE = "nav2_msgs/action/DriveOnHeading"
+    SERVER = "drive_on_heading"
     PORTS: ClassVar[dict[str, Port]] = with_server(
         {
             "dist_to_travel": Port(float, 0.15),
@@ -17,3 +21,8 @@ class DriveOnHeading(ActionNode):
             "disable_collision_checks": Port(flag, False),
         }
     )
+
+    @classmethod
+    def goal(cls, inputs: Mapping[str, Any]) -> dict[str, Any]:
+        """See `ActionNode.goal`."""
+        return {**inputs, "target.x": inputs["dist_to_travel"]}

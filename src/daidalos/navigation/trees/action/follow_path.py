@@ -2,13 +2,16 @@
 
 from typing import ClassVar
 
-from daidalos.navigation.trees.action.action_node import ActionNode, with_server
+from daidalos.navigation.trees.action_node import ActionNode, with_server
 from daidalos.navigation.trees.node import Port, entry
 
 
 class FollowPath(ActionNode):
     """Succeeds at the goal; a new path is taken up on the way."""
 
+    names = ("FollowPath",)
+    INTERFACE = "nav2_msgs/action/FollowPath"
+    SERVER = "follow_path"
     PORTS: ClassVar[dict[str, Port]] = with_server(
         {
             "path": Port(entry),

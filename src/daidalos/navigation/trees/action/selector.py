@@ -10,6 +10,7 @@ from daidalos.navigation.trees.node import Node, Port
 class PlannerSelector(Node):
     """Writes the planner that was chosen last, or the default."""
 
+    names = ("PlannerSelector",)
     PORTS: ClassVar[dict[str, Port]] = {
         "default_planner": Port(str),
         "topic_name": Port(str, "planner_selector"),
@@ -25,6 +26,7 @@ class PlannerSelector(Node):
 class ControllerSelector(Node):
     """Writes the controller that was chosen last, or the default."""
 
+    names = ("ControllerSelector",)
     PORTS: ClassVar[dict[str, Port]] = {
         "default_controller": Port(str),
         "topic_name": Port(str, "controller_selector"),

@@ -1,14 +1,18 @@
 """Smooth a path."""
 
-from typing import ClassVar
+from collections.abc import Mapping
+from typing import Any, ClassVar
 
-from daidalos.navigation.trees.action.action_node import ActionNode, with_server
+from daidalos.navigation.trees.action_node import ActionNode, with_server
 from daidalos.navigation.trees.node import Port, entry, flag
 
 
 class SmoothPath(ActionNode):
     """Succeeds with a smoother path."""
 
+    names = ("SmoothPath",)
+    INTERFACE = "nav2_msgs/action/SmoothPath"
+    SERVER = "smooth_path"
     PORTS: ClassVar[dict[str, Port]] = with_server(
         {
             "unsmoothed_path": Port(entry),
@@ -20,3 +24,13 @@ class SmoothPath(ActionNode):
             "was_completed": Port(flag, output=True),
         }
     )
+
+    @classmethod
+    def goal(cls, inputs: Mapping[str, Any]) -> dict[str, Any]:
+        """See `ActionNode.goal`."""
+        return {**inputs, "path": inputs["unsmoothed_path"]}
+
+    @classmethod
+    def outputs(cls, result: Any) -> dict[str, Any]:
+        """See `ActionNode.outputs`."""
+        return {**super().outputs(result), "smoothed_path": result.path}

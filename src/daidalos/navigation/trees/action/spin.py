@@ -1,14 +1,18 @@
 """Turn on the spot."""
 
-from typing import ClassVar
+from collections.abc import Mapping
+from typing import Any, ClassVar
 
-from daidalos.navigation.trees.action.action_node import ActionNode, with_server
+from daidalos.navigation.trees.action_node import ActionNode, with_server
 from daidalos.navigation.trees.node import Port, flag
 
 
 class Spin(ActionNode):
     """Succeeds when the robot has turned by `spin_dist` [rad]."""
 
+    names = ("Spin",)
+    INTERFACE = "nav2_msgs/action/Spin"
+    SERVER = "spin"
     PORTS: ClassVar[dict[str, Port]] = with_server(
         {
             "spin_dist": Port(float, 1.57),
@@ -17,3 +21,8 @@ class Spin(ActionNode):
             "disable_collision_checks": Port(flag, False),
         }
     )
+
+    @classmethod
+    def goal(cls, inputs: Mapping[str, Any]) -> dict[str, Any]:
+        """See `ActionNode.goal`."""
+        return {**inputs, "target_yaw": inputs["spin_dist"]}

@@ -1,13 +1,22 @@
 """Stand still for a while."""
 
-from typing import ClassVar
+from collections.abc import Mapping
+from typing import Any, ClassVar
 
-from daidalos.navigation.trees.action.action_node import ActionNode, with_server
+from daidalos.navigation.trees.action_node import ActionNode, with_server
 from daidalos.navigation.trees.node import Port
 
 
 class Wait(ActionNode):
     """Succeeds after `wait_duration` [s]."""
 
+    names = ("Wait",)
+    INTERFACE = "nav2_msgs/action/Wait"
+    SERVER = "wait"
     PORTS: ClassVar[dict[str, Port]] = with_server({"wait_duration": Port(float, 1.0)})
     RECOVERY: ClassVar[bool] = True
+
+    @classmethod
+    def goal(cls, inputs: Mapping[str, Any]) -> dict[str, Any]:
+        """See `ActionNode.goal`."""
+        return {**inputs, "time": inputs["wait_duration"]}

@@ -1,22 +1,21 @@
 """Whether there is another goal than before."""
 
-from collections.abc import Sequence
 from typing import Any, ClassVar
 
 from py_trees.common import Status
 
-from daidalos.navigation.trees.action.action_node import differs
-from daidalos.navigation.trees.node import Node, Port, Ports, entry
-from daidalos.navigation.trees.services import Services
+from daidalos.navigation.trees.action_node import differs
+from daidalos.navigation.trees.node import Node, Port, Ports, TreeContext, entry
 
 
 class GoalUpdated(Node):
     """Succeeds when `goal` on the blackboard is not the one that was there when the node was first ticked."""
 
+    names = ("GoalUpdated",)
     PORTS: ClassVar[dict[str, Port]] = {"goal": Port(entry, None), "goals": Port(entry, None)}
 
-    def __init__(self, name: str, ports: Ports, services: Services, children: Sequence[Any]) -> None:
-        super().__init__(name, ports, services, children)
+    def __init__(self, ports: Ports, context: TreeContext) -> None:
+        super().__init__(ports, context)
         self._known: tuple[Any, Any] | None = None
 
     def update(self) -> Status:

@@ -10,6 +10,7 @@ from daidalos.navigation.trees.node import Node, Port
 class WouldAPlannerRecoveryHelp(Node):
     """Succeeds for errors of a planner that another costmap may spare."""
 
+    names = ("WouldAPlannerRecoveryHelp",)
     PORTS: ClassVar[dict[str, Port]] = {"error_code": Port(str)}
     HELPED: ClassVar[frozenset[str]] = frozenset({"UNKNOWN", "NO_VALID_PATH", "TIMEOUT"})
 
@@ -21,6 +22,7 @@ class WouldAPlannerRecoveryHelp(Node):
 class WouldAControllerRecoveryHelp(WouldAPlannerRecoveryHelp):
     """Succeeds for errors of a controller that another costmap may spare."""
 
+    names = ("WouldAControllerRecoveryHelp",)
     HELPED: ClassVar[frozenset[str]] = frozenset(
         {"UNKNOWN", "PATIENCE_EXCEEDED", "FAILED_TO_MAKE_PROGRESS", "NO_VALID_CONTROL"}
     )

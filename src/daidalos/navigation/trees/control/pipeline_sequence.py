@@ -14,6 +14,8 @@ class PipelineSequence(Control):
     An earlier child that runs again does not hold up those after it; one that fails ends the pipeline.
     """
 
+    names = ("PipelineSequence",)
+
     def tick(self) -> Iterator[Any]:
         """Tick as far as the pipeline is filled, and one farther after each success."""
         if self.status != Status.RUNNING:

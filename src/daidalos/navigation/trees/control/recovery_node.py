@@ -1,12 +1,11 @@
 """Try, and after a failure recover and try again."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from typing import Any, ClassVar
 
 from py_trees.common import Status
 
-from daidalos.navigation.trees.node import Control, Port, Ports
-from daidalos.navigation.trees.services import Services
+from daidalos.navigation.trees.node import Control, Port, Ports, TreeContext
 
 
 class RecoveryNode(Control):
@@ -16,11 +15,12 @@ class RecoveryNode(Control):
     child fails, or when the first has failed after all retries.
     """
 
+    names = ("RecoveryNode",)
     PORTS: ClassVar[dict[str, Port]] = {"number_of_retries": Port(int, 1)}
     CHILDREN: ClassVar[tuple[int, int | None]] = (2, 2)
 
-    def __init__(self, name: str, ports: Ports, services: Services, children: Sequence[Any]) -> None:
-        super().__init__(name, ports, services, children)
+    def __init__(self, ports: Ports, context: TreeContext) -> None:
+        super().__init__(ports, context)
         self._retries = 0
 
     def tick(self) -> Iterator[Any]:

@@ -1,12 +1,11 @@
 """One child at a time, another one each time."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from typing import Any
 
 from py_trees.common import Status
 
-from daidalos.navigation.trees.node import Control, Ports
-from daidalos.navigation.trees.services import Services
+from daidalos.navigation.trees.node import Control, Ports, TreeContext
 
 
 class RoundRobin(Control):
@@ -15,8 +14,10 @@ class RoundRobin(Control):
     Only a halt while a child runs makes it begin with the first child again.
     """
 
-    def __init__(self, name: str, ports: Ports, services: Services, children: Sequence[Any]) -> None:
-        super().__init__(name, ports, services, children)
+    names = ("RoundRobin",)
+
+    def __init__(self, ports: Ports, context: TreeContext) -> None:
+        super().__init__(ports, context)
         self._turn = 0
         self._failed = 0
 

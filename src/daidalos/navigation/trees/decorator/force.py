@@ -10,6 +10,7 @@ from daidalos.navigation.trees.node import Decorator
 class ForceSuccess(Decorator):
     """Succeeds when its child has ended."""
 
+    names = ("ForceSuccess",)
     RESULT: ClassVar[Status] = Status.SUCCESS
 
     def update(self) -> Status:
@@ -20,4 +21,5 @@ class ForceSuccess(Decorator):
 class ForceFailure(ForceSuccess):
     """Fails when its child has ended."""
 
+    names = ("ForceFailure",)
     RESULT: ClassVar[Status] = Status.FAILURE

@@ -8,6 +8,8 @@ from daidalos.navigation.trees.node import Decorator
 class Inverter(Decorator):
     """Succeeds when its child fails and the other way round."""
 
+    names = ("Inverter",)
+
     def update(self) -> Status:
         """Turn the child's status round."""
         opposite = {Status.SUCCESS: Status.FAILURE, Status.FAILURE: Status.SUCCESS}

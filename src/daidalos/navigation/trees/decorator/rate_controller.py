@@ -1,22 +1,22 @@
 """Tick the child only so often."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from typing import Any, ClassVar
 
 from py_trees.common import Status
 
 from daidalos.navigation.trees.errors import TreeError
-from daidalos.navigation.trees.node import Decorator, Port, Ports
-from daidalos.navigation.trees.services import Services
+from daidalos.navigation.trees.node import Decorator, Port, Ports, TreeContext
 
 
 class RateController(Decorator):
     """Ticks its child at once, while it runs, and then `hz` times a second; in between repeats its status."""
 
+    names = ("RateController",)
     PORTS: ClassVar[dict[str, Port]] = {"hz": Port(float, 10.0)}
 
-    def __init__(self, name: str, ports: Ports, services: Services, children: Sequence[Any]) -> None:
-        super().__init__(name, ports, services, children)
+    def __init__(self, ports: Ports, context: TreeContext) -> None:
+        super().__init__(ports, context)
         if not ports.get("hz") > 0.0:
             raise TreeError(f"{ports.where}: hz must be greater than 0, not {ports.get('hz')}")
         self._last: float | None = None

@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
+from daidalos.navigation.contracts import Scene
 from daidalos.navigation.controllers.mppi.critics.cost_critic import CostCritic, CostCriticParameters
-from daidalos.navigation.controllers.mppi.critics.critic import Scene
 from daidalos.navigation.controllers.mppi.critics.goal_angle_critic import GoalAngleCritic
 from daidalos.navigation.controllers.mppi.critics.goal_critic import GoalCritic
 from daidalos.navigation.controllers.mppi.critics.path_align_critic import PathAlignCritic

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from daidalos.common.kernels import compiled
 from daidalos.common.parameters import Parameters, parameter
-from daidalos.navigation.controllers.mppi.critics.critic import Critic, Scene
+from daidalos.navigation.contracts import Critic, NavigationContext, Scene
 from daidalos.navigation.controllers.mppi.rollouts import Rollouts, Samples
 from daidalos.navigation.costmap.costmap import (
     INSCRIBED_INFLATED_OBSTACLE,
@@ -47,12 +47,16 @@ class CostCritic(Critic):
     until it is farther off, only the obstacle itself counts as contact.
     """
 
+    names = ("mppi::critics::CostCritic",)
     judges_contact = True
 
     Parameters = CostCriticParameters
 
-    def __init__(self, parameters: CostCriticParameters | None = None) -> None:
-        self.parameters = p = parameters or CostCriticParameters()
+    def __init__(
+        self, parameters: CostCriticParameters | None = None, context: NavigationContext | None = None
+    ) -> None:
+        super().__init__(parameters, context)
+        p = self.parameters
         self._price = p.cost_weight * (np.arange(256) / LETHAL_OBSTACLE) ** p.cost_power
         self._price[NO_INFORMATION] = 0.0
 

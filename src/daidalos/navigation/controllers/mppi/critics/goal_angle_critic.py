@@ -7,7 +7,7 @@ import numpy as np
 
 from daidalos.common.parameters import Parameters, parameter
 from daidalos.common.pose2 import wrap
-from daidalos.navigation.controllers.mppi.critics.critic import Critic, Scene
+from daidalos.navigation.contracts import Critic, Scene
 from daidalos.navigation.controllers.mppi.rollouts import Rollouts
 
 
@@ -28,10 +28,9 @@ class GoalAngleCritic(Critic):
     too early stands beside the goal for ever.
     """
 
+    names = ("mppi::critics::GoalAngleCritic",)
     Parameters = GoalAngleCriticParameters
-
-    def __init__(self, parameters: GoalAngleCriticParameters | None = None) -> None:
-        self.parameters = parameters or GoalAngleCriticParameters()
+    parameters: GoalAngleCriticParameters
 
     def score(self, rollouts: Rollouts, scene: Scene) -> None:
         """See `Critic.score`."""

@@ -6,7 +6,7 @@ import numpy as np
 
 from daidalos.common.kernels import compiled
 from daidalos.common.parameters import Parameters, parameter
-from daidalos.navigation.controllers.mppi.critics.critic import Critic, Scene
+from daidalos.navigation.contracts import Critic, Scene
 from daidalos.navigation.controllers.mppi.rollouts import Rollouts, Samples
 
 
@@ -23,10 +23,9 @@ class GoalCriticParameters(Parameters):
 class GoalCritic(Critic):
     """Adds the mean distance [m] between the points of a rollout and the goal."""
 
+    names = ("mppi::critics::GoalCritic",)
     Parameters = GoalCriticParameters
-
-    def __init__(self, parameters: GoalCriticParameters | None = None) -> None:
-        self.parameters = parameters or GoalCriticParameters()
+    parameters: GoalCriticParameters
 
     def score(self, rollouts: Rollouts, scene: Scene) -> None:
         """See `Critic.score`."""

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from daidalos.common.kernels import compiled
 from daidalos.common.parameters import Parameters, parameter
-from daidalos.navigation.controllers.mppi.critics.critic import Critic, Scene
+from daidalos.navigation.contracts import Critic, Scene
 from daidalos.navigation.controllers.mppi.rollouts import Rollouts, Samples
 
 Array = NDArray[np.float64]
@@ -37,10 +37,9 @@ class PathAlignCritic(Critic):
     the path is blocked, so that the robot may leave it.
     """
 
+    names = ("mppi::critics::PathAlignCritic",)
     Parameters = PathAlignCriticParameters
-
-    def __init__(self, parameters: PathAlignCriticParameters | None = None) -> None:
-        self.parameters = parameters or PathAlignCriticParameters()
+    parameters: PathAlignCriticParameters
 
     def score(self, rollouts: Rollouts, scene: Scene) -> None:
         """See `Critic.score`."""

@@ -7,7 +7,7 @@ import numpy as np
 
 from daidalos.common.parameters import Parameters, parameter
 from daidalos.common.pose2 import between, wrap
-from daidalos.navigation.controllers.mppi.critics.critic import Critic, Scene
+from daidalos.navigation.contracts import Critic, Scene
 from daidalos.navigation.controllers.mppi.rollouts import Rollouts
 
 
@@ -30,10 +30,9 @@ class PathAngleCriticParameters(Parameters):
 class PathAngleCritic(Critic):
     """Adds the angle [rad] between a rollout's last heading and the path, when the robot looks away."""
 
+    names = ("mppi::critics::PathAngleCritic",)
     Parameters = PathAngleCriticParameters
-
-    def __init__(self, parameters: PathAngleCriticParameters | None = None) -> None:
-        self.parameters = parameters or PathAngleCriticParameters()
+    parameters: PathAngleCriticParameters
 
     def score(self, rollouts: Rollouts, scene: Scene) -> None:
         """See `Critic.score`."""

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from daidalos.common.parameters import Parameters, parameter
-from daidalos.navigation.controllers.mppi.critics.critic import Critic, Scene
+from daidalos.navigation.contracts import Critic, Scene
 from daidalos.navigation.controllers.mppi.rollouts import Rollouts
 
 
@@ -25,10 +25,9 @@ class PathFollowCriticParameters(Parameters):
 class PathFollowCritic(Critic):
     """Adds the distance [m] of a rollout's end to the first free point beyond what any reaches."""
 
+    names = ("mppi::critics::PathFollowCritic",)
     Parameters = PathFollowCriticParameters
-
-    def __init__(self, parameters: PathFollowCriticParameters | None = None) -> None:
-        self.parameters = parameters or PathFollowCriticParameters()
+    parameters: PathFollowCriticParameters
 
     def score(self, rollouts: Rollouts, scene: Scene) -> None:
         """See `Critic.score`."""

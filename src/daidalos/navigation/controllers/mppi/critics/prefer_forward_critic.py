@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from daidalos.common.parameters import Parameters, parameter
-from daidalos.navigation.controllers.mppi.critics.critic import Critic, Scene
+from daidalos.navigation.contracts import Critic, Scene
 from daidalos.navigation.controllers.mppi.rollouts import Rollouts
 
 
@@ -22,10 +22,9 @@ class PreferForwardCriticParameters(Parameters):
 class PreferForwardCritic(Critic):
     """Adds the distance [m] that a rollout drives in reverse."""
 
+    names = ("mppi::critics::PreferForwardCritic",)
     Parameters = PreferForwardCriticParameters
-
-    def __init__(self, parameters: PreferForwardCriticParameters | None = None) -> None:
-        self.parameters = parameters or PreferForwardCriticParameters()
+    parameters: PreferForwardCriticParameters
 
     def score(self, rollouts: Rollouts, scene: Scene) -> None:
         """See `Critic.score`."""

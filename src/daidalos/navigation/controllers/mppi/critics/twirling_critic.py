@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from daidalos.common.parameters import Parameters, parameter
-from daidalos.navigation.controllers.mppi.critics.critic import Critic, Scene
+from daidalos.navigation.contracts import Critic, Scene
 from daidalos.navigation.controllers.mppi.rollouts import Rollouts
 
 
@@ -19,10 +19,9 @@ class TwirlingCriticParameters(Parameters):
 class TwirlingCritic(Critic):
     """Adds the mean absolute angular velocity [rad/s] of a rollout, away from the goal."""
 
+    names = ("mppi::critics::TwirlingCritic",)
     Parameters = TwirlingCriticParameters
-
-    def __init__(self, parameters: TwirlingCriticParameters | None = None) -> None:
-        self.parameters = parameters or TwirlingCriticParameters()
+    parameters: TwirlingCriticParameters
 
     def score(self, rollouts: Rollouts, scene: Scene) -> None:
         """See `Critic.score`."""

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daidalos.common.parameters import Parameters, parameter
-from daidalos.navigation.controllers.plugins.progress_checker import ProgressChecker
+from daidalos.navigation.contracts import NavigationContext, ProgressChecker
 
 Array = NDArray[np.float64]
 
@@ -23,10 +23,14 @@ class SimpleProgressCheckerParameters(Parameters):
 class SimpleProgressChecker(ProgressChecker):
     """Starts a new circle and a new time whenever the robot has left the last circle."""
 
+    names = ("nav2_controller::SimpleProgressChecker",)
     Parameters = SimpleProgressCheckerParameters
+    parameters: SimpleProgressCheckerParameters
 
-    def __init__(self, parameters: SimpleProgressCheckerParameters | None = None) -> None:
-        self.parameters = parameters or SimpleProgressCheckerParameters()
+    def __init__(
+        self, parameters: SimpleProgressCheckerParameters | None = None, context: NavigationContext | None = None
+    ) -> None:
+        super().__init__(parameters, context)
         self._base: tuple[Array, float] | None = None
 
     def check(self, pose: Array, now: float) -> bool:

@@ -4,13 +4,13 @@ import math
 
 import numpy as np
 
-from daidalos.navigation.controllers.plugins.pose_progress_checker import PoseProgressChecker
-from daidalos.navigation.controllers.plugins.simple_goal_checker import (
+from daidalos.navigation.controllers.goal_checkers.simple_goal_checker import (
     SimpleGoalChecker,
     SimpleGoalCheckerParameters,
 )
-from daidalos.navigation.controllers.plugins.simple_progress_checker import SimpleProgressChecker
-from daidalos.navigation.controllers.plugins.stopped_goal_checker import StoppedGoalChecker
+from daidalos.navigation.controllers.goal_checkers.stopped_goal_checker import StoppedGoalChecker
+from daidalos.navigation.controllers.progress_checkers.pose_progress_checker import PoseProgressChecker
+from daidalos.navigation.controllers.progress_checkers.simple_progress_checker import SimpleProgressChecker
 
 GOAL = np.array([1.0, 2.0, math.pi])
 REST = np.zeros(3)

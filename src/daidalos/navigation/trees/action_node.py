@@ -1,13 +1,13 @@
 """A leaf that starts a task, waits for its end without blocking, and stops it when it is halted."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any, ClassVar
 
 import numpy as np
 from py_trees.common import Status
 
-from daidalos.navigation.trees.node import Node, Port, Ports
-from daidalos.navigation.trees.services import Services, Task
+from daidalos.navigation.trees.node import Node, Port, Ports, TreeContext
+from daidalos.navigation.trees.services import Task
 
 RECOVERIES = "number_recoveries"
 """Name on the blackboard under which recovery actions are counted."""
@@ -24,19 +24,39 @@ class ActionNode(Node):
 
     Attributes
     ----------
+    INTERFACE : str
+        Type of the action or service, such as ``nav2_msgs/action/Spin``; empty for one named as the class.
+    SERVER : str
+        Name of the action's server where the tree names none; a service's name is the input `service_name`.
     UPDATES : tuple of str
         Inputs that are passed on to the running task when they change.
     RECOVERY : bool
         Whether it counts as a recovery; an input `is_recovery` overrules.
     """
 
+    INTERFACE: ClassVar[str] = ""
+    SERVER: ClassVar[str] = ""
     UPDATES: ClassVar[tuple[str, ...]] = ()
     RECOVERY: ClassVar[bool] = False
 
-    def __init__(self, name: str, ports: Ports, services: Services, children: Sequence[Any]) -> None:
-        super().__init__(name, ports, services, children)
+    def __init__(self, ports: Ports, context: TreeContext) -> None:
+        super().__init__(ports, context)
         self._task: Task | None = None
         self._sent: dict[str, Any] = {}
+
+    @classmethod
+    def goal(cls, inputs: Mapping[str, Any]) -> dict[str, Any]:
+        """Return the fields of the action's goal or the service's request, such as ``target.x``; durations in seconds.
+
+        By default each input of the same name.
+        """
+        return dict(inputs)
+
+    @classmethod
+    def outputs(cls, result: Any) -> dict[str, Any]:
+        """Return values of output ports from the action's result; by default the fields of the same names."""
+        outputs = (name for name, port in cls.PORTS.items() if port.output and name not in ERRORS)
+        return {name: getattr(result, name) for name in outputs if hasattr(result, name)}
 
     def initialise(self) -> None:
         """Start the task."""
@@ -45,7 +65,7 @@ class ActionNode(Node):
             count = self.ports.blackboard.get(RECOVERIES, 0)
             self.ports.blackboard.set(RECOVERIES, count + 1)
         self.ports.set("error_code_id", "NONE")
-        self._task = self.services.start(type(self).__name__, self._sent)
+        self._task = self.services.start(type(self), self._sent)
 
     def update(self) -> Status:
         """Look whether the task has ended."""

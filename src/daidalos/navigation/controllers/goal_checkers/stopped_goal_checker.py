@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daidalos.common.parameters import parameter
-from daidalos.navigation.controllers.plugins.simple_goal_checker import (
+from daidalos.navigation.controllers.goal_checkers.simple_goal_checker import (
     SimpleGoalChecker,
     SimpleGoalCheckerParameters,
 )
@@ -26,11 +26,9 @@ class StoppedGoalCheckerParameters(SimpleGoalCheckerParameters):
 class StoppedGoalChecker(SimpleGoalChecker):
     """Wants the pose of `SimpleGoalChecker`, and low velocities."""
 
+    names = ("nav2_controller::StoppedGoalChecker",)
     Parameters = StoppedGoalCheckerParameters
-
-    def __init__(self, parameters: StoppedGoalCheckerParameters | None = None) -> None:
-        self.stopped = parameters or StoppedGoalCheckerParameters()
-        super().__init__(self.stopped)
+    parameters: StoppedGoalCheckerParameters
 
     def is_goal_reached(self, pose: Array, goal: Array, velocity: Array) -> bool:
         """See `GoalChecker.is_goal_reached`."""
@@ -38,6 +36,6 @@ class StoppedGoalChecker(SimpleGoalChecker):
         speed = math.hypot(float(velocity[0]), float(velocity[1]))
         return (
             there
-            and speed <= self.stopped.trans_stopped_velocity
-            and abs(float(velocity[2])) <= self.stopped.rot_stopped_velocity
+            and speed <= self.parameters.trans_stopped_velocity
+            and abs(float(velocity[2])) <= self.parameters.rot_stopped_velocity
         )

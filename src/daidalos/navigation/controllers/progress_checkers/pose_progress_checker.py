@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from daidalos.common.parameters import parameter
 from daidalos.common.pose2 import wrap
-from daidalos.navigation.controllers.plugins.simple_progress_checker import (
+from daidalos.navigation.controllers.progress_checkers.simple_progress_checker import (
     SimpleProgressChecker,
     SimpleProgressCheckerParameters,
 )
@@ -25,13 +25,11 @@ class PoseProgressCheckerParameters(SimpleProgressCheckerParameters):
 class PoseProgressChecker(SimpleProgressChecker):
     """Takes a turn on the spot as progress as well."""
 
+    names = ("nav2_controller::PoseProgressChecker",)
     Parameters = PoseProgressCheckerParameters
-
-    def __init__(self, parameters: PoseProgressCheckerParameters | None = None) -> None:
-        self.turning = parameters or PoseProgressCheckerParameters()
-        super().__init__(self.turning)
+    parameters: PoseProgressCheckerParameters
 
     def moved_enough(self, base: Array, pose: Array) -> bool:
         """Whether the robot has left the circle around a pose, or turned away from its yaw."""
         turned = abs(float(wrap(pose[2] - base[2])))
-        return super().moved_enough(base, pose) or turned > self.turning.required_movement_angle
+        return super().moved_enough(base, pose) or turned > self.parameters.required_movement_angle

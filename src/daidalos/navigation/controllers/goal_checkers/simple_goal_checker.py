@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from daidalos.common.parameters import Parameters, parameter
 from daidalos.common.pose2 import wrap
-from daidalos.navigation.controllers.plugins.goal_checker import GoalChecker
+from daidalos.navigation.contracts import GoalChecker, NavigationContext
 
 Array = NDArray[np.float64]
 
@@ -25,10 +25,14 @@ class SimpleGoalCheckerParameters(Parameters):
 class SimpleGoalChecker(GoalChecker):
     """Compares position, then yaw; a stateful one does not look at the position again once it was right."""
 
+    names = ("nav2_controller::SimpleGoalChecker",)
     Parameters = SimpleGoalCheckerParameters
+    parameters: SimpleGoalCheckerParameters
 
-    def __init__(self, parameters: SimpleGoalCheckerParameters | None = None) -> None:
-        self.parameters = parameters or SimpleGoalCheckerParameters()
+    def __init__(
+        self, parameters: SimpleGoalCheckerParameters | None = None, context: NavigationContext | None = None
+    ) -> None:
+        super().__init__(parameters, context)
         self._arrived = False
 
     @property

@@ -1,0 +1,478 @@
+"""The contracts of navigation: what planners, controllers, costmap layers and the like have to be.
+
+Every extension is one class, made with ``(parameters, context)``: its parameters, an instance of the frozen dataclass
+in its class attribute `Parameters` whose fields have the names of Nav2's parameter files, and a `NavigationContext`.
+Built-in classes give their names in Nav2's parameter files in `names`; those of other packages are named by entry
+points, or by their class path. Poses are (x, y, yaw) in metres and radians, velocities (x, y, yaw) in m/s and rad/s in
+the robot's frame; times are seconds. An extension that cannot do its work raises an error of
+`daidalos.navigation.errors`.
+
+The contract of behaviour-tree nodes is in `daidalos.navigation.trees.node`.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daidalos.common.errors import Location
+from daidalos.common.extensions import Kind, find
+from daidalos.navigation.costmap.costmap import Bounds, Costmap, Window
+from daidalos.navigation.costmap.footprint import Footprint
+
+if TYPE_CHECKING:
+    from daidalos.navigation.controllers.mppi.rollouts import Rollouts
+
+Array = NDArray[np.float64]
+Command = TypeVar("Command")
+T = TypeVar("T")
+
+
+def _ignore(line: str) -> None:
+    """Ignore a line for the user."""
+
+
+@dataclass(frozen=True)
+class NavigationContext:
+    """What an extension may use beside its parameters.
+
+    Attributes
+    ----------
+    name : str
+        Name of the extension in parameter files, such as ``FollowPath``.
+    footprint : Footprint
+        Outline of the robot in its base frame [m].
+    frequency : float
+        How often it is called while it works [Hz].
+    global_frame, base_frame : str
+        Frames of the costmap and of the robot.
+    track_unknown_space : bool
+        Whether cells of the costmap that nothing was seen of are unknown, rather than free.
+    seed : int
+        Of random numbers.
+    warn : callable
+        Takes a line for the user.
+    maker : callable or None
+        Makes another extension; see `make`.
+    """
+
+    name: str = ""
+    footprint: Footprint = Footprint.circle(0.1)  # noqa: RUF009 (it does not change)
+    frequency: float = 20.0
+    global_frame: str = "map"
+    base_frame: str = "base_link"
+    track_unknown_space: bool = True
+    seed: int = 0
+    warn: Callable[[str], None] = _ignore
+    maker: Callable[[Kind[Any], str, str, str], Any] | None = None
+
+    def make(self, kind: Kind[T], name: str, parameter: str, below: str = "") -> T:
+        """Make an extension that this one uses.
+
+        Parameters
+        ----------
+        kind : Kind
+        name : str
+            As in parameter files.
+        parameter : str
+            The parameter of the extension that has the name.
+        below : str
+            Its parameters are called ``<name>.<below>.<parameter>``; they stand beside the own where empty.
+
+        Raises
+        ------
+        ExtensionError
+            There is none of that name.
+        """
+        if self.maker is not None:
+            made: T = self.maker(kind, name, parameter, below)
+            return made
+        found: Any = find(kind, name, asked_by=Location(name=parameter))
+        return found(None, replace(self, name=below or self.name))  # type: ignore[no-any-return]
+
+
+_ALONE = NavigationContext()
+
+
+class NavigationExtension(ABC):  # noqa: B024 (each contract has its own methods)
+    """Base of all contracts.
+
+    Parameters
+    ----------
+    parameters : object, optional
+        An instance of the class attribute `Parameters`; the defaults where it is left out.
+    context : NavigationContext, optional
+
+    Attributes
+    ----------
+    names : tuple of str
+        Class attribute: names of a built-in class in parameter files.
+    Parameters : type or None
+        Class attribute: the frozen dataclass of its parameters; None where it has none.
+    """
+
+    names: ClassVar[tuple[str, ...]] = ()
+    Parameters: ClassVar[type | None] = None
+
+    def __init__(self, parameters: Any = None, context: NavigationContext | None = None) -> None:
+        kind: Any = type(self).Parameters
+        self.parameters: Any = kind() if parameters is None and kind is not None else parameters
+        self.context = context or _ALONE
+
+
+class GlobalPlanner(NavigationExtension):
+    """Finds a path over a costmap."""
+
+    @abstractmethod
+    def create_plan(self, costmap: Costmap, start: Array, goal: Array) -> Array:
+        """Find a path.
+
+        Parameters
+        ----------
+        costmap : Costmap
+            Inflated costs.
+        start, goal : ndarray, shape (3,)
+            Poses (x, y, yaw) in the costmap's frame.
+
+        Returns
+        -------
+        ndarray, shape (n, 3)
+            Poses from the start to the goal, each looking along the path, the last as the goal does.
+
+        Raises
+        ------
+        PlannerError
+            There is no plan; the class and the message say why.
+        """
+
+
+class Smoother(NavigationExtension):
+    """Makes a path smoother without leading it into an obstacle."""
+
+    @abstractmethod
+    def smooth(self, path: Array, costmap: Costmap) -> Array:
+        """Smooth a path.
+
+        Parameters
+        ----------
+        path : ndarray, shape (n, 3)
+            Poses (x, y, yaw) in the costmap's frame.
+        costmap : Costmap
+            Inflated costs.
+
+        Returns
+        -------
+        ndarray, shape (n, 3)
+            Poses with the same first and last position, each looking along the path.
+        """
+
+
+@dataclass(frozen=True)
+class ControlInput:
+    """What a controller knows in one cycle; poses are (x, y, yaw) in the costmap's frame.
+
+    Attributes
+    ----------
+    pose : ndarray, shape (3,)
+        Where the robot is.
+    velocity : ndarray, shape (3,)
+        Its velocity (x [m/s], y [m/s], yaw [rad/s]) in its own frame.
+    path : ndarray, shape (n, 3)
+        The part of the plan ahead, from the robot as far as the controller looks.
+    goal : ndarray, shape (3,)
+        End of the whole plan.
+    distance_to_goal : float
+        Length [m] of the rest of the plan.
+    costmap : Costmap
+        Inflated costs around the robot.
+    circumscribed_cost : int
+        Smallest cost at the robot's centre at which some part of it may touch an obstacle.
+    xy_goal_tolerance, yaw_goal_tolerance : float
+        How near [m], [rad] to the goal is near enough.
+    """
+
+    pose: Array
+    velocity: Array
+    path: Array
+    goal: Array
+    distance_to_goal: float
+    costmap: Costmap
+    circumscribed_cost: int = 1
+    xy_goal_tolerance: float = 0.25
+    yaw_goal_tolerance: float = 0.25
+
+
+class Controller(NavigationExtension):
+    """Finds the velocity for the next cycle."""
+
+    @property
+    @abstractmethod
+    def look_ahead(self) -> float:
+        """Length [m] of the path that the controller wants to see."""
+
+    @abstractmethod
+    def compute_velocity_commands(self, control: ControlInput) -> Array:
+        """Find the velocity for the next cycle.
+
+        Returns
+        -------
+        ndarray, shape (3,)
+            Velocity (x [m/s], y [m/s], yaw [rad/s]) in the robot's frame.
+
+        Raises
+        ------
+        ControllerError
+            There is none.
+        """
+
+    @abstractmethod
+    def set_speed_limit(self, speed_limit: float, *, percentage: bool) -> None:
+        """Drive no faster than a speed [m/s] or a percentage of the maximum; 0 lifts the limit."""
+
+    @abstractmethod
+    def reset(self) -> None:
+        """Forget the last task."""
+
+
+class GoalChecker(NavigationExtension):
+    """Decides whether a goal is reached."""
+
+    @property
+    @abstractmethod
+    def tolerances(self) -> tuple[float, float]:
+        """How near [m] and how well turned [rad] the robot must be."""
+
+    @abstractmethod
+    def is_goal_reached(self, pose: Array, goal: Array, velocity: Array) -> bool:
+        """Judge a pose (x, y, yaw) and a velocity (x, y, yaw) against a goal in the same frame."""
+
+    @abstractmethod
+    def reset(self) -> None:
+        """Begin with a new goal."""
+
+
+class ProgressChecker(NavigationExtension):
+    """Decides whether a robot still gets on."""
+
+    @abstractmethod
+    def check(self, pose: Array, now: float) -> bool:
+        """Whether the robot, at a pose (x, y, yaw) and a time [s], has moved enough lately."""
+
+    @abstractmethod
+    def reset(self) -> None:
+        """Begin with a new path."""
+
+
+@dataclass(frozen=True)
+class Scene:
+    """What critics know beside the rollouts.
+
+    Attributes
+    ----------
+    control : ControlInput
+        State, path, goal and costmap of the cycle.
+    footprint : Footprint
+        Outline of the robot.
+    along : ndarray, shape (n,)
+        Distance [m] along the path of each of its poses.
+    path_free : ndarray of bool, shape (n,)
+        Whether the robot's centre may be at each pose of the path.
+    furthest : int
+        Pose of the path farthest along that any rollout ends near to.
+    step : float
+        Length of a step of the rollouts [s].
+    """
+
+    control: ControlInput
+    footprint: Footprint
+    along: Array
+    path_free: NDArray[np.bool_]
+    furthest: int
+    step: float
+
+    def next_free(self, index: int) -> int:
+        """First pose of the path, from an index on, at which the robot may be; the last if there is none."""
+        last = self.along.size - 1
+        index = min(index, last)
+        free = np.flatnonzero(self.path_free[index:])
+        return index + int(free[0]) if free.size else last
+
+
+class Critic(NavigationExtension):
+    """Gives each rollout a cost for one thing.
+
+    Attributes
+    ----------
+    judges_contact : bool
+        Whether this critic notes in `rollouts.collides` which samples touch an obstacle.
+    """
+
+    judges_contact: bool = False
+
+    @abstractmethod
+    def score(self, rollouts: Rollouts, scene: Scene) -> None:
+        """Add this critic's costs to `rollouts.costs`."""
+
+
+@dataclass(frozen=True)
+class Input:
+    """Something that a costmap layer listens to.
+
+    Attributes
+    ----------
+    topic : str
+        Its topic; empty for the costmap's own ``map_topic``.
+    type : type
+        `OccupancyGrid`, or `LaserScanData`.
+    take : callable
+        Takes a map; or a scan, the pose of the robot's base in the costmap's frame when it was taken, and its time [s].
+    """
+
+    topic: str
+    type: type
+    take: Callable[..., None]
+
+
+class Layer(NavigationExtension):
+    """One source of costs; layers are put on top of each other in the order of the costmap's list.
+
+    Attributes
+    ----------
+    clearable : bool
+        Whether the clearing services of a costmap make this layer forget.
+    """
+
+    clearable: bool = False
+
+    @property
+    def inputs(self) -> tuple[Input, ...]:
+        """What the layer listens to."""
+        return ()
+
+    @property
+    def is_current(self) -> bool:
+        """Whether the layer has all that it needs to be relied on."""
+        return True
+
+    @property
+    def extent(self) -> Costmap | None:
+        """A costmap whose size and place the whole must take over; `None` where this layer does not mind."""
+        return None
+
+    def match_size(self, costmap: Costmap) -> None:
+        """Take over size and place of the costmap, which changed."""
+
+    @abstractmethod
+    def update_bounds(self, robot_pose: Array, now: float, bounds: Bounds) -> Bounds:
+        """Say which part of the world must be put together anew.
+
+        Parameters
+        ----------
+        robot_pose : ndarray, shape (3,)
+            Pose (x, y, yaw) of the robot in the costmap's frame.
+        now : float
+            Time [s].
+        bounds : Bounds
+            What the layers below asked for.
+
+        Returns
+        -------
+        Bounds
+            The same or more.
+        """
+
+    @abstractmethod
+    def update_costs(self, costmap: Costmap, window: Window) -> None:
+        """Write this layer's costs into a window of the costmap, on top of what the layers below wrote."""
+
+    def clear(self, keep: Window, *, inside: bool) -> None:
+        """Forget what is inside of a window of cells, or what is outside of it."""
+
+
+@dataclass(frozen=True)
+class BehaviorStep:
+    """What one cycle gave.
+
+    Attributes
+    ----------
+    velocity : ndarray, shape (3,)
+        Velocity command (x [m/s], y [m/s], yaw [rad/s]) in the robot's frame.
+    done : bool
+        Whether the behaviour is done; the velocity is zero then.
+    feedback : float
+        What is done so far: distance [m], angle [rad]; the time left [s] of a wait.
+    """
+
+    velocity: Array
+    done: bool
+    feedback: float
+
+
+class Behavior(NavigationExtension, Generic[Command]):
+    """A motion that goes on until it is done, fails, or is no longer asked for.
+
+    A behaviour is asked for by an action of its own name.
+
+    Attributes
+    ----------
+    action : str
+        Class attribute: type of the action, such as ``nav2_msgs/action/Spin``.
+    feedback : str
+        Class attribute: field of the action's feedback for what is done so far; empty where there is none.
+    """
+
+    action: ClassVar[str]
+    feedback: ClassVar[str] = ""
+
+    @property
+    def period(self) -> float:
+        """Length of a cycle [s]."""
+        return 1.0 / self.context.frequency
+
+    @classmethod
+    @abstractmethod
+    def command(cls, goal: Any) -> Command:
+        """Return the command of an action's goal, whose fields are attributes; durations are in seconds."""
+
+    @abstractmethod
+    def start(self, command: Command, pose: Array, now: float) -> None:
+        """Begin.
+
+        Parameters
+        ----------
+        command : Command
+            How far, how fast, how long.
+        pose : ndarray, shape (3,)
+            Pose (x, y, yaw) of the robot, in the frame of all that follow.
+        now : float
+            Time [s].
+
+        Raises
+        ------
+        InvalidInput
+            The command makes no sense.
+        """
+
+    @abstractmethod
+    def step(self, pose: Array, velocity: Array, costmap: Costmap, now: float) -> BehaviorStep:
+        """Find the velocity for the next cycle.
+
+        Parameters
+        ----------
+        pose, velocity : ndarray, shape (3,)
+            Pose of the robot in the costmap's frame, and its velocity in its own.
+        costmap : Costmap
+            Inflated costs around the robot.
+        now : float
+            Time [s].
+
+        Raises
+        ------
+        BehaviorError
+            It can not go on: `CollisionAhead` or `TimedOut`.
+        """

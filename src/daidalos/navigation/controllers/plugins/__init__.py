@@ -1,1 +1,0 @@
-"""What decides that a goal is reached and that a robot makes progress."""

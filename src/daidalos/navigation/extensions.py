@@ -1,0 +1,92 @@
+"""What of navigation users extend: planners, controllers, costmap layers, behaviours, tree nodes and the like."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING
+
+from daidalos.common.extensions import Kind, classes_in
+
+if TYPE_CHECKING:
+    from daidalos.navigation import contracts
+    from daidalos.navigation.trees.node import TreeNode
+
+_CONTRACTS = "daidalos.navigation.contracts"
+
+COSTMAP_LAYERS: Kind[contracts.Layer] = Kind(
+    "costmap_layer",
+    "daidalos.costmap_layers",
+    f"{_CONTRACTS}:Layer",
+    "one source of a costmap's costs; named in `plugins` of a costmap",
+    partial(classes_in, "daidalos.navigation.costmap.layers"),
+)
+PLANNERS: Kind[contracts.GlobalPlanner] = Kind(
+    "planner",
+    "daidalos.planners",
+    f"{_CONTRACTS}:GlobalPlanner",
+    "finds a path over a costmap; named in `planner_plugins` of the planner server",
+    partial(classes_in, "daidalos.navigation.planners"),
+)
+SMOOTHERS: Kind[contracts.Smoother] = Kind(
+    "smoother",
+    "daidalos.smoothers",
+    f"{_CONTRACTS}:Smoother",
+    "makes a path smoother",
+    partial(classes_in, "daidalos.navigation.smoothers"),
+)
+CONTROLLERS: Kind[contracts.Controller] = Kind(
+    "navigation_controller",
+    "daidalos.navigation_controllers",
+    f"{_CONTRACTS}:Controller",
+    "follows a path; named in `controller_plugins` of the controller server",
+    partial(classes_in, "daidalos.navigation.controllers"),
+)
+CRITICS: Kind[contracts.Critic] = Kind(
+    "critic",
+    "daidalos.critics",
+    f"{_CONTRACTS}:Critic",
+    "gives trajectories of the MPPI controller a cost; named in its `critics`",
+    partial(classes_in, "daidalos.navigation.controllers.mppi.critics"),
+)
+GOAL_CHECKERS: Kind[contracts.GoalChecker] = Kind(
+    "goal_checker",
+    "daidalos.goal_checkers",
+    f"{_CONTRACTS}:GoalChecker",
+    "decides whether a goal is reached; named in `goal_checker_plugins` of the controller server",
+    partial(classes_in, "daidalos.navigation.controllers.goal_checkers"),
+)
+PROGRESS_CHECKERS: Kind[contracts.ProgressChecker] = Kind(
+    "progress_checker",
+    "daidalos.progress_checkers",
+    f"{_CONTRACTS}:ProgressChecker",
+    "decides whether a robot makes progress; named in `progress_checker_plugins` of the controller server",
+    partial(classes_in, "daidalos.navigation.controllers.progress_checkers"),
+)
+BEHAVIORS: Kind[contracts.Behavior[object]] = Kind(
+    "behavior",
+    "daidalos.behaviors",
+    f"{_CONTRACTS}:Behavior",
+    "a motion that an action asks for; named in `behavior_plugins` of the behavior server",
+    partial(classes_in, "daidalos.navigation.behaviors"),
+)
+TREE_NODES: Kind[TreeNode] = Kind(
+    "tree_node",
+    "daidalos.tree_nodes",
+    "daidalos.navigation.trees.node:TreeNode",
+    "a node of behaviour trees; named by an element of a tree's XML file",
+    partial(
+        classes_in,
+        *(f"daidalos.navigation.trees.{folder}" for folder in ("action", "condition", "control", "decorator")),
+    ),
+)
+KINDS = (
+    COSTMAP_LAYERS,
+    PLANNERS,
+    SMOOTHERS,
+    CONTROLLERS,
+    CRITICS,
+    GOAL_CHECKERS,
+    PROGRESS_CHECKERS,
+    BEHAVIORS,
+    TREE_NODES,
+)

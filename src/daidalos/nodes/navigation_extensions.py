@@ -1,0 +1,54 @@
+"""Navigation's extensions as Nav2's parameter files describe them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any, TypeVar
+
+from rclpy.node import Node
+
+from daidalos.common.extensions import Kind, find
+from daidalos.navigation.contracts import NavigationContext
+from daidalos.nodes.parameters import declare_plugin, location_of
+
+T = TypeVar("T")
+
+
+class ExtensionMaker:
+    """Makes extensions with the parameters of a node.
+
+    Parameters
+    ----------
+    node : Node
+        Whose parameters they are.
+    context : NavigationContext
+        What they may use.
+    """
+
+    def __init__(self, node: Node, context: NavigationContext) -> None:
+        self._node = node
+        self._context = replace(context, warn=self._warn)
+
+    def _warn(self, line: str) -> None:
+        self._node.get_logger().warning(line)
+
+    def make(self, kind: Kind[T], name: str, default: str) -> T:
+        """Make what the parameter ``<name>.plugin`` says.
+
+        Raises
+        ------
+        ExtensionError
+            There is no such class, or it cannot be used.
+        """
+        parameter = f"{name}.plugin"
+        chosen = self._node.declare_parameter(parameter, default).value
+        made: T = self._make(find(kind, chosen, asked_by=location_of(self._node, parameter)), name)
+        return made
+
+    def _make(self, cls: Any, name: str) -> Any:
+        def make(kind: Kind[Any], chosen: str, parameter: str, below: str) -> Any:
+            found = find(kind, chosen, asked_by=location_of(self._node, f"{name}.{parameter}"))
+            return self._make(found, f"{name}.{below}" if below else name)
+
+        context = replace(self._context, name=name, maker=make)
+        return cls(declare_plugin(self._node, cls, name), context)
