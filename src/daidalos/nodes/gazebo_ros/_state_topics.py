@@ -1,0 +1,97 @@
+"""The topics that tell where models and links are, and what watched models touched."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from rclpy.node import Node
+from rclpy.publisher import Publisher
+from rclpy.qos import DurabilityPolicy, QoSProfile
+
+from daidalos.common.rate_gate import RateGate
+from daidalos.nodes.gazebo_ros._host import state_namespaces
+from daidalos.nodes.gazebo_ros._states import contacts_message, pose_message, twist_message
+
+if TYPE_CHECKING:
+    from daidalos.description.world import World
+    from daidalos.simulation import Simulation
+
+_STATES_RATE = 50.0
+_LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+
+
+class StateTopics:
+    """Publishes ``model_states``, ``link_states`` and ``/gazebo/contacts``.
+
+    Parameters
+    ----------
+    node : Node
+        By which they are published.
+    world : World
+        Says in which namespaces.
+    watched : str
+        The model whose contacts with others than the ground are published; empty for none.
+    """
+
+    def __init__(self, node: Node, world: World, watched: str) -> None:
+        from gazebo_msgs.msg import ContactsState, LinkStates, ModelStates
+
+        places = state_namespaces(world)
+        self._watched = watched
+        self._gate = RateGate(_STATES_RATE)
+        self._contacts: dict[str, Any] = {}
+        self._published_touches = 0
+        self._states = [node.create_publisher(ModelStates, f"{place}/model_states", 10) for place in places]
+        self._link_states = [node.create_publisher(LinkStates, f"{place}/link_states", 10) for place in places]
+        self._contacts_publisher = node.create_publisher(ContactsState, "/gazebo/contacts", _LATCHED)
+
+    def follow(self, simulation: Simulation) -> None:
+        """Watch the model to be watched if it came, and no longer if it went."""
+        for name in [name for name in self._contacts if name not in simulation.models]:
+            del self._contacts[name]
+        if self._watched in simulation.models and self._watched not in self._contacts:
+            self._contacts[self._watched] = simulation.monitor_contacts(self._watched, ["ground_plane"])
+
+    def publish(self, simulation: Simulation, now_ns: int) -> None:
+        """Publish the states when they are due, and the contacts when there are more."""
+        if self._gate.is_due(now_ns):
+            self._publish_states(simulation)
+        self._publish_contacts(simulation)
+
+    def _publish_states(self, simulation: Simulation) -> None:
+        """Publish where models and links are, on topics that have subscribers."""
+        from gazebo_msgs.msg import LinkStates, ModelStates
+
+        models: list[tuple[str, str | None]] = [(name, None) for name in simulation.models]
+        _publish_motions(simulation, self._states, ModelStates, models)
+        if any(_has_subscribers(publisher) for publisher in self._link_states):
+            links: list[tuple[str, str | None]] = [
+                (name, link) for name in simulation.models for link in simulation.instance(name).model.links
+            ]
+            _publish_motions(simulation, self._link_states, LinkStates, links)
+
+    def _publish_contacts(self, simulation: Simulation) -> None:
+        """Publish what the watched models have touched whenever that changes."""
+        touches = [(name, touch) for name, monitor in self._contacts.items() for touch in monitor.touches]
+        if len(touches) != self._published_touches:
+            self._published_touches = len(touches)
+            self._contacts_publisher.publish(contacts_message(touches, simulation.time_ns))
+
+
+def _has_subscribers(publisher: Publisher) -> bool:
+    return publisher.handle.has_subscribers
+
+
+def _publish_motions(
+    simulation: Simulation, publishers: list[Any], kind: Any, entities: list[tuple[str, str | None]]
+) -> None:
+    listening = [publisher for publisher in publishers if _has_subscribers(publisher)]
+    if not listening:
+        return
+    message = kind(
+        name=["::".join(filter(None, entity)) for entity in entities],
+        pose=[pose_message(simulation.pose(*entity)) for entity in entities],
+        twist=[twist_message(*simulation.velocity(*entity)) for entity in entities],
+    )
+    for publisher in listening:
+        publisher.publish(message)
