@@ -6,6 +6,7 @@ import math
 from array import array
 from collections.abc import Iterable, Mapping, Sequence
 from collections.abc import Set as AbstractSet
+from copy import deepcopy
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from daidalos.interfaces.definition import INTEGER_RANGES
@@ -84,10 +85,10 @@ class Message(metaclass=MessageType):
         return twin
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Message:
-        from daidalos.interfaces.codec import codec_of
-
-        copy: Message = codec_of(type(self)).snapshot(self)
-        return copy
+        twin = object.__new__(type(self))
+        for name in self._fields_and_field_types:
+            setattr(twin, f"_{name}", deepcopy(getattr(self, f"_{name}"), memo))
+        return twin
 
 
 def _show(value: Any) -> str:

@@ -13,7 +13,8 @@ from daidalos.description.link import Sensor as SensorDescription
 from daidalos.description.world import Model, World
 from daidalos.simulation.component import Component, ComponentContext
 from daidalos.simulation.directional_friction import DirectionalFriction, directed_surfaces
-from daidalos.simulation.extensions import PLUGINS, SENSORS, is_built_in, library_of
+from daidalos.simulation.extensions import PLUGINS, SENSORS
+from daidalos.simulation.libraries import is_built_in, library_of
 from daidalos.simulation.persistent_forces import PersistentForces, check_persistent_forces, persistent_forces
 from daidalos.simulation.plugins.base import (
     COMMON_PARAMETERS,

@@ -16,6 +16,7 @@ from daidalos.description.actors import actor_pose
 from daidalos.description.world import Actor, Model, World
 from daidalos.samples.sensors import Contact, Sample
 from daidalos.simulation.actors import ActorMotion
+from daidalos.simulation.applied_forces import apply_forces
 from daidalos.simulation.assembly import check_world_plugins, make_components
 from daidalos.simulation.compilation import Compilation
 from daidalos.simulation.component import (
@@ -319,7 +320,7 @@ class Engine:
             if self.forces.pushes:
                 change_ns = self.forces.next_change(self.time_ns)
                 count = 1 if change_ns <= self.time_ns + count * substep_ns else count
-            self.forces.apply(self.physics, self.time_ns)
+            apply_forces(self.forces, self.physics, self._compilation.instances, self.time_ns)
             self.physics.step(count)
             self.time_ns += count * substep_ns
             for monitor in self._monitors:

@@ -9,9 +9,9 @@ from daidalos.description.markup import Element
 from daidalos.description.world import Model, World
 from daidalos.samples.sensors import Sample
 from daidalos.simulation.component import Component, ComponentContext
-from daidalos.simulation.extensions import library_of
 from daidalos.simulation.forces import Push
 from daidalos.simulation.instance import Instance
+from daidalos.simulation.libraries import library_of
 
 LIBRARY = "gz-sim-apply-link-wrench-system"
 _NEVER = 1e6  # seconds between two updates, in which there is nothing to do

@@ -4,17 +4,41 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 from daidalos.common.pose3 import Pose
 from daidalos.description.link import Light
-from daidalos.description.world import World
+from daidalos.description.world import Model, World
 from daidalos.simulation.errors import NameTakenError, UnknownNameError
 from daidalos.simulation.rendering.lighting import Lighting
 
 if TYPE_CHECKING:
-    from daidalos.simulation.instance import Instance
     from daidalos.simulation.rendering.scene import Item, Scene
+
+
+class VisibleLink(Protocol):
+    """Link of a model: its body in MuJoCo's arrays, and its pose in the world."""
+
+    @property
+    def body(self) -> int:
+        """Index of the body."""
+
+    @property
+    def pose(self) -> Pose:
+        """Current pose in the world."""
+
+
+class VisibleModel(Protocol):
+    """Model that cameras see."""
+
+    name: str
+
+    @property
+    def model(self) -> Model:
+        """Description of the model."""
+
+    def link(self, name: str) -> VisibleLink:
+        """Return a link by its name in the description."""
 
 
 class Stage:
@@ -33,10 +57,10 @@ class Stage:
         self._switched: dict[str, Light] = {}
         self._warn_user = warn
         self._warned: set[str] = set()
-        self._instances: tuple[Instance, ...] = ()
+        self._instances: tuple[VisibleModel, ...] = ()
         self._scene: Scene | None = None
 
-    def bind(self, instances: Iterable[Instance]) -> None:
+    def bind(self, instances: Iterable[VisibleModel]) -> None:
         """Update the models after a compilation."""
         self._instances = tuple(instances)
         self._scene = None

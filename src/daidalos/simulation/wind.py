@@ -14,9 +14,9 @@ from daidalos.description.world import Model, World
 from daidalos.samples.sensors import Sample
 from daidalos.simulation.component import Component, ComponentContext
 from daidalos.simulation.conversion.model_build import ModelBuild
-from daidalos.simulation.extensions import library_of
 from daidalos.simulation.instance import Instance
 from daidalos.simulation.last_step import velocities
+from daidalos.simulation.libraries import library_of
 from daidalos.simulation.noise import SILENT, Noise
 from daidalos.simulation.sensors.noisy import nested_noise
 

@@ -15,7 +15,7 @@ from daidalos.nodes.gazebo_ros._entities import find_entity
 from daidalos.nodes.gazebo_ros._pacing import PacedSimulation
 from daidalos.nodes.packages import package_share
 from daidalos.simulation import Simulation
-from daidalos.simulation.extensions import library_name
+from daidalos.simulation.libraries import library_name
 
 if TYPE_CHECKING:
     from daidalos.description.robot import Robot

@@ -10,7 +10,7 @@ from daidalos.common.suggestions import near
 from daidalos.description.link import Plugin as Description
 from daidalos.description.markup import Element
 from daidalos.simulation.component import Component, ComponentContext
-from daidalos.simulation.extensions import library_of
+from daidalos.simulation.libraries import library_of
 from daidalos.simulation.sensors.base import Sensor
 from daidalos.simulation.topics import absolute_topic, join_namespaces
 

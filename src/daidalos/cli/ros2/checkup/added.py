@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 from importlib.metadata import entry_points
 from typing import Any
 
-from daidalos.cli.ros2.checkup import Findings, Report, Subject
+from daidalos.cli.ros2.checkup.subject import Findings, Report, Subject
 from daidalos.transport.graph import Graph
 
 

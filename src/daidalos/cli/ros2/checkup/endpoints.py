@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
-from daidalos.cli.ros2.checkup import Findings, Report, Subject
+from daidalos.cli.ros2.checkup.subject import Findings, Report, Subject
 from daidalos.cli.ros2.graph import action_parties, all_actions, services
 from daidalos.transport.graph import EndpointKind, Graph
 

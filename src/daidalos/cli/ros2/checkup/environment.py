@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable
 
-from daidalos.cli.ros2.checkup import Findings, Report, Subject
+from daidalos.cli.ros2.checkup.subject import Findings, Report, Subject
 from daidalos.transport.graph import Graph
 
 _PREFIXES = ("ROS_", "RMW_", "RCUTILS_", "ZENOH_", "AMENT_", "COLCON_", "DAIDALOS_", "CYCLONEDDS_")

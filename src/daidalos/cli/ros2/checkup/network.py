@@ -8,7 +8,7 @@ from typing import Any
 
 import psutil
 
-from daidalos.cli.ros2.checkup import Findings, Report, Subject
+from daidalos.cli.ros2.checkup.subject import Findings, Report, Subject
 from daidalos.transport.environment import DiscoveryRange, read_environment
 from daidalos.transport.graph import Graph
 

@@ -7,7 +7,7 @@ import platform
 from collections.abc import Iterable
 from importlib.metadata import version
 
-from daidalos.cli.ros2.checkup import Findings, Report, Subject
+from daidalos.cli.ros2.checkup.subject import Findings, Report, Subject
 from daidalos.distribution import DISTRIBUTION
 from daidalos.transport.environment import read_environment
 from daidalos.transport.graph import Graph

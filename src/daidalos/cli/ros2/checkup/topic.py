@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from daidalos.cli.ros2.checkup import Findings, Report, Subject
+from daidalos.cli.ros2.checkup.subject import Findings, Report, Subject
 from daidalos.cli.ros2.graph import topics
 from daidalos.transport.graph import EndpointKind, Graph
 

@@ -13,7 +13,7 @@ from daidalos.cli.ros2.extension import Status
 from daidalos.cli.ros2.verbs import VerbCommand
 
 if TYPE_CHECKING:
-    from daidalos.cli.ros2.checkup import Findings, Subject
+    from daidalos.cli.ros2.checkup.subject import Findings, Subject
     from daidalos.transport.graph import Graph
 
 
