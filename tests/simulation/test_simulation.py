@@ -308,9 +308,9 @@ def test_what_is_not_known_is_named_and_the_rest_runs():
     simulation = Simulation(world(text), warn=lines.append)
     assert simulation.warnings == lines
     assert [line.partition(": ")[2] for line in lines] == [
-        "plugin 'magic' (libmagic.so) is not known, left out",
-        "sensor 'nose' is of unknown type 'smell', left out",
-        "plugin 'x' (libx.so) is not known, left out",
+        "'magic': there is no simulator plugin 'magic' (left out)",
+        "'nose': there is no sensor 'smell' (left out)",
+        "'x': there is no simulator plugin 'x' (left out)",
     ]
     assert any(isinstance(s, ImuSample) for s in simulation.step())
 

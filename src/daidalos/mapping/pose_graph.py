@@ -80,7 +80,9 @@ class _Edges(NamedTuple):
 
     def only(self, kept: NDArray[np.bool_]) -> "_Edges":
         """Return the edges that a mask selects."""
-        return _Edges(*(column[kept] for column in self))
+        return _Edges(
+            self.first[kept], self.second[kept], self.measured[kept], self.information[kept], self.closure[kept]
+        )
 
 
 def optimize(poses: Array, edges: Sequence[Edge], *, chordal: bool = False) -> Solution:
