@@ -1,1 +1,1 @@
-"""One file per ROS executable, grouped by ROS package: thin shells around the libraries."""
+"""Nodes of the ROS executables, one file each, grouped by ROS package."""

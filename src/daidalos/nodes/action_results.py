@@ -1,4 +1,4 @@
-"""Results of Nav2's actions from what the libraries raise."""
+"""Results of Nav2's actions from the exceptions of the libraries."""
 
 from __future__ import annotations
 
@@ -27,6 +27,6 @@ def error_name(result: Any) -> str:
 
 
 class TransformFailed(NavigationError):
-    """A pose is not known in the frame that is needed."""
+    """A pose cannot be transformed to the required frame."""
 
     code = "TF_ERROR"

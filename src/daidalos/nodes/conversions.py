@@ -1,4 +1,4 @@
-"""Between messages and the arrays that the libraries take: poses, stamps, paths, grids, scans."""
+"""Conversion of messages to and from the libraries' arrays: poses, stamps, paths, grids and scans."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Work in cycles of a node's clock without a thread: coroutines that wait for the next tick.
+"""Periodic work on a node's clock without a thread: coroutines that await the next tick.
 
 An action that computes something twenty times a second awaits `Cycle.next` in between. Nothing sleeps, so
 goals, cancellations and sensor data are handled meanwhile, and a stepped clock steps the work.

@@ -1,4 +1,4 @@
-"""Descriptions of robots and models in files that a user names."""
+"""Robot and model descriptions in files that a user names."""
 
 from __future__ import annotations
 

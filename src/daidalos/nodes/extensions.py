@@ -1,4 +1,4 @@
-"""Nodes that a container can load, by the names that ROS 2 gives them."""
+"""Registry of the nodes for containers, under ROS 2's names."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The action of every first lesson: numbers of Fibonacci's sequence, one in a second, so that one can wait for them."""
+"""Fibonacci action of the tutorials: one number per second."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from daidalos.nodes.cycles import Cycle
 
 
 class FibonacciServer(Node):
-    """Serves the action ``fibonacci``.
+    """Server of the action ``fibonacci``.
 
     Parameters
     ----------
@@ -49,7 +49,7 @@ class FibonacciServer(Node):
         return GoalResponse.ACCEPT
 
     def on_accepted(self, goal_handle: Any) -> None:
-        """Begin at once."""
+        """Execute the goal at once."""
         goal_handle.execute()
 
     def on_cancel(self, goal_handle: Any) -> Any:
@@ -88,7 +88,7 @@ class FibonacciServer(Node):
 
 
 class FibonacciClient(Node):
-    """Sends a goal to ``fibonacci``, and calls `over` at the end; parameters as of `FibonacciServer`."""
+    """Client that sends a goal to ``fibonacci``, and calls `over` at the end; parameters as of `FibonacciServer`."""
 
     def __init__(self, name: str, action: Any, field: str, over: Callable[[], None], **kwargs: Any) -> None:
         super().__init__(name, **kwargs)

@@ -1,4 +1,4 @@
-"""The nodes of every first lesson: one that talks, one that listens, one that adds, one that asks for a sum."""
+"""Nodes of the first tutorials: talker, listener, service server and service client."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from rclpy.qos import QoSProfile
 
 
 class HelloTalker(Node):
-    """Says ``Hello World: 0``, ``Hello World: 1`` and so on, and logs it.
+    """Node that publishes ``Hello World: 0``, ``Hello World: 1`` and so on, and logs it.
 
     Parameters
     ----------
@@ -46,7 +46,7 @@ class HelloTalker(Node):
         self.create_timer(period_s, self.talk)
 
     def talk(self) -> None:
-        """Say the next sentence."""
+        """Publish the next sentence."""
         from std_msgs.msg import String
 
         message = String(data=f"Hello World: {self.number}")
@@ -76,7 +76,7 @@ class HelloListener(Node):
 
 
 class Adder(Node):
-    """Serves ``add_two_ints``."""
+    """Server of ``add_two_ints``."""
 
     def __init__(self, name: str, **kwargs: Any) -> None:
         super().__init__(name, **kwargs)

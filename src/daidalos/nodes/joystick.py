@@ -1,4 +1,4 @@
-"""Game pads as Linux's joystick interface tells of them: files that are read, and what their events amount to.
+"""Game pads through Linux's joystick interface.
 
 See `Documentation/input/joydev/joystick-api.rst` of the Linux kernel.
 """
@@ -27,7 +27,7 @@ _FULL = 32767.0
 
 @dataclass(frozen=True)
 class Event:
-    """A button or an axis that changed; `value` is 1 or 0, or from -32767 to 32767."""
+    """Change of a button or an axis; `value` is 1 or 0, or from -32767 to 32767."""
 
     is_button: bool
     number: int
@@ -37,7 +37,7 @@ class Event:
 
 @dataclass
 class Controls:
-    """What the axes and buttons of a game pad are at.
+    """State of the axes and buttons of a game pad.
 
     Attributes
     ----------
@@ -60,7 +60,7 @@ class Controls:
     buttons: list[int] = field(default_factory=list)
 
     def apply(self, event: Event) -> None:
-        """Take in what changed."""
+        """Apply a change."""
         if not event.is_button:
             _put(self.axes, event.number, self._scaled(event.value), 0.0)
         elif not self.sticky_buttons or event.is_initial:
@@ -78,7 +78,7 @@ class Controls:
 
 
 class Joystick:
-    """A game pad that is being read, for a ``with`` block.
+    """Game pad that is read within a ``with`` block.
 
     Parameters
     ----------
@@ -105,7 +105,7 @@ class Joystick:
             os.close(descriptor)
 
     def wake(self) -> None:
-        """Have `read` return now, in whatever thread it waits."""
+        """Wake `read` in its thread."""
         os.write(self._waker, b"\0")
 
     def read(self, coalesce: float = 0.0) -> list[Event]:

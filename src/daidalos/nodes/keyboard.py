@@ -1,4 +1,4 @@
-"""Keys of the terminal as they are pressed, without waiting for Enter."""
+"""Key presses of the terminal, without waiting for Enter."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _POLL_S = 0.02  # on Windows, where a console can not be waited for together wit
 
 
 class Keyboard:
-    """The keyboard of this process's terminal, while the ``with`` block lasts.
+    """Keyboard of this process's terminal within a ``with`` block.
 
     The terminal is as it was before at the end, however the program ends.
 
@@ -64,7 +64,7 @@ class Keyboard:
             self._pipe = None
 
     def _take_keys(self) -> None:
-        """Have the terminal hand over each key at once, unseen."""
+        """Configure the terminal to pass each key at once, without echo."""
         if sys.platform != "win32":
             import termios
 
@@ -75,7 +75,7 @@ class Keyboard:
             termios.tcsetattr(sys.stdin, termios.TCSADRAIN, wanted)
 
     def wake(self) -> None:
-        """Let `read` return None from now on; may be called from any thread."""
+        """Make `read` return None from now on; may be called from any thread."""
         self._woken.set()
         if self._pipe is not None:
             os.write(self._pipe[1], b"\0")

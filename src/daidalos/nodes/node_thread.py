@@ -1,4 +1,4 @@
-"""A node that another one contains, spun in a thread of its own."""
+"""Contained node, spun in a thread of its own."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where packages are, as the libraries ask for it."""
+"""Package lookup for the libraries."""
 
 from __future__ import annotations
 

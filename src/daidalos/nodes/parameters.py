@@ -65,7 +65,7 @@ class _Group:
 
 @dataclass(eq=False)
 class _NodeParameters:
-    """What was declared of a node, and the given names that were warned of."""
+    """Declared parameters of a node, and the names that were warned of."""
 
     groups: dict[tuple[str, type], _Group] = field(default_factory=dict)
     warned: set[str] = field(default_factory=set)

@@ -67,7 +67,7 @@ def fail() -> None:
 
 
 def ignore_interrupts() -> None:
-    """Let nobody who presses Ctrl-C twice interrupt the end."""
+    """Ignore further Ctrl-C during the shutdown."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 

@@ -1,4 +1,4 @@
-"""The program of every built-in executable: ``python -S -P start.py PACKAGE MODULE ARGUMENT...``.
+"""Program of all built-in executables: ``python -S -P start.py PACKAGE MODULE ARGUMENT...``.
 
 Ctrl-C reaches all processes of a terminal, also those that are still importing, where Python would answer with a
 traceback. So whoever starts us blocks the signal (see `executables.interrupts_blocked`), and here it gets its quiet

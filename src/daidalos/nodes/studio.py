@@ -1,4 +1,4 @@
-"""The studio's server with the graph of a node."""
+"""Studio server with the graph of a node."""
 
 from __future__ import annotations
 

@@ -113,7 +113,7 @@ def run_studio(
     from daidalos.nodes.studio import Studio
 
     class Window(Node):
-        """Serves the studio."""
+        """Server of the studio."""
 
         def __init__(self) -> None:
             super().__init__(name)

@@ -1,4 +1,4 @@
-"""Running a node that is steered by keys: the keys in the main thread, its callbacks in another."""
+"""Runner of nodes controlled by keys: the keys in the main thread, callbacks in another."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Waiting for the transform that belongs to a message, but not for one that cannot come any more."""
+"""Waiting for the transform of a message, except if it cannot arrive any more."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _AHEAD_NS = 1_000_000_000
 
 
 class BlockingBuffer(Buffer):
-    """A buffer whose users may wait for the transform at a message's time without an end of their own."""
+    """Transform buffer that waits for the transform at a message's time."""
 
     def transform_at(self, target_frame: str, source_frame: str, stamp: Any) -> Future:
         """Return a future of the transform from one frame to another at a message's time.
@@ -53,7 +53,7 @@ class BlockingBuffer(Buffer):
 
 
 class SensorPoses:
-    """The poses of sensors in the robot's base, which do not change.
+    """Static poses of sensors in the robot's base frame.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""`fibonacci_action_client`: asks for numbers of Fibonacci's sequence."""
+"""`fibonacci_action_client`: requests numbers of the Fibonacci sequence."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _ORDER = 10
 
 
 class FibonacciActionClient(FibonacciClient):
-    """Sends a goal of ``action_tutorials_interfaces/action/Fibonacci``."""
+    """Client of ``action_tutorials_interfaces/action/Fibonacci``."""
 
     def __init__(self, over: Callable[[], None], **kwargs: Any) -> None:
         from action_tutorials_interfaces.action import Fibonacci
@@ -27,7 +27,7 @@ class FibonacciActionClient(FibonacciClient):
 
 
 def main() -> int:
-    """Ask for ten."""
+    """Request ten numbers."""
     return run_program(lambda: run_client(FibonacciActionClient, _ORDER, talkative=False))
 
 

@@ -1,4 +1,4 @@
-"""`fibonacci_action_server`: computes numbers of Fibonacci's sequence."""
+"""`fibonacci_action_server`: computes numbers of the Fibonacci sequence."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from daidalos.nodes.runner import run
 
 
 class FibonacciActionServer(FibonacciServer):
-    """Serves ``action_tutorials_interfaces/action/Fibonacci``."""
+    """Server of ``action_tutorials_interfaces/action/Fibonacci``."""
 
     def __init__(self, **kwargs: Any) -> None:
         from action_tutorials_interfaces.action import Fibonacci

@@ -1,3 +1,3 @@
-"""The components of the lessons on containers."""
+"""Components of the tutorials on containers."""
 
 COMPONENTS = {name: f"_components:{name}" for name in ("Client", "Listener", "Server", "Talker")}

@@ -1,4 +1,4 @@
-"""Nodes that a container loads: one talks, one listens, one adds, one asks for sums."""
+"""Nodes for containers: talker, listener, service server and service client."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _PERIOD_S = 2.0
 
 
 class Talker(HelloTalker):
-    """Publishes a sentence on ``chatter`` every second."""
+    """Node that publishes a sentence on ``chatter`` every second."""
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__("talker", "chatter", 1.0, "Publishing: '{}'", first=1, **kwargs)
@@ -27,14 +27,14 @@ class Listener(HelloListener):
 
 
 class Server(Adder):
-    """Serves ``add_two_ints``."""
+    """Server of ``add_two_ints``."""
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__("Server", **kwargs)
 
 
 class Client(Node):
-    """Asks for the sum of 2 and 3 every two seconds."""
+    """Client that requests the sum of 2 and 3 every two seconds."""
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__("Client", **kwargs)

@@ -1,4 +1,4 @@
-"""ros2_control's controller manager and what speaks to it."""
+"""ros2_control's controller manager and its clients."""
 
 EXECUTABLES = {
     "spawner": "spawner",

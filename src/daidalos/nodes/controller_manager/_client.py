@@ -1,4 +1,4 @@
-"""Asking a controller manager for something, for programs that do only that."""
+"""Client of a controller manager for the programs that control it."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def add_manager_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 class ManagerClient:
-    """A controller manager, asked by its services.
+    """Client of a controller manager's services.
 
     Parameters
     ----------

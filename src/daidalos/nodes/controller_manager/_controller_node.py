@@ -1,4 +1,4 @@
-"""The node that a controller shows to the graph: its parameters, topics, services and actions."""
+"""Node of a controller: its parameters, topics, services and actions."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from daidalos.samples.sensors import Sample
 
 
 class ControllerNode(Node):
-    """A controller's face.
+    """Node of a controller.
 
     Parameters
     ----------
@@ -70,7 +70,7 @@ class ControllerNode(Node):
     # Topics
 
     def has_subscribers(self, topic: str) -> bool:
-        """Tell whether anyone listens to one of the controller's topics."""
+        """Return whether one of the controller's topics has subscribers."""
         entry = self._outgoing.get(topic)
         return entry is not None and entry[0].handle.has_subscribers
 

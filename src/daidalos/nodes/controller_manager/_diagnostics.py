@@ -1,4 +1,4 @@
-"""How controllers and hardware fare, on ``/diagnostics`` under the names that ros2_control gives its reports."""
+"""Diagnostics of controllers and hardware on ``/diagnostics`` under the names of ros2_control."""
 
 from __future__ import annotations
 

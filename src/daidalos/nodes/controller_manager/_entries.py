@@ -1,4 +1,4 @@
-"""How services and actions of controllers meet messages."""
+"""Services and actions of controllers, with the conversions of their messages."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any
 
 @dataclass(frozen=True)
 class ServiceEntry:
-    """How a question becomes a service.
+    """Service of a controller's request class.
 
     Parameters
     ----------
@@ -28,7 +28,7 @@ class ServiceEntry:
 
 @dataclass(frozen=True)
 class ActionEntry:
-    """How a request becomes an action.
+    """Action of a controller's goal class.
 
     Parameters
     ----------

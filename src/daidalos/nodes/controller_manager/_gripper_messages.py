@@ -1,4 +1,4 @@
-"""Grippers' actions as messages: the one with one number, and the one with joint states."""
+"""Messages of the gripper actions: with a single position, and with joint states."""
 
 from __future__ import annotations
 

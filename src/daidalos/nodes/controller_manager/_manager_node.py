@@ -1,4 +1,4 @@
-"""The controller manager as a node: its services, and the nodes of its controllers."""
+"""Node of the controller manager: its services, and the nodes of its controllers."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ class ControllerManagerNode(Node):
         self._activity: Any = None
 
     def start(self, robot: Robot | Model | None, hardware: Iterable[Hardware]) -> None:
-        """Take hardware into service, and offer the services."""
+        """Start hardware, and offer the services."""
         from controller_manager_msgs.msg import ControllerManagerActivity
 
         self._robot = robot
@@ -195,7 +195,7 @@ class ControllerManagerNode(Node):
 
     @property
     def _spinning(self) -> Executor:
-        """Who spins this node, and spins those of its controllers."""
+        """Executor of this node, which also runs the nodes of its controllers."""
         executor = self.executor
         assert executor is not None, "a service can only be called while somebody spins"
         return executor

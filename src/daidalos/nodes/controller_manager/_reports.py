@@ -1,4 +1,4 @@
-"""What a controller manager says of controllers and hardware, as messages."""
+"""Messages about the state of controllers and hardware."""
 
 from __future__ import annotations
 

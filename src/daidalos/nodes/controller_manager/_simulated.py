@@ -1,4 +1,4 @@
-"""A controller manager inside the simulator, stepped with it."""
+"""Controller manager inside the simulator, stepped with it."""
 
 from __future__ import annotations
 

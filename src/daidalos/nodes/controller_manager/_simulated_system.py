@@ -1,4 +1,4 @@
-"""Hardware of the controller manager that is in the simulation: joints with motors, and sensors."""
+"""Simulated hardware of the controller manager: joints with motors, and sensors."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _MODES = {
 
 
 class SimulatedSystem(Hardware):
-    """A robot in the simulation, by the names that Gazebo's packages give it.
+    """Robot in the simulation, by the plugin names of Gazebo's packages.
 
     Parameters
     ----------
@@ -80,7 +80,7 @@ class SimulatedSystem(Hardware):
                     )
 
     def configure(self) -> None:
-        """Take the state that the joints are in; sensors measure between steps, in the first cycle."""
+        """Read the state of the joints; sensors are first read in the first cycle, between two steps."""
         for sensor in self.info.sensors:
             if not self._plugin.has_sensor(sensor.name):
                 self.context.warn(f"hardware '{self.info.name}': the robot has no sensor '{sensor.name}'")

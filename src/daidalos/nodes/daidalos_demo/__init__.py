@@ -1,1 +1,1 @@
-"""Trying out the demonstration: goals for its robot, and how well it did."""
+"""Test drive of the demonstration, with goals and a report."""

@@ -1,4 +1,4 @@
-"""What is measured while the robot of the demonstration drives: its true motion, its beliefs, its load."""
+"""Measurements during the test drive: true motion, estimates and system load."""
 
 from __future__ import annotations
 
@@ -99,7 +99,7 @@ class TruthRecorder:
 
 @dataclass
 class Load:
-    """What a tree of processes used.
+    """Resources used by a tree of processes.
 
     Attributes
     ----------
@@ -127,7 +127,7 @@ class LoadRecorder:
     _cpu: dict[int, tuple[float, float]] = field(default_factory=dict)
 
     def start(self) -> None:
-        """Begin."""
+        """Start to measure."""
         self._begun = time.monotonic()
         self._thread = threading.Thread(target=self._run, name="load", daemon=True)
         self._thread.start()

@@ -1,4 +1,4 @@
-"""The robot of the demonstration as its user meets it: the actions and services of the navigation stack."""
+"""Client of the demonstration's navigation stack: its actions and services."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _RUNNING = (1, 2)  # accepted and executing, of action_msgs/msg/GoalStatus
 
 
 class Robot:
-    """Sends a robot about.
+    """Client that sends the robot to goals.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""`look_around`: turns the robot once when all is up, so that its map shows what was behind it."""
+"""`look_around`: rotates the robot once at startup, so that the map covers the area behind it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`trial`: sends the demonstration's robot to goals all over the arena and reports how it did."""
+"""`trial`: sends the demonstration's robot to goals across the arena and reports the results."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ Say = Callable[[str], None]
 
 @dataclass(frozen=True)
 class GoalReport:
-    """How one goal went: errors against the simulator's truth in metres and radians, times in simulated seconds."""
+    """Result of one goal: errors against ground truth in metres and radians, times in simulated seconds."""
 
     goal: tuple[float, float, float]
     reached: bool
@@ -48,7 +48,7 @@ class GoalReport:
 
 @dataclass(frozen=True)
 class MapReport:
-    """The map: cell size, size in cells, and how it agrees with the true walls (shares from 0 to 1)."""
+    """Map: cell size, size in cells, and agreement with the true walls (ratios from 0 to 1)."""
 
     resolution_m: float
     width: int
@@ -59,7 +59,7 @@ class MapReport:
 
 @dataclass(frozen=True)
 class TrialReport:
-    """How the whole trial went."""
+    """Result of the test drive."""
 
     goals: list[GoalReport]
     contacts: int
@@ -70,12 +70,12 @@ class TrialReport:
 
     @property
     def passed(self) -> bool:
-        """Whether every goal was reached and nothing was touched."""
+        """Whether all goals were reached without collision."""
         return bool(self.goals) and all(goal.reached for goal in self.goals) and not self.contacts
 
 
 class Trial(Node):
-    """Drives the robot to goals, one after the other.
+    """Test drive to a sequence of goals.
 
     Parameters of the node: ``seed`` chooses the goals, ``goals`` is how many, ``world`` the SDF file that is
     simulated, ``robot`` the robot's name in it.

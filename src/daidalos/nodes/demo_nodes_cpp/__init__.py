@@ -1,4 +1,4 @@
-"""The demonstrations that ROS 2 has in C++, by the same names and with the same words."""
+"""ROS 2's C++ demo nodes, with the same names and texts."""
 
 EXECUTABLES = {
     "add_two_ints_client": "add_two_ints_client",

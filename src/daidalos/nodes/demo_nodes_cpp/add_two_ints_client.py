@@ -1,4 +1,4 @@
-"""`add_two_ints_client`: asks what two and three are."""
+"""`add_two_ints_client`: requests the sum of 2 and 3."""
 
 import sys
 
@@ -7,7 +7,7 @@ from daidalos.nodes.runner import run_program
 
 
 def main() -> int:
-    """Ask, and log the answer."""
+    """Call the service and log the response."""
     return run_program(
         lambda: request_sum(
             "add_two_ints_client", 2, 3, lambda node, total: node.get_logger().info(f"Result of add_two_ints: {total}")

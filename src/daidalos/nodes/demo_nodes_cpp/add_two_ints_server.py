@@ -1,4 +1,4 @@
-"""`add_two_ints_server`: adds."""
+"""`add_two_ints_server`: adds integers."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from daidalos.nodes.runner import run
 
 
 class AddTwoIntsServer(Adder):
-    """Serves ``add_two_ints``."""
+    """Server of ``add_two_ints``."""
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__("add_two_ints_server", **kwargs)

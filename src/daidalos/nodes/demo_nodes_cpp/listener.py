@@ -1,4 +1,4 @@
-"""`listener`: hears what is published on ``chatter``."""
+"""`listener`: subscribes to ``chatter``."""
 
 from __future__ import annotations
 

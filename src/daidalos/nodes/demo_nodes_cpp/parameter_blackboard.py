@@ -1,4 +1,4 @@
-"""`parameter_blackboard`: keeps whatever parameters others set."""
+"""`parameter_blackboard`: stores parameters that other nodes set."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from daidalos.nodes.runner import run
 
 
 class ParameterBlackboard(Node):
-    """Lets every parameter be set, declared or not."""
+    """Node that accepts every parameter, declared or not."""
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__(

@@ -1,4 +1,4 @@
-"""The demonstrations of rclpy: talker and listener, services, parameters."""
+"""Demo nodes of rclpy: talker and listener, services, parameters."""
 
 EXECUTABLES = {
     "add_two_ints_client": "add_two_ints_client",

@@ -1,4 +1,4 @@
-"""Telling of requests and responses as a parameter says."""
+"""Service introspection with a state that a parameter sets."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The choice that the demonstrations of quality of service offer."""
+"""Command line options of the quality of service demos."""
 
 from __future__ import annotations
 

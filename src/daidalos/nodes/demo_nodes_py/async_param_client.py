@@ -45,7 +45,7 @@ def _exercise(node: Node) -> None:
 
 
 def main() -> int:
-    """Do it once."""
+    """Run the sequence once."""
 
     def body() -> None:
         import rclpy

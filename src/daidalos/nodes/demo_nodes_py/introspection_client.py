@@ -1,4 +1,4 @@
-"""`introspection_client`: asks for a sum again and again, and tells of it on ``add_two_ints/_service_event``."""
+"""`introspection_client`: calls a service repeatedly, with events on ``add_two_ints/_service_event``."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from daidalos.nodes.runner import run
 
 
 class IntrospectionClient(Node):
-    """Calls ``add_two_ints`` twice a second; ``client_configure_introspection`` says how much is told."""
+    """Client that calls ``add_two_ints`` twice a second; ``client_configure_introspection`` sets its events."""
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__("introspection_client", **kwargs)

@@ -1,4 +1,4 @@
-"""`introspection_service`: adds, and tells who asks what on ``add_two_ints/_service_event``."""
+"""`introspection_service`: adds integers, with events on ``add_two_ints/_service_event``."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from daidalos.nodes.runner import run
 
 
 class IntrospectionService(Adder):
-    """Serves ``add_two_ints``; ``service_configure_introspection`` says how much is told."""
+    """Server of ``add_two_ints``; ``service_configure_introspection`` sets its events."""
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__("introspection_service", **kwargs)

@@ -1,4 +1,4 @@
-"""`listener_qos`: hears what is published on ``chatter``, reliably or not."""
+"""`listener_qos`: subscribes to ``chatter``, reliably or best effort."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`listener_serialized`: hears the bytes that are published on ``chatter``."""
+"""`listener_serialized`: subscribes to the serialized messages on ``chatter``."""
 
 from __future__ import annotations
 

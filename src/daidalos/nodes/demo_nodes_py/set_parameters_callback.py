@@ -31,7 +31,7 @@ class SetParametersCallback(Node):
         return parameters
 
     def _judge(self, parameters: list[Parameter[Any]]) -> Any:
-        """Say whether the values may be."""
+        """Return whether the values are accepted."""
         from rcl_interfaces.msg import SetParametersResult
 
         faulty = [each.name for each in parameters if each.name in self.tracked and not isinstance(each.value, float)]
@@ -40,7 +40,7 @@ class SetParametersCallback(Node):
         )
 
     def _after(self, parameters: list[Parameter[Any]]) -> None:
-        """Take the new values."""
+        """Store the new values."""
         for parameter in parameters:
             if parameter.name in self.tracked:
                 self.tracked[parameter.name] = parameter.value

@@ -10,7 +10,7 @@ from daidalos.nodes.runner import run
 
 
 class Talker(HelloTalker):
-    """Publishes a sentence every second."""
+    """Node that publishes a sentence every second."""
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__("talker", "chatter", 1.0, 'Publishing: "{}"', first=0, **kwargs)

@@ -1,4 +1,4 @@
-"""`talker_qos`: publishes on ``chatter``, reliably or not."""
+"""`talker_qos`: publishes on ``chatter``, reliably or best effort."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from daidalos.nodes.runner import run_program
 
 
 class TalkerQos(HelloTalker):
-    """Publishes a sentence every second."""
+    """Node that publishes a sentence every second."""
 
     def __init__(self, reliable: bool = False, **kwargs: Any) -> None:
         super().__init__("talker_qos", "chatter", 1.0, 'Publishing: "{}"', qos=profile(reliable), **kwargs)

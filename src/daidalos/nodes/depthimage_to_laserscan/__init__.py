@@ -1,1 +1,1 @@
-"""Depth images as flat scans, as ROS 2 offers them."""
+"""Conversion of depth images to laser scans, with ROS 2's interface."""

@@ -1,4 +1,4 @@
-"""The nearest points of the middle rows of a depth image, by the direction in which they are."""
+"""Nearest points of the middle rows of a depth image, by direction."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 @dataclass(frozen=True)
 class Fan:
-    """The rays of a scan that a camera sees; angles are positive to the left.
+    """Rays of a scan in a camera's field of view; angles are positive to the left.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""`depthimage_to_laserscan_node`: publishes the middle rows of depth images as flat scans."""
+"""`depthimage_to_laserscan_node`: publishes the middle rows of depth images as laser scans."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _METRES = {"16UC1": 0.001, "mono16": 0.001, "32FC1": 1.0}
 
 
 class DepthImageToLaserScan(Node):
-    """Publishes ``scan`` from ``depth`` and ``depth_camera_info``, while somebody listens.
+    """Node that publishes ``scan`` from ``depth`` and ``depth_camera_info`` while it has subscribers.
 
     Parameters of the node: ``scan_time`` [s], ``range_min``, ``range_max`` [m], ``scan_height`` (how many rows are
     looked at) and ``output_frame`` (of the scan: x ahead, y to the left).

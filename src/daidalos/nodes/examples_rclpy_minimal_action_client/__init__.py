@@ -1,3 +1,3 @@
-"""The smallest action clients."""
+"""Minimal action clients."""
 
 EXECUTABLES = {"client": "client", "client_asyncio": "client", "client_not_composable": "client"}

@@ -13,7 +13,7 @@ ORDER = 10
 
 
 class MinimalActionClient(FibonacciClient):
-    """Sends a goal of ``example_interfaces/action/Fibonacci``."""
+    """Client that sends a goal of ``example_interfaces/action/Fibonacci``."""
 
     def __init__(self, over: Callable[[], None], **kwargs: Any) -> None:
         from example_interfaces.action import Fibonacci
@@ -22,7 +22,7 @@ class MinimalActionClient(FibonacciClient):
 
 
 def main() -> int:
-    """Ask for ten."""
+    """Request ten numbers."""
     return run_program(lambda: run_client(MinimalActionClient, ORDER, talkative=True))
 
 

@@ -1,4 +1,4 @@
-"""`client_cancel`: sends a goal and cancels it after a while."""
+"""`client_cancel`: sends a goal and cancels it after 2 s."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class CancellingActionClient(MinimalActionClient):
 
 
 def main() -> int:
-    """Ask for ten numbers and cancel after the timeout."""
+    """Request ten numbers and cancel the goal."""
     return run_program(lambda: run_client(CancellingActionClient, ORDER, talkative=True))
 
 

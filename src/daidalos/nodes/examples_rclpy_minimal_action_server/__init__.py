@@ -1,3 +1,3 @@
-"""The smallest action servers, which differ in what they do with several goals."""
+"""Minimal action servers, which differ in their handling of several goals."""
 
 EXECUTABLES = {"server": "server", "server_not_composable": "server"}

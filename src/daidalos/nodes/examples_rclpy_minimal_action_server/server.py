@@ -1,4 +1,4 @@
-"""`server`: carries out all goals at the same time."""
+"""`server`: executes all goals concurrently."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from daidalos.nodes.runner import run
 
 
 class MinimalActionServer(FibonacciServer):
-    """Serves ``example_interfaces/action/Fibonacci``."""
+    """Server of ``example_interfaces/action/Fibonacci``."""
 
     def __init__(self, **kwargs: Any) -> None:
         from example_interfaces.action import Fibonacci

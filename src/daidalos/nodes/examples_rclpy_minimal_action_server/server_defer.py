@@ -1,4 +1,4 @@
-"""`server_defer`: begins with a goal some time after it was accepted."""
+"""`server_defer`: executes a goal some time after its acceptance."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ _DELAY_S = 3.0
 
 
 class DeferringActionServer(MinimalActionServer):
-    """Lets each goal wait."""
+    """Action server that defers its goals."""
 
     def on_accepted(self, goal_handle: Any) -> None:
-        """Begin later."""
+        """Schedule the execution."""
         self.get_logger().info("Deferring execution...")
 
         def begin() -> None:

@@ -1,4 +1,4 @@
-"""`server_queue_goals`: carries out one goal after the other."""
+"""`server_queue_goals`: executes one goal after another."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from daidalos.nodes.runner import run
 
 
 class QueueingActionServer(MinimalActionServer):
-    """Keeps goals in a queue."""
+    """Action server with a queue of goals."""
 
     def __init__(self, **kwargs: Any) -> None:
         self._queue: deque[Any] = deque()
@@ -19,7 +19,7 @@ class QueueingActionServer(MinimalActionServer):
         super().__init__(**kwargs)
 
     def on_accepted(self, goal_handle: Any) -> None:
-        """Begin when all before it are done."""
+        """Queue the goal."""
         if self._current is not None:
             self._queue.append(goal_handle)
             self.get_logger().info("Goal put in the queue")

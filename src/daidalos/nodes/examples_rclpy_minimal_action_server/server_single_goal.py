@@ -1,4 +1,4 @@
-"""`server_single_goal`: a new goal ends the one before."""
+"""`server_single_goal`: a new goal aborts the previous one."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from daidalos.nodes.runner import run
 
 
 class SingleGoalActionServer(MinimalActionServer):
-    """Carries out the newest goal only."""
+    """Action server that executes only the latest goal."""
 
     def __init__(self, **kwargs: Any) -> None:
         self._current: Any = None
         super().__init__(**kwargs)
 
     def on_accepted(self, goal_handle: Any) -> None:
-        """Give up the goal before."""
+        """Abort the previous goal and execute the new one."""
         if self._current is not None and self._current.is_active:
             self.get_logger().info("Aborting previous goal")
             self._current.abort()

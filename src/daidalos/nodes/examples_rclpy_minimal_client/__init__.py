@@ -1,4 +1,4 @@
-"""The smallest client of a service. ROS 2 writes it in four ways that do the same."""
+"""Minimal service client; ROS 2 has it in four equivalent versions."""
 
 EXECUTABLES = {
     "client": "asker",

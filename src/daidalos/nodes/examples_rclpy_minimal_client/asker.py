@@ -1,4 +1,4 @@
-"""Asks what 41 and 1 are."""
+"""Client that requests the sum of 41 and 1."""
 
 import sys
 
@@ -9,7 +9,7 @@ _A, _B = 41, 1
 
 
 def main() -> int:
-    """Ask, and log the answer."""
+    """Call the service and log the response."""
     return run_program(
         lambda: request_sum(
             "minimal_client",

@@ -1,4 +1,4 @@
-"""The smallest publisher. ROS 2 writes it in three ways that do the same."""
+"""Minimal publisher; ROS 2 has it in three equivalent versions."""
 
 EXECUTABLES = {
     "publisher_local_function": "publisher",

@@ -1,4 +1,4 @@
-"""Publishes on ``topic`` twice a second."""
+"""Publisher on ``topic`` at 2 Hz."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from daidalos.nodes.runner import run
 
 
 class MinimalPublisher(HelloTalker):
-    """Publishes a sentence every half second."""
+    """Node that publishes a sentence every half second."""
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__("minimal_publisher", "topic", 0.5, 'Publishing: "{}"', **kwargs)

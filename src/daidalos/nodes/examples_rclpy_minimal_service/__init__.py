@@ -1,4 +1,4 @@
-"""The smallest service. ROS 2 writes it in two ways that do the same."""
+"""Minimal service server; ROS 2 has it in two equivalent versions."""
 
 EXECUTABLES = {
     "service": "adder",

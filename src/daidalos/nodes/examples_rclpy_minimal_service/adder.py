@@ -1,4 +1,4 @@
-"""Serves ``add_two_ints``."""
+"""Server of ``add_two_ints``."""
 
 from __future__ import annotations
 

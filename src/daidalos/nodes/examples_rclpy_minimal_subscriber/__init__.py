@@ -1,4 +1,4 @@
-"""The smallest subscriber. ROS 2 writes it in three ways that do the same."""
+"""Minimal subscriber; ROS 2 has it in three equivalent versions."""
 
 EXECUTABLES = {
     "subscriber_lambda": "subscriber",

@@ -1,4 +1,4 @@
-"""Hears what is published on ``topic``."""
+"""Subscriber of ``topic``."""
 
 from __future__ import annotations
 

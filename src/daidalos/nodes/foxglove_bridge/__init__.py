@@ -1,1 +1,1 @@
-"""The graph for the browser studio, over the Foxglove WebSocket protocol."""
+"""Bridge of the graph to the studio over the Foxglove WebSocket protocol."""

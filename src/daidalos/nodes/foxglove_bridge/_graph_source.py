@@ -35,7 +35,7 @@ _CLOCK = "/clock"
 
 
 class RosGraphSource:
-    """See `daidalos.studio.source.GraphSource`. The node must be spun for parameters to be answered.
+    """ROS graph for the studio; see `daidalos.studio.source.GraphSource`. The node must be spun.
 
     Parameters
     ----------
@@ -261,7 +261,7 @@ class _Closing:
 
 
 class _Publication(_Closing):
-    """A topic that is published for a client."""
+    """Topic that is published for a client."""
 
     def __init__(self, handle: PublisherHandle) -> None:
         super().__init__(handle.destroy_when_not_in_use)
@@ -273,7 +273,7 @@ class _Publication(_Closing):
 
 
 class _Caller:
-    """Calls one service with bytes."""
+    """Client of one service with serialized messages."""
 
     def __init__(self, node: Any, kind: Any, name: str, answered: Callable[[Any], None]) -> None:
         self._answered = answered

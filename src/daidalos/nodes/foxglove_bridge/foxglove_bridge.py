@@ -1,4 +1,4 @@
-"""`foxglove_bridge`: the studio's page, and the graph for it and for other clients of its protocol."""
+"""`foxglove_bridge`: the studio's page, with the graph for it and for other clients of its protocol."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from daidalos.studio.server import DEFAULT_PORT, LOOPBACK
 
 
 class FoxgloveBridge(Node):
-    """Serves the studio on ``http://localhost:<port>/``.
+    """Node that serves the studio on ``http://localhost:<port>/``.
 
     Parameters of the node: ``port`` (the next free one is taken where it is used), ``address`` (loopback unless
     told otherwise), ``open_browser``, ``front`` (the panel that the page opens with).

@@ -1,3 +1,3 @@
-"""The simulator as Gazebo's ROS packages offer it."""
+"""Simulator with the interface of Gazebo's ROS packages."""
 
 EXECUTABLES = {"gzserver": "gzserver", "spawn_entity.py": "spawn_entity", "spawn_model": "spawn_model"}

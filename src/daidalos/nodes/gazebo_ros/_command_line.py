@@ -1,4 +1,4 @@
-"""The command line of Gazebo classic's server, and what other command lines of simulators need."""
+"""Command line of Gazebo classic's server, with parts shared by the simulators' other commands."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Nodes that live beside plugins of the simulation, such as controller managers."""
+"""Nodes of simulation plugins, such as controller managers."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class Companion(Protocol):
-    """What lives beside a plugin."""
+    """Node that accompanies a plugin."""
 
     def publish(self) -> None:
         """Publish what there is to say since the last time; called on the simulation's thread."""
@@ -25,7 +25,7 @@ class Companion(Protocol):
 
 
 class Companions:
-    """Starts and ends companions as models come and go.
+    """Starts and stops the nodes of plugins as models are added and removed.
 
     Parameters
     ----------
@@ -41,7 +41,7 @@ class Companions:
         self._known: dict[int, tuple[Component, Companion | None]] = {}
 
     def follow(self, simulation: Simulation) -> None:
-        """Look who is there now; called on the simulation's thread."""
+        """Update the nodes to the current models; called on the simulation's thread."""
         present = {
             id(component): component
             for name in simulation.models
@@ -55,7 +55,7 @@ class Companions:
                 self._known[key] = (component, self._make(component))
 
     def publish(self) -> None:
-        """Let all say what they have to say; called after the time was told."""
+        """Publish pending samples of all nodes; called after the clock was published."""
         for _, companion in self._known.values():
             if companion is not None:
                 companion.publish()

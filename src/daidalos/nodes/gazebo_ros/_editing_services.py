@@ -1,4 +1,4 @@
-"""Services for those who build a world while it runs: shapes, sizes and looks of models."""
+"""Services to edit a running world: shapes, sizes and appearance of models."""
 
 from __future__ import annotations
 

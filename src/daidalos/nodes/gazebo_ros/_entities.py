@@ -1,4 +1,4 @@
-"""Entities of a simulation by the names that services use: ``robot``, ``robot::base_link``, ``world``."""
+"""Entities of a simulation by the names in services: ``robot``, ``robot::base_link``, ``world``."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Entity:
-    """A model, or one of its links."""
+    """Model, or one of its links."""
 
     model: str
     link: str | None = None

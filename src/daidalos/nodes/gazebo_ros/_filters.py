@@ -1,4 +1,4 @@
-"""Which entities the filters of `simulation_interfaces` let through."""
+"""Entity filters of `simulation_interfaces`."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _POSIX_CLASSES = {
 
 
 class FilterError(ValueError):
-    """A filter that means nothing."""
+    """Invalid filter."""
 
 
 def matching(simulation: Simulation, filters: Any, info_of: Callable[[str], Any]) -> list[str]:
@@ -53,7 +53,7 @@ def matching(simulation: Simulation, filters: Any, info_of: Callable[[str], Any]
 
 
 def has_tags(tags: Iterable[str], wanted: Any) -> bool:
-    """Tell whether all or any of a ``TagsFilter``'s tags are there; one without tags lets everything through."""
+    """Return whether all or any of a ``TagsFilter``'s tags are present; an empty filter matches everything."""
     matches = [tag in tags for tag in wanted.tags]
     return not matches or (all(matches) if wanted.filter_mode == wanted.FILTER_MODE_ALL else any(matches))
 

@@ -1,4 +1,4 @@
-"""What the services of ROS 2's Gazebo packages do to a simulation, and what they answer."""
+"""Implementation of the services of ROS 2's Gazebo packages."""
 
 from __future__ import annotations
 

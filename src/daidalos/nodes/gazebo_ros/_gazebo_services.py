@@ -1,4 +1,4 @@
-"""The services of Gazebo classic's ROS packages, ROS 2's and ROS 1's."""
+"""Services of Gazebo classic's ROS packages, for ROS 2 and ROS 1."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What ros_gz_bridge offers for gz: ``/world/<name>/create`` and its like, and wrenches on links."""
+"""Services that ros_gz_bridge offers for gz, such as ``/world/<name>/create``, and wrenches on links."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The simulation as the graph's services see it: models come and go, worlds are exchanged, time is steered."""
+"""Simulation as seen by the services: models, worlds and time control."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ _ONE_NUMBER = (JointType.REVOLUTE, JointType.CONTINUOUS, JointType.PRISMATIC)
 
 @dataclass(frozen=True)
 class _Deleted:
-    """What it takes to put a model back."""
+    """Data to restore a deleted model."""
 
     model: Model
     pose: Pose
@@ -42,7 +42,7 @@ class _Deleted:
 
 
 class Host:
-    """What all services share.
+    """Common base of the services.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ class Host:
     def spawn(
         self, text: str, name: str | None, pose: Pose, reference: str = "", namespace: str = "", rename: bool = False
     ) -> str:
-        """Put a URDF or SDF document into the world; return the name that it got.
+        """Add a model from a URDF or SDF document; return the name that it got.
 
         Raises
         ------
@@ -88,7 +88,7 @@ class Host:
         namespace: str = "",
         rename: bool = False,
     ) -> str:
-        """Put a model into the world; return the name that it got.
+        """Add a model; return the name that it got.
 
         Raises
         ------
@@ -124,7 +124,7 @@ class Host:
         self.paced.call(work)
 
     def delete(self, name: str) -> None:
-        """Take a model out of the world.
+        """Remove a model.
 
         Raises
         ------
@@ -153,7 +153,7 @@ class Host:
         return _Deleted(instance.model, instance.pose, instance.namespace, joints, name in self.spawned)
 
     def bring_back(self, name: str) -> None:
-        """Put a model back that was deleted, where and as it was then, at rest.
+        """Restore a deleted model at its last pose, at rest.
 
         Raises
         ------
@@ -177,12 +177,12 @@ class Host:
         self.paced.call(work)
 
     def delete_spawned(self) -> None:
-        """Take out everything that came after the world."""
+        """Remove all models that were added after the start."""
         for name in sorted(self.spawned):
             self.delete(name)
 
     def complete_world(self) -> None:
-        """Put back what the world began with and was deleted, to where it came in.
+        """Restore deleted models of the initial world to their initial poses.
 
         Raises
         ------
@@ -241,7 +241,7 @@ class Host:
         self._saved = self.paced.call(lambda simulation: simulation.save())
 
     def restore_state(self) -> None:
-        """Go back to the remembered state.
+        """Restore the saved state.
 
         Raises
         ------

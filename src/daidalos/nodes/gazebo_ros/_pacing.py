@@ -1,4 +1,4 @@
-"""A simulation that runs in a thread of its own at a wanted speed, and takes requests between its steps."""
+"""Simulation thread that runs at a wanted speed and processes requests between steps."""
 
 from __future__ import annotations
 
@@ -55,11 +55,11 @@ class PacedSimulation:
 
     @property
     def paused(self) -> bool:
-        """Whether time stands still."""
+        """Whether the simulation is paused."""
         return self._paused
 
     def start(self, *, paused: bool = False) -> None:
-        """Begin to run."""
+        """Start the thread."""
         self._paused = paused
         self._running = True
         self._thread.start()
@@ -73,7 +73,7 @@ class PacedSimulation:
             self._thread.join(timeout=5.0)
 
     def set_paused(self, paused: bool) -> None:
-        """Let time stand still, or go on."""
+        """Pause or resume."""
         with self._wake:
             self._paused = paused
             self._wake.notify_all()
@@ -88,17 +88,17 @@ class PacedSimulation:
         self.call(work)
 
     def replace(self, simulation: Simulation) -> None:
-        """Go on with another simulation; called by a request alone."""
+        """Replace the simulation; to be called from a request."""
         self.simulation = simulation
 
     def post(self, request: Callable[[], Any]) -> None:
-        """Have a function called between two steps; nobody waits for it."""
+        """Call a function between two steps, without waiting for it."""
         with self._wake:
             self._requests.append(request)
             self._wake.notify_all()
 
     def call(self, request: Callable[[Simulation], T]) -> T:
-        """Have a function called with the simulation between two steps, and return what it returns.
+        """Call a function with the simulation between two steps, and return its result.
 
         Raises
         ------

@@ -1,4 +1,4 @@
-"""What models look like, as markers."""
+"""Markers of models' visuals."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Poses, velocities and contacts of the simulation as messages."""
+"""Messages of the simulation's poses, velocities and contacts."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where worlds lie: files, the simulators' resource paths, and the `worlds` folders of packages."""
+"""Lookup of worlds: files, the simulators' resource paths, and the `worlds` folders of packages."""
 
 from __future__ import annotations
 

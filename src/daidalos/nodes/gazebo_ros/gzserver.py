@@ -1,4 +1,4 @@
-"""`gzserver`: a world, its robots and their sensors, under the names of Gazebo's ROS packages."""
+"""`gzserver`: simulation of a world with its robots and sensors, under the names of Gazebo's ROS packages."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ _CLOCK_RATE = 100.0
 
 @dataclass(frozen=True)
 class Start:
-    """How a simulation begins, and when it ends.
+    """Initial settings of a simulation, and its end.
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ class Start:
 
 
 class GzServer(Node):
-    """Runs a simulation and connects it with the graph.
+    """Node that runs a simulation and connects it to the graph.
 
     Parameters
     ----------

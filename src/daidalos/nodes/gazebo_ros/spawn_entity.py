@@ -1,4 +1,4 @@
-"""`spawn_entity.py`: puts a robot or model into the running simulation."""
+"""`spawn_entity.py`: adds a robot or model to the running simulation."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`spawn_model`: ROS 1's way to put a robot or model into the running simulation."""
+"""`spawn_model`: ROS 1's program that adds a robot or model to the running simulation."""
 
 from __future__ import annotations
 

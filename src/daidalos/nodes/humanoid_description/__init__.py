@@ -1,1 +1,1 @@
-"""A humanoid that curls its arms."""
+"""Humanoid that curls its arms."""

@@ -19,7 +19,7 @@ _TOP = 2.2
 
 
 class JointPublisher(Node):
-    """Sends a point of a trajectory ten times a second to ``/joint_trajectory_controller/joint_trajectory``."""
+    """Node that sends a trajectory point at 10 Hz to ``/joint_trajectory_controller/joint_trajectory``."""
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__("joint_publisher", **kwargs)

@@ -19,7 +19,7 @@ _LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
 class JointStatePublisher(Node):
-    """Publishes ``joint_states`` at ``rate`` once it knows the robot.
+    """Node that publishes ``joint_states`` at ``rate`` once it has the robot description.
 
     Parameters of the node are those of ROS 2's: ``rate`` [Hz], ``publish_default_positions``,
     ``publish_default_velocities``, ``publish_default_efforts``, ``use_mimic_tags``,
@@ -69,11 +69,11 @@ class JointStatePublisher(Node):
 
     @property
     def values(self) -> JointValues | None:
-        """The joints; None as long as no robot is known."""
+        """Joint values; None without a robot description."""
         return self._values
 
     def read(self, text: str, source: str = "robot_description") -> None:
-        """Take a description that comes from somewhere.
+        """Read a robot description from any source.
 
         Raises
         ------

@@ -13,7 +13,7 @@ _PREFIX = "joints."
 
 
 class JointStatePublisherGui(JointStatePublisher):
-    """A joint state publisher whose joints are parameters ``joints.<name>`` within the joints' limits.
+    """Joint state publisher whose joints are parameters ``joints.<name>`` within the joints' limits.
 
     ``~/center`` puts them back to where they began, ``~/randomize`` anywhere.
     """
@@ -28,7 +28,7 @@ class JointStatePublisherGui(JointStatePublisher):
         self.add_post_set_parameters_callback(self._on_set)
 
     def read(self, text: str, source: str = "robot_description") -> None:
-        """Take a description, and offer its joints."""
+        """Read a robot description, and declare a parameter for each joint."""
         from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor
 
         super().read(text, source)

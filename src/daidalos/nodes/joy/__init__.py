@@ -1,1 +1,1 @@
-"""The joystick node, as ROS 2 offers it."""
+"""Joystick node with ROS 2's interface."""

@@ -1,4 +1,4 @@
-"""What the nodes that publish a game pad have in common."""
+"""Common base of the joystick nodes."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _RETRY_S = 1.0
 
 
 class JoystickNode(Node):
-    """Publishes ``joy`` when somebody does something with a game pad, and now and then meanwhile.
+    """Node that publishes ``joy`` at changes of a game pad, and periodically in between.
 
     A thread waits for the game pad's events, also for a game pad that is not there yet or any more.
 
@@ -54,7 +54,7 @@ class JoystickNode(Node):
         self._reader = threading.Thread(target=self._read_devices, name="joystick", daemon=True)
 
     def start(self) -> None:
-        """Begin to read; the parameters must be declared by now."""
+        """Start to read the device; the parameters must be declared before."""
         self._reader.start()
 
     def declare_coalescing(self) -> float:

@@ -1,4 +1,4 @@
-"""`joy_node`: publishes what people do with a game pad."""
+"""`joy_node`: publishes the state of a game pad."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from daidalos.nodes.runner import run
 
 
 class JoyNode(JoystickNode):
-    """Publishes ``joy``.
+    """Node that publishes ``joy``.
 
     Parameters of the node: ``device_id`` (the place of the game pad among those of this machine), ``device_name``
     (its name instead, where it is not empty), ``deadzone`` (share of an axis that is its centre), ``autorepeat_rate``

@@ -1,1 +1,1 @@
-"""The joystick node for Linux, as ROS 2 offers it."""
+"""Joystick node for Linux with ROS 2's interface."""

@@ -1,4 +1,4 @@
-"""`joy_linux_node`: publishes what people do with a game pad, given as one of Linux's files."""
+"""`joy_linux_node`: publishes the state of a game pad, given as a Linux device file."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from daidalos.nodes.runner import run
 
 
 class JoyLinuxNode(JoystickNode):
-    """Publishes ``joy``.
+    """Node that publishes ``joy``.
 
     Parameters of the node: ``dev`` (the game pad's file), ``dev_name`` (its name, which comes first where it is not
     empty and there is such a game pad), ``deadzone``, ``autorepeat_rate`` [Hz] and ``sticky_buttons`` as in `JoyNode`,

@@ -1,1 +1,1 @@
-"""Driving a robot with the arrow keys."""
+"""Teleoperation of a robot with the arrow keys."""

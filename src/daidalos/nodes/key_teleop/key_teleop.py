@@ -18,7 +18,7 @@ _MOVES = {"up": (1, 0), "down": (-1, 0), "left": (0, 1), "right": (0, -1)}
 
 
 class KeyTeleop(Node):
-    """Publishes ``key_vel`` all the time.
+    """Node that publishes ``key_vel`` continuously.
 
     Parameters of the node: ``hz``, ``fwd_rate`` and ``backward_rate`` [m/s], ``rotation_rate`` [rad/s],
     ``twist_stamped_enabled``.

@@ -1,1 +1,1 @@
-"""The server of recovery behaviours."""
+"""Server of recovery behaviors."""

@@ -1,4 +1,4 @@
-"""`behavior_server`: turns, backs up, drives on and waits, to get a stuck robot going again."""
+"""`behavior_server`: spin, back up, drive on heading and wait, to free a stuck robot."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ _DEFAULT_PLUGINS = {
 
 
 class BehaviorServer(ManagedNode):
-    """Serves an action for every behaviour; parameters are Nav2's."""
+    """Server of an action for every behavior; parameters are Nav2's."""
 
     def __init__(self, node_name: str = "behavior_server", **kwargs: Any) -> None:
         super().__init__(node_name, **kwargs)

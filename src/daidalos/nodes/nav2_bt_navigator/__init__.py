@@ -1,1 +1,1 @@
-"""The server that navigates by behaviour trees."""
+"""Server of navigation by behavior trees."""

@@ -1,4 +1,4 @@
-"""A navigation: one run of a behaviour tree, and the goals that it has one after the other."""
+"""Navigation: one run of a behavior tree with its successive goals."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from daidalos.navigation.trees.blackboard import Blackboard
 
 
 class Navigation:
-    """A behaviour tree that runs until it has ended for the latest of its goals.
+    """Run of a behavior tree until it has ended for the latest of its goals.
 
     It begins with a goal, `replace_goal` gives it another any number of times, and `end` ends it once.
 
@@ -44,7 +44,7 @@ class Navigation:
 
     @property
     def blackboard(self) -> Blackboard:
-        """The blackboard of the tree."""
+        """Blackboard of the tree."""
         return self._tree.blackboard
 
     def tick(self) -> Status:
@@ -55,7 +55,7 @@ class Navigation:
         return Status.INVALID
 
     def replace_goal(self, goal_handle: Any, result: Any) -> None:
-        """Let the tree go on with another goal.
+        """Continue the tree with another goal.
 
         Parameters
         ----------

@@ -1,4 +1,4 @@
-"""What the leaves of a behaviour tree ask of the robot, done by actions and services of the graph."""
+"""Actions and services behind the leaves of a behavior tree."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _SUCCEEDED = 4
 
 
 class GraphServices:
-    """Starts the tasks of a tree through a node; see `daidalos.navigation.trees.services.Services`."""
+    """Tasks of a tree, run through a node; see `daidalos.navigation.trees.services.Services`."""
 
     def __init__(self, node: Node) -> None:
         self._node = node
@@ -67,7 +67,7 @@ def _filled(message: Any, fields: Mapping[str, Any]) -> Any:
 
 
 class _Failed:
-    """A task that could not be started."""
+    """Task that could not be started."""
 
     def __init__(self, reason: str) -> None:
         self._reason = reason
@@ -84,7 +84,7 @@ class _Failed:
 
 
 class _ServiceTask:
-    """A call of a service."""
+    """Call of a service."""
 
     def __init__(self, future: Any) -> None:
         self._future = future
@@ -102,7 +102,7 @@ class _ServiceTask:
 
 
 class _ActionTask:
-    """A goal of an action; another goal takes its place when the leaf's inputs change."""
+    """Goal of an action; a new goal replaces it when the leaf's inputs change."""
 
     def __init__(self, client: ActionClient, node: type[ActionNode], server: str, inputs: Mapping[str, Any]) -> None:
         self._client = client

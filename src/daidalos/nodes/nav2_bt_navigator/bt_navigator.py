@@ -1,4 +1,4 @@
-"""`bt_navigator`: drives to poses by a behaviour tree."""
+"""`bt_navigator`: navigates to poses by a behavior tree."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class BtNavigatorParameters(Parameters):
 
 
 class BtNavigator(ManagedNode):
-    """Serves ``navigate_to_pose`` and listens to ``goal_pose``; parameters are Nav2's."""
+    """Server of ``navigate_to_pose`` that also accepts ``goal_pose``; parameters are Nav2's."""
 
     def __init__(self, node_name: str = "bt_navigator", **kwargs: Any) -> None:
         super().__init__(node_name, **kwargs)
@@ -69,7 +69,7 @@ class BtNavigator(ManagedNode):
         self.create_subscription(PoseStamped, "goal_pose", self._on_goal_pose, 10)
 
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Begin to navigate, first to where somebody clicked too early."""
+        """Start to navigate, first to a goal pose that came before the activation."""
         outcome = super().on_activate(state)
         pose, self._early_pose = self._early_pose, None
         if pose is not None and outcome == TransitionCallbackReturn.SUCCESS:

@@ -1,1 +1,1 @@
-"""The server that follows paths."""
+"""Server that follows paths."""

@@ -32,7 +32,7 @@ class UnknownController(NavigationError):
 
 @dataclass
 class _Pursuit:
-    """The path that the robot follows, in which frame, to which goal (x, y, yaw), and by which plugins."""
+    """Path that the robot follows, its frame, its goal (x, y, yaw), and its plugins."""
 
     task: FollowPath
     plugins: tuple[str, str, str]
@@ -41,7 +41,7 @@ class _Pursuit:
 
 
 class ControllerServer(ManagedNode):
-    """Serves ``follow_path`` and publishes ``cmd_vel``; parameters are Nav2's."""
+    """Server of ``follow_path`` that publishes ``cmd_vel``; parameters are Nav2's."""
 
     def __init__(self, node_name: str = "controller_server", **kwargs: Any) -> None:
         super().__init__(node_name, **kwargs)
@@ -198,7 +198,7 @@ class ControllerServer(ManagedNode):
         self._command.publish(twist_message(velocity, frame, self.get_clock().now().to_msg()))
 
     def destroy_node(self) -> None:
-        """Stand, and leave the graph with the costmap."""
+        """Stop the robot, and destroy the node with its costmap."""
         if self._current is not None:
             self._stop()
         self._contained.destroy()

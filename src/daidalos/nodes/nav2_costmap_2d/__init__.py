@@ -1,1 +1,1 @@
-"""Costmaps as nodes."""
+"""Costmap nodes."""

@@ -1,4 +1,4 @@
-"""Costmaps and footprints as messages, and back."""
+"""Conversion of costmaps and footprints to and from messages."""
 
 from __future__ import annotations
 

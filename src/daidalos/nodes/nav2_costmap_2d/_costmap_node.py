@@ -1,4 +1,4 @@
-"""A costmap as a managed node: parameters, sensors and maps in, costs out."""
+"""Costmap as a managed node."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ class CostmapTimedOut(TransformFailed):
 
 
 class CostmapNode(ManagedNode):
-    """Keeps a costmap up to date and publishes it; Nav2's `Costmap2DROS`.
+    """Node that updates and publishes a costmap; Nav2's `Costmap2DROS`.
 
     Parameters of the node are Nav2's. They are taken from the process's arguments, such as a parameter file for
     the container, under the costmap's own name.
@@ -139,7 +139,7 @@ class CostmapNode(ManagedNode):
         self.create_service(GetCostmap, "get_costmap", self._on_get_costmap)
 
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Begin to update and publish."""
+        """Start to update and publish."""
         self._timers = [
             self.create_timer(1.0 / self.get_parameter(name).value, callback)
             for name, callback in (
@@ -158,7 +158,7 @@ class CostmapNode(ManagedNode):
         return super().on_deactivate(state)
 
     def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Forget the costs."""
+        """Clear the costs."""
         with self.lock:
             self.layered, self._updates = None, 0
         return super().on_cleanup(state)

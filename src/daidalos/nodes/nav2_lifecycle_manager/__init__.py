@@ -1,1 +1,1 @@
-"""Bringing managed nodes up and down together."""
+"""Manager of the lifecycle of several nodes."""

@@ -1,4 +1,4 @@
-"""`lifecycle_manager`: brings managed nodes up in their order, and down in the reverse."""
+"""`lifecycle_manager`: starts managed nodes in order, and stops them in reverse."""
 
 from __future__ import annotations
 
@@ -87,7 +87,7 @@ class LifecycleManager(Node):
         return await self._cleanup() and paused
 
     async def _raise(self, transition: _Transition, done: set[int]) -> bool:
-        """Take the nodes through a transition in their order, unless they are where that leads; stop at a failure."""
+        """Trigger a transition of the nodes in order, except of those already in its goal state; stop at a failure."""
         for name in self._names:
             if await self._state_of(name) not in done and not await self._change(name, transition):
                 self.get_logger().error(f"'{name}' did not {transition.name.lower()}; the others are not started")
@@ -95,7 +95,7 @@ class LifecycleManager(Node):
         return True
 
     async def _lower(self, transition: _Transition, source: int) -> bool:
-        """Take the nodes that are in a state through a transition in the reverse order; stop at a failure."""
+        """Trigger a transition of the nodes in a state in reverse order; stop at a failure."""
         for name in reversed(self._names):
             if await self._state_of(name) == source and not await self._change(name, transition):
                 self.get_logger().error(f"'{name}' did not {transition.name.lower()}")

@@ -1,1 +1,1 @@
-"""The server of map files, and the programs that save maps."""
+"""Server of map files, and programs that save maps."""

@@ -1,4 +1,4 @@
-"""What saving maps shares: waiting for a map on a topic, and writing it to files."""
+"""Saving of maps: waits for a map on a topic, and writes it to files."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ MODES, FORMATS = get_args(Mode), get_args(Format)
 
 @dataclass(frozen=True)
 class SaveRequest:
-    """What is to be saved, and how.
+    """Map topic, file and format of a map to be saved.
 
     Attributes
     ----------

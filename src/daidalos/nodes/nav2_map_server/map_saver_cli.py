@@ -1,4 +1,4 @@
-"""`map_saver_cli`: saves the map that is on a topic, once."""
+"""`map_saver_cli`: saves the map of a topic once."""
 
 from __future__ import annotations
 

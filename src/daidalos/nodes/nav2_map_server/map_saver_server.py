@@ -1,4 +1,4 @@
-"""`map_saver_server`: saves maps when its service is called."""
+"""`map_saver_server`: saves maps on request."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from daidalos.nodes.runner import run
 
 
 class MapSaver(ManagedNode):
-    """Serves ``~/save_map``; parameters are Nav2's."""
+    """Server of ``~/save_map``; parameters are Nav2's."""
 
     def __init__(self, node_name: str = "map_saver", **kwargs: Any) -> None:
         super().__init__(node_name, **kwargs)
@@ -22,7 +22,7 @@ class MapSaver(ManagedNode):
         self._settings = parameters
 
     def configure(self) -> None:
-        """Serve."""
+        """Create the service."""
         from nav2_msgs.srv import SaveMap
 
         self.create_service(SaveMap, "~/save_map", self._on_save)

@@ -33,7 +33,7 @@ class MapServerParameters(Parameters):
 
 
 class MapServer(ManagedNode):
-    """Publishes a map, latched, and serves ``~/map`` and ``~/load_map``.
+    """Node that publishes a latched map, and serves ``~/map`` and ``~/load_map``.
 
     Its parameters are those of `MapServerParameters`.
     """

@@ -1,1 +1,1 @@
-"""The server that plans paths."""
+"""Server that plans paths."""

@@ -29,7 +29,7 @@ class UnknownPlanner(NavigationError):
 
 
 class PlannerServer(ManagedNode):
-    """Serves ``compute_path_to_pose``; parameters are Nav2's."""
+    """Server of ``compute_path_to_pose``; parameters are Nav2's."""
 
     def __init__(self, node_name: str = "planner_server", **kwargs: Any) -> None:
         super().__init__(node_name, **kwargs)
@@ -96,7 +96,7 @@ class PlannerServer(ManagedNode):
         return compose(pose2_of_transform(found.transform), pose2_of(stamped.pose))
 
     def destroy_node(self) -> None:
-        """Leave the graph with the costmap."""
+        """Destroy the node with its costmap."""
         self._contained.destroy()
         super().destroy_node()
 

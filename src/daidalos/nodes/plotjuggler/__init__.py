@@ -1,1 +1,1 @@
-"""Values over time, in the studio."""
+"""Plots in the studio."""

@@ -1,4 +1,4 @@
-"""`plotjuggler`: the studio, opened at its plots."""
+"""`plotjuggler`: opens the studio at its plots."""
 
 import sys
 

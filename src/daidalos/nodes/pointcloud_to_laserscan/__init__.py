@@ -1,1 +1,1 @@
-"""Point clouds as flat scans, and scans as clouds, as ROS 2 offers them."""
+"""Conversion of point clouds to laser scans and back, with ROS 2's interface."""

@@ -1,4 +1,4 @@
-"""Clouds in the frame that is wanted."""
+"""Transformation of clouds to the target frame."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The nearest points of a cloud, by the direction in which they are."""
+"""Nearest points of a cloud, by direction."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 @dataclass(frozen=True)
 class Slice:
-    """Which points make a scan.
+    """Limits of the points that form a scan.
 
     Attributes
     ----------
@@ -36,7 +36,7 @@ class Slice:
 
     @property
     def count(self) -> int:
-        """How many rays the scan has."""
+        """Number of rays of the scan."""
         return math.ceil((self.angle_max - self.angle_min) / self.angle_increment)
 
     def ranges(self, points: NDArray[np.floating]) -> NDArray[np.float32]:

@@ -15,7 +15,7 @@ from daidalos.nodes.runner import run
 
 
 class LaserScanToPointCloud(Node):
-    """Publishes ``cloud`` from ``scan_in``, while somebody listens.
+    """Node that publishes ``cloud`` from ``scan_in`` while it has subscribers.
 
     Parameters of the node: ``target_frame`` (of the cloud; that of the scan if empty) and ``transform_tolerance`` [s].
     """

@@ -1,4 +1,4 @@
-"""`pointcloud_to_laserscan_node`: publishes the nearest points of clouds as flat scans."""
+"""`pointcloud_to_laserscan_node`: publishes the nearest points of clouds as laser scans."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _LARGEST = 3.4028234663852886e38
 
 
 class PointCloudToLaserScan(Node):
-    """Publishes ``scan`` from ``cloud_in``, while somebody listens.
+    """Node that publishes ``scan`` from ``cloud_in`` while it has subscribers.
 
     Parameters of the node: ``target_frame`` (of the scan; that of the cloud if empty), ``transform_tolerance`` [s],
     ``min_height``, ``max_height`` [m], ``angle_min``, ``angle_max``, ``angle_increment`` [rad], ``range_min``,

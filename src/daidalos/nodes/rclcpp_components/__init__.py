@@ -1,1 +1,1 @@
-"""Containers that several nodes share a process in."""
+"""Containers of several nodes in one process."""

@@ -1,4 +1,4 @@
-"""`component_container_isolated`: the same as `component_container`, whose nodes have threads of their own."""
+"""`component_container_isolated`: `component_container` with a thread for each node."""
 
 import sys
 

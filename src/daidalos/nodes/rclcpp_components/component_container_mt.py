@@ -1,4 +1,4 @@
-"""`component_container_mt`: the same as `component_container`, whose nodes have threads of their own."""
+"""`component_container_mt`: `component_container` with a thread for each node."""
 
 import sys
 

@@ -1,1 +1,1 @@
-"""The router of ROS 2's zenoh middleware."""
+"""Router of ROS 2's zenoh middleware."""

@@ -1,4 +1,4 @@
-"""`rmw_zenohd`: a router by which nodes of several machines meet; configured by ``ZENOH_ROUTER_CONFIG_URI``."""
+"""`rmw_zenohd`: router that connects nodes of several machines; configured by ``ZENOH_ROUTER_CONFIG_URI``."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Many transforms as the bytes of one message, written as a few arrays: names never change, numbers always do."""
+"""Serialized message of many transforms, with constant names and changing numbers in a few arrays."""
 
 from __future__ import annotations
 

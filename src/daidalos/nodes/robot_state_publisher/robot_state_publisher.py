@@ -1,4 +1,4 @@
-"""`robot_state_publisher`: transforms of all links from joint states and a URDF, or a model in SDF."""
+"""`robot_state_publisher`: transforms of all links from joint states and a URDF or SDF model."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 @dataclass(frozen=True)
 class _JointUpdate:
-    """What a message about certain joints means.
+    """Cached indices of a message about a set of joints.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ class _JointUpdate:
 
 
 class RobotStatePublisher(Node):
-    """Publishes ``/tf``, ``/tf_static`` and ``/robot_description``.
+    """Node that publishes ``/tf``, ``/tf_static`` and ``/robot_description``.
 
     Parameters of the node are those of ROS 2's: ``robot_description``, ``publish_frequency`` [Hz],
     ``ignore_timestamp``, ``frame_prefix``. Also as there, a joint has a transform only once its state is told, and
@@ -88,7 +88,7 @@ class RobotStatePublisher(Node):
         self.add_on_set_parameters_callback(self._on_set_parameters)
 
     def _read(self, text: str, source: str = "robot_description") -> None:
-        """Take a description and publish what does not move."""
+        """Read a description and publish its static transforms."""
         from std_msgs.msg import String
 
         if not text:
@@ -163,7 +163,7 @@ class RobotStatePublisher(Node):
         return self._told[names]
 
     def _is_due(self, stamp_ns: int, rows: NDArray[np.intp]) -> bool:
-        """Tell whether the last transforms of joints are old enough, by the stamps of joint states.
+        """Return whether the last transforms of joints are old enough, by the stamps of joint states.
 
         States that come at the wanted rate are late and early in turn: up to one period is kept for the early ones.
         """

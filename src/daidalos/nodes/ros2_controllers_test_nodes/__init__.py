@@ -1,1 +1,1 @@
-"""Publishers that send controllers their goals."""
+"""Publishers of controllers' goals."""

@@ -1,4 +1,4 @@
-"""What the publishers of goals share: numbers from parameters, and one goal after the other."""
+"""Common base of the goal publishers."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from rclpy.node import Node
 
 
 class GoalPublisher(Node):
-    """Sends its goals in turn, one every ``wait_sec_between_publish`` seconds, for as long as it runs."""
+    """Node that sends its goals in turn, one every ``wait_sec_between_publish`` seconds."""
 
     def __init__(self, name: str, wait_s: int, **kwargs: Any) -> None:
         super().__init__(name, **kwargs)
@@ -36,7 +36,7 @@ class GoalPublisher(Node):
         raise NotImplementedError
 
     def is_ready(self) -> bool:
-        """Tell whether a goal may be sent now."""
+        """Return whether a goal may be sent now."""
         return True
 
     def _send_next(self) -> None:

@@ -1,4 +1,4 @@
-"""`publisher_forward_position_controller`: sends a controller of positions one goal after the other."""
+"""`publisher_forward_position_controller`: sends goals to a position controller in turn."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`publisher_joint_trajectory_controller`: sends a trajectory controller one goal after the other."""
+"""`publisher_joint_trajectory_controller`: sends goals to a trajectory controller in turn."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _ANY_START = [-2 * math.pi, 2 * math.pi]
 
 
 class JointTrajectoryPublisher(GoalPublisher):
-    """Sends trajectories of one point, which is to be reached after 4 s.
+    """Node that sends trajectories of one point, to be reached after 4 s.
 
     Parameters: ``controller_name``, ``wait_sec_between_publish``, ``joints``, ``goal_names`` and for every goal
     ``positions``, ``velocities``, ``accelerations`` and ``effort`` below its name, of which one is enough. With
@@ -52,7 +52,7 @@ class JointTrajectoryPublisher(GoalPublisher):
         self._publisher.publish(JointTrajectory(joint_names=self._joints, points=[goal]))
 
     def is_ready(self) -> bool:
-        """Tell whether the joints have been seen where they may start."""
+        """Return whether the joints have been seen within the limits of the start."""
         if self._is_at_start is None:
             self.get_logger().warning("no goal is sent: nothing is heard of the joints on 'joint_states'")
         elif not self._is_at_start:

@@ -1,1 +1,1 @@
-"""The bridge to gz, which here has both ends in one graph."""
+"""Bridge to gz, with both ends in one graph here."""

@@ -1,4 +1,4 @@
-"""Conversions between the ROS types that share a type of gz, such as Twist and TwistStamped."""
+"""Conversions between the ROS types with the same gz type, such as Twist and TwistStamped."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a bridge is asked to connect: topics and services, with their types on both sides."""
+"""Configuration of bridges: topics and services, with their types on both sides."""
 
 from __future__ import annotations
 
@@ -43,12 +43,12 @@ _DIRECTIONS = {"@": "BIDIRECTIONAL", "[": "GZ_TO_ROS", "]": "ROS_TO_GZ"}
 
 
 class MappingError(ValueError):
-    """A bridge that can not be; the message says which and why."""
+    """Invalid bridge; the message names it and the reason."""
 
 
 @dataclass(frozen=True)
 class Bridge:
-    """One connection.
+    """Bridged topic or service.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""`parameter_bridge`: connects topics whose names or types differ between the simulator's side and ROS's."""
+"""`parameter_bridge`: connects topics with different names or types on the simulator's and ROS's sides."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _OVERRIDABLE = (QoSPolicyKind.DEPTH, QoSPolicyKind.DURABILITY, QoSPolicyKind.HIS
 
 
 class ParameterBridge(Node):
-    """A bridge whose two sides are the same graph.
+    """Bridge whose two sides are the same graph.
 
     Topics of the simulator are topics of ROS already: where name and type are the same on both sides nothing is to
     be done. Where a remapping or a file gives the ROS side another name, messages are forwarded. Where the simulator
@@ -139,7 +139,7 @@ class ParameterBridge(Node):
         self._own.add(subscription.handle.endpoint.gid)
 
     def destroy_node(self) -> None:
-        """Leave the graph on both sides."""
+        """Destroy the node, and its publishers and subscriptions on both sides."""
         for unwatch in self._unwatch:
             unwatch()
         self._gz_thread.stop()

@@ -1,1 +1,1 @@
-"""The bridge for gz's images, which here has both ends in one graph."""
+"""Bridge of gz's images, with both ends in one graph here."""

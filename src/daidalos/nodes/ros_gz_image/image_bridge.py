@@ -1,4 +1,4 @@
-"""`image_bridge`: a bridge for images alone; it renames topics where a remapping asks for it."""
+"""`image_bridge`: bridge of images; it renames topics by remapping."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""The simulator as ros_gz_sim offers it."""
+"""Simulator with the interface of ros_gz_sim."""

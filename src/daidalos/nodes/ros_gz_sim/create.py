@@ -1,4 +1,4 @@
-"""`create`: puts a robot or model into the running simulation, gz's way."""
+"""`create`: adds a robot or model to the running simulation, with gz's options."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`gz_sim`: the simulator with gz's command line; it begins paused unless it is told to run."""
+"""`gz_sim`: simulator with gz's command line; it starts paused unless told to run."""
 
 from __future__ import annotations
 

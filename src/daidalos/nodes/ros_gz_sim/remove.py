@@ -1,4 +1,4 @@
-"""`remove`: takes an entity out of the running simulation, gz's way."""
+"""`remove`: removes an entity from the running simulation, with gz's options."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""The studio under the name of the tool that it stands in for."""
+"""Studio under the name of rqt."""

@@ -1,1 +1,1 @@
-"""What nodes log, in the studio."""
+"""Log messages in the studio."""

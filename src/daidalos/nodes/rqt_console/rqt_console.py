@@ -1,4 +1,4 @@
-"""`rqt_console`: the studio, opened at its panel."""
+"""`rqt_console`: opens the studio at its log panel."""
 
 import sys
 

@@ -1,1 +1,1 @@
-"""Nodes and topics, and who talks to whom, in the studio."""
+"""Graph of nodes and topics in the studio."""

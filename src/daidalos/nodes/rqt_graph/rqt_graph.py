@@ -1,4 +1,4 @@
-"""`rqt_graph`: the studio, opened at its panel."""
+"""`rqt_graph`: opens the studio at its graph panel."""
 
 import sys
 

@@ -1,1 +1,1 @@
-"""What cameras see, in the studio."""
+"""Camera images in the studio."""

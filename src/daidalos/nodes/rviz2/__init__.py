@@ -1,1 +1,1 @@
-"""The robot's world in 3-D, in the studio."""
+"""3-D view in the studio."""

@@ -1,4 +1,4 @@
-"""`async_slam_toolbox_node`: the map and the robot's place in it from scans and odometry."""
+"""`async_slam_toolbox_node`: map and robot pose from scans and odometry."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ class SlamToolboxParameters(SlamConfig):
 
 
 class SlamToolbox(Node):
-    """Publishes ``map`` and the transform from ``map_frame`` to ``odom_frame``.
+    """Node that publishes ``map`` and the transform from ``map_frame`` to ``odom_frame``.
 
     Its parameters are those of `SlamToolboxParameters`.
     """
@@ -87,7 +87,7 @@ class SlamToolbox(Node):
         warm_up_in_background("daidalos.mapping", self.get_logger()).add_done_callback(self._begin)
 
     def _begin(self, compiled: Future) -> None:
-        """Take scans from now on."""
+        """Start to process scans."""
         compiled.result()
         self._slam = self._new_slam()
         self.get_logger().info("ready for scans")

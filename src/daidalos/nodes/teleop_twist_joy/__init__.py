@@ -1,1 +1,1 @@
-"""Driving with a game pad, as ROS 2 offers it."""
+"""Teleoperation with a game pad, with ROS 2's interface."""

@@ -1,4 +1,4 @@
-"""`teleop_node`: turns what people do with a game pad into velocities."""
+"""`teleop_node`: converts game pad states to velocities."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _COMPONENTS = {"yaw": "z", "pitch": "y", "roll": "x"}
 
 
 class TeleopTwistJoy(Node):
-    """Publishes ``cmd_vel`` from ``joy``.
+    """Node that publishes ``cmd_vel`` from ``joy``.
 
     Parameters of the node, which may change while it runs except for the last two:
 

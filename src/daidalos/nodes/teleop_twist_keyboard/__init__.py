@@ -1,1 +1,1 @@
-"""Driving a robot with the letters of a keyboard."""
+"""Teleoperation with the letters of a keyboard."""

@@ -72,7 +72,7 @@ _SPEEDS = {
 
 
 class TeleopTwistKeyboard(Node):
-    """Publishes ``cmd_vel``.
+    """Node that publishes ``cmd_vel``.
 
     Parameters of the node: ``stamped`` (whether to publish TwistStamped), ``frame_id`` (of those), ``speed`` [m/s]
     and ``turn`` [rad/s] at the beginning.

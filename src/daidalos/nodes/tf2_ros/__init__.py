@@ -1,3 +1,3 @@
-"""Transforms: publish them, look at them, serve them."""
+"""Publishers, monitors and servers of transforms."""
 
 COMPONENTS = {"StaticTransformBroadcasterNode": "static_transform_publisher:StaticTransformBroadcasterNode"}

@@ -1,4 +1,4 @@
-"""`buffer_server`: answers the action ``tf2_buffer_server`` with transforms, for programs that keep none."""
+"""`buffer_server`: serves transforms by the action ``tf2_buffer_server``, for programs without a buffer."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from daidalos.nodes.runner import run
 
 
 class BufferServerNode(Node):
-    """Serves a buffer; parameters: ``buffer_size`` [s], ``check_frequency`` [1/s]."""
+    """Server of a transform buffer; parameters: ``buffer_size`` [s], ``check_frequency`` [1/s]."""
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__("tf2_buffer_server", **kwargs)

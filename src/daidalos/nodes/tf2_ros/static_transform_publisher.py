@@ -1,4 +1,4 @@
-"""`static_transform_publisher`: publishes one transform that never changes."""
+"""`static_transform_publisher`: publishes one static transform."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _OLD_ORDERS = {
 
 
 class StaticTransformBroadcasterNode(Node):
-    """Publishes on ``/tf_static`` what its parameters say.
+    """Node that publishes the static transform of its parameters on ``/tf_static``.
 
     Parameters of the node: ``translation.x`` and so on [m], ``rotation.x`` and so on (a quaternion), ``frame_id``,
     ``child_frame_id``.

@@ -1,4 +1,4 @@
-"""`tf2_echo`: prints the transform between two frames again and again."""
+"""`tf2_echo`: prints the transform between two frames periodically."""
 
 from __future__ import annotations
 

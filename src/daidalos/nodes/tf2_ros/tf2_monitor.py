@@ -1,4 +1,4 @@
-"""`tf2_monitor`: how often frames are published, and how late they come."""
+"""`tf2_monitor`: prints the rates and delays of frames."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _USAGE = """TF_Monitor: usage
 
 
 class _Delays:
-    """The newest delays of something, and when they were noted."""
+    """Latest delays of a frame or publisher, with their times."""
 
     def __init__(self) -> None:
         self.delays: deque[float] = deque(maxlen=_KEPT)
@@ -47,7 +47,7 @@ class _Delays:
 
 
 class TransformMonitor(Node):
-    """Listens to transforms for ten seconds, prints what it noticed, and goes on."""
+    """Node that collects transforms for ten seconds, prints statistics, and continues."""
 
     def __init__(self, chain: tuple[str, str] | None, **kwargs: Any) -> None:
         super().__init__("tf2_monitor", **kwargs)

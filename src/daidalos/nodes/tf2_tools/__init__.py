@@ -1,1 +1,1 @@
-"""Pictures of the tree of frames."""
+"""Drawings of the tree of frames."""

@@ -1,4 +1,4 @@
-"""A picture as PDF 1.4 (ISO 32000): one page, with the Helvetica that every reader has."""
+"""Output of a drawing as PDF 1.4 (ISO 32000): one page, with the Helvetica of every reader."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def to_pdf(picture: Picture) -> bytes:
 
 
 def _document(objects: list[bytes]) -> bytes:
-    """Put objects together, numbered, with the table of where each is."""
+    """Assemble numbered objects with the cross-reference table."""
     content = b"%PDF-1.4\n%\xe2\xe3\xcf\xd3\n"
     places = []
     for number, each in enumerate(objects, 1):

@@ -1,4 +1,4 @@
-"""A picture as SVG."""
+"""Output of a drawing as SVG."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Laying out a tree of frames: where each frame and each transform's data stand on the sheet."""
+"""Layout of a tree of frames: positions of frames and of the transforms' data."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class Text:
 
 @dataclass(frozen=True)
 class Box:
-    """A frame: the middle and the measures of its box."""
+    """Frame: the centre and the size of its box."""
 
     x: float
     y: float
@@ -39,7 +39,7 @@ class Box:
 
 @dataclass(frozen=True)
 class Arrow:
-    """A transform: from the parent's box down to a rail, along it, and down to the child's box."""
+    """Transform: a line from the parent's box to a rail, along it, and to the child's box."""
 
     x1: float
     y1: float
@@ -50,7 +50,7 @@ class Arrow:
 
 @dataclass
 class Picture:
-    """What is to be drawn; y points down, units are points."""
+    """Drawing; y points down, units are points."""
 
     width: float = 0.0
     height: float = 0.0
@@ -90,7 +90,7 @@ def text_width(content: str, size: float) -> float:
 
 
 class _Branch:
-    """A frame with all below it."""
+    """Frame with all its descendants."""
 
     def __init__(self, name: str, children: Mapping[str, Sequence[str]], notes: Mapping[str, Sequence[str]]) -> None:
         self._name = name
@@ -105,7 +105,7 @@ class _Branch:
         self._indent = (self.width - below) / 2
 
     def place(self, picture: Picture, left: float, top: float) -> float:
-        """Put everything into the picture and return where it ends on the right."""
+        """Place the branch in the drawing and return its right end."""
         x, y = left + self.width / 2, top + _BOX_HEIGHT / 2
         picture.boxes.append(Box(x, y, self._box_width, _BOX_HEIGHT))
         picture.texts.append(Text(x, y + FONT_SIZE * 0.35, self._name))

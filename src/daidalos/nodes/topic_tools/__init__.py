@@ -1,4 +1,4 @@
-"""Relaying, thinning out, choosing and transforming topics of any type."""
+"""Tools that relay, throttle, select and transform topics of any type."""
 
 COMPONENTS = {
     "RelayNode": "relay:RelayNode",

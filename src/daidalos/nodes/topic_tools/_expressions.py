@@ -1,4 +1,4 @@
-"""Publishing what an expression makes of another topic's messages."""
+"""Publishers of the values of expressions over another topic's messages."""
 
 from __future__ import annotations
 

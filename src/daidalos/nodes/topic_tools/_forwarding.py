@@ -1,4 +1,4 @@
-"""Topics of any type: found when somebody publishes them, handed on as bytes."""
+"""Forwarding of topics of any type, found when they are published, as bytes."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Receiver = Callable[[bytes], None]
 
 
 class TopicForwarder:
-    """Takes the messages of topics and publishes what is given to it, as soon as the type is known.
+    """Subscriber and publisher of serialized messages, created as soon as the type is known.
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ class TopicForwarder:
         self._stop = node.handle.graph.listen(lambda added, what: self._look.trigger())
 
     def take_from(self, topic: str) -> None:
-        """Take from this topic from now on, from none if it is empty."""
+        """Subscribe to this topic from now on, to none if it is empty."""
         self._input = self._node.resolve_topic_name(topic) if topic else ""
         self._unsubscribe()
         self._look.trigger()
@@ -69,7 +69,7 @@ class TopicForwarder:
             publisher.publish(content)
 
     def close(self) -> None:
-        """Hear of the graph no more."""
+        """Stop listening to the graph."""
         self._stop()
 
     def _update(self) -> None:
@@ -90,7 +90,7 @@ class TopicForwarder:
             self._unsubscribe()
 
     def _know(self, infos: Sequence[Any]) -> None:
-        """Note the type, and a quality of service that all who publish offer."""
+        """Record the type, and a quality of service compatible with all publishers."""
         profiles = [info.qos_profile for info in infos]
         reliable = all(profile.reliability == ReliabilityPolicy.RELIABLE for profile in profiles)
         latched = all(profile.durability == DurabilityPolicy.TRANSIENT_LOCAL for profile in profiles)

@@ -1,4 +1,4 @@
-"""What `mux` and `demux` have in common: a list of topics, of which one is chosen."""
+"""Common base of `mux` and `demux`: a list of topics, one of which is selected."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ NONE = "__none"
 
 
 class Switch(Node):
-    """Serves ``~/add``, ``~/delete``, ``~/list`` and ``~/select``, and publishes the choice on ``~/selected``.
+    """Server of ``~/add``, ``~/delete``, ``~/list`` and ``~/select`` that publishes ``~/selected``.
 
     Parameters
     ----------

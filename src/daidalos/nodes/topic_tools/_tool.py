@@ -1,4 +1,4 @@
-"""What the tools with one input and one output have in common."""
+"""Common base of the tools with one input and one output."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from daidalos.nodes.topic_tools._forwarding import TopicForwarder
 
 
 class Tool(Node):
-    """Takes messages from ``input_topic`` and publishes on ``output_topic``; parameters of the node, as ``lazy``.
+    """Node that subscribes to ``input_topic`` and publishes ``output_topic``; both are parameters, as is ``lazy``.
 
     Parameters
     ----------
@@ -34,7 +34,7 @@ class Tool(Node):
         self.passage.take_from(source)
 
     def receive(self, content: bytes) -> None:
-        """Hand a message on, or not."""
+        """Process a message."""
         self.passage.publish(content)
 
     def destroy_node(self) -> None:

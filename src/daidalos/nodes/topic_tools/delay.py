@@ -1,4 +1,4 @@
-"""`delay`: publishes a topic later."""
+"""`delay`: republishes a topic after a delay."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from daidalos.nodes.topic_tools._tool import Tool, run_tool, topics
 
 
 class DelayNode(Tool):
-    """Hands every message on ``delay`` seconds after it came (parameter of the node, as ``use_wall_clock``)."""
+    """Node that republishes messages ``delay`` seconds later (parameter, as is ``use_wall_clock``)."""
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__("delay", **kwargs)
@@ -26,7 +26,7 @@ class DelayNode(Tool):
         self._waiting: deque[bytes] = deque()
 
     def receive(self, content: bytes) -> None:
-        """Keep a message until its time has come."""
+        """Queue a message until its time."""
         if self._delay_s == 0.0:
             self.passage.publish(content)
             return

@@ -1,4 +1,4 @@
-"""`demux`: publishes a topic on one of several."""
+"""`demux`: republishes a topic on one of several topics."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from daidalos.nodes.topic_tools._tool import run_tool
 
 
 class DemuxNode(Switch):
-    """Publishes ``input_topic`` on the chosen one of ``output_topics``; see `MuxNode` for the rest."""
+    """Node that republishes ``input_topic`` on the selected one of ``output_topics``; see `MuxNode`."""
 
     def __init__(self, **kwargs: Any) -> None:
         from topic_tools_interfaces.srv import DemuxAdd, DemuxDelete, DemuxList, DemuxSelect

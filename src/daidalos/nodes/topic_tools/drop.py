@@ -1,4 +1,4 @@
-"""`drop`: leaves out some of every few messages."""
+"""`drop`: drops some of every few messages."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from daidalos.nodes.topic_tools._tool import Tool, run_tool, topics
 
 
 class DropNode(Tool):
-    """Leaves out the first ``x`` of every ``y`` messages (parameters of the node)."""
+    """Node that drops the first ``x`` of every ``y`` messages (parameters of the node)."""
 
     def __init__(self, **kwargs: Any) -> None:
         self._count = 0
@@ -21,7 +21,7 @@ class DropNode(Tool):
             raise RuntimeError(f"drop needs 0 <= x <= y and y > 0, not x = {self._x} and y = {self._y}")
 
     def receive(self, content: bytes) -> None:
-        """Hand a message on when it is its turn."""
+        """Forward a message or drop it, by its number."""
         if self._count >= self._x:
             self.passage.publish(content)
         self._count = (self._count + 1) % self._y

@@ -1,4 +1,4 @@
-"""`mux`: publishes one of several topics."""
+"""`mux`: republishes one of several topics."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from daidalos.nodes.topic_tools._tool import run_tool
 
 
 class MuxNode(Switch):
-    """Publishes the chosen one of ``input_topics`` on ``output_topic``.
+    """Node that republishes the selected one of ``input_topics`` on ``output_topic``.
 
     Parameters of the node besides: ``initial_topic`` (the first of them unless given, ``__none`` for none), ``lazy``.
     """

@@ -1,4 +1,4 @@
-"""`relay`: publishes a topic under another name as well."""
+"""`relay`: republishes a topic under another name."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from daidalos.nodes.topic_tools._tool import Tool, run_tool, topics
 
 
 class RelayNode(Tool):
-    """Hands every message on."""
+    """Node that forwards every message."""
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__("relay", **kwargs)

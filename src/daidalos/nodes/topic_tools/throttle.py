@@ -1,4 +1,4 @@
-"""`throttle`: lets through so many messages, or bytes, in a second."""
+"""`throttle`: limits the messages, or bytes, per second."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class ThrottleNode(Tool):
         self._lets_through = self._is_due if kind == "messages" else self._is_within
 
     def receive(self, content: bytes) -> None:
-        """Hand a message on unless there were too many."""
+        """Forward a message unless the limit is reached."""
         if self._lets_through(self._time.now().nanoseconds, len(content)):
             self.passage.publish(content)
 

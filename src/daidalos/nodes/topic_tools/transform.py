@@ -1,4 +1,4 @@
-"""`transform`: publishes what a Python expression makes of a topic's messages."""
+"""`transform`: publishes the values of a Python expression over a topic's messages."""
 
 from __future__ import annotations
 

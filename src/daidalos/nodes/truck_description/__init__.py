@@ -1,1 +1,1 @@
-"""A truck with driven rear wheels."""
+"""Truck with driven rear wheels."""

@@ -1,4 +1,4 @@
-"""`diff_drive_publisher`: makes the truck drive an arc of 1 m: 0.1 m/s ahead, 0.1 rad/s to the left."""
+"""`diff_drive_publisher`: drives the truck on an arc of 1 m radius: 0.1 m/s ahead, 0.1 rad/s to the left."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _PERIOD = 0.1
 
 
 class DiffDrivePublisher(Node):
-    """Sends stamped velocities to ``/diff_drive_base_controller/cmd_vel``; parameters ``linear`` and ``angular``."""
+    """Node that publishes ``/diff_drive_base_controller/cmd_vel``; parameters ``linear`` and ``angular``."""
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__("diff_drive_publisher", **kwargs)

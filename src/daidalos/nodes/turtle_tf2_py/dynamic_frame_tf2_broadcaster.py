@@ -15,7 +15,7 @@ _RADIUS = 10.0
 
 
 class DynamicFrameTf2Broadcaster(Node):
-    """Publishes ``carrot1`` on a circle around ``turtle1``, once round in two seconds."""
+    """Node that publishes ``carrot1`` on a circle around ``turtle1``, with a period of two seconds."""
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__("dynamic_frame_tf2_broadcaster", **kwargs)

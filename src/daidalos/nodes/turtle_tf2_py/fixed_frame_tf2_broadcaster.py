@@ -12,7 +12,7 @@ from daidalos.nodes.turtle_tf2_py._transforms import transform
 
 
 class FixedFrameTf2Broadcaster(Node):
-    """Publishes ``carrot1`` two units to the left of ``turtle1``."""
+    """Node that publishes ``carrot1`` two units to the left of ``turtle1``."""
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__("fixed_frame_tf2_broadcaster", **kwargs)

@@ -16,7 +16,7 @@ $ ros2 run turtle_tf2_py static_turtle_tf2_broadcaster child_frame_name x y z ro
 
 
 class StaticTurtleTf2Broadcaster(Node):
-    """Publishes a frame in ``world``, once and for all."""
+    """Node that publishes a static frame in ``world``."""
 
     def __init__(self, name: str, numbers: list[float], **kwargs: Any) -> None:
         super().__init__("static_turtle_tf2_broadcaster", **kwargs)

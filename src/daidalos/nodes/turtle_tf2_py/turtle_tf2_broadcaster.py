@@ -1,4 +1,4 @@
-"""`turtle_tf2_broadcaster`: publishes where a turtle is as a transform from ``world``."""
+"""`turtle_tf2_broadcaster`: publishes the pose of a turtle as a transform from ``world``."""
 
 from __future__ import annotations
 

@@ -16,7 +16,7 @@ _TURNING, _DRIVING = 1.0, 0.5  # speeds for an angle of 1 rad and a distance of 
 
 
 class TurtleTf2Listener(Node):
-    """Drives ``turtle2`` towards the frame that the parameter ``target_frame`` names."""
+    """Node that drives ``turtle2`` towards the frame of the parameter ``target_frame``."""
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__("turtle_tf2_frame_listener", **kwargs)

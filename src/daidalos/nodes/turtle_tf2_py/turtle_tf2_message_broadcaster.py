@@ -13,7 +13,7 @@ _NAME = "turtle3"
 
 
 class TurtleTf2MessageBroadcaster(Node):
-    """Publishes ``turtle3/turtle_point_stamped``, as a sensor would that sees the turtle."""
+    """Node that publishes ``turtle3/turtle_point_stamped``, as a sensor of the turtle's position would."""
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__("turtle_tf2_message_broadcaster", **kwargs)

@@ -1,1 +1,1 @@
-"""Turtles that draw: the first robots of a ROS 2 course."""
+"""Turtles that draw, from the first ROS 2 tutorials."""

@@ -1,4 +1,4 @@
-"""What turtles have drawn: the lines for the window, and the ink whose colour they see."""
+"""Drawing of the turtles: lines for the window, and pixels for the colour sensor."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _MAX_LINES = 40_000  # ten minutes of driving; older lines are shown as a pictur
 
 
 class Drawing:
-    """A sheet of paper.
+    """Canvas of the turtles.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""How a turtle moves: an ideal wheeled robot on a square table with walls."""
+"""Motion of a turtle: an ideal wheeled robot on a square with walls."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ TURNED = 0.01  # how far from its goal a rotation has ended, in rad
 
 @dataclass(frozen=True)
 class Pen:
-    """What a turtle draws with: colour, width in pixels (0 draws the finest line), and whether it is down."""
+    """Pen of a turtle: colour, width in pixels (0 draws the finest line), and whether it is down."""
 
     r: int = 0xB3
     g: int = 0xB8
@@ -27,7 +27,7 @@ class Pen:
 
 @dataclass
 class Turtle:
-    """A turtle's state.
+    """State of a turtle.
 
     Headings and speeds have single precision, as in the messages, so that rounding adds up as it does there.
 
@@ -83,7 +83,7 @@ class Turtle:
         return wanted if (self.x, self.y) != wanted else None
 
     def stop(self) -> None:
-        """Stand still."""
+        """Stop."""
         self.forward = self.sideways = self.angular = 0.0
 
     def turn_towards(self, theta: float, now_s: float) -> float:
@@ -100,7 +100,7 @@ class Turtle:
         return normalized(_single(normalized(theta) - self.theta))
 
     def teleport(self, x: float, y: float, theta: float) -> None:
-        """Be somewhere else at once; the next step brings it back within the walls."""
+        """Set the position at once; the next step moves it back within the walls."""
         self.x, self.y, self.theta = x, y, normalized(theta)
 
     def teleport_relative(self, linear: float, angular: float) -> None:

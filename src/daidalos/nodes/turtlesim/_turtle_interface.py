@@ -1,4 +1,4 @@
-"""A turtle's topics, services and action."""
+"""Topics, services and action of a turtle."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _MAX_MAGNITUDE = 1e30  # of units; what is more, or no number, is a mistake
 
 @dataclass(frozen=True)
 class _Rotation:
-    """A goal of the action that is being carried out."""
+    """Goal of the action under execution."""
 
     goal: Any
     over: Future
@@ -27,7 +27,7 @@ class _Rotation:
 
 
 class TurtleInterface:
-    """Lets the graph steer a turtle.
+    """Interface of a turtle to the graph.
 
     Parameters
     ----------
@@ -74,7 +74,7 @@ class TurtleInterface:
         )
 
     def publish(self, colour: tuple[int, int, int]) -> None:
-        """Tell where the turtle is and what colour it sees."""
+        """Publish the turtle's pose and the colour below it."""
         from turtlesim.msg import Color, Pose
 
         turtle = self.turtle
@@ -90,7 +90,7 @@ class TurtleInterface:
         self._colour.publish(Color(r=colour[0], g=colour[1], b=colour[2]))
 
     def close(self) -> None:
-        """Serve no more."""
+        """Close topics, services and action."""
         self.abort_rotation()
         self._action.destroy()
         for publisher in (self._pose, self._colour):
@@ -128,7 +128,7 @@ class TurtleInterface:
         return response
 
     def _can_be(self, *numbers: float) -> bool:
-        """Tell whether numbers can be places and speeds; complain where they can not."""
+        """Return whether numbers are valid positions and speeds; log an error if they are not."""
         if all(abs(number) < _MAX_MAGNITUDE for number in numbers):
             return True
         self._node.get_logger().error(f"Turtle [{self.turtle.name}] can not obey {numbers}")
@@ -169,7 +169,7 @@ class TurtleInterface:
             self._end_rotation(goal.succeed)
 
     def abort_rotation(self) -> None:
-        """Give up the goal of the action, if there is one."""
+        """Abort the goal of the action, if there is one."""
         if self._rotation is not None:
             self._end_rotation(self._rotation.goal.abort)
 

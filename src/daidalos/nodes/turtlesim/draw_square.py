@@ -1,4 +1,4 @@
-"""`draw_square`: drives a turtle round a square, again and again."""
+"""`draw_square`: drives a turtle along a square repeatedly."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _STILL = 0.0001
 
 
 class DrawSquare(Node):
-    """Publishes ``turtle1/cmd_vel`` so that ``turtle1/pose`` follows a square; calls ``reset`` at first."""
+    """Node that publishes ``turtle1/cmd_vel`` to drive along a square; calls ``reset`` first."""
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__("draw_square", **kwargs)
@@ -48,7 +48,7 @@ class DrawSquare(Node):
             self._drive(self._pose)
 
     def _begin(self) -> None:
-        """Have a clean sheet first."""
+        """Reset the drawing."""
         from std_srvs.srv import Empty
 
         if self._called is None and self._reset.service_is_ready():
@@ -72,7 +72,7 @@ class DrawSquare(Node):
             self._say_goal()
 
     def _is_reached(self, pose: Any, goal: tuple[float, float, float]) -> bool:
-        """Tell whether the goal is reached, or already passed: commands come late."""
+        """Return whether the goal is reached or passed, since commands arrive late."""
         x, y, theta = goal
         if self._turns:
             return normalized(theta - pose.theta) < _NEAR_ANGLE

@@ -11,7 +11,7 @@ from daidalos.nodes.runner import run
 
 
 class Mimic(Node):
-    """Publishes the velocity of ``input/pose`` as ``output/cmd_vel``."""
+    """Node that publishes the velocity of ``input/pose`` as ``output/cmd_vel``."""
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__("turtle_mimic", **kwargs)

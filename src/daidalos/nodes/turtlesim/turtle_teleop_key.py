@@ -1,4 +1,4 @@
-"""`turtle_teleop_key`: steers a turtle with the keyboard."""
+"""`turtle_teleop_key`: controls a turtle with the keyboard."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ _HEADINGS = {
 
 
 class TeleopTurtle(Node):
-    """Publishes ``turtle1/cmd_vel`` and sends goals to ``turtle1/rotate_absolute``.
+    """Node that publishes ``turtle1/cmd_vel`` and sends goals to ``turtle1/rotate_absolute``.
 
     Parameters of the node: ``scale_linear`` [units/s], ``scale_angular`` [rad/s].
     """

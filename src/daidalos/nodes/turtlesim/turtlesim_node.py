@@ -1,4 +1,4 @@
-"""`turtlesim_node`: turtles that drive and draw; its window is a page of the studio."""
+"""`turtlesim_node`: simulator of turtles; its window is a page of the studio."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ class TurtleSim(Node):
 
     @property
     def window_topic(self) -> str:
-        """The topic that the page shows."""
+        """Topic that the page subscribes to."""
         return str(self._window.topic_name)
 
     def _update(self) -> None:
@@ -158,7 +158,7 @@ class TurtleSim(Node):
     # The window.
 
     def _show(self) -> None:
-        """Tell the page what is to be seen, at once where something moved."""
+        """Publish the state of the window, immediately after motion."""
         from daidalos_msgs.msg import TurtleSprite, TurtleWindow
 
         drawing = self._drawing

@@ -1,1 +1,1 @@
-"""Choosing among velocities, as ROS 2 offers it."""
+"""Multiplexer of velocities, with ROS 2's interface."""

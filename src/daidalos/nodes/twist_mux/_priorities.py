@@ -1,4 +1,4 @@
-"""Which of several sources counts now, by their priorities, their age and locks."""
+"""Selection among sources by their priorities, ages and locks."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 @dataclass
 class Source:
-    """Where messages come from, and when the last one came.
+    """Source of messages, and the time of its last message.
 
     Attributes
     ----------
@@ -29,18 +29,18 @@ class Source:
     received_at: float | None = None
 
     def is_silent(self, now: float) -> bool:
-        """Tell whether the last message counts no more, or none came."""
+        """Return whether there is no recent message."""
         return self.received_at is None or 0 < self.timeout < now - self.received_at
 
 
 @dataclass
 class Lock(Source):
-    """A source of True, which locks all sources up to its priority, and False; silence after a timeout locks, too."""
+    """Source of True, which locks all sources up to its priority, and False; a timeout locks, too."""
 
     is_closed: bool = False
 
     def is_locked(self, now: float) -> bool:
-        """Tell whether it locks."""
+        """Return whether the lock is closed."""
         return self.is_closed or (self.timeout > 0 and self.is_silent(now))
 
 

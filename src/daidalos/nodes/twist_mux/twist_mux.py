@@ -1,4 +1,4 @@
-"""`twist_mux`: passes on the velocities of the source with the highest priority that is neither silent nor locked."""
+"""`twist_mux`: forwards the velocities of the active source with the highest priority."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ S = TypeVar("S", bound=Source)
 
 
 class TwistMux(Node):
-    """Publishes ``cmd_vel_out``.
+    """Node that publishes ``cmd_vel_out``.
 
     Parameters of the node: for each source NAME ``topics.NAME.topic``, ``topics.NAME.timeout`` (for how long its last
     velocity counts [s]) and ``topics.NAME.priority`` (from 0 to 255); the same below ``locks`` for topics of

@@ -1,1 +1,1 @@
-"""Stamps on velocities, as ROS 2 offers them."""
+"""Conversion of velocities to and from stamped ones, with ROS 2's interface."""

@@ -1,4 +1,4 @@
-"""`twist_stamper`: publishes velocities with the time at which they came."""
+"""`twist_stamper`: publishes velocities with their time of reception."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from daidalos.nodes.runner import run
 
 
 class TwistStamper(Node):
-    """Publishes ``cmd_vel_out`` from ``cmd_vel_in``; parameter of the node: ``frame_id``."""
+    """Node that publishes ``cmd_vel_out`` from ``cmd_vel_in``; parameter: ``frame_id``."""
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__("twist_stamper", **kwargs)

@@ -12,7 +12,7 @@ from daidalos.nodes.runner import run
 
 
 class TwistUnstamper(Node):
-    """Publishes ``cmd_vel_out`` from ``cmd_vel_in``."""
+    """Node that publishes ``cmd_vel_out`` from ``cmd_vel_in``."""
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__("twist_unstamper", **kwargs)

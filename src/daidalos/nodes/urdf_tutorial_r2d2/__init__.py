@@ -1,1 +1,1 @@
-"""A small robot on wheels that walks in circles."""
+"""Small wheeled robot that drives in circles."""

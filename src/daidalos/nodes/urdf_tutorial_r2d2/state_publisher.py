@@ -1,4 +1,4 @@
-"""`state_publisher`: moves the droid and its joints, to show what joint states and transforms do."""
+"""`state_publisher`: moves the robot and its joints, to demonstrate joint states and transforms."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _DEGREE = math.pi / 180
 
 
 class StatePublisher(Node):
-    """Publishes ``joint_states`` and the transform from ``odom`` to ``axis`` thirty times a second."""
+    """Node that publishes ``joint_states`` and the transform from ``odom`` to ``axis`` at 30 Hz."""
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__("state_publisher", **kwargs)

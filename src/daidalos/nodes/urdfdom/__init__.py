@@ -1,1 +1,1 @@
-"""Commands that look at robot descriptions."""
+"""Commands that check and draw robot descriptions."""

@@ -1,4 +1,4 @@
-"""`check_urdf`: says whether a robot description can be read, and prints its tree."""
+"""`check_urdf`: checks a robot description, and prints its tree."""
 
 from __future__ import annotations
 

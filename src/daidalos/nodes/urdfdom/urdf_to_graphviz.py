@@ -1,4 +1,4 @@
-"""`urdf_to_graphviz`: draws a robot's tree as SVG, and writes it down for Graphviz."""
+"""`urdf_to_graphviz`: draws a robot's tree as SVG and for Graphviz."""
 
 from __future__ import annotations
 

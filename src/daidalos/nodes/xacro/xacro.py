@@ -1,4 +1,4 @@
-"""`xacro`: expands a robot description with macros; the real command, which says where a mistake is as well."""
+"""`xacro`: expands a robot description with macros; the original command, with the location of errors."""
 
 from __future__ import annotations
 
