@@ -53,7 +53,7 @@ class Keystore:
             )
 
     def create(self) -> None:
-        """Create the keystore with an authority and the router's certificate; CliError without cryptography installed."""
+        """Create the keystore with an authority and the router's certificate; CliError without cryptography."""
         from daidalos.cli.ros2.keystore.certificates import new_authority
 
         for folder in ("public", "private", "router", "enclaves"):
