@@ -1,1 +1,1 @@
-"""Costmaps, planners, controllers, smoothers and behaviours of a mobile robot."""
+"""Costmaps, planners, controllers, smoothers and behaviors of mobile robots."""

@@ -1,4 +1,4 @@
-"""The contracts of navigation: what planners, controllers, costmap layers and the like have to be.
+"""Contracts of planners, controllers, costmap layers and the other extensions of navigation.
 
 Every extension is one class, made with ``(parameters, context)``: its parameters, an instance of the frozen dataclass
 in its class attribute `Parameters` whose fields have the names of Nav2's parameter files, and a `NavigationContext`.
@@ -39,7 +39,7 @@ def _ignore(line: str) -> None:
 
 @dataclass(frozen=True)
 class NavigationContext:
-    """What an extension may use beside its parameters.
+    """Context of an extension beside its parameters.
 
     Attributes
     ----------
@@ -72,7 +72,7 @@ class NavigationContext:
     maker: Callable[[Kind[Any], str, str, str], Any] | None = None
 
     def make(self, kind: Kind[T], name: str, parameter: str, below: str = "") -> T:
-        """Make an extension that this one uses.
+        """Create an extension that this one uses.
 
         Parameters
         ----------
@@ -126,11 +126,11 @@ class NavigationExtension(ABC):  # noqa: B024 (each contract has its own methods
 
 
 class GlobalPlanner(NavigationExtension):
-    """Finds a path over a costmap."""
+    """Planner of a path over a costmap."""
 
     @abstractmethod
     def create_plan(self, costmap: Costmap, start: Array, goal: Array) -> Array:
-        """Find a path.
+        """Plan a path.
 
         Parameters
         ----------
@@ -152,7 +152,7 @@ class GlobalPlanner(NavigationExtension):
 
 
 class Smoother(NavigationExtension):
-    """Makes a path smoother without leading it into an obstacle."""
+    """Smoother of a path that keeps it free of obstacles."""
 
     @abstractmethod
     def smooth(self, path: Array, costmap: Costmap) -> Array:
@@ -174,7 +174,7 @@ class Smoother(NavigationExtension):
 
 @dataclass(frozen=True)
 class ControlInput:
-    """What a controller knows in one cycle; poses are (x, y, yaw) in the costmap's frame.
+    """Inputs of a controller in one cycle; poses are (x, y, yaw) in the costmap's frame.
 
     Attributes
     ----------
@@ -208,16 +208,16 @@ class ControlInput:
 
 
 class Controller(NavigationExtension):
-    """Finds the velocity for the next cycle."""
+    """Controller that computes the velocity of the next cycle."""
 
     @property
     @abstractmethod
     def look_ahead(self) -> float:
-        """Length [m] of the path that the controller wants to see."""
+        """Length [m] of the path that the controller uses."""
 
     @abstractmethod
     def compute_velocity_commands(self, control: ControlInput) -> Array:
-        """Find the velocity for the next cycle.
+        """Compute the velocity of the next cycle.
 
         Returns
         -------
@@ -232,45 +232,45 @@ class Controller(NavigationExtension):
 
     @abstractmethod
     def set_speed_limit(self, speed_limit: float, *, percentage: bool) -> None:
-        """Drive no faster than a speed [m/s] or a percentage of the maximum; 0 lifts the limit."""
+        """Limit the speed to a value [m/s] or a percentage of the maximum; 0 removes the limit."""
 
     @abstractmethod
     def reset(self) -> None:
-        """Forget the last task."""
+        """Reset the state of the last task."""
 
 
 class GoalChecker(NavigationExtension):
-    """Decides whether a goal is reached."""
+    """Check of whether a goal is reached."""
 
     @property
     @abstractmethod
     def tolerances(self) -> tuple[float, float]:
-        """How near [m] and how well turned [rad] the robot must be."""
+        """Tolerances of position [m] and yaw [rad]."""
 
     @abstractmethod
     def is_goal_reached(self, pose: Array, goal: Array, velocity: Array) -> bool:
-        """Judge a pose (x, y, yaw) and a velocity (x, y, yaw) against a goal in the same frame."""
+        """Return whether a pose (x, y, yaw) and a velocity (x, y, yaw) fulfil a goal in the same frame."""
 
     @abstractmethod
     def reset(self) -> None:
-        """Begin with a new goal."""
+        """Reset for a new goal."""
 
 
 class ProgressChecker(NavigationExtension):
-    """Decides whether a robot still gets on."""
+    """Check of whether a robot makes progress."""
 
     @abstractmethod
     def check(self, pose: Array, now: float) -> bool:
-        """Whether the robot, at a pose (x, y, yaw) and a time [s], has moved enough lately."""
+        """Return whether the robot, at a pose (x, y, yaw) and a time [s], has moved enough recently."""
 
     @abstractmethod
     def reset(self) -> None:
-        """Begin with a new path."""
+        """Reset for a new path."""
 
 
 @dataclass(frozen=True)
 class Scene:
-    """What critics know beside the rollouts.
+    """Inputs of critics beside the rollouts.
 
     Attributes
     ----------
@@ -296,7 +296,7 @@ class Scene:
     step: float
 
     def next_free(self, index: int) -> int:
-        """First pose of the path, from an index on, at which the robot may be; the last if there is none."""
+        """Return the index of the first free pose of the path from an index on; the last if there is none."""
         last = self.along.size - 1
         index = min(index, last)
         free = np.flatnonzero(self.path_free[index:])
@@ -304,7 +304,7 @@ class Scene:
 
 
 class Critic(NavigationExtension):
-    """Gives each rollout a cost for one thing.
+    """Cost term of rollouts.
 
     Attributes
     ----------
@@ -321,7 +321,7 @@ class Critic(NavigationExtension):
 
 @dataclass(frozen=True)
 class Input:
-    """Something that a costmap layer listens to.
+    """Topic that a costmap layer subscribes to.
 
     Attributes
     ----------
@@ -339,7 +339,7 @@ class Input:
 
 
 class Layer(NavigationExtension):
-    """One source of costs; layers are put on top of each other in the order of the costmap's list.
+    """Source of costs; layers are combined in the order of the costmap's list.
 
     Attributes
     ----------
@@ -351,25 +351,25 @@ class Layer(NavigationExtension):
 
     @property
     def inputs(self) -> tuple[Input, ...]:
-        """What the layer listens to."""
+        """Topics that the layer subscribes to."""
         return ()
 
     @property
     def is_current(self) -> bool:
-        """Whether the layer has all that it needs to be relied on."""
+        """Whether the layer has received all its inputs recently enough."""
         return True
 
     @property
     def extent(self) -> Costmap | None:
-        """A costmap whose size and place the whole must take over; `None` where this layer does not mind."""
+        """Costmap whose size and origin the whole costmap takes over; `None` for layers without a size."""
         return None
 
     def match_size(self, costmap: Costmap) -> None:
-        """Take over size and place of the costmap, which changed."""
+        """Adapt to the changed size and origin of the costmap."""
 
     @abstractmethod
     def update_bounds(self, robot_pose: Array, now: float, bounds: Bounds) -> Bounds:
-        """Say which part of the world must be put together anew.
+        """Return the bounds of the area that must be updated.
 
         Parameters
         ----------
@@ -388,15 +388,15 @@ class Layer(NavigationExtension):
 
     @abstractmethod
     def update_costs(self, costmap: Costmap, window: Window) -> None:
-        """Write this layer's costs into a window of the costmap, on top of what the layers below wrote."""
+        """Write this layer's costs into a window of the costmap, on top of the layers below."""
 
     def clear(self, keep: Window, *, inside: bool) -> None:
-        """Forget what is inside of a window of cells, or what is outside of it."""
+        """Clear the inside of a window of cells, or its outside."""
 
 
 @dataclass(frozen=True)
 class BehaviorStep:
-    """What one cycle gave.
+    """Result of one cycle.
 
     Attributes
     ----------
@@ -414,7 +414,7 @@ class BehaviorStep:
 
 
 class Behavior(NavigationExtension, Generic[Command]):
-    """A motion that goes on until it is done, fails, or is no longer asked for.
+    """Motion that continues until it is done, fails or is cancelled.
 
     A behaviour is asked for by an action of its own name.
 
@@ -431,7 +431,7 @@ class Behavior(NavigationExtension, Generic[Command]):
 
     @property
     def period(self) -> float:
-        """Length of a cycle [s]."""
+        """Period of a cycle [s]."""
         return 1.0 / self.context.frequency
 
     @classmethod
@@ -441,7 +441,7 @@ class Behavior(NavigationExtension, Generic[Command]):
 
     @abstractmethod
     def start(self, command: Command, pose: Array, now: float) -> None:
-        """Begin.
+        """Start.
 
         Parameters
         ----------
@@ -460,7 +460,7 @@ class Behavior(NavigationExtension, Generic[Command]):
 
     @abstractmethod
     def step(self, pose: Array, velocity: Array, costmap: Costmap, now: float) -> BehaviorStep:
-        """Find the velocity for the next cycle.
+        """Compute the velocity of the next cycle.
 
         Parameters
         ----------

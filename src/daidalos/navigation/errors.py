@@ -1,10 +1,10 @@
-"""What can go wrong while navigating: the base of every error of this layer."""
+"""Base of navigation's errors."""
 
 from daidalos.common.errors import UserError
 
 
 class NavigationError(UserError):
-    """Something in navigation failed; the message is meant for the person who sent the robot.
+    """Error of navigation, with a message for the user.
 
     Attributes
     ----------
@@ -17,84 +17,84 @@ class NavigationError(UserError):
 
 
 class PlannerError(NavigationError):
-    """There is no plan; the message says why."""
+    """Failure to plan; the message gives the reason."""
 
 
 class StartOutsideMap(PlannerError):
-    """The robot is not on the map."""
+    """Start outside of the map."""
 
     code = "START_OUTSIDE_MAP"
 
 
 class GoalOutsideMap(PlannerError):
-    """The goal is not on the map."""
+    """Goal outside of the map."""
 
     code = "GOAL_OUTSIDE_MAP"
 
 
 class StartOccupied(PlannerError):
-    """The robot's centre is on an obstacle and nothing free is near."""
+    """Start on an obstacle without free cells nearby."""
 
     code = "START_OCCUPIED"
 
 
 class GoalOccupied(PlannerError):
-    """The robot can not stand at the goal."""
+    """Goal on an obstacle."""
 
     code = "GOAL_OCCUPIED"
 
 
 class NoPath(PlannerError):
-    """Start and goal are free, but nothing connects them."""
+    """Free start and goal without a connection."""
 
     code = "NO_VALID_PATH"
 
 
 class ControllerError(NavigationError):
-    """The robot can not be driven along the path; the message says why."""
+    """Failure to follow the path; the message gives the reason."""
 
 
 class InvalidPath(ControllerError):
-    """The path is empty or does not pass the robot."""
+    """Path that is empty or far from the robot."""
 
     code = "INVALID_PATH"
 
 
 class NoValidControl(ControllerError):
-    """Every motion that the controller can think of ends in contact."""
+    """All candidate motions collide."""
 
     code = "NO_VALID_CONTROL"
 
 
 class FailedToMakeProgress(ControllerError):
-    """The robot did not move as far as it must in the time it is given."""
+    """The robot did not move far enough within its time."""
 
     code = "FAILED_TO_MAKE_PROGRESS"
 
 
 class PatienceExceeded(ControllerError):
-    """The controller failed for longer than it may."""
+    """The controller failed for longer than its failure tolerance."""
 
     code = "PATIENCE_EXCEEDED"
 
 
 class BehaviorError(NavigationError):
-    """A behaviour ended before it was done; the message says why."""
+    """Failed behavior; the message gives the reason."""
 
 
 class CollisionAhead(BehaviorError):
-    """The robot would touch something."""
+    """Imminent collision."""
 
     code = "COLLISION_AHEAD"
 
 
 class TimedOut(BehaviorError):
-    """The time allowance is used up."""
+    """Exceeded time allowance."""
 
     code = "TIMEOUT"
 
 
 class InvalidInput(BehaviorError):
-    """The command makes no sense."""
+    """Invalid command."""
 
     code = "INVALID_INPUT"

@@ -1,4 +1,4 @@
-"""Paths: arrays (n, 3) of poses (x, y, yaw), and what every planner and controller asks of them."""
+"""Paths: arrays (n, 3) of poses (x, y, yaw), with common computations."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -7,7 +7,7 @@ Array = NDArray[np.float64]
 
 
 def with_headings(points: Array, *, final_heading: float | None = None, initial_heading: float = 0.0) -> Array:
-    """Make poses of points (n, 2), each looking at the next one.
+    """Return poses of points (n, 2), each facing the next one.
 
     Parameters
     ----------
@@ -31,11 +31,11 @@ def with_headings(points: Array, *, final_heading: float | None = None, initial_
 
 
 def distances_along(path: Array) -> Array:
-    """Distance [m] from the first pose to each pose, along the path; shape (n,)."""
+    """Return the distance [m] from the first pose to each pose along the path; shape (n,)."""
     steps = np.hypot(*np.diff(path[:, :2], axis=0).T)
     return np.concatenate([[0.0], np.cumsum(steps)])
 
 
 def path_length(path: Array) -> float:
-    """Length [m] of a path."""
+    """Return the length [m] of a path."""
     return float(np.hypot(*np.diff(path[:, :2], axis=0).T).sum())

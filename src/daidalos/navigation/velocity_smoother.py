@@ -1,4 +1,4 @@
-"""Velocity commands that a drive can follow: limits on velocity and acceleration, dead band, time-out."""
+"""Velocity smoother: limits on velocity and acceleration, dead band and timeout."""
 
 from dataclasses import dataclass
 
@@ -38,13 +38,13 @@ class VelocitySmootherParameters(Parameters):
     velocity_timeout: float = parameter(1.0, "Age at which a command is ignored.", unit="s")
 
     def check(self) -> None:
-        """Refuse least velocities above the largest."""
+        """Raise an error if minimum velocities are above the maximum ones."""
         if any(low > high for low, high in zip(self.min_velocity, self.max_velocity, strict=True)):
             raise ParameterError("min_velocity", "is above max_velocity")
 
 
 class VelocitySmoother:
-    """Passes velocity commands on, changed as little as the limits ask for."""
+    """Smoother of velocity commands, which are changed as little as the limits require."""
 
     Parameters = VelocitySmootherParameters
 
@@ -55,12 +55,12 @@ class VelocitySmoother:
         self._last = np.zeros(3)
 
     def command(self, velocity: Array, now: float) -> None:
-        """Take a wanted velocity (x, y, yaw); one that is not finite is taken as a stop."""
+        """Set the wanted velocity (x, y, yaw); one that is not finite means stop."""
         self._command = velocity.copy() if np.isfinite(velocity).all() else np.zeros(3)
         self._commanded_at = now
 
     def step(self, now: float, measured: Array | None = None) -> Array | None:
-        """Find the velocity for the next period.
+        """Compute the velocity of the next period.
 
         Parameters
         ----------
@@ -88,7 +88,7 @@ class VelocitySmoother:
         return np.where(np.abs(self._last) < p.deadband_velocity, 0.0, self._last)
 
     def _towards(self, present: Array, wanted: Array) -> Array:
-        """Change each component as far as its acceleration allows, or all by the same share."""
+        """Return the velocity limited by acceleration, for each component or by a common ratio."""
         p = self.parameters
         period = 1.0 / p.smoothing_frequency
         change = wanted - present

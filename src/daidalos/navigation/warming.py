@@ -58,7 +58,7 @@ def _plan(costmap: Costmap) -> None:
 
 
 def _control(costmap: Costmap) -> None:
-    """Drive a controller with each of its critics to a far goal and to a near one."""
+    """Run a controller with each of its critics to a far goal and to a near one."""
     pose, rest = np.array([1.0, 2.0, 0.0]), np.zeros(3)
     path = np.stack([np.linspace(1.0, 3.0, 41), np.full(41, 2.0), np.zeros(41)], axis=-1)
     outline = CostCritic(CostCriticParameters(consider_footprint=True))

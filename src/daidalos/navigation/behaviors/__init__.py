@@ -1,1 +1,1 @@
-"""Simple motions that free a robot: spin, back up, wait."""
+"""Recovery behaviors: spin, back up, drive on heading and wait."""

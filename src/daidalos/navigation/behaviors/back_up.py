@@ -1,4 +1,4 @@
-"""Drive straight backwards for a distance."""
+"""Behavior that drives straight backwards for a distance."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -20,7 +20,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class BackUpCommand:
-    """How far back [m] and how fast [m/s] to drive, both positive, and how long that may take [s]."""
+    """Distance [m] and speed [m/s], both positive, and time allowance [s]."""
 
     backup_dist: float = 0.15
     backup_speed: float = 0.025
@@ -28,7 +28,7 @@ class BackUpCommand:
 
 
 class BackUp(Behavior[BackUpCommand]):
-    """Drives on the robot's heading, backwards."""
+    """Behavior that drives backwards along the robot's heading."""
 
     names = ("nav2_behaviors::BackUp",)
     Parameters = DriveOnHeadingParameters

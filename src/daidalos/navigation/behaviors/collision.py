@@ -1,4 +1,4 @@
-"""Whether a motion would make the robot touch something."""
+"""Collision checks of motions."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +12,7 @@ Array = NDArray[np.float64]
 def contact_ahead(
     costmap: Costmap, footprint: Footprint, pose: Array, speed: float, turn: float, duration: float
 ) -> bool:
-    """Whether a robot that keeps its velocity for a while comes to touch what it does not touch now.
+    """Return whether a robot that keeps its velocity for a time collides with an obstacle that it does not touch now.
 
     Parameters
     ----------

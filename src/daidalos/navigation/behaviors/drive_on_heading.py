@@ -1,4 +1,4 @@
-"""Drive straight, forwards or backwards, for a distance."""
+"""Behavior that drives straight, forwards or backwards, for a distance."""
 
 import math
 from dataclasses import dataclass
@@ -27,7 +27,7 @@ class DriveOnHeadingParameters(Parameters):
 
 @dataclass(frozen=True)
 class DriveOnHeadingCommand:
-    """How far [m] and how fast [m/s] to drive, negative for backwards, and how long it may take [s]."""
+    """Distance [m] and speed [m/s], negative for backwards, and time allowance [s]."""
 
     distance: float = 0.15
     speed: float = 0.025
@@ -35,7 +35,7 @@ class DriveOnHeadingCommand:
 
 
 class DriveOnHeading(Behavior[DriveOnHeadingCommand]):
-    """Drives straight until the robot is a distance away from where it began."""
+    """Behavior that drives straight until the robot is a distance away from its start."""
 
     names = ("nav2_behaviors::DriveOnHeading",)
     Parameters = DriveOnHeadingParameters

@@ -1,4 +1,4 @@
-"""Turn on the spot by an angle."""
+"""Behavior that rotates in place by an angle."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -32,21 +32,21 @@ class SpinParameters(Parameters):
     rotational_acc_lim: float = parameter(3.2, "Largest turn acceleration.", unit="rad/s^2", above=0.0)
 
     def check(self) -> None:
-        """Refuse a least turn rate above the largest."""
+        """Raise an error if the minimum turn rate is above the maximum."""
         if self.min_rotational_vel > self.max_rotational_vel:
             raise ParameterError("min_rotational_vel", "is above max_rotational_vel")
 
 
 @dataclass(frozen=True)
 class SpinCommand:
-    """How far to turn [rad], positive to the left, and how long that may take [s]."""
+    """Angle [rad], positive to the left, and time allowance [s]."""
 
     target_yaw: float = 1.57
     time_allowance: float = 10.0
 
 
 class Spin(Behavior[SpinCommand]):
-    """Turns by an angle of any size, measured by the turns of the robot's pose."""
+    """Behavior that rotates by an angle of any size, measured by the robot's pose."""
 
     names = ("nav2_behaviors::Spin",)
     Parameters = SpinParameters
@@ -91,7 +91,7 @@ class Spin(Behavior[SpinCommand]):
         return BehaviorStep(np.array([0.0, 0.0, turn]), False, abs(self._turned))
 
     def _speed(self, left: float, present: float) -> float:
-        """Angular velocity that brakes in time, but does not creep before the last cycle."""
+        """Return the angular velocity that brakes in time without creeping before the last cycle."""
         p = self.parameters
         turn = rotation_speed(
             left, present, max_speed=p.max_rotational_vel, max_accel=p.rotational_acc_lim, period=self.period

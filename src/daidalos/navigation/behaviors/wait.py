@@ -1,4 +1,4 @@
-"""Stand still for a while."""
+"""Behavior that waits."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -15,13 +15,13 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class WaitCommand:
-    """How long to stand [s]."""
+    """Waiting time [s]."""
 
     wait_duration: float = 1.0
 
 
 class Wait(Behavior[WaitCommand]):
-    """Stands until its time is over."""
+    """Behavior that waits for a time."""
 
     names = ("nav2_behaviors::Wait",)
     action = "nav2_msgs/action/Wait"

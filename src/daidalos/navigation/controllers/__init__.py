@@ -1,1 +1,1 @@
-"""Velocities that make a robot follow a path and keep off what the local costmap shows."""
+"""Controllers that follow a path and avoid the obstacles of the local costmap."""

@@ -1,4 +1,4 @@
-"""Following a path to its end: one controller with its checkers, cycle by cycle."""
+"""Path following by a controller with its checkers."""
 
 from dataclasses import dataclass
 
@@ -23,7 +23,7 @@ SAME_FRAME = np.zeros(3)
 
 @dataclass(frozen=True)
 class FollowPathStep:
-    """What one cycle gave.
+    """Result of one cycle.
 
     Attributes
     ----------
@@ -47,7 +47,7 @@ class FollowPathStep:
 
 
 class FollowPath:
-    """The work of the `follow_path` action.
+    """Execution of the `follow_path` action.
 
     Parameters
     ----------
@@ -76,7 +76,7 @@ class FollowPath:
         self._last_success: float | None = None
 
     def start(self, path: Array) -> None:
-        """Begin with a path (n, 3).
+        """Start to follow a path (n, 3).
 
         Raises
         ------
@@ -90,7 +90,7 @@ class FollowPath:
         self._last_success = None
 
     def replan(self, path: Array, *, new_goal: bool = False) -> None:
-        """Go on along another path.
+        """Continue on another path.
 
         Parameters
         ----------
@@ -120,7 +120,7 @@ class FollowPath:
         plan_frame: Array = SAME_FRAME,
         circumscribed_cost: int = 1,
     ) -> FollowPathStep:
-        """Find the velocity for the next cycle.
+        """Compute the velocity of the next cycle.
 
         Parameters
         ----------
@@ -160,7 +160,7 @@ class FollowPath:
         return FollowPathStep(command, False, distance, path)
 
     def _check_failure_tolerance(self, error: ControllerError, now: float) -> None:
-        """Fail when the controller has failed for too long."""
+        """Raise an error if the controller has failed for longer than the tolerance."""
         if self.failure_tolerance == 0.0:
             raise error
         if self._last_success is None:

@@ -1,4 +1,4 @@
-"""MPPI: sampled control sequences, judged by critics and averaged by their costs."""
+"""MPPI controller: sampled control sequences, averaged by their costs."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -28,7 +28,7 @@ NOISE_POOL = 8
 
 @dataclass(frozen=True)
 class CriticSwitch(Parameters):
-    """Whether a critic of the controller is used."""
+    """Parameter that enables a critic of the controller."""
 
     enabled: bool = parameter(True, "Whether the critic is used.", read_only=True)
 
@@ -72,7 +72,7 @@ class MppiParameters(Parameters):
     switches: Mapping[str, CriticSwitch] = per_name(CriticSwitch, by="critics", at="")
 
     def check(self) -> None:
-        """Refuse a least speed above the largest."""
+        """Raise an error if the minimum speed is above the maximum."""
         if self.vx_min > self.vx_max:
             raise ParameterError("vx_min", f"is above vx_max: {self.vx_min:g} > {self.vx_max:g}")
 
@@ -121,7 +121,7 @@ class MppiController(Controller):
         self._pool *= np.array([p.vx_std, p.wz_std], dtype=np.float32)
 
     def _make_critics(self) -> tuple[Critic, ...]:
-        """Make the critics that the parameters name; those that are not enabled are left out."""
+        """Create the enabled critics of the parameters."""
         return tuple(
             self.context.make(CRITICS, name, "critics", below=name)
             for name in self.parameters.critics
@@ -136,7 +136,7 @@ class MppiController(Controller):
 
     @property
     def trajectory(self) -> Array:
-        """Poses (n, 3) that the last control sequence leads to, in the costmap's frame."""
+        """Poses (n, 3) of the last control sequence in the costmap's frame."""
         s = self._single
         return np.stack([s.x[0], s.y[0], s.yaw[0]], axis=-1).astype(np.float64)
 
@@ -172,14 +172,14 @@ class MppiController(Controller):
         self._last_command = None
 
     def _shift(self) -> None:
-        """Begin where the last sequence is now."""
+        """Shift the last sequence by the elapsed time."""
         steps = self.parameters.time_steps
         then = np.minimum(np.arange(steps) + self.period / self.parameters.model_dt, steps - 1.0)
         for axis in range(2):
             self._controls[:, axis] = np.interp(then, np.arange(steps), self._controls[:, axis])
 
     def _optimise(self, control: ControlInput) -> None:
-        """Improve the control sequence once, and drive it."""
+        """Improve the control sequence by one iteration, and simulate it."""
         p = self.parameters
         rollouts = self._rollouts
         limits = Limits(p.vx_min, self._speed_limit, p.wz_max, p.ax_min, p.ax_max, p.az_max)
@@ -202,14 +202,14 @@ class MppiController(Controller):
             self._take(np.stack([rollouts.vx[best], rollouts.wz[best]], axis=-1), control, limits, scene)
 
     def _turn_then_drive(self, control: ControlInput, limits: Limits) -> Samples:
-        """Sequence that turns to the path a little ahead, or to its end, and drives there."""
+        """Return the sequence that turns to a point of the path ahead, or to its end, and drives there."""
         index = int(np.searchsorted(distances_along(control.path), TURN_TO))
         x, y = (float(value) for value in control.path[min(index, control.path.shape[0] - 1), :2])
         p = self.parameters
         return turn_then_drive(control.pose, control.velocity, (x, y), limits, p.time_steps, p.model_dt)
 
     def _take(self, controls: Samples, control: ControlInput, limits: Limits, scene: Scene) -> None:
-        """Make a sequence the present one and see where it leads."""
+        """Set the current sequence and compute its trajectory."""
         self._controls[:] = controls
         still = np.zeros((1, *controls.shape), dtype=np.float32)
         self._single.drive(control.pose, control.velocity, self._controls, still, limits, self.parameters.model_dt)
@@ -230,7 +230,7 @@ class MppiController(Controller):
 
 
 def _weights(rollouts: Rollouts, temperature: float) -> Samples:
-    """Share of each sample in the mean.
+    """Return the weight of each sample.
 
     The temperature is relative to how much worse than the best sample the best tenth is, so that the critics'
     weights need no tuning to it, and the last centimetres count as much as the first metres.
@@ -246,7 +246,7 @@ def _weights(rollouts: Rollouts, temperature: float) -> Samples:
 
 @compiled
 def furthest_reached(x: Samples, y: Samples, points: Array) -> int:
-    """Index of the point, farthest along a path, that is nearest to the end of some rollout."""
+    """Return the largest index of the path's points that are nearest to the ends of rollouts."""
     furthest = 0
     last = x.shape[1] - 1
     for b in range(x.shape[0]):

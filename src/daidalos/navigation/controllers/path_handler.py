@@ -1,4 +1,4 @@
-"""Which part of a plan is ahead of the robot."""
+"""Part of a plan ahead of the robot."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +11,7 @@ Array = NDArray[np.float64]
 
 
 class PathHandler:
-    """Keeps a plan and forgets what the robot has passed.
+    """Plan without the part that the robot has passed.
 
     The robot is looked for only a limited way along the plan, so that where a plan comes near to itself the
     robot does not jump from one part to the other.
@@ -34,7 +34,7 @@ class PathHandler:
         return self._plan.shape[0] > 0
 
     def set_plan(self, plan: Array) -> None:
-        """Take a plan (n, 3), in a frame of its own.
+        """Set the plan (n, 3) with its frame.
 
         Raises
         ------
@@ -50,7 +50,7 @@ class PathHandler:
         self._passed = 0
 
     def ahead(self, pose: Array, plan_frame: Array, look_ahead: float) -> tuple[Array, Array, float]:
-        """Cut out what is ahead of the robot, and forget what is behind.
+        """Return the part of the plan ahead of the robot, and drop the part behind.
 
         Parameters
         ----------

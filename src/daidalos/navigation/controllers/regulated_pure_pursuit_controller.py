@@ -1,4 +1,4 @@
-"""Regulated pure pursuit: drive an arc to a carrot on the path, slower where it is tight, near or narrow."""
+"""Regulated pure pursuit: arcs to a carrot point, slower in tight curves and near obstacles."""
 
 import math
 from dataclasses import dataclass
@@ -117,7 +117,7 @@ class RegulatedPurePursuitController(Controller):
         self._rotating = False
 
     def _carrot(self, control: ControlInput) -> Array:
-        """Point (x, y) of the path at the look-ahead distance, in the robot's frame."""
+        """Return the point (x, y) of the path at the look-ahead distance, in the robot's frame."""
         p = self.parameters
         distance = p.lookahead_dist
         if p.use_velocity_scaled_lookahead_dist:
@@ -134,7 +134,7 @@ class RegulatedPurePursuitController(Controller):
         return _on_circle(points[outer - 1], points[outer], distance)
 
     def _must_rotate(self, angle: float) -> bool:
-        """Whether to turn on the spot; once begun, until the carrot is nearly ahead."""
+        """Return whether to rotate in place; once started, until the carrot is nearly ahead."""
         if not self.parameters.use_rotate_to_heading:
             return False
         enough = 0.15 if self._rotating else self.parameters.rotate_to_heading_min_angle
@@ -142,7 +142,7 @@ class RegulatedPurePursuitController(Controller):
         return self._rotating
 
     def _turn(self, control: ControlInput, angle: float) -> Array:
-        """Turn on the spot, once the robot stands."""
+        """Return the velocity to rotate in place, after the robot has stopped."""
         p = self.parameters
         forward = float(control.velocity[0])
         slower = math.copysign(max(abs(forward) - p.max_linear_accel * self.period, 0.0), forward)
@@ -174,7 +174,7 @@ class RegulatedPurePursuitController(Controller):
         return min(max(speed, present - step), present + step)
 
     def _proximity_scale(self, control: ControlInput) -> float:
-        """Share of the speed that the nearest obstacle allows; the inflated cost tells its distance."""
+        """Return the ratio of the speed that the nearest obstacle allows, by its distance from the inflated cost."""
         p = self.parameters
         cost = control.costmap.cost_at(float(control.pose[0]), float(control.pose[1]))
         if cost in (0, NO_INFORMATION):
@@ -187,7 +187,7 @@ class RegulatedPurePursuitController(Controller):
         return max(p.cost_scaling_gain * away / p.cost_scaling_dist, 0.0)
 
     def _refuse_collision(self, control: ControlInput, speed: float, turn: float, reach: float) -> None:
-        """Follow the arc as far as the carrot, or as long as allowed, and look for contact."""
+        """Raise an error if the arc collides before the carrot or the maximum time."""
         checker = FootprintCollisionChecker(control.costmap, self.context.footprint)
         if checker.in_collision(control.pose):
             return
@@ -207,7 +207,7 @@ class RegulatedPurePursuitController(Controller):
 
 
 def _on_circle(inner: Array, outer: Array, radius: float) -> Array:
-    """Where the line from a point inside of a circle around the origin to one outside crosses it."""
+    """Return the intersection of a circle around the origin with the line from a point inside to one outside."""
     step = outer - inner
     a = float(step @ step)
     b = float(inner @ step)

@@ -1,10 +1,10 @@
-"""Turning on the spot: the speed that reaches a heading without overshoot."""
+"""Rotation in place to a heading without overshoot."""
 
 import math
 
 
 def rotation_speed(angle: float, speed: float, *, max_speed: float, max_accel: float, period: float) -> float:
-    """Angular velocity for the next cycle of a turn that ends at rest.
+    """Return the angular velocity of the next cycle of a rotation that ends at rest.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Turn to the path first, then let another controller drive, and turn to the goal's yaw at the end."""
+"""Controller that rotates to the path, follows it by another controller, and rotates to the goal's yaw."""
 
 import math
 from dataclasses import dataclass
@@ -44,7 +44,7 @@ class RotationShimParameters(Parameters):
 
 
 class RotationShimController(Controller):
-    """Wraps a controller that is good at following and not at starting or ending.
+    """Wrapper of a controller that adds rotation in place at the start and at the end.
 
     A robot whose path leads sideways or back turns on the spot where it has room to. Within the goal's
     tolerance it turns to the goal's yaw; the braking curve of `rotation_speed` ends the turn without
@@ -110,7 +110,7 @@ class RotationShimController(Controller):
         self.primary.reset()
 
     def _angle_to_path(self, control: ControlInput) -> float:
-        """Bearing [rad] of the path at the sampling distance, or of its end."""
+        """Return the bearing [rad] of the path at the sampling distance, or of its end."""
         along = distances_along(control.path)
         index = min(int(np.searchsorted(along, self.parameters.forward_sampling_distance)), along.size - 1)
         ahead = between(control.pose, control.path[index])
@@ -128,13 +128,13 @@ class RotationShimController(Controller):
         return np.array([0.0, 0.0, turn])
 
     def _must_turn(self, control: ControlInput, angle: float) -> bool:
-        """Whether the robot looks away from the path, and has room to turn; once begun, until it does not."""
+        """Return whether the robot faces away from the path and can rotate; once started, until it faces it."""
         p = self.parameters
         enough = p.angular_disengage_threshold if self._turning else p.angular_dist_threshold
         return abs(angle) > enough and self._can_turn(control, angle)
 
     def _can_turn(self, control: ControlInput, angle: float) -> bool:
-        """Whether the turn, as far as it is simulated, touches nothing that the robot does not touch now."""
+        """Return whether the simulated rotation touches nothing that the robot does not touch now."""
         if self.context.footprint.circular:
             return True
         p = self.parameters

@@ -1,1 +1,1 @@
-"""What the robot may touch: a grid of costs put together from layers."""
+"""Costmaps: grids of costs, combined from layers."""

@@ -1,4 +1,4 @@
-"""The costmap: a grid of costs between free (0) and lethal (254), with the map's geometry."""
+"""Costmap: a grid of costs from free (0) to lethal (254) with its geometry."""
 
 import math
 from dataclasses import dataclass
@@ -19,7 +19,7 @@ NO_INFORMATION = 255
 
 
 class CostmapError(NavigationError):
-    """A costmap cannot be made or changed as asked."""
+    """Invalid creation or change of a costmap."""
 
 
 @dataclass(frozen=True)
@@ -33,12 +33,12 @@ class Window:
 
     @property
     def empty(self) -> bool:
-        """Whether it holds no cell."""
+        """Whether it has no cells."""
         return self.left >= self.right or self.bottom >= self.top
 
     @property
     def slices(self) -> tuple[slice, slice]:
-        """Index of these cells in an array of rows and columns."""
+        """Slices of these cells in an array of rows and columns."""
         return slice(self.bottom, self.top), slice(self.left, self.right)
 
 
@@ -81,7 +81,7 @@ class Costmap:
         origin: tuple[float, float] | Array,
         value: int = FREE_SPACE,
     ) -> "Costmap":
-        """Make a costmap of one value; width and height are in cells."""
+        """Return a costmap of one value; width and height are in cells."""
         return cls(np.full((height, width), value, dtype=np.uint8), resolution, origin)
 
     @property
@@ -96,34 +96,34 @@ class Costmap:
 
     @property
     def window(self) -> Window:
-        """All of its cells."""
+        """Window of all cells."""
         return Window(0, 0, self.width, self.height)
 
     def world_to_map(self, x: float, y: float) -> tuple[int, int]:
-        """Column and row of the cell that holds a point [m]; they may lie outside (see `holds`)."""
+        """Return column and row of a point's cell [m]; they may be outside (see `holds`)."""
         return (
             math.floor((x - self.origin[0]) / self.resolution),
             math.floor((y - self.origin[1]) / self.resolution),
         )
 
     def map_to_world(self, column: int, row: int) -> tuple[float, float]:
-        """Position [m] of the centre of a cell."""
+        """Return the position [m] of a cell's centre."""
         return (
             float(self.origin[0] + (column + 0.5) * self.resolution),
             float(self.origin[1] + (row + 0.5) * self.resolution),
         )
 
     def holds(self, column: int, row: int) -> bool:
-        """Whether there is such a cell."""
+        """Return whether a cell is inside."""
         return 0 <= column < self.width and 0 <= row < self.height
 
     def cost_at(self, x: float, y: float) -> int:
-        """Cost of the cell at a point [m]; unknown (255) outside."""
+        """Return the cost of the cell at a point [m]; unknown (255) outside."""
         column, row = self.world_to_map(x, y)
         return int(self.costs[row, column]) if self.holds(column, row) else NO_INFORMATION
 
     def window_of(self, bounds: "Bounds") -> Window:
-        """Cells that a rectangle [m] touches."""
+        """Return the cells that a rectangle [m] touches."""
         if bounds.empty:
             return Window(0, 0, 0, 0)
         left, bottom = self.world_to_map(_finite(bounds.min_x, self.origin[0]), _finite(bounds.min_y, self.origin[1]))
@@ -139,11 +139,11 @@ class Costmap:
         )
 
     def copy(self) -> "Costmap":
-        """Make one that shares nothing with this one."""
+        """Return an independent copy."""
         return Costmap(self.costs.copy(), self.resolution, self.origin.copy())
 
     def cover(self, width: int, height: int, origin: tuple[float, float] | Array, value: int) -> None:
-        """Move and resize the grid over the world; cells keep their place to within half a cell.
+        """Move and resize the grid; cells keep their position to within half a cell.
 
         Parameters
         ----------
@@ -172,7 +172,7 @@ class Costmap:
 
 @dataclass(frozen=True)
 class Bounds:
-    """Rectangle of the world [m] that has to be put together anew; empty until something is included."""
+    """Rectangle of the world [m] that must be updated; empty until something is included."""
 
     min_x: float = math.inf
     min_y: float = math.inf
@@ -181,11 +181,11 @@ class Bounds:
 
     @property
     def empty(self) -> bool:
-        """Whether it holds nothing."""
+        """Whether it is empty."""
         return self.min_x > self.max_x or self.min_y > self.max_y
 
     def including(self, other: "Bounds") -> "Bounds":
-        """Smallest rectangle that holds both."""
+        """Return the smallest rectangle around both."""
         return Bounds(
             min(self.min_x, other.min_x),
             min(self.min_y, other.min_y),
@@ -194,14 +194,14 @@ class Bounds:
         )
 
     def including_points(self, points: Array) -> "Bounds":
-        """Smallest rectangle that holds this one and points (n, 2)."""
+        """Return the smallest rectangle around this one and points (n, 2)."""
         if points.shape[0] == 0:
             return self
         low, high = points.min(axis=0), points.max(axis=0)
         return self.including(Bounds(float(low[0]), float(low[1]), float(high[0]), float(high[1])))
 
     def expanded(self, distance: float) -> "Bounds":
-        """Rectangle that is larger by a distance on every side; an empty one stays empty."""
+        """Return the rectangle expanded by a distance on every side; an empty one stays empty."""
         if self.empty:
             return self
         return Bounds(self.min_x - distance, self.min_y - distance, self.max_x + distance, self.max_y + distance)

@@ -1,4 +1,4 @@
-"""The outline of the robot on the ground, and the highest cost under it."""
+"""Footprint of a robot, and the maximum cost under it."""
 
 import ast
 import math
@@ -25,7 +25,7 @@ CIRCLE_CORNERS = 16
 
 @dataclass(frozen=True)
 class Footprint:
-    """Outline of a robot in its base frame.
+    """Footprint of a robot in its base frame.
 
     Attributes
     ----------
@@ -46,7 +46,7 @@ class Footprint:
 
     @classmethod
     def circle(cls, radius: float) -> "Footprint":
-        """Outline of a round robot.
+        """Return the footprint of a round robot.
 
         Raises
         ------
@@ -61,7 +61,7 @@ class Footprint:
 
     @classmethod
     def of_corners(cls, corners: Array, padding: float = 0.0) -> "Footprint":
-        """Outline through corners (n, 2), each moved outward by a padding [m] along both axes.
+        """Return the footprint of corners (n, 2), each moved outward by a padding [m] along both axes.
 
         Raises
         ------
@@ -83,7 +83,7 @@ class Footprint:
     def from_parameters(
         cls, footprint: str = "[]", robot_radius: float = 0.1, footprint_padding: float = 0.01
     ) -> "Footprint":
-        """Outline from the parameters of a Nav2 costmap; a footprint that is not empty wins over the radius.
+        """Return the footprint of a Nav2 costmap's parameters; a polygon takes precedence over the radius.
 
         Raises
         ------
@@ -102,12 +102,12 @@ class Footprint:
         return cls.of_corners(points, footprint_padding)
 
     def at(self, pose: Array) -> Array:
-        """Corners (n, 2) where the robot stands at a pose (x, y, yaw)."""
+        """Return the corners (n, 2) at a pose (x, y, yaw)."""
         return transform_points(pose, self.polygon)
 
 
 class FootprintCollisionChecker:
-    """Tells what a robot touches at a pose.
+    """Collision checker of a footprint.
 
     Parameters
     ----------
@@ -122,7 +122,7 @@ class FootprintCollisionChecker:
         self.footprint = footprint
 
     def footprint_cost_at(self, pose: Array) -> int:
-        """Highest cost under the robot at a pose (x, y, yaw): 254 on contact, 255 where it is unknown.
+        """Return the maximum cost under the robot at a pose (x, y, yaw): 254 on contact, 255 if unknown.
 
         A round robot is judged by the cost at its centre, as inflation has already grown the obstacles by its
         radius; any other by the cells along its outline.
@@ -141,13 +141,13 @@ class FootprintCollisionChecker:
         return LETHAL_OBSTACLE if cost == INSCRIBED_INFLATED_OBSTACLE else cost
 
     def in_collision(self, pose: Array) -> bool:
-        """Whether the robot at a pose touches a known obstacle."""
+        """Return whether the robot at a pose touches a known obstacle."""
         return self.footprint_cost_at(pose) == LETHAL_OBSTACLE
 
 
 @compiled
 def outline_cost(costs: Costs, resolution: float, origin: Array, polygon: Array, x: float, y: float, yaw: float) -> int:
-    """Highest cost along a polygon (n, 2) placed at a pose; unknown counts only where nothing is lethal."""
+    """Return the maximum cost along a polygon (n, 2) at a pose; unknown counts only if nothing is lethal."""
     cosine, sine = math.cos(yaw), math.sin(yaw)
     corners = polygon.shape[0]
     highest = 0
@@ -177,7 +177,7 @@ def outline_cost(costs: Costs, resolution: float, origin: Array, polygon: Array,
 
 
 def fill_polygon(costmap: Costmap, polygon: Array, value: int) -> None:
-    """Give every cell whose centre is inside of a polygon (n, 2) in the costmap's frame a value."""
+    """Set every cell whose centre is inside of a polygon (n, 2) in the costmap's frame to a value."""
     _fill_polygon(costmap.costs, costmap.resolution, costmap.origin, polygon, value)
 
 
@@ -213,7 +213,7 @@ def _holds_origin(polygon: Array) -> bool:
 
 
 def _distance_to_outline(polygon: Array) -> float:
-    """Distance [m] from the origin to the nearest edge."""
+    """Return the distance [m] from the origin to the nearest edge."""
     ends = np.roll(polygon, -1, axis=0)
     edges = ends - polygon
     along = np.clip(-(polygon * edges).sum(axis=1) / np.maximum((edges * edges).sum(axis=1), 1e-12), 0.0, 1.0)

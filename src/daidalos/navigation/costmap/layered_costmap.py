@@ -1,4 +1,4 @@
-"""A costmap put together from layers, updated only where something changed."""
+"""Costmap of several layers, updated only where something changed."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -38,7 +38,7 @@ class CostmapParameters(Parameters):
 
 
 class LayeredCostmap:
-    """Layers and the costmap that they make.
+    """Layers with their combined costmap.
 
     A rolling window keeps the robot in its middle; otherwise the costmap lies still, or follows the map of a
     layer that has one.
@@ -67,7 +67,7 @@ class LayeredCostmap:
             layer.match_size(self.costmap)
 
     def update(self, robot_pose: Array, now: float) -> Window:
-        """Bring the costmap up to date.
+        """Update the costmap.
 
         Parameters
         ----------
@@ -93,7 +93,7 @@ class LayeredCostmap:
         return window
 
     def circumscribed_cost(self, footprint: Footprint) -> int:
-        """Smallest cost at the robot's centre at which some part of it may touch an obstacle, at least 1."""
+        """Return the minimum cost at the robot's centre at which some part may touch an obstacle, at least 1."""
         costs = [
             layer.cost_at(footprint.circumscribed_radius + self.costmap.resolution)
             for layer in self.layers
@@ -102,15 +102,15 @@ class LayeredCostmap:
         return max([1, *costs])
 
     def clear_entirely(self) -> None:
-        """Forget all that sensors saw (`ClearEntireCostmap`)."""
+        """Clear all observations (`ClearEntireCostmap`)."""
         self._clear(self.costmap.window, inside=True)
 
     def clear_around(self, robot_pose: Array, reset_distance: float) -> None:
-        """Forget what sensors saw in a square of an edge [m] around the robot (`ClearCostmapAroundRobot`)."""
+        """Clear observations in a square with an edge [m] around the robot (`ClearCostmapAroundRobot`)."""
         self._clear(self._square(robot_pose, reset_distance), inside=True)
 
     def clear_except(self, robot_pose: Array, reset_distance: float) -> None:
-        """Forget what sensors saw outside of a square around the robot (`ClearCostmapExceptRegion`)."""
+        """Clear observations outside of a square around the robot (`ClearCostmapExceptRegion`)."""
         self._clear(self._square(robot_pose, reset_distance), inside=False)
 
     def _clear(self, window: Window, *, inside: bool) -> None:
@@ -124,7 +124,7 @@ class LayeredCostmap:
         return self.costmap.window_of(Bounds(x, y, x, y).expanded(0.5 * edge))
 
     def _follow_robot(self, robot_pose: Array) -> bool:
-        """Put the robot into the middle; corners of cells stay on multiples of the resolution."""
+        """Move the costmap's centre to the robot; corners of cells stay on multiples of the resolution."""
         costmap = self.costmap
         half = 0.5 * costmap.resolution * np.array([costmap.width, costmap.height])
         origin = np.floor((robot_pose[:2] - half) / costmap.resolution) * costmap.resolution
@@ -134,7 +134,7 @@ class LayeredCostmap:
         return True
 
     def _follow_map(self) -> bool:
-        """Take over size and place of the map where a layer has one; True where that changed something."""
+        """Adopt size and origin of a layer's map; return whether they changed."""
         for layer in self.layers:
             extent = layer.extent
             if extent is None:

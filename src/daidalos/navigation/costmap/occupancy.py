@@ -1,4 +1,4 @@
-"""Between costs (0..255) and the values of `nav_msgs/OccupancyGrid` (-1..100)."""
+"""Conversion between costs (0..255) and values of `nav_msgs/OccupancyGrid` (-1..100)."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +16,7 @@ Occupancy = NDArray[np.int8]
 
 
 def to_occupancy(costs: Costs) -> Occupancy:
-    """Occupancy of costs as Nav2 publishes a costmap.
+    """Return the occupancy values of costs, as Nav2 publishes costmaps.
 
     Free is 0, an obstacle 100, the inscribed radius 99, unknown -1; what lies between is spread over 1..98.
     """
@@ -31,7 +31,7 @@ def from_occupancy(
     trinary_costmap: bool = True,
     track_unknown_space: bool = True,
 ) -> Costs:
-    """Costs of a map.
+    """Return the costs of occupancy values.
 
     Parameters
     ----------

@@ -1,1 +1,1 @@
-"""Ways from a pose to a goal over a costmap."""
+"""Planners of paths from a pose to a goal over a costmap."""

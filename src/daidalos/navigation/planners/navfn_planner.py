@@ -1,4 +1,4 @@
-"""NavFn: a navigation function over the costmap, and the way down its gradient."""
+"""NavFn planner: navigation function over the costmap, and gradient descent."""
 
 import math
 from dataclasses import dataclass
@@ -56,7 +56,7 @@ class NavfnPlannerParameters(Parameters):
 
 
 class NavfnPlanner(GlobalPlanner):
-    """Dijkstra's wavefront or A* over the cells, and a path that is not bound to them.
+    """Planner by Dijkstra's algorithm or A* over cells, with a path off the grid by gradient descent.
 
     The wavefront solves the eikonal equation on the grid (upwind differences, Sethian 1996), so that its
     value is the cost of the best path in any direction, and the path follows its gradient between the cells.
@@ -70,7 +70,7 @@ class NavfnPlanner(GlobalPlanner):
     parameters: NavfnPlannerParameters
 
     def create_plan(self, costmap: Costmap, start: Array, goal: Array) -> Array:
-        """Find a path; see `GlobalPlanner.create_plan`."""
+        """Plan a path; see `GlobalPlanner.create_plan`."""
         first = _cell(costmap, start)
         last = _cell(costmap, goal)
         if first is None:
@@ -100,7 +100,7 @@ class NavfnPlanner(GlobalPlanner):
             raise GoalOccupied(f"the goal {_words(goal)} is in unknown space and allow_unknown is false")
 
     def _potential(self, costmap: Costmap, step: NDArray[np.float32], entry: Cell, last: Cell) -> NDArray[np.float32]:
-        """Navigation function from the entry, at least as far as the goal if it can be reached.
+        """Compute the navigation function from the start, at least up to the goal if it is reachable.
 
         With A* the wavefront is bounded by the cost that the straight distance promises, which is raised
         until the goal is reached. That keeps the wavefront's order and with it smooth paths, which sorting
@@ -116,7 +116,7 @@ class NavfnPlanner(GlobalPlanner):
         return propagate(costmap.costs, step, entry[0], entry[1], last[0], last[1], math.inf)
 
     def _step_costs(self) -> NDArray[np.float32]:
-        """Cost of a step over a cell of each value, in units of a step over free ground."""
+        """Return the cost of a step over a cell of each value, in units of a step over free space."""
         step = (1.0 + COST_FACTOR * np.arange(256)).astype(np.float32)
         step[INSCRIBED_INFLATED_OBSTACLE:] = np.inf
         if self.parameters.allow_unknown:
@@ -124,7 +124,7 @@ class NavfnPlanner(GlobalPlanner):
         return step
 
     def _near(self, costmap: Costmap, potential: NDArray[np.float32], last: Cell, goal: Array) -> Cell:
-        """Nearest cell to the goal that can be reached, within the tolerance."""
+        """Return the reachable cell nearest to the goal, within the tolerance."""
         tolerance = self.parameters.tolerance
         column, row = nearest_reached(potential, last[0], last[1], tolerance / costmap.resolution)
         if column >= 0:
@@ -152,7 +152,7 @@ def _touches_obstacle(costmap: Costmap, cell: Cell) -> bool:
 
 
 def _way_out(costmap: Costmap, first: Cell, step: NDArray[np.float32], start: Array) -> Cell:
-    """Where the wavefront begins: the robot's cell, or the nearest cell outside of inflation."""
+    """Return the start of the wavefront: the robot's cell, or the nearest cell outside of inflation."""
     if np.isfinite(step[costmap.costs[first[1], first[0]]]):
         return first
     reach = ESCAPE_RADIUS / costmap.resolution

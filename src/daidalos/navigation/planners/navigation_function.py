@@ -1,4 +1,4 @@
-"""Kernels of the navigation function: a wavefront over cells, and the way down its gradient."""
+"""Kernels of the navigation function: wavefront over cells, and gradient descent."""
 
 import math
 
@@ -29,7 +29,7 @@ def propagate(
     goal_row: int,
     bound: float,
 ) -> Field:
-    """Cost of the best path from the start to each cell, in steps over free ground; infinite without one.
+    """Compute the cost of the best path from the start to each cell, in steps over free space; infinite without one.
 
     Solves `|grad u| = step` with upwind differences. Cells wait in buckets of equal value (Dial 1969), each a
     doubly linked list through the cells, and are taken up again when a better value turns up; so the order
@@ -119,7 +119,7 @@ def propagate(
 
 @compiled
 def _upwind(value: Field, cell: int, column: int, row: int, width: int, height: int, cost: float) -> np.float32:
-    """Value of a cell from its lowest neighbour on each axis (Godunov's scheme)."""
+    """Return the value of a cell from its lowest neighbour on each axis (Godunov's scheme)."""
     infinity = np.float32(np.inf)
     west = value[cell - 1] if column > 0 else infinity
     east = value[cell + 1] if column < width - 1 else infinity
@@ -172,7 +172,7 @@ def _take(
 
 @compiled
 def descend(value: Field, goal_x: float, goal_y: float, start_x: float, start_y: float) -> Array:
-    """Way from the start to the goal, found by going down the navigation function from the goal.
+    """Compute the path by descending the navigation function from the goal to the start.
 
     Steps of half a cell follow the gradient between the centres of cells; where that does not lead down, at
     edges of obstacles, the way leads over the centre of the cell to that of its lowest neighbour.
@@ -222,7 +222,7 @@ def descend(value: Field, goal_x: float, goal_y: float, start_x: float, start_y:
 
 @compiled
 def _interpolated(value: Field, x: float, y: float) -> np.float32:
-    """Bilinear value at a point; infinite when any cell around it is, to keep paths off blocked cells."""
+    """Return the bilinear value at a point; infinite if any cell around it is, to avoid blocked cells."""
     column = min(max(math.floor(x), 0), value.shape[1] - 2)
     row = min(max(math.floor(y), 0), value.shape[0] - 2)
     u, v = x - column, y - row
@@ -233,7 +233,7 @@ def _interpolated(value: Field, x: float, y: float) -> np.float32:
 
 @compiled
 def _steepest_descent(value: Field, x: float, y: float) -> tuple[float, float]:
-    """Direction of steepest descent at a point, from the cells around it."""
+    """Return the direction of steepest descent at a point, from the cells around it."""
     column = math.floor(x)
     row = math.floor(y)
     dx = dy = 0.0
@@ -257,7 +257,7 @@ def _steepest_descent(value: Field, x: float, y: float) -> tuple[float, float]:
 
 @compiled
 def _value(value: Field, column: int, row: int) -> np.float32:
-    """Value of a cell, infinite outside of the grid."""
+    """Return the value of a cell, infinite outside of the grid."""
     if 0 <= column < value.shape[1] and 0 <= row < value.shape[0]:
         return np.float32(value[row, column])
     return np.float32(np.inf)
@@ -265,7 +265,7 @@ def _value(value: Field, column: int, row: int) -> np.float32:
 
 @compiled
 def _slope(before: np.float32, here: np.float32, after: np.float32) -> float:
-    """Descent along one axis: towards the lower neighbour, none where both are higher."""
+    """Return the descent along one axis: towards the lower neighbour, zero if both are higher."""
     if before < after:
         return float(before - here) if before < here else 0.0
     return float(here - after) if after < here else 0.0
@@ -273,7 +273,7 @@ def _slope(before: np.float32, here: np.float32, after: np.float32) -> float:
 
 @compiled
 def _lowest_neighbour(value: Field, column: int, row: int) -> tuple[float, float, np.float32]:
-    """Centre and value of the lowest of the four cells beside a cell."""
+    """Return centre and value of the lowest of a cell's four neighbours."""
     best = np.float32(np.inf)
     x, y = column, row
     for dx, dy in ((-1, 0), (1, 0), (0, -1), (0, 1)):
@@ -286,7 +286,7 @@ def _lowest_neighbour(value: Field, column: int, row: int) -> tuple[float, float
 
 @compiled
 def nearest_reached(value: Field, column: int, row: int, reach: float) -> tuple[int, int]:
-    """Cell with a finite value near to a cell, within a distance in cells; (-1, -1) if there is none.
+    """Return the nearest cell with a finite value within a distance in cells; (-1, -1) if there is none.
 
     The nearest, or one hardly farther off that costs less to get to: between two sides of an obstacle the
     choice must not change with every scan.
@@ -308,7 +308,7 @@ def nearest_reached(value: Field, column: int, row: int, reach: float) -> tuple[
 
 @compiled
 def nearest_passable_cell(costs: Costs, step: Field, column: int, row: int, reach: float) -> tuple[int, int]:
-    """Nearest passable cell that a blocked cell is connected to; (-1, -1) if there is none.
+    """Return the nearest passable cell connected to a blocked cell; (-1, -1) if there is none.
 
     From inside of the inscribed radius the way leads over inscribed cells only, at any distance; from inside
     of an obstacle over anything, within a distance in cells.

@@ -1,1 +1,1 @@
-"""Paths with fewer kinks than the planner left."""
+"""Smoothers of planned paths."""

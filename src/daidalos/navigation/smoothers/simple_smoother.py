@@ -1,4 +1,4 @@
-"""Each point between where it was and the middle of its neighbours, over and over."""
+"""Iterative smoother: each point moves between its original position and the mean of its neighbours."""
 
 from dataclasses import dataclass
 
@@ -25,7 +25,7 @@ class SimpleSmootherParameters(Parameters):
 
 
 class SimpleSmoother(Smoother):
-    """Minimises the sum of the squared displacements of points and of the squared second differences.
+    """Smoother that minimizes squared displacements of points and squared second differences.
 
     A point stays where it is when its next place is one where the robot must not be.
     """
@@ -64,7 +64,7 @@ def relax(
     tolerance: float,
     max_its: int,
 ) -> Array:
-    """Move inner points by `w_data (given - here) + w_smooth (before + after - 2 here)` until they rest."""
+    """Move inner points by `w_data (given - here) + w_smooth (before + after - 2 here)` until convergence."""
     moved = points.copy()
     for _ in range(max_its):
         change = 0.0

@@ -1,4 +1,4 @@
-"""A leaf that starts a task, waits for its end without blocking, and stops it when it is halted."""
+"""Base of action nodes: starts a task, polls it, and stops it when halted."""
 
 from collections.abc import Mapping
 from typing import Any, ClassVar
@@ -20,7 +20,7 @@ ERRORS: dict[str, Port] = {"error_code_id": Port(str, output=True), "error_msg":
 
 
 class ActionNode(Node):
-    """Runs the task of its own name; subclasses declare their ports.
+    """Action node that runs the task of its name; subclasses declare their ports.
 
     Attributes
     ----------
@@ -68,7 +68,7 @@ class ActionNode(Node):
         self._task = self.services.start(type(self), self._sent)
 
     def update(self) -> Status:
-        """Look whether the task has ended."""
+        """Poll the task."""
         if self._task is None:
             return Status.FAILURE
         outcome = self._task.poll()
@@ -97,10 +97,10 @@ class ActionNode(Node):
 
 
 def differs(one: Any, other: Any) -> bool:
-    """Whether two values of the blackboard are not the same, arrays or not."""
+    """Return whether two values of the blackboard differ, arrays or not."""
     return one is not other and not np.array_equal(one, other)
 
 
 def with_server(ports: Mapping[str, Port]) -> dict[str, Port]:
-    """Ports of a node that calls an action server: its own, and those that all have."""
+    """Return the ports of a node that calls an action server: its own, and the common ones."""
     return {**ports, **SERVER, **ERRORS}

@@ -1,4 +1,4 @@
-"""Behaviour trees as BehaviorTree.CPP and Nav2 write them: read a file, tick it, halt it, draw it."""
+"""Behavior trees in the format of BehaviorTree.CPP and Nav2: reading, ticking, halting and drawing."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _COMMENTARY = frozenset({"name", "ID", "_description", "_fullpath", "_uid"})
 
 
 class BehaviorTree:
-    """A tree that can be ticked.
+    """Behavior tree that can be ticked.
 
     Parameters
     ----------
@@ -87,16 +87,16 @@ class BehaviorTree:
 
     @property
     def status(self) -> Status:
-        """How the last tick ended."""
+        """Status of the last tick."""
         return self.root.status
 
     def tick(self) -> Status:
-        """Walk the tree once; `RUNNING` until it has succeeded or failed."""
+        """Tick the tree once; `RUNNING` until it has succeeded or failed."""
         self.root.tick_once()
         return self.root.status
 
     def halt(self) -> None:
-        """Stop whatever runs."""
+        """Halt all running nodes."""
         self.root.stop(Status.INVALID)
 
     def to_text(self) -> str:
@@ -116,7 +116,7 @@ def _document(text: str, source: str) -> Element:
 
 
 def _trees(root: Element, folder: Path, seen: frozenset[Path] = frozenset()) -> tuple[dict[str, Element], str]:
-    """Trees of a file and those it includes by their ID, and the ID of the one to run."""
+    """Return the trees of a file and its includes by ID, and the ID of the main tree."""
     trees: dict[str, Element] = {}
     for include in root.all("include"):
         path = (folder / include.attributes.get("path", "")).resolve()
@@ -136,14 +136,14 @@ def _trees(root: Element, folder: Path, seen: frozenset[Path] = frozenset()) -> 
 
 
 class _Builder:
-    """Makes nodes of elements."""
+    """Builder of nodes from elements."""
 
     def __init__(self, trees: dict[str, Element], services: Services) -> None:
         self._trees = trees
         self._services = services
 
     def subtree(self, identifier: str, board: Blackboard, element: Element, path: tuple[str, ...]) -> Any:
-        """Root node of one of the trees; `element` is where it is asked for."""
+        """Return the root node of a tree; `element` refers to it."""
         if identifier not in self._trees:
             raise TreeError(f"{_place(element)}: there is no tree {identifier!r}{hint(identifier, self._trees)}")
         if identifier in path:
@@ -169,7 +169,7 @@ class _Builder:
         return made_by(ports, TreeContext(element.attributes.get("name", identifier), self._services, children))
 
     def _inner_tree(self, element: Element, board: Blackboard, path: tuple[str, ...]) -> Any:
-        """Tree inside of a tree, with a blackboard of its own whose remapped names are this one's."""
+        """Return a subtree with a blackboard of its own, whose remapped names refer to this one's."""
         attributes = element.attributes
         auto = {attributes.get(key) for key in ("_autoremap", "__autoremap", "__shared_blackboard")}
         inner = Blackboard(

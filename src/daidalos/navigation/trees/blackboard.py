@@ -1,4 +1,4 @@
-"""The blackboard: named values that the nodes of a tree share, with a view of its own for each subtree."""
+"""Blackboard: named values shared by the nodes of a tree, with a scope for each subtree."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class Blackboard:
         self._values: dict[str, Any] = {}
 
     def get(self, name: str, default: Any = None) -> Any:
-        """Value of a name, or the default where nothing was written."""
+        """Return the value of a name, or the default."""
         board, own = self._owner(name)
         return board._values.get(own, default)
 
@@ -49,7 +49,7 @@ class Blackboard:
         return own in board._values
 
     def _owner(self, name: str) -> tuple[Blackboard, str]:
-        """Blackboard that holds a name, and the name there."""
+        """Return the blackboard that owns a name, and the name there."""
         if self._around is None:
             return self, name
         if name in self._remapped:

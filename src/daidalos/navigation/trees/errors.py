@@ -1,7 +1,7 @@
-"""What can be wrong with a behaviour tree."""
+"""Error of behavior trees."""
 
 from daidalos.navigation.errors import NavigationError
 
 
 class TreeError(NavigationError):
-    """A tree can not be built or run; the message names the file, the line and the element."""
+    """Tree that cannot be built or run; the message names file, line and element."""

@@ -1,4 +1,4 @@
-"""All children in turn, as long as each ends in one way."""
+"""Common base of sequence and fallback."""
 
 from collections.abc import Iterator
 from typing import Any, ClassVar
@@ -9,7 +9,7 @@ from daidalos.navigation.trees.node import Control
 
 
 class InTurn(Control):
-    """Ticks one child after the other, going on with the one that runs.
+    """Control node that ticks children in order, resuming the running one.
 
     Attributes
     ----------
@@ -24,7 +24,7 @@ class InTurn(Control):
     reactive: ClassVar[bool] = False
 
     def tick(self) -> Iterator[Any]:
-        """Tick children until one does not end so."""
+        """Tick children until one ends with another status."""
         if self.status != Status.RUNNING:
             self.current_child = None
         first = self.children.index(self.current_child) if self.current_child and not self.reactive else 0

@@ -1,4 +1,4 @@
-"""The contract of a node: which ports it has, how many children, and how it is made."""
+"""Contract of tree nodes: ports, children and construction."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ REQUIRED: Any = object()
 
 @dataclass(frozen=True)
 class Port:
-    """An attribute of a node: a value, or a name of the blackboard in braces.
+    """Attribute of a node: a value, or a name of the blackboard in braces.
 
     Attributes
     ----------
@@ -38,18 +38,18 @@ class Port:
 
 
 def flag(text: str) -> bool:
-    """Read a Boolean as BehaviorTree.CPP writes it."""
+    """Parse a Boolean in BehaviorTree.CPP's notation."""
     words = {"true": True, "1": True, "false": False, "0": False}
     return words[text.strip().lower()]
 
 
 def entry(text: str) -> Any:
-    """Refuse a literal where only a value of the blackboard makes sense."""
+    """Raise an error for a literal where only an entry of the blackboard is valid."""
     raise ValueError
 
 
 class Ports:
-    """The ports of one node, bound to a blackboard.
+    """Ports of one node, bound to a blackboard.
 
     Parameters
     ----------
@@ -88,11 +88,11 @@ class Ports:
 
     @property
     def blackboard(self) -> Blackboard:
-        """The blackboard of the tree that the node is in."""
+        """Blackboard of the node's tree."""
         return self._blackboard
 
     def get(self, key: str) -> Any:
-        """Value of an input: from the blackboard, from the file, or the default."""
+        """Return the value of an input: from the blackboard, from the file, or the default."""
         if key in self._names:
             port = self._declared[key]
             value = self._blackboard.get(self._names[key], None if port.default is REQUIRED else port.default)
@@ -100,12 +100,12 @@ class Ports:
         return self._values.get(key, self._declared[key].default)
 
     def inputs(self) -> dict[str, Any]:
-        """All inputs that have a value."""
+        """Return all inputs that have a value."""
         values = {key: self.get(key) for key, port in self._declared.items() if not port.output}
         return {key: value for key, value in values.items() if value is not None}
 
     def set(self, key: str, value: Any) -> None:
-        """Write an output, where the file says to which name."""
+        """Write an output to the blackboard if the file binds it to a name."""
         if key in self._names:
             self._blackboard.set(self._names[key], value)
 
@@ -123,7 +123,7 @@ class Ports:
         self._values[key] = self._read(key, text)
 
     def _read(self, key: str, text: str) -> Any:
-        """Turn text into a value of the port's kind."""
+        """Parse text as a value of the port's type."""
         port = self._declared[key]
         try:
             return port.kind(text)
@@ -196,7 +196,7 @@ class Control(TreeNode, py_trees.composites.Composite):  # type: ignore[misc]
         self.services = context.services
 
     def conclude(self, status: Status, runs: Any = None) -> None:
-        """End a tick.
+        """Finish a tick.
 
         Parameters
         ----------

@@ -1,4 +1,4 @@
-"""What a tree asks of the robot: time, and tasks that take a while."""
+"""Services of the robot for a tree: time and tasks."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Outcome:
-    """How a task ended.
+    """Result of a task.
 
     Attributes
     ----------
@@ -33,23 +33,23 @@ class Outcome:
 
 
 class Task(Protocol):
-    """Something that was started."""
+    """Started task."""
 
     def poll(self) -> Outcome | None:
-        """How it ended; `None` while it goes on. Never waits."""
+        """Return the outcome; `None` while the task runs. Never blocks."""
 
     def update(self, goal: Mapping[str, Any]) -> None:
-        """Go on with another goal (a new path while following one)."""
+        """Replace the goal (such as a new path while following one)."""
 
     def halt(self) -> None:
-        """Stop; nothing is polled afterwards."""
+        """Stop the task; it is not polled afterwards."""
 
 
 class Services(Protocol):
-    """Binds the leaves of a tree to a robot: to the actions and services of ROS, or to direct calls."""
+    """Binding of a tree's leaves to a robot: actions and services of ROS, or direct calls."""
 
     def now(self) -> float:
-        """Time [s]."""
+        """Return the time [s]."""
 
     def start(self, node: type[ActionNode], goal: Mapping[str, Any]) -> Task:
         """Start a task.

@@ -1,1 +1,1 @@
-"""What decides that a goal is reached."""
+"""Goal checkers."""

@@ -1,4 +1,4 @@
-"""A goal is reached when the robot is near enough and turned well enough."""
+"""Goal checker of position and yaw."""
 
 import math
 from dataclasses import dataclass
@@ -23,7 +23,7 @@ class SimpleGoalCheckerParameters(Parameters):
 
 
 class SimpleGoalChecker(GoalChecker):
-    """Compares position, then yaw; a stateful one does not look at the position again once it was right."""
+    """Goal checker of position, then yaw; a stateful one checks the position only until it was reached."""
 
     names = ("nav2_controller::SimpleGoalChecker",)
     Parameters = SimpleGoalCheckerParameters

@@ -1,4 +1,4 @@
-"""A goal is reached when the robot is there and stands."""
+"""Goal checker of pose and standstill."""
 
 import math
 from dataclasses import dataclass
@@ -24,7 +24,7 @@ class StoppedGoalCheckerParameters(SimpleGoalCheckerParameters):
 
 
 class StoppedGoalChecker(SimpleGoalChecker):
-    """Wants the pose of `SimpleGoalChecker`, and low velocities."""
+    """Goal checker of the pose as in `SimpleGoalChecker`, and of low velocities."""
 
     names = ("nav2_controller::StoppedGoalChecker",)
     Parameters = StoppedGoalCheckerParameters

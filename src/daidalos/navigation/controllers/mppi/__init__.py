@@ -1,1 +1,1 @@
-"""Parts of the MPPI controller: rollouts and the critics that judge them."""
+"""Parts of the MPPI controller: rollouts and critics."""

@@ -1,4 +1,4 @@
-"""Control sequences that chance hardly finds: stop, and turn to a point before driving there."""
+"""Deterministic control sequences that sampling rarely finds: stop, and turn in place before driving."""
 
 import math
 
@@ -17,7 +17,7 @@ FACING = 0.15
 def turn_then_drive(
     pose: Array, velocity: Array, target: tuple[float, float], limits: Limits, steps: int, step: float
 ) -> Samples:
-    """Turn on the spot to a point, drive there and stop.
+    """Return the sequence that turns in place to a point, drives there and stops.
 
     Among random sequences the like are rare, and without them a robot beside its goal stays there. Sequences of a
     simpler controller among the samples keep the optimality of MPPI (Trevisan and Alonso-Mora 2024, "Biased-MPPI").
@@ -49,7 +49,7 @@ def turn_then_drive(
 def fill_turn_then_drive(
     state: Array, target_x: float, target_y: float, rates: Array, step: float, facing: float, controls: Samples
 ) -> None:
-    """Write the sequence; speeds are such that braking in time is possible."""
+    """Write the sequence; speeds allow braking in time."""
     x, y, yaw, v, w = state
     fastest, gaining, braking, turn, turning = rates
     for t in range(controls.shape[0]):
@@ -73,6 +73,6 @@ def fill_turn_then_drive(
 
 @compiled
 def _braked(left: float, braking: float, step: float) -> float:
-    """Speed from which a robot that brakes from the next step on stops in time."""
+    """Return the speed from which a robot that brakes from the next step on stops in time."""
     change = braking * step
     return min(math.sqrt(2.0 * braking * left + 0.25 * change * change) - 0.5 * change, left / step)

@@ -14,7 +14,7 @@ Samples = NDArray[np.float32]
 
 @dataclass(frozen=True)
 class Limits:
-    """What the robot can do; m/s, rad/s and their rates."""
+    """Limits of the robot: m/s, rad/s and their rates."""
 
     vx_min: float
     vx_max: float
@@ -50,14 +50,14 @@ class Rollouts:
 
     @classmethod
     def empty(cls, batch: int, steps: int) -> "Rollouts":
-        """Memory for a number of samples and steps."""
+        """Return uninitialized rollouts of a number of samples and steps."""
         x, y, yaw, vx, wz = (np.zeros((batch, steps), dtype=np.float32) for _ in range(5))
         return cls(x, y, yaw, vx, wz, np.zeros(batch, dtype=np.float32), np.zeros(batch, dtype=np.bool_))
 
     def drive(
         self, pose: Array, velocity: Array, controls: Samples, noise: Samples, limits: Limits, step: float
     ) -> None:
-        """Drive all samples from a pose and a velocity, and forget their costs.
+        """Compute all trajectories from a pose and a velocity, and reset their costs.
 
         Parameters
         ----------
@@ -112,7 +112,7 @@ def drive_differential(
     vx: Samples,
     wz: Samples,
 ) -> None:
-    """Integrate a robot that drives along its heading and turns, from one state, for every sample.
+    """Integrate the motion of a differential-drive robot from one state for every sample.
 
     Within a step the velocities are constant and the displacement is along the mean heading. The heading is
     kept as a cosine and a sine that are turned by each step's small angle, which spares their evaluation.

@@ -1,1 +1,1 @@
-"""What decides that a robot makes progress."""
+"""Progress checkers."""

@@ -1,4 +1,4 @@
-"""A robot makes progress when it leaves a circle or turns in a given time."""
+"""Progress checker of position and yaw."""
 
 from dataclasses import dataclass
 
@@ -23,13 +23,13 @@ class PoseProgressCheckerParameters(SimpleProgressCheckerParameters):
 
 
 class PoseProgressChecker(SimpleProgressChecker):
-    """Takes a turn on the spot as progress as well."""
+    """Progress checker that also accepts rotation in place."""
 
     names = ("nav2_controller::PoseProgressChecker",)
     Parameters = PoseProgressCheckerParameters
     parameters: PoseProgressCheckerParameters
 
     def moved_enough(self, base: Array, pose: Array) -> bool:
-        """Whether the robot has left the circle around a pose, or turned away from its yaw."""
+        """Return whether the robot has left the circle around a pose, or turned away from its yaw."""
         turned = abs(float(wrap(pose[2] - base[2])))
         return super().moved_enough(base, pose) or turned > self.parameters.required_movement_angle

@@ -1,4 +1,4 @@
-"""A robot makes progress when it leaves a circle in a given time."""
+"""Progress checker of position."""
 
 import math
 from dataclasses import dataclass
@@ -21,7 +21,7 @@ class SimpleProgressCheckerParameters(Parameters):
 
 
 class SimpleProgressChecker(ProgressChecker):
-    """Starts a new circle and a new time whenever the robot has left the last circle."""
+    """Progress checker: the robot must leave a circle around its last position within a time."""
 
     names = ("nav2_controller::SimpleProgressChecker",)
     Parameters = SimpleProgressCheckerParameters
@@ -40,7 +40,7 @@ class SimpleProgressChecker(ProgressChecker):
         return now - self._base[1] <= self.parameters.movement_time_allowance
 
     def moved_enough(self, base: Array, pose: Array) -> bool:
-        """Whether the robot has left the circle around a pose."""
+        """Return whether the robot has left the circle around a pose."""
         moved = math.hypot(float(pose[0] - base[0]), float(pose[1] - base[1]))
         return moved > self.parameters.required_movement_radius
 

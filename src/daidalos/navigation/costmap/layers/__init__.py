@@ -1,1 +1,1 @@
-"""The layers that a costmap is put together from, one class each."""
+"""Layers of costmaps, one class each."""

@@ -1,4 +1,4 @@
-"""Costs that fall off with the distance to the nearest obstacle."""
+"""Inflation of obstacles with costs that fall with the distance."""
 
 import math
 from dataclasses import dataclass
@@ -37,7 +37,7 @@ class InflationLayerParameters(Parameters):
 
 
 class InflationLayer(Layer):
-    """Grows obstacles by the robot's inscribed radius and surrounds them with a slope.
+    """Layer that inflates obstacles by the robot's inscribed radius, and beyond it with falling costs.
 
     A cell at distance d of an obstacle costs 253 up to the inscribed radius r, then `252 exp(-k (d - r))`
     with k the cost scaling factor, up to the inflation radius. Distances are exact between the centres of
@@ -56,7 +56,7 @@ class InflationLayer(Layer):
         self._table: tuple[float, Costs] | None = None
 
     def cost_at(self, distance: float) -> int:
-        """Cost at a distance [m] from an obstacle."""
+        """Return the cost at a distance [m] from an obstacle."""
         if distance > self.parameters.inflation_radius:
             return FREE_SPACE
         if distance <= self.inscribed_radius:
@@ -65,11 +65,11 @@ class InflationLayer(Layer):
         return int(MAX_NON_OBSTACLE * slope)
 
     def update_bounds(self, robot_pose: Array, now: float, bounds: Bounds) -> Bounds:
-        """Ask for as much more as an obstacle reaches."""
+        """Expand the bounds by the inflation radius."""
         return bounds.expanded(self.parameters.inflation_radius)
 
     def update_costs(self, costmap: Costmap, window: Window) -> None:
-        """Raise the cells around obstacles; cells that cost more already stay."""
+        """Raise the costs around obstacles; higher costs stay."""
         if window.empty or self.parameters.inflation_radius <= 0.0:
             return
         if self._table is None or self._table[0] != costmap.resolution:
@@ -91,7 +91,7 @@ class InflationLayer(Layer):
 
 
 def cost_of_squared_distance(parameters: InflationLayerParameters, inscribed_radius: float, resolution: float) -> Costs:
-    """Cost at every squared distance in cells, from 0 to the square of the inflation radius."""
+    """Return the cost at every squared distance in cells, from 0 to the square of the inflation radius."""
     reach = math.floor(parameters.inflation_radius / resolution + 1e-9)
     distance = np.sqrt(np.arange(reach * reach + 1)) * resolution
     slope = np.exp(-parameters.cost_scaling_factor * (distance - inscribed_radius))
@@ -113,7 +113,7 @@ def inflate(
     inflate_unknown: bool,
     around_unknown: bool,
 ) -> None:
-    """Inflate a window of cells in place, seeing obstacles up to the table's reach outside of it.
+    """Inflate a window of cells in place, including obstacles outside of it up to the table's range.
 
     Two passes of the exact squared distance transform, cut off at the reach: down and up every column, then
     for each cell the best over the columns in reach of its row.
@@ -155,7 +155,7 @@ def _vertical_distances(
     reach: int,
     around_unknown: bool,
 ) -> NDArray[np.int32]:
-    """Distance in cells to the nearest obstacle in the same column, reach + 1 if there is none."""
+    """Return the distance in cells to the nearest obstacle in the same column, reach + 1 if there is none."""
     far = reach + 1
     distances = np.empty((top - bottom, last - first), dtype=np.int32)
     running = np.full(last - first, far, dtype=np.int32)
@@ -183,7 +183,7 @@ def _vertical_distances(
 
 @compiled
 def _squared_distances(line: NDArray[np.int32], start: int, reach: int, far: int, squared: NDArray[np.int32]) -> bool:
-    """Squared distance to the nearest obstacle along one row; False where the row has none in reach."""
+    """Compute the squared distances to the nearest obstacle along one row; return False without obstacles in range."""
     squared[:] = far
     found = False
     for column in range(line.shape[0]):

@@ -1,4 +1,4 @@
-"""Obstacles that sensors see now: marked where a ray ends, cleared where it passed."""
+"""Obstacle layer: marks where rays of sensors end, and clears where they pass."""
 
 import math
 from collections.abc import Mapping
@@ -66,7 +66,7 @@ class ObstacleLayerParameters(Parameters):
 
 @dataclass(frozen=True)
 class Observation:
-    """Rays of one sensor reading in the costmap's frame.
+    """Rays of one sensor measurement in the costmap's frame.
 
     Attributes
     ----------
@@ -89,7 +89,7 @@ class Observation:
     def from_scan(
         cls, scan: LaserScanData, base_pose: Array, stamp: float, *, inf_is_valid: bool = True
     ) -> "Observation":
-        """Rays of a laser scan taken with the robot's base at a pose (x, y, yaw) in the costmap's frame.
+        """Return the rays of a laser scan with the robot's base at a pose (x, y, yaw) in the costmap's frame.
 
         Ranges that are not a number, or outside of the sensor's limits, are left out; those that are infinite
         are rays that end at the sensor's largest range without a hit.
@@ -108,7 +108,7 @@ class Observation:
 
 
 class ObstacleLayer(Layer):
-    """What sensors saw, kept until a ray passes through it.
+    """Layer of observed obstacles, kept until a ray passes through them.
 
     The cells that the robot stands on are free.
     """
@@ -130,7 +130,7 @@ class ObstacleLayer(Layer):
         self._under_robot: Array | None = None
 
     def add_observation(self, observation: Observation, source: str = "scan") -> None:
-        """Take a reading of one of the sources; it is used at the next update.
+        """Add a measurement of one of the sources, to be used at the next update.
 
         Raises
         ------
@@ -153,14 +153,14 @@ class ObstacleLayer(Layer):
         self.add_observation(Observation.from_scan(scan, base_pose, stamp, inf_is_valid=inf_is_valid), source)
 
     def match_size(self, costmap: Costmap) -> None:
-        """Keep what was seen where the costmap still covers it."""
+        """Keep the observations that are still inside of the costmap."""
         if self._seen is None or self._seen.resolution != costmap.resolution:
             self._seen = Costmap.filled(costmap.width, costmap.height, costmap.resolution, costmap.origin, self.default)
         else:
             self._seen.cover(costmap.width, costmap.height, costmap.origin, self.default)
 
     def update_bounds(self, robot_pose: Array, now: float, bounds: Bounds) -> Bounds:
-        """Trace the rays that came in, and ask for what they touched."""
+        """Apply new observations, and return their bounds."""
         if self._seen is None:
             return bounds
         readings = [
@@ -182,7 +182,7 @@ class ObstacleLayer(Layer):
         return bounds
 
     def update_costs(self, costmap: Costmap, window: Window) -> None:
-        """Put what was seen on top: the higher cost wins, and anything wins over unknown."""
+        """Write the observations: the higher cost wins, and any cost wins over unknown."""
         if self._seen is None:
             return
         if self.parameters.footprint_clearing_enabled and self._under_robot is not None:
@@ -190,7 +190,7 @@ class ObstacleLayer(Layer):
         _combine(costmap.costs[window.slices], self._seen.costs[window.slices], self.parameters.combination_method)
 
     def clear(self, keep: Window, *, inside: bool) -> None:
-        """Forget what was seen inside of a window of cells, or outside of it."""
+        """Clear the observations inside of a window of cells, or outside of it."""
         if self._seen is None:
             return
         for buffer in self._buffers.values():
@@ -204,7 +204,7 @@ class ObstacleLayer(Layer):
 
 
 def _clear(seen: Costmap, observation: Observation, source: ObservationSource) -> Bounds:
-    """Free the cells that rays passed."""
+    """Clear the cells that rays passed."""
     if observation.ends.shape[0] == 0:
         return Bounds()
     reach = source.raytrace_max_range
@@ -229,7 +229,7 @@ def _clear(seen: Costmap, observation: Observation, source: ObservationSource) -
 
 
 def _mark(seen: Costmap, observation: Observation, source: ObservationSource) -> Bounds:
-    """Make the cells lethal in which rays ended on an obstacle near enough."""
+    """Mark the cells in which rays ended on an obstacle within range."""
     away = observation.ends - observation.origin
     distance = np.hypot(away[:, 0], away[:, 1])
     near = (distance <= source.obstacle_max_range) & (distance >= source.obstacle_min_range)
@@ -251,7 +251,7 @@ def clear_rays(
     min_range: float,
     max_range: float,
 ) -> None:
-    """Free every cell that a ray crosses between two distances from its start, but not the one it hit.
+    """Clear every cell that a ray crosses between two distances from its start, except the one it hit.
 
     The cells are visited in order along each ray (Amanatides and Woo 1987), so none that it crosses is
     missed.

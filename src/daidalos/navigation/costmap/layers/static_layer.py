@@ -1,4 +1,4 @@
-"""The costs of a given map, from a map server or a SLAM that still lets it grow."""
+"""Static layer: the costs of a map from a map server or from SLAM."""
 
 from dataclasses import dataclass
 
@@ -28,7 +28,7 @@ class StaticLayerParameters(Parameters):
 
 
 class StaticLayer(Layer):
-    """Obstacles of a map; gives the costmap the map's size and place."""
+    """Layer of a map's obstacles, whose size and origin the costmap takes over."""
 
     names = ("nav2_costmap_2d::StaticLayer",)
     Parameters = StaticLayerParameters
@@ -52,7 +52,7 @@ class StaticLayer(Layer):
         return self._map is not None
 
     def set_map(self, grid: OccupancyGrid) -> None:
-        """Take a map; only what differs from the last one is put together anew.
+        """Set the map; only differences to the last one are updated.
 
         Raises
         ------
@@ -77,16 +77,16 @@ class StaticLayer(Layer):
 
     @property
     def extent(self) -> Costmap | None:
-        """The map."""
+        """Current map."""
         return self._map
 
     def update_bounds(self, robot_pose: Array, now: float, bounds: Bounds) -> Bounds:
-        """Ask for what changed between the last two maps."""
+        """Return the bounds of the changes between the last two maps."""
         changed, self._changed = self._changed, Bounds()
         return bounds.including(changed)
 
     def update_costs(self, costmap: Costmap, window: Window) -> None:
-        """Copy the map, which lies below everything else."""
+        """Copy the map below all other layers."""
         if self._map is None:
             return
         offset = (costmap.origin - self._map.origin) / costmap.resolution
@@ -100,7 +100,7 @@ class StaticLayer(Layer):
 
 
 def _difference(before: Costmap | None, after: Costmap) -> Bounds:
-    """Rectangle that holds all cells whose cost differs."""
+    """Return the rectangle around all cells whose cost differs."""
     if (
         before is None
         or before.costs.shape != after.costs.shape

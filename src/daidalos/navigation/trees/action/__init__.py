@@ -1,1 +1,1 @@
-"""Leaves that have something done, one class each."""
+"""Action nodes, one class each."""

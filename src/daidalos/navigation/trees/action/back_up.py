@@ -1,4 +1,4 @@
-"""Drive backwards for a distance."""
+"""Action node that drives backwards."""
 
 from collections.abc import Mapping
 from typing import Any, ClassVar
@@ -8,7 +8,7 @@ from daidalos.navigation.trees.node import Port, flag
 
 
 class BackUp(ActionNode):
-    """Succeeds when the robot has driven back by `backup_dist` [m]."""
+    """Action node that drives backwards by `backup_dist` [m]."""
 
     names = ("BackUp",)
     INTERFACE = "nav2_msgs/action/BackUp"

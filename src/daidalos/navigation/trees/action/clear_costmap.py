@@ -1,4 +1,4 @@
-"""Make a costmap forget what sensors saw."""
+"""Action nodes that clear costmaps."""
 
 from typing import ClassVar
 
@@ -9,7 +9,7 @@ _SERVICE = {"service_name": Port(str), "server_timeout": Port(float, None)}
 
 
 class ClearEntireCostmap(ActionNode):
-    """Clears all of it."""
+    """Action node that clears the entire costmap."""
 
     names = ("ClearEntireCostmap",)
     INTERFACE = "nav2_msgs/srv/ClearEntireCostmap"
@@ -18,7 +18,7 @@ class ClearEntireCostmap(ActionNode):
 
 
 class ClearCostmapAroundRobot(ActionNode):
-    """Clears a square of an edge [m] around the robot."""
+    """Action node that clears a square with an edge [m] around the robot."""
 
     names = ("ClearCostmapAroundRobot",)
     INTERFACE = "nav2_msgs/srv/ClearCostmapAroundRobot"
@@ -27,7 +27,7 @@ class ClearCostmapAroundRobot(ActionNode):
 
 
 class ClearCostmapExceptRegion(ActionNode):
-    """Clears what is outside of a square of an edge [m] around the robot."""
+    """Action node that clears the outside of a square with an edge [m] around the robot."""
 
     names = ("ClearCostmapExceptRegion",)
     INTERFACE = "nav2_msgs/srv/ClearCostmapExceptRegion"

@@ -1,4 +1,4 @@
-"""Plan a path to a pose."""
+"""Action node that plans a path to a pose."""
 
 from collections.abc import Mapping
 from typing import Any, ClassVar
@@ -8,7 +8,7 @@ from daidalos.navigation.trees.node import Port, entry
 
 
 class ComputePathToPose(ActionNode):
-    """Succeeds with a path."""
+    """Action node that plans a path to a pose."""
 
     names = ("ComputePathToPose",)
     INTERFACE = "nav2_msgs/action/ComputePathToPose"

@@ -1,4 +1,4 @@
-"""Drive straight for a distance."""
+"""Action node that drives straight."""
 
 from collections.abc import Mapping
 from typing import Any, ClassVar
@@ -8,7 +8,7 @@ from daidalos.navigation.trees.node import Port, flag
 
 
 class DriveOnHeading(ActionNode):
-    """Succeeds when the robot has driven `dist_to_travel` [m]."""
+    """Action node that drives straight by `dist_to_travel` [m]."""
 
     names = ("DriveOnHeading",)
     INTERFACE = "nav2_msgs/action/DriveOnHeading"

@@ -1,4 +1,4 @@
-"""Follow a path to its end."""
+"""Action node that follows a path."""
 
 from typing import ClassVar
 
@@ -7,7 +7,7 @@ from daidalos.navigation.trees.node import Port, entry
 
 
 class FollowPath(ActionNode):
-    """Succeeds at the goal; a new path is taken up on the way."""
+    """Action node that follows a path; a new path replaces it while running."""
 
     names = ("FollowPath",)
     INTERFACE = "nav2_msgs/action/FollowPath"

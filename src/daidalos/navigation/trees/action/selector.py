@@ -1,4 +1,4 @@
-"""Say which planner or controller the nodes that follow shall use."""
+"""Action nodes that select the planner or controller of later nodes."""
 
 from typing import ClassVar
 
@@ -8,7 +8,7 @@ from daidalos.navigation.trees.node import Node, Port
 
 
 class PlannerSelector(Node):
-    """Writes the planner that was chosen last, or the default."""
+    """Action node that outputs the last selected planner, or the default."""
 
     names = ("PlannerSelector",)
     PORTS: ClassVar[dict[str, Port]] = {
@@ -18,13 +18,13 @@ class PlannerSelector(Node):
     }
 
     def update(self) -> Status:
-        """Succeed at once."""
+        """Return success."""
         _choose(self, "planner")
         return Status.SUCCESS
 
 
 class ControllerSelector(Node):
-    """Writes the controller that was chosen last, or the default."""
+    """Action node that outputs the last selected controller, or the default."""
 
     names = ("ControllerSelector",)
     PORTS: ClassVar[dict[str, Port]] = {
@@ -34,12 +34,12 @@ class ControllerSelector(Node):
     }
 
     def update(self) -> Status:
-        """Succeed at once."""
+        """Return success."""
         _choose(self, "controller")
         return Status.SUCCESS
 
 
 def _choose(node: Node, kind: str) -> None:
-    """Take what the blackboard holds under the topic's name, where the shell writes what it hears."""
+    """Read the selection from the blackboard under the topic's name, where the node writes received messages."""
     chosen = node.ports.blackboard.get(node.ports.get("topic_name"))
     node.ports.set(f"selected_{kind}", chosen or node.ports.get(f"default_{kind}"))

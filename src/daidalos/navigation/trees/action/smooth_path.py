@@ -8,7 +8,7 @@ from daidalos.navigation.trees.node import Port, entry, flag
 
 
 class SmoothPath(ActionNode):
-    """Succeeds with a smoother path."""
+    """Action node that smooths a path."""
 
     names = ("SmoothPath",)
     INTERFACE = "nav2_msgs/action/SmoothPath"

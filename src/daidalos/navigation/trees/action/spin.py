@@ -1,4 +1,4 @@
-"""Turn on the spot."""
+"""Action node that rotates in place."""
 
 from collections.abc import Mapping
 from typing import Any, ClassVar
@@ -8,7 +8,7 @@ from daidalos.navigation.trees.node import Port, flag
 
 
 class Spin(ActionNode):
-    """Succeeds when the robot has turned by `spin_dist` [rad]."""
+    """Action node that rotates in place by `spin_dist` [rad]."""
 
     names = ("Spin",)
     INTERFACE = "nav2_msgs/action/Spin"

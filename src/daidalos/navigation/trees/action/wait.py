@@ -1,4 +1,4 @@
-"""Stand still for a while."""
+"""Behavior that waits."""
 
 from collections.abc import Mapping
 from typing import Any, ClassVar
@@ -8,7 +8,7 @@ from daidalos.navigation.trees.node import Port
 
 
 class Wait(ActionNode):
-    """Succeeds after `wait_duration` [s]."""
+    """Action node that waits for `wait_duration` [s]."""
 
     names = ("Wait",)
     INTERFACE = "nav2_msgs/action/Wait"

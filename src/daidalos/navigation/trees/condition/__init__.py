@@ -1,1 +1,1 @@
-"""Leaves that answer a question, one class each."""
+"""Condition nodes, one class each."""

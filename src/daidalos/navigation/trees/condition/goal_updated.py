@@ -1,4 +1,4 @@
-"""Whether there is another goal than before."""
+"""Condition node that detects a new goal."""
 
 from typing import Any, ClassVar
 
@@ -9,7 +9,7 @@ from daidalos.navigation.trees.node import Node, Port, Ports, TreeContext, entry
 
 
 class GoalUpdated(Node):
-    """Succeeds when `goal` on the blackboard is not the one that was there when the node was first ticked."""
+    """Condition node that succeeds when `goal` on the blackboard differs from that at its first tick."""
 
     names = ("GoalUpdated",)
     PORTS: ClassVar[dict[str, Port]] = {"goal": Port(entry, None), "goals": Port(entry, None)}
@@ -19,7 +19,7 @@ class GoalUpdated(Node):
         self._known: tuple[Any, Any] | None = None
 
     def update(self) -> Status:
-        """Compare with what was known."""
+        """Compare the goal with that of the first tick."""
         board = self.ports.blackboard
         latest = (board.get("goal"), board.get("goals"))
         known, self._known = self._known, latest
@@ -29,6 +29,6 @@ class GoalUpdated(Node):
         return Status.SUCCESS if changed else Status.FAILURE
 
     def terminate(self, new_status: Status) -> None:
-        """Begin anew after a halt."""
+        """Reset after a halt."""
         if new_status == Status.INVALID:
             self._known = None

@@ -1,4 +1,4 @@
-"""Whether clearing costmaps or moving could help against an error."""
+"""Condition nodes for errors that a recovery may resolve."""
 
 from typing import ClassVar
 
@@ -8,19 +8,19 @@ from daidalos.navigation.trees.node import Node, Port
 
 
 class WouldAPlannerRecoveryHelp(Node):
-    """Succeeds for errors of a planner that another costmap may spare."""
+    """Condition node that succeeds for planner errors that a recovery may resolve."""
 
     names = ("WouldAPlannerRecoveryHelp",)
     PORTS: ClassVar[dict[str, Port]] = {"error_code": Port(str)}
     HELPED: ClassVar[frozenset[str]] = frozenset({"UNKNOWN", "NO_VALID_PATH", "TIMEOUT"})
 
     def update(self) -> Status:
-        """Look at the name of the error code."""
+        """Check the name of the error code."""
         return Status.SUCCESS if self.ports.get("error_code") in self.HELPED else Status.FAILURE
 
 
 class WouldAControllerRecoveryHelp(WouldAPlannerRecoveryHelp):
-    """Succeeds for errors of a controller that another costmap may spare."""
+    """Condition node that succeeds for controller errors that a recovery may resolve."""
 
     names = ("WouldAControllerRecoveryHelp",)
     HELPED: ClassVar[frozenset[str]] = frozenset(

@@ -1,1 +1,1 @@
-"""Nodes that choose which of their children to tick."""
+"""Control nodes, one class each."""

@@ -1,4 +1,4 @@
-"""All children in turn, until one succeeds."""
+"""Fallback nodes."""
 
 from py_trees.common import Status
 
@@ -6,14 +6,14 @@ from daidalos.navigation.trees.in_turn import InTurn
 
 
 class Fallback(InTurn):
-    """Ticks one child after the other, going on with the one that runs; succeeds with the first that does."""
+    """Control node that ticks children in order, resuming the running one, until one succeeds."""
 
     names = ("Fallback",)
     goes_on_after = Status.FAILURE
 
 
 class ReactiveFallback(Fallback):
-    """Begins with the first child at every tick; halts a running child when one before it does not fail."""
+    """Control node that ticks from the first child each time; halts a running child if an earlier one does not fail."""
 
     names = ("ReactiveFallback",)
     reactive = True

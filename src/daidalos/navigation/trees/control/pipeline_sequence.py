@@ -1,4 +1,4 @@
-"""A sequence whose earlier children are ticked again while a later one runs."""
+"""Sequence whose earlier children are ticked again while a later one runs."""
 
 from collections.abc import Iterator
 from typing import Any
@@ -9,7 +9,7 @@ from daidalos.navigation.trees.node import Control
 
 
 class PipelineSequence(Control):
-    """Ticks all children up to the farthest that was reached.
+    """Control node that ticks all children up to the farthest one reached.
 
     An earlier child that runs again does not hold up those after it; one that fails ends the pipeline.
     """
@@ -17,7 +17,7 @@ class PipelineSequence(Control):
     names = ("PipelineSequence",)
 
     def tick(self) -> Iterator[Any]:
-        """Tick as far as the pipeline is filled, and one farther after each success."""
+        """Tick all started children, and one more after each success."""
         if self.status != Status.RUNNING:
             self.current_child = self.children[0]
         reached = self.children.index(self.current_child)

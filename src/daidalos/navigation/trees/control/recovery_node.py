@@ -1,4 +1,4 @@
-"""Try, and after a failure recover and try again."""
+"""Recovery node: retries its first child after its second one."""
 
 from collections.abc import Iterator
 from typing import Any, ClassVar
@@ -9,7 +9,7 @@ from daidalos.navigation.trees.node import Control, Port, Ports, TreeContext
 
 
 class RecoveryNode(Control):
-    """Succeeds when its first child does.
+    """Control node that ticks its second child after a failure of its first one, and retries.
 
     Each time that the first child fails, the second must succeed before the next try. Fails when the second
     child fails, or when the first has failed after all retries.
@@ -24,7 +24,7 @@ class RecoveryNode(Control):
         self._retries = 0
 
     def tick(self) -> Iterator[Any]:
-        """Tick the child whose turn it is, and the other one as long as that ends at once."""
+        """Tick the current child, and switch to the other one when it ends at once."""
         main, recovery = self.children
         if self.status != Status.RUNNING:
             self._retries = 0

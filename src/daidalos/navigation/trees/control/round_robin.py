@@ -1,4 +1,4 @@
-"""One child at a time, another one each time."""
+"""Round robin of children."""
 
 from collections.abc import Iterator
 from typing import Any
@@ -9,7 +9,7 @@ from daidalos.navigation.trees.node import Control, Ports, TreeContext
 
 
 class RoundRobin(Control):
-    """Succeeds with the first child that does, from the one after the last success on; fails if none does.
+    """Control node that starts with the child after the last success, and fails if all children fail.
 
     Only a halt while a child runs makes it begin with the first child again.
     """
@@ -43,7 +43,7 @@ class RoundRobin(Control):
         yield self
 
     def stop(self, new_status: Status = Status.INVALID) -> None:
-        """Begin anew if a child was interrupted."""
+        """Reset if a child was interrupted."""
         if new_status == Status.INVALID and self.status == Status.RUNNING:
             self._turn = 0
         super().stop(new_status)

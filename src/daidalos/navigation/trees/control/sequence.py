@@ -1,4 +1,4 @@
-"""All children in turn, as long as they succeed."""
+"""Sequence nodes."""
 
 from py_trees.common import Status
 
@@ -6,14 +6,14 @@ from daidalos.navigation.trees.in_turn import InTurn
 
 
 class Sequence(InTurn):
-    """Ticks one child after the other, going on with the one that runs; fails with the first that fails."""
+    """Control node that ticks children in order, resuming the running one, until one fails."""
 
     names = ("Sequence",)
     goes_on_after = Status.SUCCESS
 
 
 class ReactiveSequence(Sequence):
-    """Begins with the first child at every tick; halts a running child when one before it runs or fails."""
+    """Control node that ticks from the first child each time; halts a running child if an earlier one runs or fails."""
 
     names = ("ReactiveSequence",)
     reactive = True

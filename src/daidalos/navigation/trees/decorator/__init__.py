@@ -1,1 +1,1 @@
-"""Nodes that change what their one child does or says."""
+"""Decorators, one class each."""

@@ -1,4 +1,4 @@
-"""Say the same whatever the child says, once it has ended."""
+"""Decorators with a fixed result."""
 
 from typing import ClassVar
 
@@ -8,18 +8,18 @@ from daidalos.navigation.trees.node import Decorator
 
 
 class ForceSuccess(Decorator):
-    """Succeeds when its child has ended."""
+    """Decorator that succeeds when its child has ended."""
 
     names = ("ForceSuccess",)
     RESULT: ClassVar[Status] = Status.SUCCESS
 
     def update(self) -> Status:
-        """Keep only `RUNNING`."""
+        """Replace every status except `RUNNING`."""
         return Status.RUNNING if self.decorated.status == Status.RUNNING else self.RESULT
 
 
 class ForceFailure(ForceSuccess):
-    """Fails when its child has ended."""
+    """Decorator that fails when its child has ended."""
 
     names = ("ForceFailure",)
     RESULT: ClassVar[Status] = Status.FAILURE

@@ -1,4 +1,4 @@
-"""Say the opposite of what the child says."""
+"""Decorator that inverts the result of its child."""
 
 from py_trees.common import Status
 
@@ -6,11 +6,11 @@ from daidalos.navigation.trees.node import Decorator
 
 
 class Inverter(Decorator):
-    """Succeeds when its child fails and the other way round."""
+    """Decorator that exchanges success and failure of its child."""
 
     names = ("Inverter",)
 
     def update(self) -> Status:
-        """Turn the child's status round."""
+        """Return the inverted status of the child."""
         opposite = {Status.SUCCESS: Status.FAILURE, Status.FAILURE: Status.SUCCESS}
         return opposite.get(self.decorated.status, self.decorated.status)

@@ -1,4 +1,4 @@
-"""Tick the child only so often."""
+"""Decorator that limits the tick rate of its child."""
 
 from collections.abc import Iterator
 from typing import Any, ClassVar
@@ -10,7 +10,7 @@ from daidalos.navigation.trees.node import Decorator, Port, Ports, TreeContext
 
 
 class RateController(Decorator):
-    """Ticks its child at once, while it runs, and then `hz` times a second; in between repeats its status."""
+    """Decorator that ticks its child while it runs, else at `hz`; in between it repeats the status."""
 
     names = ("RateController",)
     PORTS: ClassVar[dict[str, Port]] = {"hz": Port(float, 10.0)}
@@ -22,7 +22,7 @@ class RateController(Decorator):
         self._last: float | None = None
 
     def tick(self) -> Iterator[Any]:
-        """Tick the child if it is time."""
+        """Tick the child if it is due."""
         now = self.services.now()
         waiting = self._last is not None and now - self._last < 1.0 / self.ports.get("hz") - 1e-9
         if self.decorated.status == Status.RUNNING or self.status == Status.INVALID or not waiting:
@@ -33,10 +33,10 @@ class RateController(Decorator):
         yield self
 
     def update(self) -> Status:
-        """Say what the child says."""
+        """Return the status of the child."""
         return self.decorated.status
 
     def terminate(self, new_status: Status) -> None:
-        """Tick at once after a halt."""
+        """Reset after a halt."""
         if new_status == Status.INVALID:
             self._last = None

@@ -1,1 +1,1 @@
-"""The critics of the MPPI controller, one class each."""
+"""Critics of the MPPI controller, one class each."""

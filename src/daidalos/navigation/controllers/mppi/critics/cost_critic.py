@@ -1,4 +1,4 @@
-"""Keep off obstacles: the costmap's values under a rollout, and a high price for contact."""
+"""Critic of obstacles: the costmap's values under a rollout, and a high cost for collisions."""
 
 from dataclasses import dataclass
 
@@ -40,7 +40,7 @@ class CostCriticParameters(Parameters):
 
 
 class CostCritic(Critic):
-    """Adds the mean over the cells that the robot's centre crosses of their cost, relative to an obstacle's.
+    """Critic of the mean cost of the cells that the robot's centre crosses, relative to a lethal cost.
 
     Near to the goal only what costs more than the goal counts, so that goals inside of inflation are reached.
     A robot that stands too near to an obstacle already, by noise or by an obstacle that came, may drive away:
@@ -110,7 +110,7 @@ def cost_of_cells(
     total: Samples,
     collides: NDArray[np.bool_],
 ) -> None:
-    """Add to `total` the mean weighted cost under each rollout; stop at contact and note it in `collides`."""
+    """Add the mean weighted cost under each rollout to `total`; collisions end a rollout and set `collides`."""
     scale = 1.0 / resolution
     height, width = costs.shape
     count = (x.shape[1] + stride - 1) // stride

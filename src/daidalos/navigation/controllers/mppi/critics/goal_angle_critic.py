@@ -1,4 +1,4 @@
-"""Look as the goal does, once it is very near."""
+"""Critic of the angle to the goal's yaw near the goal."""
 
 import math
 from dataclasses import dataclass
@@ -22,7 +22,7 @@ class GoalAngleCriticParameters(Parameters):
 
 
 class GoalAngleCritic(Critic):
-    """Adds the mean absolute angle [rad] between a rollout's headings and the goal's.
+    """Critic of the mean absolute angle [rad] between a rollout's headings and the goal's.
 
     Only within the goal's tolerance, whatever the threshold: a robot that cannot move sideways and has turned
     too early stands beside the goal for ever.

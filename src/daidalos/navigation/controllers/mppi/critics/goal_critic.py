@@ -1,4 +1,4 @@
-"""Get to the goal: the distance of a rollout to it, once the goal is near."""
+"""Critic of the distance to the goal near the goal."""
 
 from dataclasses import dataclass
 
@@ -21,7 +21,7 @@ class GoalCriticParameters(Parameters):
 
 
 class GoalCritic(Critic):
-    """Adds the mean distance [m] between the points of a rollout and the goal."""
+    """Critic of the mean distance [m] between the points of a rollout and the goal."""
 
     names = ("mppi::critics::GoalCritic",)
     Parameters = GoalCriticParameters
@@ -37,7 +37,7 @@ class GoalCritic(Critic):
 
 @compiled
 def mean_distance(x: Samples, y: Samples, goal_x: float, goal_y: float, weight: float, total: Samples) -> None:
-    """Add to `total` the weighted mean distance of each rollout to a point."""
+    """Add the weighted mean distance of each rollout to a point to `total`."""
     gx, gy = np.float32(goal_x), np.float32(goal_y)
     for b in range(x.shape[0]):
         added = np.float32(0.0)

@@ -1,4 +1,4 @@
-"""Stay on the path: the distance between a rollout and the path, point by point."""
+"""Critic of the distance between a rollout and the path, point by point."""
 
 from dataclasses import dataclass
 
@@ -31,7 +31,7 @@ class PathAlignCriticParameters(Parameters):
 
 
 class PathAlignCritic(Critic):
-    """Adds the mean distance [m] of a rollout's points to the points of the path after the same length.
+    """Critic of the mean distance [m] between points of a rollout and of the path at the same length.
 
     Silent where the goal is near, where the rollouts do not get far (the robot is about to turn), and where
     the path is blocked, so that the robot may leave it.
@@ -75,7 +75,7 @@ def mean_offset(
     weight: float,
     total: Samples,
 ) -> None:
-    """Add to `total` the weighted mean distance from rollouts to the path, matched by length travelled."""
+    """Add the weighted mean distance of rollouts to the path, matched by travelled length, to `total`."""
     last = points.shape[0] - 1
     for b in range(x.shape[0]):
         added = 0.0

@@ -1,4 +1,4 @@
-"""Look along the path: the angle between a rollout's end and a point a little ahead."""
+"""Critic of the angle between a rollout's heading and the path."""
 
 import math
 from dataclasses import dataclass
@@ -28,7 +28,7 @@ class PathAngleCriticParameters(Parameters):
 
 
 class PathAngleCritic(Critic):
-    """Adds the angle [rad] between a rollout's last heading and the path, when the robot looks away."""
+    """Critic of the angle [rad] between a rollout's last heading and the path if the robot faces away from it."""
 
     names = ("mppi::critics::PathAngleCritic",)
     Parameters = PathAngleCriticParameters

@@ -1,4 +1,4 @@
-"""Get on along the path: the distance of a rollout's end to a point farther along."""
+"""Critic of the progress along the path."""
 
 from dataclasses import dataclass
 
@@ -23,7 +23,7 @@ class PathFollowCriticParameters(Parameters):
 
 
 class PathFollowCritic(Critic):
-    """Adds the distance [m] of a rollout's end to the first free point beyond what any reaches."""
+    """Critic of the distance [m] of a rollout's end to the first free point beyond all rollouts."""
 
     names = ("mppi::critics::PathFollowCritic",)
     Parameters = PathFollowCriticParameters

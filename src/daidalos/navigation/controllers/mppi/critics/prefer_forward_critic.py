@@ -1,4 +1,4 @@
-"""Drive forwards: a price for every metre driven in reverse."""
+"""Critic of driving in reverse."""
 
 from dataclasses import dataclass
 
@@ -20,7 +20,7 @@ class PreferForwardCriticParameters(Parameters):
 
 
 class PreferForwardCritic(Critic):
-    """Adds the distance [m] that a rollout drives in reverse."""
+    """Critic of the distance [m] that a rollout drives in reverse."""
 
     names = ("mppi::critics::PreferForwardCritic",)
     Parameters = PreferForwardCriticParameters

@@ -1,4 +1,4 @@
-"""Do not wag: a price for turning."""
+"""Critic of turning."""
 
 from dataclasses import dataclass
 
@@ -17,7 +17,7 @@ class TwirlingCriticParameters(Parameters):
 
 
 class TwirlingCritic(Critic):
-    """Adds the mean absolute angular velocity [rad/s] of a rollout, away from the goal."""
+    """Critic of the mean absolute angular velocity [rad/s] of a rollout, away from the goal."""
 
     names = ("mppi::critics::TwirlingCritic",)
     Parameters = TwirlingCriticParameters
