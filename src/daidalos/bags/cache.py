@@ -14,11 +14,11 @@ from daidalos.bags.writer import BagWriter
 _OVERHEAD = 100
 """Bytes that a queued message takes beside its data."""
 _GATHER_S = 0.05
-"""How long messages are gathered before the thread writes them: it is not woken for each."""
+"""Time for which messages are collected before the thread writes them, so that it is not woken for each."""
 _GATHER_BYTES = 4 * 1024 * 1024
 """Nor does it wait longer when there are so many bytes."""
 _FLUSH_S = 1.0
-"""How long a message may wait in this process's memory before the operating system has it."""
+"""Maximum time before a message is passed to the operating system."""
 
 
 class WriterThread:

@@ -12,7 +12,7 @@ from daidalos.bags.storage import ZSTD_SUFFIX
 FILE, MESSAGE = "FILE", "MESSAGE"
 FORMATS = ("zstd",)
 _LEVEL = 1
-"""Messages must be compressed as fast as they come."""
+"""Compression level, which must keep up with the incoming messages."""
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from daidalos.bags.storage import StorageOptions, settings
 
 ZSTD_LEVELS = {"Fastest": 1, "Fast": 2, "Default": 3, "Slow": 10, "Slowest": 19}
 LZ4_LEVELS = {"Fastest": -9, "Fast": -3, "Default": 0, "Slow": 6, "Slowest": 12}
-"""What the names of levels mean to each compressor."""
+"""Meaning of the level names for each compressor."""
 
 
 @dataclass(frozen=True)

@@ -35,7 +35,7 @@ _RECORD = struct.Struct("<BQ")
 _CHUNK = struct.Struct("<QQQII")
 _TIMES = struct.Struct("<QQ")
 _UNCHUNKED_SIZE = 1024 * 1024
-"""Messages that stand in no chunk are read in pieces of about so many bytes."""
+"""Size of the pieces in which messages outside of chunks are read, in bytes."""
 _FAULTS = (McapError, struct.error, ValueError, LookupError, EOFError, OverflowError, MemoryError)
 
 Entry = tuple[int, int, int, int, bytes]

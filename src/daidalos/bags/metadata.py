@@ -13,7 +13,7 @@ from daidalos.bags.message import Topic
 from daidalos.bags.qos import parse_profiles, profile_values
 
 VERSION = 9
-"""The version that is written: that of ROS 2 Jazzy; older ones are read."""
+"""Version that is written, that of ROS 2 Jazzy; older ones can be read."""
 FILE_NAME = "metadata.yaml"
 _ROOT = "rosbag2_bagfile_information"
 

@@ -10,7 +10,7 @@ from daidalos.transport.qos import INFINITE_NS, Durability, History, Liveliness,
 
 _SECOND = 1_000_000_000
 _OLD_INFINITE_S = 2**31 - 1
-"""What ROS 2 before Galactic wrote for a duration without end, in seconds."""
+"""Infinite duration in files of ROS 2 before Galactic, in seconds."""
 
 Policy = TypeVar("Policy", bound=IntEnum)
 

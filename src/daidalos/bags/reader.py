@@ -19,7 +19,7 @@ from daidalos.bags.metadata import FILE_NAME, BagFile, read_metadata
 from daidalos.bags.storage import FOREVER_NS, StorageReader
 
 _OPEN_FILES = 16
-"""How many files stay open though nobody reads them."""
+"""Maximum number of open files that are not being read."""
 
 
 class BagReader:

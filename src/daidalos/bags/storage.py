@@ -18,7 +18,7 @@ DEFAULT = MCAP
 PROFILES = {MCAP: ("none", "fastwrite", "zstd_fast", "zstd_small"), SQLITE3: ("none", "resilient")}
 """Presets that each format's writer knows."""
 FOREVER_NS = 2**63 - 1
-"""A time after all others."""
+"""Time after all others."""
 ZSTD_SUFFIX = ".zstd"
 ZSTD_MAGIC = b"\x28\xb5\x2f\xfd"
 
@@ -43,7 +43,7 @@ class StorageWriter(ABC):
     """Writer of one file; not thread-safe."""
 
     smallest_split: int
-    """The least size [bytes] that files may be limited to."""
+    """Minimum size limit of files [bytes]."""
 
     @abstractmethod
     def add_topic(self, topic: Topic) -> None:

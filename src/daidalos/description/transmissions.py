@@ -18,7 +18,7 @@ def read_transmissions(root: Element, warnings: list[str]) -> tuple[Transmission
     root : Element
         ``<robot>``.
     warnings : list of str
-        Takes a line for each transmission that is wrong and left out: only some controllers need them.
+        Called with a line for each transmission that is wrong and left out: only some controllers need them.
     """
     transmissions = []
     for element in root.all("transmission"):

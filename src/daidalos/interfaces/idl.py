@@ -34,7 +34,7 @@ _TYPES = {
     **{name: name for name in ("string", "wstring", *(f"{u}int{bits}" for u in ("", "u") for bits in (8, 16, 32, 64)))},
 }
 _PLACEHOLDER = "structure_needs_at_least_one_member"
-"""The member of a struct that stands for a message without fields."""
+"""Placeholder member of a struct for a message without fields."""
 
 
 class IdlInterface(NamedTuple):

@@ -56,7 +56,7 @@ class NavigationContext:
     seed : int
         Of random numbers.
     warn : callable
-        Takes a line for the user.
+        Called with a line for the user.
     maker : callable or None
         Makes another extension; see `make`.
     """
@@ -330,7 +330,7 @@ class Input:
     type : type
         `OccupancyGrid`, or `LaserScanData`.
     take : callable
-        Takes a map; or a scan, the pose of the robot's base in the costmap's frame when it was taken, and its time [s].
+        Called with a map; or with a scan, the base pose at its time in the costmap's frame, and that time [s].
     """
 
     topic: str

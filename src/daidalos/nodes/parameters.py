@@ -40,7 +40,7 @@ _ARRAYS = {
 }
 _MAX_INTEGER = 2**63 - 1
 _LIKENESS_IN_SHARED_SECTIONS = 0.9
-"""What is given to many nodes at once, as with ``/**``, may be meant for another one."""
+"""Likeness from which a name below ``/**`` is reported as misspelt; others may be meant for other nodes."""
 
 
 @dataclass(eq=False)
@@ -88,7 +88,7 @@ def declare(node: Node, kind: type[T], prefix: str = "", reconfigure: Callable[[
     prefix : str
         Put before the names, with a dot.
     reconfigure : callable or None
-        Takes the new values when some were changed and checked; it may raise `ParameterError` or another exception to
+        Called with checked new values; it may raise `ParameterError` or another exception to
         refuse them. Without it all of them are read-only.
 
     Raises

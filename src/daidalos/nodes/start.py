@@ -27,7 +27,7 @@ MISTAKES = {
     "RCLInvalidROSArgsError",
     "UnknownROSArgsError",
 }
-"""What the user who wrote the command line or the environment can mend; their messages say how."""
+"""Errors that the user can correct; their messages say how."""
 
 
 def main() -> None:

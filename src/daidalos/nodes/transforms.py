@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from rclpy.task import Future
 
 _AHEAD_NS = 1_000_000_000
-"""So far ahead of the clock no message is stamped, unless the clock was set back after it was sent."""
+"""Time ahead of the clock beyond which a message must be from before the clock was set back."""
 
 
 class BlockingBuffer(Buffer):

@@ -36,7 +36,7 @@ def make_components(model: Model, context: Callable[[str], ComponentContext]) ->
     ----------
     model : Model
     context : callable
-        Takes a component's name in the model, returns its context.
+        Called with a component's name in the model, returns its context.
 
     Returns
     -------

@@ -35,9 +35,9 @@ class Compilation:
     timestep : float
         Of MuJoCo [s].
     has_subscribers : callable
-        Tells whether anyone listens to a topic.
+        Returns whether anyone listens to a topic.
     warn : callable
-        Takes a line for each thing that is left out or changed.
+        Called with a line for each thing that is left out or changed.
 
     Attributes
     ----------

@@ -33,9 +33,9 @@ class ComponentContext:
     world : World
         The description of the world around it.
     stream : callable
-        Makes its random numbers, which derive from the simulation's seed and its name, from the start.
+        Returns the generator of its random numbers, which derive from the simulation's seed and its name, from the start.
     warn : callable
-        Takes a line for the user.
+        Called with a line for the user.
     """
 
     model: Model
@@ -60,7 +60,7 @@ class Switch:
     Parameters
     ----------
     take : callable
-        Takes on or off.
+        Called with on or off.
     fixed : bool or None
         What a service without an argument means; None for one that is told.
     """

@@ -19,16 +19,16 @@ if TYPE_CHECKING:
     from daidalos.simulation.instance import Instance
 
 Array = NDArray[np.float64]
-Places = NDArray[np.intp]
+Indices = NDArray[np.intp]
 
 SPEED_TIME = 0.0025
 """Time constant with which a driven wheel takes a speed [s]."""
 DAMPING_TIME, POSITION_TIME = 0.00125, 0.005
 """Time constants with which a joint takes a speed and a position: critically damped [s]."""
 _ROUND = 0.8
-"""How evenly what is about an axle has to lie there to be a wheel."""
-LEAD = 0.05
-"""How far a speed's reference may run ahead of a joint that is held up [rad, m]."""
+"""Required evenness of the mass around an axle for a wheel."""
+MAX_LEAD = 0.05
+"""Maximum lead of a velocity servo's reference over a blocked joint [rad, m]."""
 
 
 class Mode(IntEnum):
@@ -193,7 +193,7 @@ class JointDrives:
         turning = servo & (modes == Mode.VELOCITY)
         if turning.any():
             speed = np.where(turning, values, speed)
-            reference = np.where(turning, np.clip(reference, at - LEAD, at + LEAD), reference)
+            reference = np.where(turning, np.clip(reference, at - MAX_LEAD, at + MAX_LEAD), reference)
             data.act[self._act] = reference
         model = self._instance.physics.model
         data.ctrl[self._reference] = speed

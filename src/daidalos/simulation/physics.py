@@ -40,7 +40,7 @@ class Physics:
     geoms : mapping
         Place of each geom to the name of its model and what it stands for.
     has_subscribers : callable
-        Tells whether anyone listens to a topic.
+        Returns whether anyone listens to a topic.
     stage : Stage
         What cameras see.
     forces : Forces

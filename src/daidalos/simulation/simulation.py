@@ -38,9 +38,9 @@ class Simulation(Engine):
     seed : int
         All random numbers derive from it, each component's from its own name.
     has_subscribers : callable or None
-        Tells whether anyone listens to a topic; sensors to which nobody listens do not measure.
+        Returns whether anyone listens to a topic; sensors to which nobody listens do not measure.
     warn : callable or None
-        Takes a line for each thing that was left out or changed; None logs them. All lines are kept in
+        Called with a line for each thing that was left out or changed; None logs them. All lines are kept in
         `warnings`.
 
     Raises

@@ -10,7 +10,7 @@ _TRIM_THRESHOLD, _MMAP_THRESHOLD = -1, -3
 """Parameters of the GNU C library's ``mallopt``."""
 _KEPT = 64 * 2**20
 _MAX_KEPT = 32 * 2**20
-"""The most that the library takes."""
+"""Maximum value that the library accepts."""
 
 
 def keep_memory() -> None:

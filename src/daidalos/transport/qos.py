@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from enum import IntEnum
 
 INFINITE_NS = 2**63 - 1
-"""A duration that never ends, in nanoseconds."""
+"""Infinite duration, in nanoseconds."""
 DEFAULT_DEPTH = 42
 """Depth that zenoh's ROS middleware takes where none is given."""
 

@@ -30,7 +30,7 @@ class ServiceEnd(Generic[Wire, Identity]):
     """
 
     incoming: ClassVar[str]
-    """What comes in, for messages that tell of it: ``request to`` or ``response of``."""
+    """Description of incoming messages for log messages: ``request to`` or ``response of``."""
 
     def __init__(self, endpoint: EndpointInfo, request: Codec, response: Codec, on_ready: Callable[[], None]) -> None:
         self.endpoint = endpoint

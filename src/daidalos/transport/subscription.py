@@ -38,7 +38,7 @@ class Subscription:
     """
 
     _gave_up_at = -_SHORT_FOR_NS
-    """When one of the process last stopped holding its sender back."""
+    """Time at which a subscription of this process last stopped blocking its sender."""
 
     def __init__(self, endpoint: EndpointInfo, codec: Codec, on_ready: Callable[[], None]) -> None:
         self.endpoint = endpoint

@@ -13,7 +13,7 @@ from pathlib import Path
 from daidalos.common.suggestions import hint
 
 BUILT_IN = Path(__file__).resolve().parents[1] / "nodes"
-"""The folder of the built-in packages: a subfolder of modules for each."""
+"""Folder of the built-in packages, with a subfolder of modules for each."""
 
 _START = str(BUILT_IN / "start.py")
 

@@ -12,7 +12,7 @@ from daidalos.workspaces.cmake.contents import Test
 from daidalos.workspaces.timed import TIMED_OUT
 
 NO_TESTS = 5
-"""What pytest returns when there are no tests."""
+"""Exit status of pytest without tests."""
 _FILE = "tests.json"
 
 

@@ -9,7 +9,7 @@ import zenoh
 
 from daidalos.transport.zenoh import pool as module
 from daidalos.transport.zenoh.config import shared_memory_usable
-from daidalos.transport.zenoh.pool import LARGE, Pool
+from daidalos.transport.zenoh.pool import SHM_THRESHOLD, Pool
 
 MIB = 2**20
 
@@ -18,14 +18,14 @@ needs_memory = pytest.mark.skipif(not shared_memory_usable(), reason="there is n
 
 @needs_memory
 def test_a_large_message_lies_in_shared_memory_unchanged():
-    data = os.urandom(LARGE + 3)
+    data = os.urandom(SHM_THRESHOLD + 3)
     held = zenoh.ZBytes(Pool(enabled=True).place(data))
     assert held.as_shm() is not None
     assert held.to_bytes() == data
 
 
 def test_small_messages_and_sessions_without_shared_memory_are_left_alone(monkeypatch: pytest.MonkeyPatch):
-    small, large = bytes(LARGE - 1), bytes(LARGE)
+    small, large = bytes(SHM_THRESHOLD - 1), bytes(SHM_THRESHOLD)
     assert Pool(enabled=True).place(small) is small
     assert Pool(enabled=False).place(large) is large
     monkeypatch.setattr(module, "shared_memory_usable", lambda: False)

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 _SERVICES = "/_container"
 _LOADING_S = 120.0
-"""How long a component may take to come up: what it imports may have to be compiled first."""
+"""Timeout for the start of a component, whose imports may have to be compiled first."""
 
 
 def add_container_argument(parser: ArgumentParser, **options: Any) -> None:

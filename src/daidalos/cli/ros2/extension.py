@@ -13,7 +13,7 @@ from ros2cli.parser import Parser
 COMMAND_GROUP = "ros2cli.command"
 
 Status = int | str | None
-"""What a command ends with: an exit status, or a message for standard error (then the status is 1)."""
+"""Result of a command: an exit status, or a message for standard error (then the status is 1)."""
 
 
 class Verb:

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from rclpy.node import Node
 
 _TRANSITION_S = 60.0
-"""How long a transition may take: nodes load maps and open devices in it."""
+"""Timeout of a transition, in which nodes may load maps and open devices."""
 
 
 def add_node_arguments(parser: ArgumentParser, **options: Any) -> None:

@@ -9,7 +9,7 @@ import time
 from types import FrameType
 
 _INTERRUPTED = int(signal.SIGINT)
-"""What ROS 2's own command ends with."""
+"""Exit status after Ctrl-C, as of ROS 2's own command."""
 
 _BROKEN_PIPE = 141
 _SAME_PRESS_S = 0.5

@@ -17,11 +17,11 @@ class VerbCommand(Command):
     """Command with verbs; each built-in verb is the class ``<Name>Verb`` in a module of the command's package."""
 
     group: ClassVar[str]
-    """The group of entry points by which other packages add verbs."""
+    """Entry point group of the verbs of other packages."""
     verbs: ClassVar[Mapping[str, str]]
     """Descriptions of the built-in verbs by name."""
     module: ClassVar[str] = ""
-    """The package of the built-in verbs' modules; that of the class where empty."""
+    """Package of the built-in verbs' modules; empty for that of the class."""
 
     def add_arguments(self, parser: ArgumentParser, cli_name: str) -> None:
         """Declare the command's options and its verbs."""

@@ -13,7 +13,7 @@ from daidalos.description.markup import Element
 
 MAX_MODELS = 10_000
 
-Places = Callable[[int, Vector, np.random.Generator], Iterator[Vector]]
+PositionGenerator = Callable[[int, Vector, np.random.Generator], Iterator[Vector]]
 
 
 def population_poses(element: Element, pose: Pose) -> list[Pose]:
@@ -89,7 +89,7 @@ def _uniform(count: int, size: Vector, _: np.random.Generator) -> Iterator[Vecto
         yield size[0] * ((column + 0.5) / columns - 0.5), size[1] * ((row + 0.5) / rows - 0.5), 0.0
 
 
-def _linear(axis: int) -> Places:
+def _linear(axis: int) -> PositionGenerator:
     def places(count: int, size: Vector, _: np.random.Generator) -> Iterator[Vector]:
         for number in range(count):
             share = number / (count - 1) - 0.5 if count > 1 else 0.0
@@ -99,7 +99,7 @@ def _linear(axis: int) -> Places:
     return places
 
 
-_SPREADS: dict[str, Places] = {
+_SPREADS: dict[str, PositionGenerator] = {
     "random": _random,
     "uniform": _uniform,
     "linear-x": _linear(0),

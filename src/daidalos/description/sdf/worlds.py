@@ -30,7 +30,7 @@ from daidalos.description.world import (
 
 ROOT = "world"
 MAX_DISTANCE = 1e6
-"""What stands farther off [m] fell through its floor before it was saved; forces would grow beyond all numbers."""
+"""Distance [m] beyond which a saved model must have fallen through its floor; forces would diverge."""
 
 
 def read_world(element: Element, context: Context) -> World:

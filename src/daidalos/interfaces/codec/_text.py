@@ -18,7 +18,7 @@ FORMATS = {
 }  # fmt: skip
 SIZES = {name: struct.calcsize("<" + code) for name, code in FORMATS.items()}
 _INLINE_LIMIT = 48
-"""Messages with at most this many values are written into their parent's code instead of being called."""
+"""Maximum number of values of a message whose code is inlined in its parent's."""
 HEADER = 4
 
 

@@ -35,10 +35,10 @@ effect.
 """
 
 OBSTACLE_SKIN = 0.1
-"""How deep [m] an obstacle is taken to be behind the surface that the sensors see: a goal there is refused."""
+"""Assumed depth [m] of obstacles behind the surface that sensors see; goals there are rejected."""
 
 ESCAPE_RADIUS = 0.5
-"""How far [m] from a lethal start a free cell may be; localization is rarely farther off."""
+"""Maximum distance [m] of a free cell from a lethal start; localization is rarely worse."""
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ Array = NDArray[np.float64]
 Field = NDArray[np.float32]
 
 MAX_DETOUR_RATIO = 0.1
-"""How much nearer to the goal, in cells, a cell must be for each step that the way to it is longer."""
+"""Distance in cells by which a cell must be nearer to the goal for each step that its path is longer."""
 
 BUCKETS = 64
 BUCKET_WIDTH = 0.5

@@ -22,7 +22,7 @@ from daidalos.navigation.trees.services import Services
 DEFAULT_TREE = (
     Path(__file__).parents[2] / "share/nav2_bt_navigator/behavior_trees/navigate_to_pose_w_replanning_and_recovery.xml"
 )
-"""The tree of `navigate_to_pose` that is used where none is named."""
+"""Default tree of `navigate_to_pose`."""
 
 _EXPLICIT = frozenset({"Action", "Condition", "Control", "Decorator"})
 _COMMENTARY = frozenset({"name", "ID", "_description", "_fullpath", "_uid"})

@@ -83,7 +83,7 @@ class Trial(Node):
     Parameters
     ----------
     say : callable
-        Takes a line for each step.
+        Called with a line for each step.
     **kwargs
         Of `Node`.
     """

@@ -32,7 +32,7 @@ class Companions:
     context : Context
         Of their nodes.
     warn : callable
-        Takes a line for the user where one can not be started.
+        Called with a line for the user where one can not be started.
     """
 
     def __init__(self, context: Context, warn: Callable[[str], None]) -> None:

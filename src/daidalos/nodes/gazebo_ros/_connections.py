@@ -26,7 +26,7 @@ class Connections:
     Attributes
     ----------
     paced : PacedSimulation
-        Takes the commands; to be set before `follow`.
+        Called with the commands; to be set before `follow`.
     """
 
     paced: PacedSimulation

@@ -24,13 +24,13 @@ class PacedSimulation:
     simulation : Simulation
         Used by the thread alone from `start` on.
     publish : callable
-        Takes the time [ns] and the samples of each advance, on the thread.
+        Called with the time [ns] and the samples of each advance, on the thread.
     period_ns : int
         How much is simulated at once.
     real_time_factor : float
         Simulated seconds in a second; 0 means as fast as possible.
     failed : callable
-        Takes the error when the simulation cannot go on.
+        Called with the error when the simulation cannot go on.
     """
 
     def __init__(

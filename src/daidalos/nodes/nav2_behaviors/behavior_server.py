@@ -28,7 +28,7 @@ from daidalos.samples.fields import duration_message, seconds
 
 _LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 _TIMEOUT_S = 10.0
-"""How long a goal waits for the robot's place and the costmap, which come soon after the start if all is well."""
+"""Timeout of a goal for the robot pose and the costmap, which arrive soon after a normal start."""
 
 
 _DEFAULT_PLUGINS = {

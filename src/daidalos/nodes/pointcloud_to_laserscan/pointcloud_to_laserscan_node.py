@@ -16,7 +16,7 @@ from daidalos.nodes.pointcloud_to_laserscan._scan import Slice
 from daidalos.nodes.runner import run
 
 _LARGEST = 3.4028234663852886e38
-"""The largest number that a scan's message can hold."""
+"""Largest number of a 32-bit float."""
 
 
 class PointCloudToLaserScan(Node):

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 _ENCAPSULATION = b"\x00\x01\x00\x00"
-"""Of little-endian CDR; places in the body are counted from behind it."""
+"""Encapsulation header of little-endian CDR; offsets in the body start after it."""
 
 
 class TransformBytes:

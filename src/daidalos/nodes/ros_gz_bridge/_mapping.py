@@ -30,7 +30,7 @@ _NAMES = {
     "VideoRecord WorldControl WorldStatistics",
 }
 TYPES: dict[str, set[str]] = {}
-"""Of each ROS type the types of gz that it may stand for, without their package."""
+"""gz types of each ROS type, without their package."""
 for _package, _words in _NAMES.items():
     for _word in _words.split():
         _ros, _, _gz = _word.partition(":")

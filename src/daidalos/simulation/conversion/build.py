@@ -23,7 +23,7 @@ from daidalos.simulation.conversion.model_build import GeomInfo, ModelBuild, app
 from daidalos.simulation.conversion.wheels import is_caster, wheel_disc
 
 ASSUMED_DENSITY = 200.0
-"""Of links that should move but have no mass [kg/m^3]."""
+"""Density of moving links without mass [kg/m^3]."""
 
 
 def add_model(
@@ -42,7 +42,7 @@ def add_model(
     pose : Pose
         Of the model's frame in the world.
     warn : callable
-        Takes a line for each thing that is left out or changed.
+        Called with a line for each thing that is left out or changed.
 
     Returns
     -------

@@ -20,10 +20,10 @@ SOLREF = (0.004, 1.0)
 """Time constant [s] and damping ratio of contacts: stiff enough that wheels do not creep."""
 
 BOUNCING_FREQUENCY = 400.0
-"""Of contacts that bounce [rad/s]: they last a few steps, else the bounce is lost."""
+"""Bandwidth of bouncing contacts [rad/s]: they last a few steps, since shorter ones would lose the bounce."""
 
 BOUNCING_WEIGHT = 1e3
-"""How much more the surface that bounces counts in a contact with one that does not."""
+"""Weight of a bouncing surface relative to one that does not bounce."""
 
 _FRICTIONLESS = 1e-3
 

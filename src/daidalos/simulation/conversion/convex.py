@@ -17,10 +17,10 @@ import numpy as np
 from daidalos.description.meshes import TriangleMesh
 
 CONVEX_ENOUGH = 0.95
-"""A mesh that fills this share of its convex hull is taken as convex."""
+"""Volume ratio to its convex hull from which a mesh counts as convex."""
 
 MAX_HULLS = 24
-"""A mesh in more pieces than this gets one hull around all of them, unless it is to be decomposed."""
+"""Number of pieces above which a mesh gets one hull around all of them, unless it is to be decomposed."""
 
 _log = logging.getLogger(__name__)
 

@@ -35,7 +35,7 @@ from daidalos.simulation.conversion.assets import Assets, Solid
 
 SOLID, SEEN, TOUCHED = 0, 1, 3
 RAY_GROUPS = np.array([1, 1, 0, 0, 0, 0], dtype=np.uint8)
-"""For ``mj_multiRay``: which groups stop a ray."""
+"""Geom groups that stop a ray of ``mj_multiRay``."""
 
 _Type = mujoco.mjtGeom
 

@@ -10,7 +10,7 @@ import mujoco
 from daidalos.description.world import Physics, World
 
 SLEEP_SPEED = 1e-5
-"""What moves slower than this for ten steps is at rest [m/s]."""
+"""Speed [m/s] below which a body that keeps it for ten steps falls asleep."""
 
 MAX_STEP_NS = 1_000_000
 """Longer steps are cut into parts: contacts this stiff need 1 ms."""

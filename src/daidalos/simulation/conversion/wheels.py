@@ -16,10 +16,10 @@ from daidalos.description.meshes import triangles_of
 
 _ALONG = 0.999
 _OFF_CENTRE = 0.02
-"""Of the radius: how far a disc's axis may be from the joint's."""
+"""Maximum distance of a disc's axis from the joint's, relative to the radius."""
 
 _MAX_ECCENTRICITY = 0.05
-"""Of the radius: by how much a mesh may reach further in one direction than in another. A dodecagon passes."""
+"""Maximum deviation of a wheel mesh from a circle, relative to the radius. A dodecagon passes."""
 
 _DIRECTIONS = 48
 

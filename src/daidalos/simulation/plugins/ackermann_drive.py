@@ -35,7 +35,7 @@ _SERVO_TIME = 0.01
 """Time constant of the wheel servos [s]."""
 
 _STEERING_BANDWIDTH = 60.0
-"""Of the steering servos [rad/s]."""
+"""Bandwidth of the steering servos [rad/s]."""
 
 
 @dataclass

@@ -12,7 +12,7 @@ from daidalos.simulation.instance import LinkView
 Array = NDArray[np.float64]
 
 _BANDWIDTH = 60.0
-"""Of the spring that holds [rad/s]: stiff, and still well below the steps' rate."""
+"""Bandwidth of the holding spring [rad/s]: stiff, but well below the rate of the steps."""
 
 
 def pull(key: str, holder: LinkView, target: LinkView, place: Pose) -> None:

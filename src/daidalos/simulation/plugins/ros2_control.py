@@ -48,7 +48,7 @@ class Ros2Control(Plugin):
     rate : float
         Of the controller manager [Hz].
     cycle : callable or None
-        Takes the time [ns].
+        Called with the time [ns].
     """
 
     names = ("gazebo_ros2_control", "gazebo_ros_control", "gz_ros2_control-system", "ign_ros2_control-system")

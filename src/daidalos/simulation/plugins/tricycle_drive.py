@@ -33,7 +33,7 @@ _SERVO_TIME = 0.01
 """Time constant of the wheel's servo [s]."""
 
 _STEERING_BANDWIDTH = 60.0
-"""Of the steering's servo [rad/s]."""
+"""Bandwidth of the steering servo [rad/s]."""
 
 
 @dataclass

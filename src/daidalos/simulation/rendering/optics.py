@@ -14,7 +14,7 @@ from daidalos.common.pose3 import Pose, quaternion_from_rpy
 Array = NDArray[np.float64]
 
 OPTICAL = Pose(orientation=quaternion_from_rpy(-math.pi / 2, 0.0, -math.pi / 2))
-"""The optical frame (z ahead, x right, y down) in a sensor's frame (x ahead, y left, z up)."""
+"""Optical frame (z ahead, x right, y down) in a sensor's frame (x ahead, y left, z up)."""
 
 
 @dataclass(frozen=True)

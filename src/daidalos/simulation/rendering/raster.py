@@ -25,7 +25,7 @@ EDGES = 9
 """Numbers kept for each drawn triangle: slope in x, slope in y and offset of the three e over det."""
 
 _MARGIN = 1e-6
-"""Of the box around a triangle [pixels]: its edges decide, not the rounding of its corners."""
+"""Margin of the box around a triangle [pixels], so that its edges decide and not the rounding of its corners."""
 
 _SHORT = 8
 """Runs of fewer pixels than this are written one by one."""

@@ -13,7 +13,7 @@ from daidalos.common.kernels import compiled
 
 BLOCK_BITS = 4
 _MAX_BLOCKS = 16
-"""A run of pixels that lies in more blocks than this is asked pixel by pixel."""
+"""Number of blocks above which a run of pixels is tested pixel by pixel."""
 
 
 @compiled(fastmath=True)

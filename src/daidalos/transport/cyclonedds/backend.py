@@ -48,7 +48,7 @@ _DISCOVERY_S = 0.5
 """Time after our start in which participants that are in no registry answer; ROS 2's own tools wait as long."""
 _POLL_S = 0.02
 _ONE_OCTET = (c.c_uint32 * 3)(0x01010000, 0, 0)
-"""What the library is told of every type, since it only ever sees serialised samples: that it has one octet."""
+"""Type description for the library, which only handles serialized samples: one octet."""
 _INFO_QOS = Qos(durability=Durability.TRANSIENT_LOCAL, depth=1)
 _INFO_READER_QOS = Qos(durability=Durability.TRANSIENT_LOCAL, history=History.KEEP_ALL, depth=0)
 
@@ -339,7 +339,7 @@ def _user_data(library: Library, data: bytes) -> Iterator[int]:
 
 _domains_lock = threading.Lock()
 _domains: dict[int, tuple[int | None, int]] = {}
-"""The domains of this process: their entities (None where somebody else made it) and how many use them."""
+"""Domains of this process: their entities (None for domains created elsewhere) and their number of users."""
 
 
 def _join_domain(library: Library, environment: Environment) -> int:

@@ -32,7 +32,7 @@ from daidalos.transport.qos import Qos
 _LOGGER = logging.getLogger(__name__)
 _BATCH = 32
 PREFIX = 12
-"""So many first bytes of a gid are those of its participant."""
+"""Number of leading bytes of a gid that identify its participant."""
 _UNKNOWN = ("_NODE_NAME_UNKNOWN_", "_NODE_NAMESPACE_UNKNOWN_")
 """Name and namespace that ROS gives the nodes of programs that have none."""
 

@@ -30,11 +30,11 @@ from daidalos.transport.cyclonedds.writer import Writer
 
 _ENCAPSULATION = 4
 _HEADER = struct.Struct("<Qq")
-"""What precedes the fields of a request and its reply: the client's number and its count of requests."""
+"""Header of requests and replies: the client's number and its request counter."""
 _REQUEST_ID = struct.Struct("<QQ")
 _CLIENT_TIMEOUT_NS = 100_000_000
 _MAX_REACHABLE = 1000
-"""So many clients are remembered, whether they still live or not."""
+"""Maximum number of remembered clients, alive or not."""
 
 
 class DdsPublisher(BackendPublisher):

@@ -138,7 +138,7 @@ class MatchedStatus(c.Structure):
 
 
 _COUNT = {"win32": c.c_ulong, "darwin": c.c_int}.get(sys.platform, c.c_size_t)
-"""How the system counts the buffers of a message."""
+"""Type of the number of a message's buffers on this system."""
 
 _QOS, _PTR, _STR, _INT = c.c_void_p, c.c_void_p, c.c_char_p, c.c_int
 _BLOCKING: dict[str, tuple[Any, tuple[Any, ...]]] = {

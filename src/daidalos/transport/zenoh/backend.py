@@ -47,10 +47,10 @@ _MANY_TOKENS = 1_000_000
 """More tokens than ever wait to be read; a full channel would hold zenoh up."""
 
 _CLOSING_S = 1.0
-"""How long the thread that reads tokens may take to end; it may be in a listener's hands."""
+"""Timeout for the end of the thread that reads tokens; it may be inside a listener's callback."""
 
 _POLL_S = 0.002
-"""How often we look, while settling."""
+"""Polling period of `settle`."""
 
 
 class ZenohBackend(Backend):

@@ -20,7 +20,7 @@ from daidalos.transport.backend import (
 )
 from daidalos.transport.graph import EndpointInfo
 from daidalos.transport.zenoh import attachment
-from daidalos.transport.zenoh.pool import LARGE, Pool
+from daidalos.transport.zenoh.pool import SHM_THRESHOLD, Pool
 from daidalos.transport.zenoh.threads import on_lasting_thread
 
 _QUERY_TIMEOUT_S = 600.0
@@ -90,7 +90,7 @@ class ZenohSubscription(_Wire, BackendSubscription):
         """Return the sample's bytes."""
         payload = sample.payload
         # `to_bytes` clears the memory that it then copies to; from shared memory it need not be.
-        shared = payload.as_shm() if len(payload) >= LARGE else None
+        shared = payload.as_shm() if len(payload) >= SHM_THRESHOLD else None
         data: bytes = payload.to_bytes() if shared is None else bytes(shared)
         return data
 

@@ -13,7 +13,7 @@ from collections import deque
 from collections.abc import Hashable
 
 _REST_S = 2.0
-"""How long a number is not given again: what was sent under it, and the news of its end, are on their way."""
+"""Time before a number is reused, since samples under it and the notice of its end may be in transit."""
 _MAX_ENTITIES = 10_000
 """Number of different entities whose free numbers are remembered."""
 

@@ -26,14 +26,14 @@ from daidalos.transport.zenoh.pool import Pool
 from daidalos.transport.zenoh.threads import on_lasting_thread
 
 _TIMEOUT_S = 5.0
-"""How long a session may take to answer; then it is asked again, for as long as it can be reached."""
+"""Timeout of a session's answer; the query is repeated as long as the session is reachable."""
 _MAX_PUBLISHERS = 10_000
-"""Of so many publishers it is remembered what they last sent."""
+"""Maximum number of publishers whose last samples are remembered."""
 
 Kept = deque[tuple[bytes, bytes, zenoh.Timestamp]]
-"""A publisher's last samples: data, attachment and time stamp."""
+"""Last samples of a publisher: data, attachment and time stamp."""
 Identity = tuple[int, int, bytes]
-"""A sample's number and source time, and its publisher's gid."""
+"""Number and source time of a sample, and its publisher's gid."""
 
 
 class Caches:

@@ -11,8 +11,8 @@ import zenoh
 
 from daidalos.transport.zenoh.config import shared_memory_usable
 
-LARGE = 65536
-"""Messages below so many bytes are quicker left to zenoh."""
+SHM_THRESHOLD = 65536
+"""Size in bytes from which shared memory is faster than zenoh's copy."""
 _SIZE = 16 * 2**20
 _TIMEOUT_S = 1.0
 
@@ -39,7 +39,7 @@ class Pool:
     def place(self, data: bytes) -> Any:
         """Return a large message in shared memory; return it unchanged if it is small or the pool is full."""
         size = len(data)
-        if size < LARGE or size > _SIZE or not self._enabled:
+        if size < SHM_THRESHOLD or size > _SIZE or not self._enabled:
             return data
         with self._lock:
             if self._provider is None and not self._open():

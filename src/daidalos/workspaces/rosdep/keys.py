@@ -75,11 +75,11 @@ class Answer(Enum):
     """Outcome of the resolution of a dependency."""
 
     HERE = "here"
-    """It is installed, or a build does without it."""
+    """Installed, or not needed by a build."""
     COMPILED = "compiled"
     """Only C++ needs it, which is left out of a build."""
     PYTHON = "python"
-    """The Python package index has it."""
+    """Available in the Python package index."""
     UNKNOWN = "unknown"
     """Nothing is known of it."""
 

@@ -20,7 +20,7 @@ _ATTRIBUTES = {
     "doc": "doc_depends",
 }
 TYPES = tuple(_ATTRIBUTES)
-"""The kinds of dependencies."""
+"""Types of dependencies."""
 
 
 @dataclass(frozen=True)

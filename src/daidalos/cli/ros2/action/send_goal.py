@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from rclpy.node import Node
 
 _STATUS_NAMES = ("UNKNOWN", "ACCEPTED", "EXECUTING", "CANCELING", "SUCCEEDED", "CANCELED", "ABORTED")
-"""By their number in `action_msgs/msg/GoalStatus`."""
+"""Names of the states by their number in `action_msgs/msg/GoalStatus`."""
 _CANCEL_TIMEOUT_S = 3.0
 
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 STORAGES = tuple(SUFFIXES)
 POLL_S = 0.1
-"""How often who waits looks whether the process was asked to end."""
+"""Polling period of requests to end [s]."""
 _SAME_PRESS_S = 0.5
 
 

@@ -7,7 +7,7 @@ import datetime
 LICENSES = (
     "Apache-2.0", "BSL-1.0", "BSD-2.0", "BSD-2-Clause", "BSD-3-Clause", "GPL-3.0-only", "LGPL-3.0-only", "MIT", "MIT-0",
 )  # fmt: skip
-"""The identifiers for which a LICENSE file is written."""
+"""Identifiers of licences with a LICENSE file."""
 
 
 def license_text(identifier: str, holder: str) -> str | None:
