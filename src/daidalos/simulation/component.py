@@ -33,7 +33,7 @@ class ComponentContext:
     world : World
         The description of the world around it.
     stream : callable
-        Returns the generator of its random numbers, which derive from the simulation's seed and its name, from the start.
+        Returns a new generator of its random numbers, seeded by the simulation's seed and its name.
     warn : callable
         Called with a line for the user.
     """
