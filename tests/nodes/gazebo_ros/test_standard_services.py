@@ -24,7 +24,7 @@ from simulation_interfaces.msg import (
     SimulationState,
 )
 
-from daidalos.nodes.gazebo_ros._host import read_world, wanted_speed
+from daidalos.nodes.gazebo_ros._descriptions import read_world, wanted_speed
 from nodes.gazebo_ros.conftest import BOX, WORLD
 
 OK = Result.RESULT_OK

@@ -76,7 +76,7 @@ def _run_offline(path: Path | None, args: argparse.Namespace) -> int:
     """Simulate without a graph, as fast as possible."""
     import time
 
-    from daidalos.nodes.gazebo_ros._host import read_world
+    from daidalos.nodes.gazebo_ros._descriptions import read_world
     from daidalos.simulation import Simulation
 
     simulation = Simulation(read_world(path), args.seed, has_subscribers=lambda topic: False, warn=_warn)

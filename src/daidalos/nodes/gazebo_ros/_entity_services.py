@@ -11,9 +11,10 @@ import numpy as np
 
 from daidalos.description.errors import DescriptionError
 from daidalos.description.resolve import default_model_path
+from daidalos.nodes.gazebo_ros._descriptions import read_entity, read_entity_file
 from daidalos.nodes.gazebo_ros._entities import find_entity, motion_of, set_motion
 from daidalos.nodes.gazebo_ros._filters import has_tags, matching
-from daidalos.nodes.gazebo_ros._host import Host, read_entity, read_entity_file
+from daidalos.nodes.gazebo_ros._host import Host
 from daidalos.nodes.gazebo_ros._service_results import OK, UNSUPPORTED, Failure, create_services, find_resource
 from daidalos.nodes.gazebo_ros._states import pose_message, pose_of, twist_message, vector_of
 from daidalos.samples.fields import time_message

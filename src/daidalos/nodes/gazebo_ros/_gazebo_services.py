@@ -7,8 +7,9 @@ from typing import Any
 
 from daidalos.description.errors import DescriptionError
 from daidalos.nodes.gazebo_ros import _gazebo_answers as answers
+from daidalos.nodes.gazebo_ros._descriptions import state_namespaces
 from daidalos.nodes.gazebo_ros._entities import find_joint
-from daidalos.nodes.gazebo_ros._host import Host, state_namespaces
+from daidalos.nodes.gazebo_ros._host import Host
 from daidalos.nodes.gazebo_ros._states import pose_of, require_finite, vector_of
 from daidalos.samples.fields import time_message
 from daidalos.simulation import Simulation

@@ -7,9 +7,10 @@ from pathlib import Path
 from typing import Any
 
 from daidalos.description.errors import DescriptionError
+from daidalos.nodes.gazebo_ros._descriptions import read_world
 from daidalos.nodes.gazebo_ros._entity_services import EntityServices
 from daidalos.nodes.gazebo_ros._filters import has_tags
-from daidalos.nodes.gazebo_ros._host import Host, read_world
+from daidalos.nodes.gazebo_ros._host import Host
 from daidalos.nodes.gazebo_ros._service_results import INCORRECT_STATE, OK, Failure, create_services, find_resource
 from daidalos.nodes.gazebo_ros._worlds import world_folders, worlds_in
 

@@ -9,7 +9,7 @@ from rclpy.publisher import Publisher
 from rclpy.qos import DurabilityPolicy, QoSProfile
 
 from daidalos.common.rate_gate import RateGate
-from daidalos.nodes.gazebo_ros._host import state_namespaces
+from daidalos.nodes.gazebo_ros._descriptions import state_namespaces
 from daidalos.nodes.gazebo_ros._states import contacts_message, pose_message, twist_message
 
 if TYPE_CHECKING:

@@ -83,7 +83,8 @@ class GzServer(Node):
 
         from daidalos.nodes.gazebo_ros._companions import Companions
         from daidalos.nodes.gazebo_ros._connections import Connections
-        from daidalos.nodes.gazebo_ros._host import Host, read_world, wanted_speed
+        from daidalos.nodes.gazebo_ros._descriptions import read_world, wanted_speed
+        from daidalos.nodes.gazebo_ros._host import Host
         from daidalos.nodes.gazebo_ros._pacing import PacedSimulation
         from daidalos.nodes.gazebo_ros._state_topics import StateTopics
         from daidalos.simulation import Simulation
