@@ -32,10 +32,6 @@ def test_a_loan_is_in_the_wanted_order(names: tuple[str, ...]) -> None:
     assert loan.read() == pytest.approx([ord(name) for name in names])
     loan.write(np.arange(len(names), dtype=float))
     assert loan.read() == pytest.approx(range(len(names)))
-    if names:
-        loan.write_one(1, 9.0)
-        owner = next(one for one in owners if names[1] in one)
-        assert owner[names[1]] == 9.0
 
 
 def test_a_loan_of_nothing_that_is_there_is_refused() -> None:

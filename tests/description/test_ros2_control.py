@@ -7,7 +7,7 @@ import pytest
 from daidalos.description import urdf
 from daidalos.description.errors import DescriptionError
 from daidalos.description.joint import Mimic
-from daidalos.description.ros2_control import HardwareInfo, is_endless, read_hardware
+from daidalos.description.ros2_control import HardwareInfo, read_hardware
 
 ROBOT = """<robot name="arm">
 <link name="base"/><link name="upper"/><link name="lower"/><link name="left"/><link name="right"/>
@@ -130,9 +130,3 @@ def test_limits_can_be_lifted() -> None:
 def test_errors_name_the_line(text: str, message: str) -> None:
     with pytest.raises(DescriptionError, match=rf"robot_description:\d+.*{message}"):
         read(text)
-
-
-def test_only_continuous_joints_are_endless() -> None:
-    info = components('<joint name="shoulder"/><joint name="elbow"/>')
-    assert [is_endless(joint.joint) for joint in info.joints] == [True, False]
-    assert not is_endless(None)

@@ -25,7 +25,7 @@ def endpoint(number: int, kind: EndpointKind = EndpointKind.PUBLISHER, name: str
     return EndpointInfo(kind, NODE, name, f"pkg/msg/T{number}", "", Qos(), number.to_bytes(16, "little"))
 
 
-def test_endpoints_are_found_by_kind_name_node_and_gid():
+def test_endpoints_are_found_by_kind_name_and_node():
     graph = Graph()
     graph.add_node(NODE)
     one, two = endpoint(1), endpoint(2, EndpointKind.SUBSCRIPTION)
@@ -36,12 +36,10 @@ def test_endpoints_are_found_by_kind_name_node_and_gid():
     assert graph.endpoints(EndpointKind.SUBSCRIPTION) == [two]
     assert graph.endpoints(name="/other") == []
     assert graph.endpoints_of(NODE, EndpointKind.PUBLISHER) == [one]
-    assert graph.find_gid(two.gid) == two
     assert graph.find_nodes("arm", "/cell") == [NODE]
     assert NODE.full_name == "/cell/arm"
     graph.remove_endpoint("b")
     graph.remove_endpoint("b")
-    assert graph.find_gid(two.gid) is None
     assert graph.endpoints() == [one]
 
 

@@ -106,13 +106,6 @@ class LoanedInterfaces:
         for own, rows, columns in self._parts:
             own[columns] = values[rows]
 
-    def write_one(self, place: int, value: float) -> None:
-        """Set the value at one place."""
-        for own, rows, columns in self._parts:
-            found = np.flatnonzero(rows == place)
-            if found.size:
-                own[columns[found[0]]] = value
-
 
 def interface_names(joints: Sequence[str], interfaces: Sequence[str]) -> tuple[str, ...]:
     """Return the names of interfaces: all joints of the first kind, then of the second."""

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
 
-from daidalos.description.joint import Joint, JointType, Mimic
+from daidalos.description.joint import Joint, Mimic
 from daidalos.description.markup import Element
 from daidalos.description.robot import Robot
 from daidalos.description.world import Model
@@ -324,8 +324,3 @@ def _flag(element: Element, key: str, default: bool) -> bool:
     if word in ("false", "0"):
         return False
     raise element.error(f'attribute "{key}" should be true or false, got {word!r}')
-
-
-def is_endless(joint: Joint | None) -> bool:
-    """Return whether a joint rotates without limits, so that its angles wrap around."""
-    return joint is not None and joint.type is JointType.CONTINUOUS

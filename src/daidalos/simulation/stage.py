@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Protocol
 from daidalos.common.pose3 import Pose
 from daidalos.description.link import Light
 from daidalos.description.world import Model, World
-from daidalos.simulation.errors import NameTakenError, UnknownNameError
+from daidalos.simulation.errors import UnknownNameError
 from daidalos.simulation.rendering.lighting import Lighting
 
 if TYPE_CHECKING:
@@ -109,17 +109,6 @@ class Stage:
         if name not in lights:
             raise UnknownNameError("light", name, lights)
         return lights[name]
-
-    def add_light(self, light: Light) -> None:
-        """Add a light to the world.
-
-        Raises
-        ------
-        NameTakenError
-        """
-        if light.name in self._lamps:
-            raise NameTakenError(light.name)
-        self._lamps[light.name] = light
 
     def set_light(self, name: str, light: Light) -> None:
         """Change a light; one on a link keeps its pose.

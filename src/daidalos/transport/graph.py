@@ -71,7 +71,6 @@ class Graph:
         self._endpoints: dict[str, EndpointInfo] = {}
         self._by_name: dict[str, dict[str, EndpointInfo]] = {}
         self._by_node: dict[str, dict[str, EndpointInfo]] = {}
-        self._by_gid: dict[bytes, EndpointInfo] = {}
         self._listeners: tuple[Listener, ...] = ()
         self._version = 0
 
@@ -98,7 +97,6 @@ class Graph:
             self._endpoints[key] = endpoint
             self._by_name.setdefault(endpoint.name, {})[key] = endpoint
             self._by_node.setdefault(endpoint.node.key, {})[key] = endpoint
-            self._by_gid[endpoint.gid] = endpoint
         self._tell(True, endpoint)
 
     def remove_endpoint(self, key: str) -> None:
@@ -107,7 +105,6 @@ class Graph:
             endpoint = self._endpoints.pop(key, None)
             if endpoint is None:
                 return
-            self._by_gid.pop(endpoint.gid, None)
             for index, name in ((self._by_name, endpoint.name), (self._by_node, endpoint.node.key)):
                 members = index[name]
                 del members[key]
@@ -179,10 +176,6 @@ class Graph:
         with self._changed:
             found = list(self._by_node.get(node.key, {}).values())
         return [endpoint for endpoint in found if not kinds or endpoint.kind in kinds]
-
-    def find_gid(self, gid: bytes) -> EndpointInfo | None:
-        """Return the endpoint with that gid, None if unknown."""
-        return self._by_gid.get(gid)
 
 
 def names_and_types(endpoints: Iterable[EndpointInfo]) -> list[tuple[str, list[str]]]:
