@@ -30,7 +30,7 @@ class CvBridgeError(TypeError):
 
 
 class CvBridge:
-    """Converts between messages and numpy arrays, the images of OpenCV.
+    """Converter between messages and numpy arrays, the images of OpenCV.
 
     OpenCV itself is needed only for Bayer patterns; compressed images need OpenCV or Pillow.
     """

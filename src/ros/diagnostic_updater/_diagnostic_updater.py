@@ -116,7 +116,7 @@ class DiagnosticTaskVector:
 
 
 class Updater(DiagnosticTaskVector):
-    """Runs tasks periodically and publishes the results on ``/diagnostics``.
+    """Updater that runs tasks periodically and publishes the results on ``/diagnostics``.
 
     The node gets the parameters ``diagnostic_updater.period``, in seconds, and ``diagnostic_updater.use_fqn``:
     whether names begin with the node's full name.

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class HeaderlessTopicDiagnostic(CompositeDiagnosticTask):
-    """Watches how often messages are published.
+    """Diagnostic of how often messages are published.
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ class HeaderlessTopicDiagnostic(CompositeDiagnosticTask):
 
 
 class TopicDiagnostic(HeaderlessTopicDiagnostic):
-    """Watches how often messages are published, and their stamps.
+    """Diagnostic of how often messages are published, and of their stamps.
 
     Parameters
     ----------

@@ -32,7 +32,7 @@ class FrequencyStatusParam:
 
 
 class FrequencyStatus(DiagnosticTask):
-    """Warns when something happens too often or too seldom; an error when it does not happen at all.
+    """Task that warns when something happens too often or too seldom; an error when it does not happen at all.
 
     Parameters
     ----------
@@ -112,7 +112,7 @@ class TimeStampStatusParam:
 
 
 class TimeStampStatus(DiagnosticTask):
-    """Reports an error when a stamp is zero, or lies too far in the past or the future.
+    """Task that reports an error when a stamp is zero, or lies too far in the past or the future.
 
     Parameters
     ----------
@@ -195,7 +195,7 @@ def _seconds(stamp: Any) -> float:
 
 
 class Heartbeat(DiagnosticTask):
-    """Says that the node is alive."""
+    """Task that reports that the node is alive."""
 
     def __init__(self) -> None:
         super().__init__("Heartbeat")

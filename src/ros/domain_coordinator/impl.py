@@ -14,7 +14,7 @@ _FIRST_PORT = 20300
 
 
 class default_selector:
-    """Proposes all domains from 1 to 100, from a random one on."""
+    """Selector that proposes all domains from 1 to 100, from a random one on."""
 
     def __init__(self) -> None:
         self._next = random.randrange(_DOMAINS)

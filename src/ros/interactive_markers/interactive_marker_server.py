@@ -60,7 +60,7 @@ class UpdateContext:
 
 
 class InteractiveMarkerServer:
-    """Displays a set of interactive markers to one or many clients, such as RViz.
+    """Server that displays a set of interactive markers to one or many clients, such as RViz.
 
     Changes made by `insert`, `erase` and so on reach the clients with `applyChanges`. All methods may be called from
     any thread.

@@ -28,7 +28,7 @@ class EntryContext:
 
 
 class MenuHandler:
-    """Makes a menu and calls functions when somebody chooses its entries."""
+    """Menu of interactive markers, whose entries call functions."""
 
     NO_CHECKBOX = 0
     CHECKED = 1

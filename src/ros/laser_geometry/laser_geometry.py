@@ -11,7 +11,7 @@ from sensor_msgs_py.point_cloud2 import create_cloud
 
 
 class LaserProjection:
-    """Makes point clouds of laser scans; what depends on the rays' angles alone is computed once.
+    """Projection of laser scans to point clouds; what depends on the rays' angles alone is computed once.
 
     Measurements below the scan's `range_min`, and from its `range_max` on, are left out, as are those that are not
     numbers.

@@ -61,7 +61,7 @@ class RunOptions:
 
 
 class ProcessRunner:
-    """Runs the process of an action.
+    """Runner of the process of an action.
 
     Parameters
     ----------
@@ -286,7 +286,7 @@ class TextOutput:
 
 
 class _ProcessEventHandler(BaseEventHandler):
-    """Lets a runner know of the events that concern its process."""
+    """Event handler that passes the events of a process to its runner."""
 
     def __init__(self, action: ExecuteLocal, react: Callable[[Event, LaunchContext], SomeEntitiesType | None]) -> None:
         self.__action = action
@@ -306,7 +306,7 @@ class _ProcessEventHandler(BaseEventHandler):
 
 
 class _LeftoverHandler(BaseEventHandler):
-    """Stops, with the launch, what a process left running in its group."""
+    """Event handler that stops, with the launch, what a process left running in its group."""
 
     def __init__(self, child: ChildProcess, timeouts: tuple[float, float]) -> None:
         super().__init__(matcher=lambda event: isinstance(event, Shutdown), handle_once=True)

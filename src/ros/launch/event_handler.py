@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class BaseEventHandler:
-    """Says which events it is for, and yields the entities to visit when one comes.
+    """Event handler: a matcher of events, and the entities to visit when one matches.
 
     Parameters
     ----------

@@ -88,7 +88,7 @@ def _format_sub_entities(entity: Any) -> list[str]:
 
 
 class LaunchIntrospector:
-    """Shows what a launch description holds, as far as it is known before launching."""
+    """Introspector that shows what a launch description holds, as far as it is known before launching."""
 
     def format_launch_description(self, launch_description: LaunchDescription) -> str:
         """Return the description as a tree of text."""

@@ -28,7 +28,7 @@ _main_loop: asyncio.AbstractEventLoop | None = None
 
 
 class LaunchService:
-    """Runs launch descriptions.
+    """Service that runs launch descriptions.
 
     Parameters
     ----------

@@ -165,7 +165,7 @@ def PostShutdownTestLoader() -> unittest.TestLoader:
 
 
 class _Loader(unittest.TestLoader):
-    """Loads those test classes of a module that run at one of the two times."""
+    """Loader that loads those test classes of a module that run at one of the two times."""
 
     def __init__(self, *, post_shutdown: bool) -> None:
         super().__init__()

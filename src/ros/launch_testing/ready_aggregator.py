@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 
 class ReadyAggregator:
-    """Calls a function once when its own has been called a number of times; may be called from any thread.
+    """Aggregator that calls a function when its own has been called a number of times, from any thread.
 
     Parameters
     ----------

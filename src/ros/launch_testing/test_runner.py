@@ -29,7 +29,7 @@ class _LaunchDiedException(Exception):
 
 
 class LaunchTestRunner:
-    """Makes some runs one after another.
+    """Runner that executes some runs one after another.
 
     Parameters
     ----------
@@ -93,7 +93,7 @@ class LaunchTestRunner:
 
 
 class _RunnerWorker:
-    """Makes one run."""
+    """Worker that executes one run."""
 
     def __init__(
         self, test_run: TestRun, preamble: list[Action], launch_file_arguments: list[str], debug: bool

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 
 
 class DataRepublisher:
-    """Publishes what comes on one topic, changed, on another.
+    """Node that publishes what comes on one topic, changed, on another.
 
     Parameters
     ----------

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 class MessagePump:
-    """Runs a node's callbacks in a thread, so that a test need not.
+    """Thread that runs a node's callbacks, so that a test need not.
 
     Parameters
     ----------

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 class LaunchTestRunner(_LaunchTestRunner):
-    """Starts the launch's own ROS node before the launch.
+    """Runner that starts the launch's own ROS node before the launch.
 
     Tests have it as ``launch_service.context.locals.launch_ros_node``, spun meanwhile.
     """

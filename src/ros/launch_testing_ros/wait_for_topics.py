@@ -17,7 +17,7 @@ _numbers = itertools.count()
 
 
 class WaitForTopics:
-    """Listens to topics until at least one message has come on each.
+    """Listener that waits until at least one message has come on each of some topics.
 
     It has a context and a node of its own, so it needs no `rclpy.init`. In a ``with`` statement it waits on the
     way in, and raises `RuntimeError` where a topic stays silent.

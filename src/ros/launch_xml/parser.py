@@ -13,7 +13,7 @@ from .entity import Entity
 
 
 class Parser(BaseParser):
-    """Reads launch files in XML."""
+    """Parser of launch files in XML."""
 
     @classmethod
     def load(cls, file: FilePath | TextIO) -> tuple[Entity, Parser]:

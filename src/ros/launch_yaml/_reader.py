@@ -23,7 +23,7 @@ class LocatedList(list[Any]):
 
 
 class _Loader(yaml.SafeLoader):
-    """Reads YAML into mappings and lists that know where they are."""
+    """YAML loader of mappings and lists that know where they are."""
 
     filename: str | None = None
 

@@ -14,7 +14,7 @@ from .entity import Entity
 
 
 class Parser(BaseParser):
-    """Reads launch files in YAML."""
+    """Parser of launch files in YAML."""
 
     @classmethod
     def load(cls, file: FilePath | TextIO) -> tuple[Entity, Parser]:

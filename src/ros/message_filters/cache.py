@@ -14,7 +14,7 @@ from .simple_filter import SimpleFilter
 
 
 class Cache(SimpleFilter):
-    """Remembers the newest messages, sorted by their stamps, and passes every message on.
+    """Filter that stores the newest messages, sorted by their stamps, and passes every message on.
 
     Parameters
     ----------

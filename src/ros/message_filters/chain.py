@@ -8,7 +8,7 @@ from .simple_filter import SimpleFilter
 
 
 class Chain(SimpleFilter):
-    """Passes messages through any number of filters; what the last one puts out, it puts out.
+    """Filter made of any number of filters, one after another.
 
     Parameters
     ----------

@@ -13,7 +13,7 @@ _BASIC_TYPES = (bool, int, float, str)
 
 
 class ComparisonHandler(ABC):
-    """Decides which messages a `ComparisonFilter` lets pass."""
+    """Handler that decides which messages a `ComparisonFilter` lets pass."""
 
     @abstractmethod
     def message_fits(self, message: Any) -> bool:
@@ -47,7 +47,7 @@ class CachedComparisonHandler(ComparisonHandler):
 
 
 class DeltaCompare(CachedComparisonHandler):
-    """Lets a message pass when a value has changed."""
+    """Comparison that passes a message when a value has changed."""
 
     def do_fields_fit(self, field_a: Any, field_b: Any) -> bool:
         """Return whether two values differ.
@@ -63,7 +63,7 @@ class DeltaCompare(CachedComparisonHandler):
 
 
 class ComparisonFilter(SimpleFilter):
-    """Passes on the messages that fit.
+    """Filter that passes the messages that fit.
 
     Parameters
     ----------
@@ -103,7 +103,7 @@ class ComparisonFilter(SimpleFilter):
 
 
 class DeltaFilter(ComparisonFilter):
-    """Passes on the messages in which a value has changed since the last one that passed.
+    """Filter that passes the messages in which a value has changed since the last one that passed.
 
     Parameters
     ----------
@@ -120,7 +120,7 @@ class DeltaFilter(ComparisonFilter):
 
 
 class PathDeltaFilter(DeltaFilter):
-    """Passes on the messages in which a field has changed since the last one that passed.
+    """Filter that passes the messages in which a field has changed since the last one that passed.
 
     Parameters
     ----------

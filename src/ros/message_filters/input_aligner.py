@@ -48,7 +48,7 @@ class _Input:
 
 
 class InputAligner(SimpleFilter):
-    """Passes on the messages of several filters, each to the callbacks of its own, in the order of their stamps.
+    """Aligner of the messages of several filters: each is passed to the callbacks of its own, in the order of stamps.
 
     A message waits until nothing older can come: until every other input has a newer one, expects its next one
     later (`setInputPeriod`), or has been silent for `timeout`. Messages that come too late are dropped.

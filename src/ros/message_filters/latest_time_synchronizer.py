@@ -14,7 +14,7 @@ _SMOOTHING = 0.3
 
 
 class LatestTimeSynchronizer(SimpleFilter):
-    """Puts out the latest message of every filter whenever the fastest of them has a new one.
+    """Synchronizer that passes the latest message of every filter whenever the fastest of them has a new one.
 
     Stamps do not matter. Which filter is the fastest is found out from how often messages come; until one has
     come from each, nothing is put out.

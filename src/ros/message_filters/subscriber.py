@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 class Subscriber(SimpleFilter):
-    """Puts out the messages of a topic. What else is asked of it, the subscription answers.
+    """Filter that passes the messages of a topic; other attributes are the subscription's.
 
     Parameters
     ----------

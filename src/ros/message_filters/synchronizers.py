@@ -18,7 +18,7 @@ Queue = dict[int, Any]
 
 
 class TimeSynchronizer(SimpleFilter):
-    """Puts out messages of several filters together when their stamps are equal.
+    """Synchronizer that passes messages of several filters together when their stamps are equal.
 
     Parameters
     ----------
@@ -75,7 +75,7 @@ class TimeSynchronizer(SimpleFilter):
 
 
 class ApproximateTimeSynchronizer(TimeSynchronizer):
-    """Puts out messages of several filters together when their stamps are less than `slop` apart.
+    """Synchronizer that passes messages of several filters together when their stamps are less than `slop` apart.
 
     Every message looks for partners when it comes: those nearest to it are preferred, of the first filter first.
 

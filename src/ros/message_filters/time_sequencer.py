@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class TimeSequencer(SimpleFilter):
-    """Holds every message until its stamp is `delay` ago and then passes it on; those that come later are dropped.
+    """Filter that holds every message until its stamp is `delay` ago; those that come later are dropped.
 
     Parameters
     ----------

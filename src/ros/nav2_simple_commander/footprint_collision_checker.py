@@ -20,7 +20,7 @@ FREE_SPACE = 0
 
 
 class FootprintCollisionChecker:
-    """Finds the highest cost on a robot's outline."""
+    """Checker that finds the highest cost on a robot's outline."""
 
     def __init__(self) -> None:
         self.costmap_: PyCostmap2D | None = None

@@ -6,7 +6,7 @@ import math
 
 
 class LineIterator:
-    """Walks from one point to another, in steps along x; along y where the line is upright.
+    """Iterator from one point to another, in steps along x; along y where the line is upright.
 
     Parameters
     ----------

@@ -46,7 +46,7 @@ _MANAGER = "nav2_msgs/srv/ManageLifecycleNodes"
 
 
 class BasicNavigator(Costmaps):
-    """Sends a robot around, by Nav2's actions and services.
+    """Navigator that controls a robot by Nav2's actions and services.
 
     A method that starts a task returns it, or None where the server rejected it; `isTaskComplete`, `getFeedback` and
     `getResult` tell how it goes on. The methods spin the node, so nobody else may.

@@ -18,7 +18,7 @@ from rclpy.task import Future
 
 
 class Client(ServiceEnd[ClientHandle]):
-    """Calls a service; made by `Node.create_client`."""
+    """Client of a service; made by `Node.create_client`."""
 
     def __init__(
         self,
@@ -156,7 +156,7 @@ class Client(ServiceEnd[ClientHandle]):
 
 
 class _Forget:
-    """Removes a request that was cancelled, without keeping its client alive."""
+    """Callback that removes a request that was cancelled, without keeping its client alive."""
 
     def __init__(self, client: Client, future: Future, number: int) -> None:
         self._client = weakref.ref(client)

@@ -41,7 +41,7 @@ IncompatibleTypeInfo = IncompatibleTypeStatus
 
 
 class EventHandler(Waitable):
-    """Calls a function with the status of an event whenever it changes."""
+    """Handler that calls a function with the status of an event whenever it changes."""
 
     def __init__(
         self,

@@ -323,14 +323,14 @@ def _deadline(timeout_sec: float | TimeoutObject | None) -> int | None:
 
 
 class SingleThreadedExecutor(Executor):
-    """Runs callbacks one after the other in the thread that spins."""
+    """Executor that runs callbacks one after the other in the thread that spins."""
 
     def _carry_out(self, function: Callable[..., None], *arguments: Any) -> None:
         function(*arguments)
 
 
 class MultiThreadedExecutor(Executor):
-    """Runs callbacks in a pool of threads, as far as callback groups allow.
+    """Executor that runs callbacks in a pool of threads, as far as callback groups allow.
 
     Parameters
     ----------

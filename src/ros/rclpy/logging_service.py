@@ -15,7 +15,7 @@ TOPIC_SEPARATOR_STRING = "/"
 
 
 class LoggingService:
-    """Serves ``get_logger_levels`` and ``set_logger_levels`` of a node."""
+    """Services ``get_logger_levels`` and ``set_logger_levels`` of a node."""
 
     def __init__(self, node: Node) -> None:
         from rcl_interfaces.srv import GetLoggerLevels, SetLoggerLevels

@@ -21,7 +21,7 @@ Callback = Callable[[Future], None]
 
 
 class AsyncParameterClient:
-    """Calls the parameter services of a node; every call returns a future whose result is the response.
+    """Client of the parameter services of a node; every call returns a future whose result is the response.
 
     Parameters
     ----------

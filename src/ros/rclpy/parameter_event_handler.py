@@ -33,7 +33,7 @@ class ParameterEventCallbackHandle:
 
 
 class ParameterEventHandler:
-    """Follows ``/parameter_events``; of several callbacks, the one added last is called first.
+    """Handler that follows ``/parameter_events``; of several callbacks, the one added last is called first.
 
     Parameters
     ----------

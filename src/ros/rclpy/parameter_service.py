@@ -16,7 +16,7 @@ TOPIC_SEPARATOR_STRING = "/"
 
 
 class ParameterService:
-    """Serves ``describe_parameters``, ``get_parameters`` and the others of a node."""
+    """Services ``describe_parameters``, ``get_parameters`` and the others of a node."""
 
     def __init__(self, node: Node) -> None:
         from rcl_interfaces.srv import (

@@ -15,7 +15,7 @@ from rclpy.qos import QoSProfile
 
 
 class Publisher:
-    """Sends messages on a topic; made by `Node.create_publisher`."""
+    """Publisher of messages on a topic; made by `Node.create_publisher`."""
 
     __class_getitem__: ClassVar[Any] = classmethod(GenericAlias)
 

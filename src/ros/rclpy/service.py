@@ -13,7 +13,7 @@ from rclpy.qos import QoSProfile
 
 
 class Service(ServiceEnd[ServiceHandle]):
-    """Answers requests; made by `Node.create_service`."""
+    """Server of a service; made by `Node.create_service`."""
 
     concurrent = False
     """Whether callbacks may overlap, in nodes for asyncio."""

@@ -30,7 +30,7 @@ class MessageInfo(TypedDict):
 
 
 class Subscription:
-    """Receives a topic's messages; made by `Node.create_subscription`."""
+    """Subscription to a topic's messages; made by `Node.create_subscription`."""
 
     concurrent = False
     """Whether callbacks may overlap, in nodes for asyncio."""

@@ -21,7 +21,7 @@ USE_SIM_TIME_NAME = "use_sim_time"
 
 
 class TimeSource:
-    """Sets the clocks of a node.
+    """Source of the time of a node's clocks.
 
     The time that a simulator publishes takes effect on the thread that receives it: clocks show it, and
     sleepers wake, whether or not anybody spins the node.

@@ -44,7 +44,7 @@ class TimerInfo:
 
 
 class Timer:
-    """Calls a function periodically; made by `Node.create_timer`."""
+    """Timer that calls a function periodically; made by `Node.create_timer`."""
 
     def __init__(
         self,
@@ -171,7 +171,7 @@ def _names_info(annotation: Any) -> bool:
 
 
 class Rate:
-    """Sleeps so that a loop runs at a fixed rate; made by `Node.create_rate`. It needs nobody to spin."""
+    """Timer for a loop at a fixed rate; made by `Node.create_rate`. It needs no executor."""
 
     def __init__(self, timer: Timer, *, context: Context) -> None:
         self._clock = timer.clock

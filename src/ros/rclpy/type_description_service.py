@@ -17,7 +17,7 @@ TOPIC_SEPARATOR_STRING = "/"
 
 
 class TypeDescriptionService:
-    """Serves ``get_type_description`` of a node, unless the parameter of that name says no."""
+    """Service ``get_type_description`` of a node, unless the parameter of that name is false."""
 
     def __init__(self, node: Node) -> None:
         from rcl_interfaces.msg import ParameterDescriptor

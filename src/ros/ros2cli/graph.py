@@ -78,7 +78,7 @@ def is_set(parsed_args: Namespace, key: str | None) -> bool:
 
 
 class NameCompleter:
-    """Returns the names that an argument may be.
+    """Completer of the names that an argument may be.
 
     Parameters
     ----------
@@ -99,7 +99,7 @@ class NameCompleter:
 
 
 class TypeCompleter:
-    """Returns the types that an argument may be: those of what another argument names, or all.
+    """Completer of the types that an argument may be: those of what another argument names, or all.
 
     Parameters
     ----------

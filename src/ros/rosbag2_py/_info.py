@@ -8,7 +8,7 @@ from rosbag2_py._metadata import BagMetadata, of_bag
 
 
 class Info:
-    """Tells what bags hold."""
+    """Reader of what bags hold."""
 
     def read_metadata(self, uri: str, storage_id: str = "") -> BagMetadata:
         """Return what a bag holds; RuntimeError when it can not be read."""

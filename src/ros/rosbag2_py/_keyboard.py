@@ -32,7 +32,7 @@ _WINDOWS_PAUSE_S = 0.05
 
 
 class Keyboard:
-    """Calls a function with every key that means something; does nothing where there is no terminal.
+    """Keyboard of the terminal, whose keys call functions; without effect where there is no terminal.
 
     Parameters
     ----------

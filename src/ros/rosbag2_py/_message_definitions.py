@@ -12,7 +12,7 @@ from rosbag2_py._storage import MessageDefinition
 
 
 class LocalMessageDefinitionSource:
-    """Finds definitions in the packages that are installed."""
+    """Source that finds definitions in the packages that are installed."""
 
     def get_full_text(self, root_topic_type: str) -> MessageDefinition:
         """Return the definition of a type with all that it refers to; an empty one where it is not known."""

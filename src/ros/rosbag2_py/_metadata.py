@@ -163,7 +163,7 @@ def to_bag(metadata: BagMetadata) -> bags.BagMetadata:
 
 
 class MetadataIo:
-    """Reads and writes `metadata.yaml`."""
+    """Reader and writer of `metadata.yaml`."""
 
     def read_metadata(self, uri: str) -> BagMetadata:
         """Return the description in a folder; RuntimeError where there is none."""

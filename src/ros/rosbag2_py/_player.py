@@ -39,7 +39,7 @@ _KEYS: dict[str, Callable[[PlayerNode], Any]] = {
 
 
 class Player:
-    """Plays bags.
+    """Player of bags.
 
     Made without options, only `play` and `burst` with options can be called, as ROS 2 Jazzy's programs do.
 

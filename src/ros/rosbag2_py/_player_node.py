@@ -31,7 +31,7 @@ RUNNING, PAUSED, BURST, DELAYED, STOPPED = "R", "P", "B", "D", "S"
 
 
 class PlayerNode(Node):
-    """Publishes the messages of bags when their time has come.
+    """Node that publishes the messages of bags when their time has come.
 
     One thread plays. Whoever else goes on, jumps or changes the speed does so under the same lock, which the thread
     holds except while it waits.

@@ -10,7 +10,7 @@ _CLEAR = "\r\033[K"
 
 
 class StatusLine:
-    """Shows a text in the terminal's last line and refreshes it; does nothing where there is no terminal.
+    """Text in the terminal's last line that is refreshed; without effect where there is no terminal.
 
     Parameters
     ----------

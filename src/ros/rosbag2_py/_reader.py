@@ -19,7 +19,7 @@ from rosbag2_py._storage import (
 
 
 class SequentialReader:
-    """Reads a bag's messages by time, one after the other; methods raise RuntimeError while no bag is open."""
+    """Reader of a bag's messages by time, one after the other; methods raise RuntimeError while no bag is open."""
 
     def __init__(self) -> None:
         self._bag: BagReader | None = None
@@ -145,7 +145,7 @@ class SequentialReader:
 
 
 class SequentialCompressionReader(SequentialReader):
-    """Reads a bag, compressed or not."""
+    """Reader of a bag, compressed or not."""
 
 
 def get_registered_readers() -> set[str]:

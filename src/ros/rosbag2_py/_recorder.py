@@ -14,7 +14,7 @@ from rosbag2_py._storage import StorageOptions
 
 
 class Recorder:
-    """Records topics into a bag.
+    """Recorder of topics into a bag.
 
     Made without options, only `record` with options can be called, as ROS 2 Jazzy's programs do.
 

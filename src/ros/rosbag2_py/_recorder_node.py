@@ -33,7 +33,7 @@ _DISCOVERY_S = 2.0
 
 
 class RecorderNode(Node):
-    """Subscribes to what is wanted, as it appears, and writes it to a bag.
+    """Node that subscribes to the wanted topics, as they appear, and writes them to a bag.
 
     Parameters
     ----------

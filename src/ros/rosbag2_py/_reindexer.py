@@ -9,7 +9,7 @@ from rosbag2_py._storage import StorageOptions
 
 
 class Reindexer:
-    """Writes the `metadata.yaml` of bags from their files."""
+    """Reindexer, which writes the `metadata.yaml` of bags from their files."""
 
     def reindex(self, storage_options: StorageOptions) -> None:
         """Write the description of a bag anew; RuntimeError where it has no file that can be read."""

@@ -17,7 +17,7 @@ NodeT = TypeVar("NodeT", bound=Node)
 
 
 class RunningNode(Generic[NodeT]):
-    """Makes a node and runs it.
+    """Owner of a node that it creates and runs.
 
     Parameters
     ----------

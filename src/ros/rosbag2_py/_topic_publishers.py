@@ -25,7 +25,7 @@ _REQUEST_EVENTS = {ServiceRequestsSource.SERVICE_INTROSPECTION: 1, ServiceReques
 
 
 class TopicPublishers:
-    """Publishes messages of some topics.
+    """Publishers of the messages of some topics.
 
     Parameters
     ----------

@@ -17,7 +17,7 @@ from rosbag2_py._storage import ConverterOptions, StorageOptions
 
 
 class SequentialWriter:
-    """Writes a bag; methods raise RuntimeError while none is open, and when it can not be written."""
+    """Writer of a bag; methods raise RuntimeError while none is open, and when it can not be written."""
 
     _compression = Compression()
 
@@ -82,7 +82,7 @@ class SequentialWriter:
 
 
 class SequentialCompressionWriter(SequentialWriter):
-    """Writes a compressed bag."""
+    """Writer of a compressed bag."""
 
     def __init__(self, compression_options: CompressionOptions | None = None, **options: Any) -> None:
         super().__init__()

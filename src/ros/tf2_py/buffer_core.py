@@ -29,7 +29,7 @@ _TOLERANCE = 1e-2
 
 
 class BufferCore:
-    """Stores transforms and answers what the transform between two frames is, or was.
+    """Buffer of transforms, which computes the transform between two frames, now or in the past.
 
     Every frame remembers its transform to its parent over the last `cache_time`; between two of them it is
     interpolated, linearly and along the shorter arc. All methods may be called from any thread.

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class Inbox(Subscription):
-    """Hands messages to its callback on the thread that receives them.
+    """Subscription that calls its callback on the thread that receives the messages.
 
     So they are there while another callback waits for them, and cost no round through the executor. Who calls
     `spin_once` counts on it to return when a message came, so the executor gets an empty piece of work for

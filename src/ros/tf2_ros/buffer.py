@@ -31,7 +31,7 @@ _ORPHANS: deque[JumpHandle] = deque()
 
 
 class Buffer(BufferCore, BufferInterface):
-    """Stores transforms and answers what the transform between two frames is, or was.
+    """Buffer of transforms, which computes the transform between two frames, now or in the past.
 
     Nothing polls: who waits is woken by the next transform, by the clock or by the shutdown. Time-outs are of
     the node's clock, so under simulated time they last as long as the simulator says.

@@ -32,7 +32,7 @@ _EXCEPTIONS = {
 
 
 class BufferClient(BufferInterface):
-    """Has transforms looked up by a `BufferServer`. Its calls may be made in any callback.
+    """Client that looks transforms up by a `BufferServer`. Its calls may be made in any callback.
 
     Parameters
     ----------

@@ -32,7 +32,7 @@ _ERRORS = {
 
 
 class BufferServer:
-    """Serves the action by which a `BufferClient` asks for transforms.
+    """Server of the action by which a `BufferClient` requests transforms.
 
     Parameters
     ----------

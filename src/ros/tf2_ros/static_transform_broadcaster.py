@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class StaticTransformBroadcaster:
-    """Publishes transforms on ``/tf_static``; who comes late gets all of them.
+    """Publisher of transforms on ``/tf_static``; late subscriptions get all of them.
 
     Parameters
     ----------

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 class StaticTransformListener(TransformListener):
-    """Puts the transforms of ``/tf_static`` into a buffer; see `TransformListener`."""
+    """Listener that inserts the transforms of ``/tf_static`` into a buffer; see `TransformListener`."""
 
     def __init__(
         self,

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class TransformBroadcaster:
-    """Publishes transforms on ``/tf``.
+    """Publisher of transforms on ``/tf``.
 
     Parameters
     ----------

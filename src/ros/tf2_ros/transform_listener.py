@@ -24,7 +24,7 @@ _AUTHORITY = "default_authority"
 
 
 class TransformListener:
-    """Puts the transforms that it hears of into a buffer, as they are received; nobody needs to spin the node.
+    """Listener that inserts the transforms of ``/tf`` and ``/tf_static`` into a buffer, without an executor.
 
     Parameters
     ----------

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class NamedAction(Action):
-    """Does something to what has a name."""
+    """Action on something that has a name."""
 
     def __init__(self, name: SomeSubstitutionsType, **kwargs: Any) -> None:
         super().__init__(**kwargs)
@@ -35,7 +35,7 @@ class NamedAction(Action):
 
 
 class NamedValueAction(NamedAction):
-    """Gives a value to what has a name."""
+    """Action that sets the value of something that has a name."""
 
     def __init__(self, name: SomeSubstitutionsType, value: SomeSubstitutionsType, **kwargs: Any) -> None:
         super().__init__(name, **kwargs)

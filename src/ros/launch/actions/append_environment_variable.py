@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 @expose_action("append_env")
 class AppendEnvironmentVariable(NamedValueAction):
-    """Adds a value to an environment variable that is a list, such as PATH, for the processes started later.
+    """Action that adds a value to an environment variable with a list, such as PATH, for processes started later.
 
     Parameters
     ----------

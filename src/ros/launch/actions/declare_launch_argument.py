@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 @expose_action("arg")
 class DeclareLaunchArgument(Action):
-    """Declares an argument, which becomes a launch configuration of the same name.
+    """Action that declares an argument, which becomes a launch configuration of the same name.
 
     Parameters
     ----------

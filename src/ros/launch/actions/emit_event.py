@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 class EmitEvent(Action):
-    """Emits an event.
+    """Action that emits an event.
 
     Parameters
     ----------

@@ -31,7 +31,7 @@ OnExit = SomeEntitiesType | Callable[["ProcessExited", "LaunchContext"], SomeEnt
 
 
 class ExecuteLocal(Action):
-    """Runs a process, passes on what it prints, and stops it with the launch.
+    """Action that runs a process, passes on what it prints, and stops it with the launch.
 
     To stop, the process and what it started get SIGINT, after `sigterm_timeout` SIGTERM, and after another
     `sigkill_timeout` SIGKILL.

@@ -31,7 +31,7 @@ _TYPED = {"respawn": bool, "respawn_max_retries": int, "respawn_delay": float}
 
 @expose_action("executable")
 class ExecuteProcess(ExecuteLocal):
-    """Runs a command line; see `ExecuteLocal` for how.
+    """Action that runs a command line; see `ExecuteLocal` for how.
 
     Parameters
     ----------
@@ -158,7 +158,7 @@ def split_words(substitutions: list[Substitution]) -> list[list[Substitution]]:
 
 
 class _WordSplitter:
-    """Splits text with quotes and backslashes into words, in pieces."""
+    """Splitter of text with quotes and backslashes into words, in pieces."""
 
     def __init__(self) -> None:
         self.words: list[list[Substitution]] = []

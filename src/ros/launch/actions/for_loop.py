@@ -26,7 +26,7 @@ Entities = list[LaunchDescriptionEntity] | None
 
 @expose_action("for_each")
 class ForEach(Action):
-    """Calls a function for each set of values, and visits the entities that it returns.
+    """Action that calls a function for each set of values, and visits the entities that it returns.
 
     Parameters
     ----------
@@ -96,7 +96,7 @@ class ForEach(Action):
 
 @expose_action("for")
 class ForLoop(Action):
-    """Calls a function for each index from 0 up, and visits the entities that it returns.
+    """Action that calls a function for each index from 0 up, and visits the entities that it returns.
 
     Parameters
     ----------

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 @expose_action("group")
 class GroupAction(Action):
-    """Executes actions one after another, in a scope of their own.
+    """Action that executes actions one after another, in a scope of their own.
 
     Parameters
     ----------

@@ -27,7 +27,7 @@ _LOCALS = ("current_launch_file_path", "current_launch_file_directory")
 
 @expose_action("include")
 class IncludeLaunchDescription(Action):
-    """Visits what another launch file, or a launch description at hand, describes.
+    """Action that visits what another launch file, or a launch description at hand, describes.
 
     Parameters
     ----------

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class LogInterface(Action):
-    """Logs a message at a level.
+    """Action that logs a message at a level.
 
     Parameters
     ----------
@@ -65,7 +65,7 @@ class LogInterface(Action):
 
 @expose_action("log")
 class Log(LogInterface):
-    """Logs a message at any level; parameters as for `LogInterface`."""
+    """Action that logs a message at any level; parameters as for `LogInterface`."""
 
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> tuple[type[LogInterface], dict[str, Any]]:
@@ -79,7 +79,7 @@ class Log(LogInterface):
 
 
 class _LogAt(LogInterface):
-    """Logs a message at one level.
+    """Action that logs a message at one level.
 
     Parameters
     ----------
@@ -97,27 +97,27 @@ class _LogAt(LogInterface):
 
 @expose_action("log_debug")
 class LogDebug(_LogAt):
-    """Logs a message at the level DEBUG."""
+    """Action that logs a message at the level DEBUG."""
 
     LEVEL = "DEBUG"
 
 
 @expose_action("log_info")
 class LogInfo(_LogAt):
-    """Logs a message at the level INFO."""
+    """Action that logs a message at the level INFO."""
 
     LEVEL = "INFO"
 
 
 @expose_action("log_warning")
 class LogWarning(_LogAt):
-    """Logs a message at the level WARNING."""
+    """Action that logs a message at the level WARNING."""
 
     LEVEL = "WARNING"
 
 
 @expose_action("log_error")
 class LogError(_LogAt):
-    """Logs a message at the level ERROR."""
+    """Action that logs a message at the level ERROR."""
 
     LEVEL = "ERROR"

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class OpaqueCoroutine(Action):
-    """Runs a coroutine in the launch's event loop.
+    """Action that runs a coroutine in the launch's event loop.
 
     The launch goes on until it is done, and stopping the launch cancels it.
 

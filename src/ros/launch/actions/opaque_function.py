@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class OpaqueFunction(Action):
-    """Calls a function with the launch context; nothing about what it does is known before.
+    """Action that calls a function with the launch context; nothing about what it does is known before.
 
     Parameters
     ----------

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 class PopEnvironment(Action):
-    """Brings back the environment that `PushEnvironment` kept; parameters as for `Action`."""
+    """Action that restores the environment that `PushEnvironment` saved; parameters as for `Action`."""
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__(**kwargs)

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 class PopLaunchConfigurations(Action):
-    """Brings back what `PushLaunchConfigurations` kept; parameters as for `Action`."""
+    """Action that restores what `PushLaunchConfigurations` saved; parameters as for `Action`."""
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__(**kwargs)

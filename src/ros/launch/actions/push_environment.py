@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 class PushEnvironment(Action):
-    """Keeps it for `PopEnvironment`; parameters as for `Action`."""
+    """Action that saves the environment for `PopEnvironment`; parameters as for `Action`."""
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__(**kwargs)

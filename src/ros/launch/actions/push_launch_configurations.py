@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 class PushLaunchConfigurations(Action):
-    """Keeps them for `PopLaunchConfigurations`; parameters as for `Action`."""
+    """Action that saves the launch configurations for `PopLaunchConfigurations`; parameters as for `Action`."""
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__(**kwargs)

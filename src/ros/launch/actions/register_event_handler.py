@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class RegisterEventHandler(Action):
-    """Registers an event handler.
+    """Action that registers an event handler.
 
     Parameters
     ----------

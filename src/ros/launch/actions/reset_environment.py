@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 @expose_action("reset_env")
 class ResetEnvironment(Action):
-    """Undoes all changes of the environment since the launch began; parameters as for `Action`."""
+    """Action that restores the environment of the start of the launch; parameters as for `Action`."""
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__(**kwargs)

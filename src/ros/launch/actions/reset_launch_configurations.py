@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 @expose_action("reset")
 class ResetLaunchConfigurations(Action):
-    """Removes all launch configurations but some.
+    """Action that removes all launch configurations but some.
 
     Parameters
     ----------

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 @expose_action("set_env")
 class SetEnvironmentVariable(NamedValueAction):
-    """Sets an environment variable for the processes started later.
+    """Action that sets an environment variable for the processes started later.
 
     Parameters
     ----------

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 @expose_action("let")
 class SetLaunchConfiguration(NamedValueAction):
-    """Sets a launch configuration.
+    """Action that sets a launch configuration.
 
     Parameters
     ----------

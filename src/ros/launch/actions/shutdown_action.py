@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 @expose_action("shutdown")
 class Shutdown(EmitEvent):
-    """Stops the launch and all its processes.
+    """Action that stops the launch and all its processes.
 
     Parameters
     ----------

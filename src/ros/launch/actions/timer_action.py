@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 @expose_action("timer")
 class TimerAction(Action):
-    """Executes actions after a time.
+    """Action that executes actions after a time.
 
     They see the launch configurations and the environment of the moment when the time began.
 
@@ -152,7 +152,7 @@ class TimerAction(Action):
 
 
 class _TimerEventHandler(EventHandler):
-    """Hands the events of all timers to these."""
+    """Event handler that passes the events of all timers to these."""
 
     def __init__(self) -> None:
         super().__init__(matcher=lambda event: is_a_subclass(event, TimerEvent))

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 class UnregisterEventHandler(Action):
-    """Removes an event handler.
+    """Action that removes an event handler.
 
     Parameters
     ----------

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 @expose_action("unset_env")
 class UnsetEnvironmentVariable(NamedAction):
-    """Removes an environment variable for the processes started later; one that is not set may be removed.
+    """Action that removes an environment variable for the processes started later; one that is not set may be removed.
 
     Parameters
     ----------

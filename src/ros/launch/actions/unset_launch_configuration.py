@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 @expose_action("unlet")
 class UnsetLaunchConfiguration(NamedAction):
-    """Removes a launch configuration; one that is not set may be removed.
+    """Action that removes a launch configuration; one that is not set may be removed.
 
     Parameters
     ----------

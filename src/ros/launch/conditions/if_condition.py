@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class IfCondition(Condition):
-    """Holds if a text means true; `true`, `false`, `1` and `0` are understood.
+    """Condition that holds if a text means true; `true`, `false`, `1` and `0` are understood.
 
     Parameters
     ----------

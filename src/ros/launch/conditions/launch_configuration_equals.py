@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 class LaunchConfigurationEquals(Condition):
-    """Holds if a launch configuration has some value.
+    """Condition that holds if a launch configuration has some value.
 
     Parameters
     ----------

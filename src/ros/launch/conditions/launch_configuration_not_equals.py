@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 class LaunchConfigurationNotEquals(LaunchConfigurationEquals):
-    """Holds if a launch configuration does not have some value; parameters as for its base."""
+    """Condition that holds if a launch configuration does not have some value; parameters as for its base."""
 
     def _predicate_func(self, context: LaunchContext) -> bool:
         return not super()._predicate_func(context)

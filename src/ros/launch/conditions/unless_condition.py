@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 class UnlessCondition(IfCondition):
-    """Holds if a text means false; parameters as for `IfCondition`."""
+    """Condition that holds if a text means false; parameters as for `IfCondition`."""
 
     def _predicate_func(self, context: LaunchContext) -> bool:
         return not super()._predicate_func(context)

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class OnExecutionComplete(OnActionEventBase):
-    """Reacts when an action, and whatever it started, is done.
+    """Event handler that reacts when an action, and whatever it started, is done.
 
     Parameters
     ----------

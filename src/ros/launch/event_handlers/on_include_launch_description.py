@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class OnIncludeLaunchDescription(EventHandler):
-    """Visits the launch descriptions that are given to a launch service; parameters as for its base."""
+    """Event handler that visits the launch descriptions included in a launch service; parameters as for its base."""
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__(matcher=lambda event: is_a_subclass(event, IncludeLaunchDescription), **kwargs)

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class OnProcessExit(OnActionEventBase):
-    """Reacts when a process ends.
+    """Event handler that reacts when a process ends.
 
     Parameters
     ----------

@@ -17,7 +17,7 @@ IOCallback = Callable[[ProcessIO], SomeEntitiesType | None]
 
 
 class OnProcessIO(OnActionEventBase):
-    """Reacts to input and output of a process.
+    """Event handler that reacts to input and output of a process.
 
     Parameters
     ----------

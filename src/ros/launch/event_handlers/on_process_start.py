@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class OnProcessStart(OnActionEventBase):
-    """Reacts when a process was started.
+    """Event handler that reacts when a process was started.
 
     Parameters
     ----------

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class OnShutdown(BaseEventHandler):
-    """Reacts when the launch is to stop.
+    """Event handler that reacts when the launch is to stop.
 
     Parameters
     ----------

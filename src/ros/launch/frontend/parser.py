@@ -32,7 +32,7 @@ class InvalidFrontendLaunchFileError(InvalidLaunchFileError):
 
 
 class Parser:
-    """Reads launch files; each language has a subclass with its own `load` and `get_file_extensions`."""
+    """Parser of launch files; each language has a subclass with its own `load` and `get_file_extensions`."""
 
     extensions_loaded: ClassVar[bool] = False
     frontend_parsers: ClassVar[dict[str, type[Parser]] | None] = None

@@ -48,7 +48,7 @@ Handler = with_per_logger_formatting(logging.Handler)
 
 
 class _ReadStreamHandler(logging.StreamHandler[Any]):
-    """Writes to a stream as long as it is read: a launch goes on when ``| head`` has seen enough."""
+    """Handler that writes to a stream as long as it is read: a launch goes on when ``| head`` has seen enough."""
 
     _is_read = True
 

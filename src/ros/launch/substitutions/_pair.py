@@ -12,7 +12,7 @@ from ._arguments import describe_text, expect_arguments
 
 
 class PairSubstitution(Substitution):
-    """Becomes what follows from two values.
+    """Substitution that is computed from two values.
 
     Parameters
     ----------

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 @expose_action("node_container")
 class ComposableNodeContainer(Node):
-    """Runs a container, and loads nodes into it.
+    """Action that runs a container, and loads nodes into it.
 
     Parameters
     ----------

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 @expose_action("lifecycle_node")
 class LifecycleNode(Node):
-    """Runs a node whose transitions are events of the launch, and which the launch can ask for transitions.
+    """Action that runs a node whose transitions are events of the launch, and which the launch can ask for transitions.
 
     Parameters
     ----------

@@ -54,7 +54,7 @@ def match_node_name_goal(node_name: str, goal_state: str) -> Callable[[Event], b
 
 
 class LifecycleTransition(Action):
-    """Takes nodes through transitions one after another, each when the one before is done.
+    """Action that requests transitions of nodes one after another, each when the one before is done.
 
     Parameters
     ----------

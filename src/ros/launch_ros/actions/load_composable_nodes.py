@@ -33,7 +33,7 @@ _TIMEOUT = 1.0
 
 @expose_action("load_composable_node")
 class LoadComposableNodes(Action):
-    """Loads nodes into a container that runs.
+    """Action that loads nodes into a container that runs.
 
     Parameters
     ----------

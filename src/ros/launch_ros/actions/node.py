@@ -49,7 +49,7 @@ _MAX_RULE_LENGTH = 8192
 
 @expose_action("node")
 class Node(ExecuteProcess):
-    """Runs a ROS node.
+    """Action that runs a ROS node.
 
     Parameters
     ----------

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 @expose_action("push_ros_namespace")
 @expose_action("push-ros-namespace")
 class PushROSNamespace(Action):
-    """Puts the nodes that follow in the same scope into a namespace, inside the one they would be in.
+    """Action that pushes the nodes that follow in the same scope into a namespace, inside their own.
 
     Parameters
     ----------

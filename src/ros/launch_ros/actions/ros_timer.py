@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 @expose_action("ros_timer")
 class ROSTimer(TimerAction):
-    """Executes actions after a time that ROS's clock measures, which may be simulated.
+    """Action that executes actions after a time that ROS's clock measures, which may be simulated.
 
     Parameters
     ----------

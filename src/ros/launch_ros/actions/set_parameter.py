@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 @expose_action("set_parameter")
 class SetParameter(Action):
-    """Sets a parameter of the nodes that follow in the same scope; a node's own parameters come before it.
+    """Action that sets a parameter of the nodes that follow in the same scope; a node's own parameters come before it.
 
     Parameters
     ----------

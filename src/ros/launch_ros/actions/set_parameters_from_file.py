@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 @expose_action("set_parameters_from_file")
 class SetParametersFromFile(Action):
-    """Gives a file of parameters to the nodes that follow in the same scope.
+    """Action that sets parameters from a file for the nodes that follow in the same scope.
 
     Parameters
     ----------

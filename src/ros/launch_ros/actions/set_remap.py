@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 @expose_action("set_remap")
 class SetRemap(Action):
-    """Remaps a name for the nodes that follow in the same scope.
+    """Action that remaps a name for the nodes that follow in the same scope.
 
     Parameters
     ----------

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 @expose_action("set_ros_log_dir")
 class SetROSLogDir(Action):
-    """Sets the folder of the log files of the nodes that follow in the same scope.
+    """Action that sets the folder of the log files of the nodes that follow in the same scope.
 
     Parameters
     ----------

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 @expose_action("set_use_sim_time")
 class SetUseSimTime(Action):
-    """Sets whether the launch's own node, and with it `ROSTimer`, goes by simulated time.
+    """Action that sets whether the launch's own node, and with it `ROSTimer`, uses simulated time.
 
     Parameters
     ----------

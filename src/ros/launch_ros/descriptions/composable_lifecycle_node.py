@@ -47,7 +47,7 @@ class ComposableLifecycleNode(ComposableNode):
 
 
 class LoadedLifecycleNode(Action):
-    """Takes a node that is being loaded through its life cycle, up to active.
+    """Action that configures and activates a node that is being loaded.
 
     Parameters
     ----------

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class OnStateTransition(EventHandler):
-    """Visits entities when a node made a transition.
+    """Event handler that visits entities when a node made a transition.
 
     Parameters
     ----------

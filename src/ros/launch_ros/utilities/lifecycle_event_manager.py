@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class LifecycleEventManager:
-    """Makes the state transitions of a node events of the launch, and its events requests to the node.
+    """Manager that emits the state transitions of a node as events of the launch, and passes its events to the node.
 
     Parameters
     ----------

@@ -12,7 +12,7 @@ from .test import Test
 
 
 class GTest(Test):
-    """Runs a GTest program.
+    """Action that runs a GTest program.
 
     Parameters
     ----------

@@ -13,7 +13,7 @@ from .test import Test
 
 
 class PyTest(Test):
-    """Runs pytest on a file or folder.
+    """Action that runs pytest on a file or folder.
 
     Parameters
     ----------

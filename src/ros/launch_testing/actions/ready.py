@@ -9,7 +9,7 @@ from launch.action import Action
 
 
 class ReadyToTest(Action):
-    """Tells whoever runs the tests that what was described before has been started."""
+    """Action that marks what was described before it as started."""
 
     def __init__(self) -> None:
         super().__init__()

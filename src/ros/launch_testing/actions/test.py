@@ -13,7 +13,7 @@ from launch.events.process import ShutdownProcess
 
 
 class Test(ExecuteProcess):
-    """Runs a test program, for some time at most.
+    """Action that runs a test program, for some time at most.
 
     Parameters
     ----------

@@ -10,7 +10,7 @@ from ..util.proc_lookup import resolveProcesses
 
 
 class SequentialTextChecker:
-    """Finds texts one after another: each search begins where the last one ended.
+    """Checker that finds texts one after another: each search begins where the last one ended.
 
     Parameters
     ----------

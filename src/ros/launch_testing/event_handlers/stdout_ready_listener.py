@@ -11,7 +11,7 @@ from launch.some_entities_type import SomeEntitiesType
 
 
 class StdoutReadyListener(OnProcessIO):
-    """Visits entities once a process has printed a text to its standard output.
+    """Event handler that visits entities once a process has printed a text to its standard output.
 
     Parameters
     ----------

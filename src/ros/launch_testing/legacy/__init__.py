@@ -32,7 +32,7 @@ __all__ = [
 
 
 class LaunchTestService:
-    """Adds actions to launch descriptions whose outcomes are tests, and runs these."""
+    """Service that adds actions to launch descriptions whose outcomes are tests, and runs these."""
 
     __test__ = False
 

@@ -15,7 +15,7 @@ _VARIABLE = "ROS_DOMAIN_ID"
 
 
 class EnableRmwIsolation(Action):
-    """Gives this process and what is launched after this action a ROS domain that no other test has.
+    """Action that sets a ROS domain of its own for this process and what is launched afterwards.
 
     The domain is free again when the launch is shut down, and the environment as it was.
     """

@@ -67,7 +67,7 @@ def _node_class() -> type[Action]:
     from launch_ros.actions import Node
 
     class Ros1Node(Node):
-        """Runs a node whose arguments are split after their substitutions were performed, as in ROS 1."""
+        """Action that runs a node whose arguments are split after their substitutions were performed, as in ROS 1."""
 
         def __init__(self, *, command_line: SomeSubstitutionsType = "", **kwargs: Any) -> None:
             super().__init__(**kwargs)
@@ -99,7 +99,7 @@ def _ros2_arguments(words: list[str]) -> list[str]:
 
 
 class _NodeWithConditions(Action):
-    """Runs a node with those of its parameters and remappings whose conditions hold.
+    """Action that runs a node with those of its parameters and remappings whose conditions hold.
 
     Parameters
     ----------
@@ -155,7 +155,7 @@ def parse_rosparam(entity: Entity, parser: Parser) -> tuple[type[Action], dict[s
 
 
 class SetRos1Parameters(Action):
-    """Sets parameters of the nodes that follow in the same scope.
+    """Action that sets parameters of the nodes that follow in the same scope.
 
     Parameters
     ----------
@@ -178,7 +178,7 @@ class SetRos1Parameters(Action):
 
 @expose_action("ros1:include")
 class IncludeRos1(IncludeLaunchDescription):
-    """Includes a launch file as ROS 1 did: it sees the arguments that are passed, and leaves none behind.
+    """Action that includes a launch file as ROS 1 did: it sees the arguments that are passed, and leaves none behind.
 
     Parameters
     ----------

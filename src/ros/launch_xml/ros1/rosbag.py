@@ -153,7 +153,7 @@ def _unused(old: Namespace, options: Mapping[str, str]) -> list[str]:
 
 
 class _Parser(ArgumentParser):
-    """Raises ValueError where the command would end."""
+    """Parser that raises ValueError where the command would exit."""
 
     def error(self, message: str) -> NoReturn:
         raise ValueError(f"{self.prog}: {message}")

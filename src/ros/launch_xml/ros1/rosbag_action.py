@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 class Rosbag(ExecuteProcess):
-    """Records or plays a bag; its command line is translated when its substitutions have been performed.
+    """Action that records or plays a bag; its command line is translated when its substitutions have been performed.
 
     Parameters
     ----------

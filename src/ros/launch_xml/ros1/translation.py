@@ -62,7 +62,7 @@ def translate_text(text: str) -> str:
 
 
 class _Translator:
-    """Translates elements, and remembers what there is to say."""
+    """Translator of elements, with the changes and notes for the user."""
 
     def __init__(self) -> None:
         self.changes: list[str] = []

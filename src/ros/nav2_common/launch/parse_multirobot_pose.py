@@ -8,7 +8,7 @@ _KEYS = ("x", "y", "z", "roll", "pitch", "yaw")
 
 
 class ParseMultiRobotPose:
-    """Reads robots and their poses from the command line of a launch.
+    """Parser of robots and their poses on the command line of a launch.
 
     They look like ``robots:="robot1={x: 1.0, y: 1.0, yaw: 1.57}; robot2={x: 1.0, y: 2.0}"``.
 

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 
 
 class Expiry:
-    """Wakes the server when the oldest result has been kept long enough."""
+    """Timer that wakes the server when the oldest result has been kept long enough."""
 
     def __init__(self, server: ActionServer, node: Node) -> None:
         self._server = server

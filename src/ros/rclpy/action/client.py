@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 class ActionClient(ActionEnd):
-    """Sends goals to an action's server.
+    """Client of an action, which sends goals to its server.
 
     Parameters
     ----------

@@ -57,7 +57,7 @@ def default_cancel_callback(cancel_request: Any) -> CancelResponse:
 
 
 class ActionServer(ActionEnd):
-    """Serves an action.
+    """Server of an action.
 
     Parameters
     ----------

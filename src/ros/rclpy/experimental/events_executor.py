@@ -8,7 +8,7 @@ _AFTER_TIME = 1000
 
 
 class EventsExecutor(SingleThreadedExecutor):
-    """Runs callbacks one after the other in the thread that spins."""
+    """Executor that runs callbacks one after the other in the thread that spins."""
 
     def spin_until_future_complete(self, future: Future, timeout_sec: float | None = None) -> None:
         """Run callbacks until a future is done or cancelled, or `timeout_sec` seconds have passed and none is ready."""

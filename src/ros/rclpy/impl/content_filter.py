@@ -130,7 +130,7 @@ def _parser() -> Lark:
 
 @v_args(inline=True)
 class _Conditions(Transformer[Token, Condition]):
-    """Turns the parts of an expression into functions of a message."""
+    """Transformer of the parts of an expression to functions of a message."""
 
     def __init__(self, expression: str, parameters: Sequence[str]) -> None:
         super().__init__()

@@ -137,7 +137,7 @@ class NodeHandle(Destroyable):
 
 
 class RequestHeader(NamedTuple):
-    """Identifies a request; `identity` is the transport's, None in a client."""
+    """Header that identifies a request; `identity` is the transport's, None in a client."""
 
     sequence_number: int
     identity: RequestId | None

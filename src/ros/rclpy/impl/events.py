@@ -119,7 +119,7 @@ class GraphSource(EventSource):
 
 
 class MatchedSource(GraphSource):
-    """Counts endpoints that match."""
+    """Source that counts endpoints that match."""
 
     def _note(self, added: bool, other: EndpointInfo) -> None:
         if self._matches(other):
@@ -127,7 +127,7 @@ class MatchedSource(GraphSource):
 
 
 class IncompatibleQosSource(GraphSource):
-    """Counts endpoints whose QoS forbids a match."""
+    """Source that counts endpoints whose QoS forbids a match."""
 
     def _note(self, added: bool, other: EndpointInfo) -> None:
         faults = self._faults(other) if added and self._same_type(other) else []
@@ -136,7 +136,7 @@ class IncompatibleQosSource(GraphSource):
 
 
 class IncompatibleTypeSource(GraphSource):
-    """Counts endpoints of another type."""
+    """Source that counts endpoints of another type."""
 
     def _note(self, added: bool, other: EndpointInfo) -> None:
         if added and not self._same_type(other):
@@ -144,7 +144,7 @@ class IncompatibleTypeSource(GraphSource):
 
 
 class LivelinessChangedSource(GraphSource):
-    """Counts publishers that are alive: those in the graph, and manual ones only as long as they show it."""
+    """Source that counts publishers that are alive: those in the graph, and manual ones as long as they assert it."""
 
     def __init__(self, handle: TopicHandle, on_ready: Callable[[], None], status: Any) -> None:
         self._leases: dict[bytes, _Lease] = {}
@@ -244,7 +244,7 @@ class _Lease:
 
 
 class LivelinessLostSource(EventSource):
-    """Counts how often a manual publisher did not show that it was alive."""
+    """Source that counts how often a manual publisher did not show that it was alive."""
 
     def __init__(self, handle: TopicHandle, on_ready: Callable[[], None], status: Any) -> None:
         super().__init__(handle, on_ready, status)
@@ -264,7 +264,7 @@ class LivelinessLostSource(EventSource):
 
 
 class DeadlineSource(EventSource):
-    """Counts how often a deadline passed without a sample, from the first sample on."""
+    """Source that counts how often a deadline passed without a sample, from the first sample on."""
 
     def __init__(self, handle: TopicHandle, on_ready: Callable[[], None], status: Any) -> None:
         super().__init__(handle, on_ready, status)
@@ -310,7 +310,7 @@ class DeadlineSource(EventSource):
 
 
 class MessageLostSource(EventSource):
-    """Counts the gaps in publishers' sequence numbers."""
+    """Source that counts the gaps in publishers' sequence numbers."""
 
     def __init__(self, handle: TopicHandle, on_ready: Callable[[], None], status: Any) -> None:
         super().__init__(handle, on_ready, status)

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 class Introspection:
-    """Publishes the events of one client or service."""
+    """Publisher of the events of one client or service."""
 
     def __init__(
         self, handle: EndpointHandle, service_type: Any, clock: Clock, qos: QoSProfile, state: ServiceIntrospectionState

@@ -41,7 +41,7 @@ def _find_caller(frame: FrameType | None) -> FrameType:
 
 
 class LoggingFilter:
-    """Decides whether a log call is carried out.
+    """Filter that decides whether a log call is carried out.
 
     `params` are the keyword arguments that it takes with their defaults; one whose default is None is needed.
     """

@@ -11,7 +11,7 @@ from rclpy.qos import QoSProfile
 
 
 class RosoutPublisher:
-    """Publishes what is logged under a node's name, or under a name below it."""
+    """Publisher of what is logged under a node's name, or under a name below it."""
 
     def __init__(self, handle: NodeHandle, qos: QoSProfile) -> None:
         from rcl_interfaces.msg import Log

@@ -11,7 +11,7 @@ from typing import Any
 
 
 class ThreadPool:
-    """Carries out functions, at most `size` at a time; its threads end with `close`."""
+    """Pool of threads that run functions, at most `size` at a time; its threads end with `close`."""
 
     def __init__(self, size: int) -> None:
         self._max_workers = size

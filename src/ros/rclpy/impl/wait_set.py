@@ -139,7 +139,7 @@ def adapt(waitable: Any) -> None:
 
 
 class _Adapter:
-    """Stands between an executor and a waitable."""
+    """Adapter between an executor and a waitable written for wait sets."""
 
     def __init__(self, waitable: Any) -> None:
         self._waitable = weakref.ref(waitable)

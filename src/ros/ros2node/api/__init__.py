@@ -156,7 +156,7 @@ def get_action_client_info(*, node: Any, remote_node_name: str, include_hidden: 
 
 
 class NodeNameCompleter(NameCompleter):
-    """Returns the full names of the nodes that an argument may be.
+    """Completer of the full names of the nodes that an argument may be.
 
     Parameters
     ----------

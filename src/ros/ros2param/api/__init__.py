@@ -128,7 +128,7 @@ def report(result: Any, good: str, bad: str) -> bool:
 
 
 class ParameterNameCompleter:
-    """Returns the names of the parameters of the node that the argument ``node_name`` names."""
+    """Completer of the names of the parameters of the node that the argument ``node_name`` names."""
 
     def __call__(self, prefix: str, parsed_args: Namespace, **kwargs: Any) -> list[str]:
         """Return them."""

@@ -88,7 +88,7 @@ def run_executable(*, path: str, argv: Sequence[str], prefix: str | Sequence[str
 
 
 class ExecutableNameCompleter:
-    """Returns the executables of the package that another argument names.
+    """Completer of the executables of the package that another argument names.
 
     Parameters
     ----------

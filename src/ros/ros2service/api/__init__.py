@@ -60,7 +60,7 @@ def service_type_completer(**kwargs: Any) -> list[str]:
 
 
 class ServiceNameCompleter(NameCompleter):
-    """Returns the services that an argument may be.
+    """Completer of the services that an argument may be.
 
     Parameters
     ----------
@@ -76,7 +76,7 @@ class ServiceNameCompleter(NameCompleter):
 
 
 class ServiceTypeCompleter(TypeCompleter):
-    """Returns the types that an argument may be: those of the service which another argument names, or all.
+    """Completer of the types that an argument may be: those of the service which another argument names, or all.
 
     Parameters
     ----------

@@ -82,7 +82,7 @@ def message_type_completer(**kwargs: Any) -> list[str]:
 
 
 class TopicNameCompleter(NameCompleter):
-    """Returns the topics that an argument may be.
+    """Completer of the topics that an argument may be.
 
     Parameters
     ----------
@@ -97,7 +97,7 @@ class TopicNameCompleter(NameCompleter):
 
 
 class TopicTypeCompleter(TypeCompleter):
-    """Returns the types that an argument may be: those of the topic which another argument names, or all.
+    """Completer of the types that an argument may be: those of the topic which another argument names, or all.
 
     Parameters
     ----------
@@ -110,7 +110,7 @@ class TopicTypeCompleter(TypeCompleter):
 
 
 class TopicMessagePrototypeCompleter:
-    """Returns the default message, as YAML, of the type that another argument names.
+    """Completer of the default message, as YAML, of the type that another argument names.
 
     Parameters
     ----------

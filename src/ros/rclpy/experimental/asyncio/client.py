@@ -12,7 +12,7 @@ from rclpy.task import Future
 
 
 class AsyncClient(Client):
-    """Calls a service; made by `AsyncNode.create_client`."""
+    """Client of a service; made by `AsyncNode.create_client`."""
 
     _calls: set[asyncio.Future[Any]]
 

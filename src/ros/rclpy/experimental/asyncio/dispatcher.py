@@ -14,7 +14,7 @@ from rclpy.task import Task
 
 
 class Dispatcher:
-    """Runs the callbacks of what becomes ready, on whatever thread, as tasks of one group.
+    """Dispatcher that runs the callbacks of what becomes ready, on whatever thread, as tasks of one group.
 
     Parameters
     ----------

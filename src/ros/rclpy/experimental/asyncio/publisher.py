@@ -8,7 +8,7 @@ from rclpy.publisher import Publisher
 
 
 class AsyncPublisher(Publisher):
-    """Sends messages on a topic; made by `AsyncNode.create_publisher`."""
+    """Publisher of messages on a topic; made by `AsyncNode.create_publisher`."""
 
     def publish(self, msg: Any) -> None:
         """Send a message, or one already serialised as bytes.

@@ -10,7 +10,7 @@ from rclpy.timer import Timer
 
 
 class AsyncTimer(Timer):
-    """Calls a function, perhaps a coroutine function, periodically; made by `AsyncNode.create_timer`.
+    """Timer that calls a function, perhaps a coroutine function, periodically; made by `AsyncNode.create_timer`.
 
     Raises
     ------
