@@ -72,6 +72,7 @@ def test_a_bag_without_description_is_read_from_its_files(tmp_path):
         assert list(bag.messages()) == messages(300)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("storage", ["mcap", "sqlite3"])
 def test_a_bag_of_many_files_does_not_keep_them_all_open(tmp_path, storage):
     import psutil

@@ -11,6 +11,7 @@ from daidalos.common.kernels import KERNELS, compiled, warm_up
 PACKAGES = ("daidalos.mapping", "daidalos.localization", "daidalos.navigation", "daidalos.simulation.rendering")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("package", PACKAGES)
 def test_progress_of_warming_up_runs_from_nothing_to_all(package: str) -> None:
     told: list[tuple[float, str]] = []

@@ -35,6 +35,7 @@ def errors(results: list[ScanResult], true: np.ndarray) -> np.ndarray:
     return np.hypot(gap[:, 0], gap[:, 1])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("lidar", "config"),
     [
@@ -65,6 +66,7 @@ def test_the_pose_is_odometry_corrected_by_the_map() -> None:
         assert pose2.compose(slam.map_to_odom, odometry[k]) == pytest.approx(result.pose, abs=1e-9)
 
 
+@pytest.mark.slow
 def test_the_same_input_gives_the_same_result() -> None:
     _, odometry, scans = tour(Lidar(beams=360))
     outcomes = []
@@ -77,6 +79,7 @@ def test_the_same_input_gives_the_same_result() -> None:
         assert np.array_equal(first, second)
 
 
+@pytest.mark.slow
 def test_a_loop_is_closed_and_the_map_follows_in_pieces() -> None:
     """A ring of corridors driven around more than once, with odometry that is metres off at the end."""
     rng = np.random.default_rng(3)

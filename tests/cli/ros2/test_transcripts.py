@@ -14,6 +14,8 @@ import pytest
 
 from .commands import Result, environment, ros2
 
+pytestmark = pytest.mark.slow
+
 _SHARED = Path(os.environ.get("DAIDALOS_SHARED_DATA", Path(__file__).parents[4] / "shared" / "data"))
 _FILE = _SHARED / "cli" / "transcripts.json"
 TRANSCRIPTS = json.loads(_FILE.read_text()) if _FILE.is_file() else []

@@ -143,6 +143,7 @@ def test_a_path_that_is_too_long_for_a_socket_is_no_obstacle(domain, tmp_path, m
     assert left == {"registry.lock"}
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not Path("/proc/self/fd").is_dir(), reason="looks where Linux lists open files")
 def test_sessions_that_were_closed_keep_no_files_open(domain):
     def open_files() -> int:
