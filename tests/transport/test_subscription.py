@@ -21,7 +21,7 @@ BURST = 60
 CODEC = codec_of(Int32)
 
 
-class Wire(BackendSubscription):
+class Remote(BackendSubscription):
     """Samples are their bytes."""
 
     def data(self, sample: Any) -> bytes:
@@ -44,7 +44,7 @@ class Receiver:
         node = NodeInfo("key", "name", "/")
         endpoint = EndpointInfo(EndpointKind.SUBSCRIPTION, node, "/a", "std_msgs/msg/Int32", "", qos, bytes(16))
         self.subscription = Subscription(endpoint, CODEC, self.ready.release)
-        self.subscription.attach(Wire(), lambda: None)
+        self.subscription.attach(Remote(), lambda: None)
 
     def accept(self, count: int) -> None:
         for number in range(count):

@@ -74,14 +74,14 @@ def _place(tree: LinkTree) -> tuple[dict[str, _Node], float]:
     span: dict[str, float] = {}
     for name, _ in reversed(order):
         below = [joint.child for joint in tree.children.get(name, ())]
-        span[name] = max(own[name], label.get(name, 0.0), _room(below, span))
+        span[name] = max(own[name], label.get(name, 0.0), _subtree_width(below, span))
     left = _side_by_side(tree.roots, span, _MARGIN)
     nodes = {}
     for name, depth in order:
         nodes[name] = _Node(name, left[name] + span[name] / 2, _MARGIN + _HEIGHT / 2 + depth * _LEVEL, own[name])
         below = [joint.child for joint in tree.children.get(name, ())]
-        left |= _side_by_side(below, span, left[name] + (span[name] - _room(below, span)) / 2)
-    return nodes, _room(tree.roots, span) + 2 * _MARGIN
+        left |= _side_by_side(below, span, left[name] + (span[name] - _subtree_width(below, span)) / 2)
+    return nodes, _subtree_width(tree.roots, span) + 2 * _MARGIN
 
 
 def _side_by_side(names: Sequence[str], span: dict[str, float], start: float) -> dict[str, float]:
@@ -93,7 +93,7 @@ def _side_by_side(names: Sequence[str], span: dict[str, float], start: float) ->
     return left
 
 
-def _room(names: Sequence[str], span: dict[str, float]) -> float:
+def _subtree_width(names: Sequence[str], span: dict[str, float]) -> float:
     """Return the total width of subtrees side by side."""
     return sum(span[name] for name in names) + _GAP * max(0, len(names) - 1)
 

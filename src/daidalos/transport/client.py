@@ -47,12 +47,12 @@ class Client(ServiceEnd[BackendClient, int]):
         if server is not None:
             identity = RequestId(self.endpoint.gid, sequence)
             server.accept_local(request, identity, lambda response: self._accept_local(response, sequence))
-        elif self._wire is not None:
-            self._wire.send(self._request.encode(request), sequence, time.time_ns())
+        elif self._remote is not None:
+            self._remote.send(self._request.encode(request), sequence, time.time_ns())
         return sequence
 
-    def _open(self, wire: BackendClient, item: Any) -> tuple[Any, int, int]:
-        data, sequence, stamp = wire.response(item)
+    def _open(self, remote: BackendClient, item: Any) -> tuple[Any, int, int]:
+        data, sequence, stamp = remote.response(item)
         return self._response.decode(data), sequence, stamp
 
     # The session's side.

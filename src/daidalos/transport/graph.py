@@ -80,14 +80,14 @@ class Graph:
             if node.key in self._nodes:
                 return
             self._nodes[node.key] = node
-        self._tell(True, node)
+        self._notify(True, node)
 
     def remove_node(self, key: str) -> None:
         """Remove a node; its endpoints are removed one by one as their own notifications arrive."""
         with self._changed:
             node = self._nodes.pop(key, None)
         if node:
-            self._tell(False, node)
+            self._notify(False, node)
 
     def add_endpoint(self, key: str, endpoint: EndpointInfo) -> None:
         """Add an endpoint under a key that is unique in the domain."""
@@ -110,7 +110,7 @@ class Graph:
                 del members[key]
                 if not members:
                     del index[name]
-        self._tell(False, endpoint)
+        self._notify(False, endpoint)
 
     def listen(self, listener: Listener) -> Callable[[], None]:
         """Call `listener` at every change, on the thread that reports it; call the result to stop."""
@@ -123,7 +123,7 @@ class Graph:
 
         return stop
 
-    def _tell(self, added: bool, what: NodeInfo | EndpointInfo) -> None:
+    def _notify(self, added: bool, what: NodeInfo | EndpointInfo) -> None:
         for listener in self._listeners:
             listener(added, what)
         self.notify()

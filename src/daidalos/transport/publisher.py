@@ -32,7 +32,7 @@ class Publisher:
         self._gid = endpoint.gid
         self._next_sequence = itertools.count(1).__next__
         self._targets: tuple[Subscription, ...] = ()
-        self._wire: BackendPublisher | None = None
+        self._remote: BackendPublisher | None = None
         self._has_remote_subscribers = False
         qos = endpoint.qos
         self._latched = qos.transient_local
@@ -57,16 +57,16 @@ class Publisher:
             return
         if self._observers:
             self.note()
-        remote = self._has_remote_subscribers
+        has_remote = self._has_remote_subscribers
         sequence = self._next_sequence()
-        if self._targets or remote or self._latched:
+        if self._targets or has_remote or self._latched:
             stamp = time.time_ns()
             if self._latched:
                 self._history.append((self._codec.snapshot(message), stamp, sequence, self._gid))
             for subscription in self._targets:
                 subscription.accept_local((self._codec.snapshot(message), stamp, sequence, self._gid))
-            if remote and self._wire is not None:
-                self._wire.put(self._codec.parts(message), sequence, stamp)
+            if has_remote and self._remote is not None:
+                self._remote.put(self._codec.parts(message), sequence, stamp)
 
     def _publish_bytes(self, data: bytes) -> None:
         self.note()
@@ -75,8 +75,8 @@ class Publisher:
             self._history.append((self._codec.decode(data), stamp, sequence, self._gid))
         for subscription in self._targets:
             subscription.accept_local((self._codec.decode(data), stamp, sequence, self._gid))
-        if self._has_remote_subscribers and self._wire is not None:
-            self._wire.put([data], sequence, stamp)
+        if self._has_remote_subscribers and self._remote is not None:
+            self._remote.put([data], sequence, stamp)
 
     def observe(self, observer: Callable[[], None]) -> None:
         """Call `observer` at every message and every `note`."""
@@ -95,13 +95,13 @@ class Publisher:
         timeout_ns
             How long to wait; None for as long as it takes.
         """
-        wire = self._wire
-        return wire is None or wire.wait_for_acks(timeout_ns)
+        remote = self._remote
+        return remote is None or remote.wait_for_acks(timeout_ns)
 
     @property
     def wire_has_readers(self) -> bool:
         """Whether the middleware itself knows of readers in other processes."""
-        return self._wire is not None and self._wire.has_readers
+        return self._remote is not None and self._remote.has_readers
 
     @property
     def has_subscribers(self) -> bool:
@@ -121,9 +121,9 @@ class Publisher:
 
     # The session's side.
 
-    def attach(self, wire: BackendPublisher, undo: Callable[[], None]) -> None:
+    def attach(self, remote: BackendPublisher, undo: Callable[[], None]) -> None:
         """Connect to the middleware; `undo` disconnects."""
-        self._wire, self._undo = wire, undo
+        self._remote, self._undo = remote, undo
         if self._latched:
             self._has_remote_subscribers = True  # the middleware keeps the samples for who comes later
 
@@ -137,6 +137,6 @@ class Publisher:
 
     def detach(self) -> None:
         """Drop the middleware and all subscriptions."""
-        wire, self._wire, self._has_remote_subscribers, self._targets = self._wire, None, False, ()
-        if wire:
-            wire.close()
+        remote, self._remote, self._has_remote_subscribers, self._targets = self._remote, None, False, ()
+        if remote:
+            remote.close()

@@ -33,16 +33,16 @@ class Service(ServiceEnd[BackendService, RequestId]):
         answer = self._local.pop(identity, None)
         if answer is not None:
             answer(self._response.snapshot(response))
-        elif self._wire is not None:
-            self._wire.reply(identity, self._response.encode(response))
+        elif self._remote is not None:
+            self._remote.reply(identity, self._response.encode(response))
 
     def accept_local(self, request: Any, identity: RequestId, answer: Reply) -> None:
         """Queue a request of this process; `answer` receives the response."""
         self._local[identity] = answer
         self._accept_local(self._request.snapshot(request), identity)
 
-    def _open(self, wire: BackendService, item: Any) -> tuple[Any, RequestId, int]:
-        data, identity, stamp = wire.request(item)
+    def _open(self, remote: BackendService, item: Any) -> tuple[Any, RequestId, int]:
+        data, identity, stamp = remote.request(item)
         return self._request.decode(data), identity, stamp
 
     # The session's side.

@@ -14,11 +14,11 @@ from daidalos.transport.graph import EndpointInfo
 
 _LOGGER = logging.getLogger(__name__)
 
-Wire = TypeVar("Wire", bound=BackendClient | BackendService)
+Remote = TypeVar("Remote", bound=BackendClient | BackendService)
 Identity = TypeVar("Identity")
 
 
-class ServiceEnd(Generic[Wire, Identity]):
+class ServiceEnd(Generic[Remote, Identity]):
     """Client or service whose incoming messages are queued until taken.
 
     Attributes
@@ -38,7 +38,7 @@ class ServiceEnd(Generic[Wire, Identity]):
         self._request = request
         self._response = response
         self._queue: deque[tuple[Any, Any, int]] = deque()
-        self._wire: Wire | None = None
+        self._remote: Remote | None = None
         self._undo: Callable[[], None] | None = None
 
     def __len__(self) -> int:
@@ -56,16 +56,16 @@ class ServiceEnd(Generic[Wire, Identity]):
                 return None
             if message is not None:
                 return message, item, received, received
-            if self._wire is None:
+            if self._remote is None:
                 return None
             try:
-                message, identity, stamp = self._open(self._wire, item)
+                message, identity, stamp = self._open(self._remote, item)
             except CdrError as error:
                 _LOGGER.error("dropped a %s '%s': %s", self.incoming, self.endpoint.name, error)
             else:
                 return message, identity, stamp, received
 
-    def _open(self, wire: Wire, item: Any) -> tuple[Any, Identity, int]:
+    def _open(self, remote: Remote, item: Any) -> tuple[Any, Identity, int]:
         """Return the message, its identity and its source stamp of a queued entry."""
         raise NotImplementedError
 
@@ -87,13 +87,13 @@ class ServiceEnd(Generic[Wire, Identity]):
 
     # The session's side.
 
-    def attach(self, wire: Wire, undo: Callable[[], None]) -> None:
+    def attach(self, remote: Remote, undo: Callable[[], None]) -> None:
         """Connect to the middleware; `undo` disconnects."""
-        self._wire, self._undo = wire, undo
+        self._remote, self._undo = remote, undo
 
     def detach(self) -> None:
         """Drop the middleware and the queue."""
-        wire, self._wire = self._wire, None
+        remote, self._remote = self._remote, None
         self._queue.clear()
-        if wire:
-            wire.close()
+        if remote:
+            remote.close()

@@ -117,9 +117,9 @@ class Session:
         """Create a publisher of messages of a class on a topic."""
         key, endpoint = self._endpoint(EndpointKind.PUBLISHER, node, topic, message_type, qos)
         publisher = Publisher(endpoint, codec_of(message_type, self.backend.wide))
-        wire = self.backend.declare_publisher(key, endpoint)
-        publisher.attach(wire, lambda: self._remove(key, self._publishers, publisher))
-        wire.watch_readers(lambda: self._note_listeners(publisher))
+        remote = self.backend.declare_publisher(key, endpoint)
+        publisher.attach(remote, lambda: self._remove(key, self._publishers, publisher))
+        remote.watch_readers(lambda: self._note_listeners(publisher))
         with self._lock:
             self._publishers.setdefault(topic, set()).add(publisher)
             self._match_topic(topic)
@@ -140,8 +140,8 @@ class Session:
                 for publisher in self._publishers.get(topic, ()):
                     if _compatible(publisher.endpoint, endpoint):
                         publisher.replay(subscription)
-        wire = self.backend.declare_subscription(key, endpoint, subscription.accept)
-        subscription.attach(wire, lambda: self._remove(key, self._subscriptions, subscription))
+        remote = self.backend.declare_subscription(key, endpoint, subscription.accept)
+        subscription.attach(remote, lambda: self._remove(key, self._subscriptions, subscription))
         self.graph.add_endpoint(key, endpoint)
         return subscription
 
@@ -153,8 +153,8 @@ class Session:
         wide = self.backend.wide
         request, response = codec_of(service_type.Request, wide), codec_of(service_type.Response, wide)
         service = Service(endpoint, request, response, on_ready)
-        wire = self.backend.declare_service(key, endpoint, service.accept)
-        service.attach(wire, lambda: self._remove(key, self._services, service))
+        remote = self.backend.declare_service(key, endpoint, service.accept)
+        service.attach(remote, lambda: self._remove(key, self._services, service))
         with self._lock:
             self._services.setdefault(name, []).append(service)
             self._match_service(name)
@@ -169,8 +169,8 @@ class Session:
         wide = self.backend.wide
         request, response = codec_of(service_type.Request, wide), codec_of(service_type.Response, wide)
         client = Client(endpoint, request, response, on_ready)
-        wire = self.backend.declare_client(key, endpoint, client.accept)
-        client.attach(wire, lambda: self._remove(key, self._clients, client))
+        remote = self.backend.declare_client(key, endpoint, client.accept)
+        client.attach(remote, lambda: self._remove(key, self._clients, client))
         with self._lock:
             self._clients.setdefault(name, set()).add(client)
             self._match_service(name)

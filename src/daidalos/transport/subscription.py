@@ -46,7 +46,7 @@ class Subscription:
         self._codec = codec
         self.queue: deque[tuple[Any, ...]] = deque(maxlen=endpoint.qos.limit)
         self._limit = endpoint.qos.limit if endpoint.qos.reliable else None
-        self._wire: BackendSubscription | None = None
+        self._remote: BackendSubscription | None = None
         self._undo: Callable[[], None] | None = None
         self._refused: frozenset[bytes] = frozenset()
         self._observers: tuple[Callable[[SampleInfo], None], ...] = ()
@@ -71,11 +71,11 @@ class Subscription:
             self._note_take()
             if item[0] is not None:
                 return item[0], item
-            wire = self._wire
-            if wire is None:
+            remote = self._remote
+            if remote is None:
                 return None
             try:
-                return self._codec.decode(wire.data(item[1])), item
+                return self._codec.decode(remote.data(item[1])), item
             except CdrError as error:
                 _LOGGER.error("dropped a message on '%s': %s", self.endpoint.name, error)
 
@@ -88,20 +88,20 @@ class Subscription:
         self._note_take()
         if item[0] is not None:
             return self._codec.encode(item[0]), item
-        return (self._wire.data(item[1]), item) if self._wire else None
+        return (self._remote.data(item[1]), item) if self._remote else None
 
     def info(self, item: tuple[Any, ...]) -> SampleInfo:
         """Return the metadata of a taken sample."""
-        if item[0] is not None or self._wire is None:
+        if item[0] is not None or self._remote is None:
             _, stamp, sequence, gid = item
             return SampleInfo(stamp, stamp, sequence, gid)
-        return self._wire.info(item[1], item[2])
+        return self._remote.info(item[1], item[2])
 
     def accept_local(self, item: tuple[Any, ...]) -> None:
         """Queue a sample of this process."""
         if self._observers:
             _, stamp, sequence, gid = item
-            self._tell(SampleInfo(stamp, stamp, sequence, gid))
+            self._notify(SampleInfo(stamp, stamp, sequence, gid))
         self.queue.append(item)
         self.on_ready()
 
@@ -109,13 +109,13 @@ class Subscription:
         """Queue a sample of another process."""
         item = (None, sample, time.time_ns())
         if self._refused or self._observers:
-            wire = self._wire
-            if wire is None:
+            remote = self._remote
+            if remote is None:
                 return
-            info = wire.info(sample, item[2])
+            info = remote.info(sample, item[2])
             if info.gid in self._refused:
                 return
-            self._tell(info)
+            self._notify(info)
         if self._limit is not None and len(self.queue) >= self._limit:
             self._wait_for_space()
         self.queue.append(item)
@@ -125,7 +125,7 @@ class Subscription:
         """Call `observer` with every sample, on the thread that queues it."""
         self._observers = (*self._observers, observer)
 
-    def _tell(self, info: SampleInfo) -> None:
+    def _notify(self, info: SampleInfo) -> None:
         for observer in self._observers:
             observer(info)
 
@@ -167,9 +167,9 @@ class Subscription:
 
     # The session's side.
 
-    def attach(self, wire: BackendSubscription, undo: Callable[[], None]) -> None:
+    def attach(self, remote: BackendSubscription, undo: Callable[[], None]) -> None:
         """Connect to the middleware; `undo` disconnects."""
-        self._wire, self._undo = wire, undo
+        self._remote, self._undo = remote, undo
 
     def refuse(self, gids: frozenset[bytes]) -> None:
         """Set the publishers with incompatible QoS, whose samples are rejected."""
@@ -177,7 +177,7 @@ class Subscription:
 
     def detach(self) -> None:
         """Drop the middleware and the queue."""
-        wire, self._wire = self._wire, None
+        remote, self._remote = self._remote, None
         self.queue.clear()
-        if wire:
-            wire.close()
+        if remote:
+            remote.close()

@@ -49,7 +49,7 @@ def shortest_angular_distance_with_limits(
         Whether both angles are allowed, and the turn. Where they are not, it is the one that approaches, or
         leaves, the forbidden angles over the nearer limit.
     """
-    allowed, clockwise, counterclockwise = _room(from_angle, left_limit, right_limit)
+    allowed, clockwise, counterclockwise = _allowed_rotation(from_angle, left_limit, right_limit)
     turn = shortest_angular_distance(from_angle, to_angle)
     other = two_pi_complement(turn)
     if not allowed:
@@ -57,7 +57,7 @@ def shortest_angular_distance_with_limits(
     for one in (turn, other):
         if clockwise <= one <= counterclockwise:
             return True, one
-    _, to_right, to_left = _room(to_angle, left_limit, right_limit)
+    _, to_right, to_left = _allowed_rotation(to_angle, left_limit, right_limit)
     return False, _toward(turn, other, to_left, -to_right)
 
 
@@ -89,7 +89,7 @@ def shortest_angular_distance_with_large_limits(
     return False, turn
 
 
-def _room(angle: float, left_limit: float, right_limit: float) -> tuple[bool, float, float]:
+def _allowed_rotation(angle: float, left_limit: float, right_limit: float) -> tuple[bool, float, float]:
     """Return whether an angle is allowed, and how far it may turn, clockwise (negative) and counterclockwise.
 
     For an angle that is not allowed, that is how far it is to the right limit and to the left one.

@@ -363,9 +363,9 @@ def test_a_goal_is_cancelled_or_refused(arm: Rig) -> None:
     result, cancelled = handle.get_result_async(), handle.cancel_goal_async()
     arm.cycle_until(lambda: result.done() and cancelled.done())
     assert result.result().status == 5
-    strange = trajectory((1.0, [1.0, 0.5]))
-    strange.joint_names = ["shoulder", "knee"]
-    refused = client.send_goal_async(FollowJointTrajectory.Goal(trajectory=strange))
+    unknown = trajectory((1.0, [1.0, 0.5]))
+    unknown.joint_names = ["shoulder", "knee"]
+    refused = client.send_goal_async(FollowJointTrajectory.Goal(trajectory=unknown))
     arm.cycle_until(refused.done)
     assert not refused.result().accepted
     assert arm.switch(stop=["arm"]).ok

@@ -49,7 +49,7 @@ def test_software_draws_unless_it_is_told_otherwise(monkeypatch):
 def test_software_draws_where_the_other_is_missing_and_says_so_once(monkeypatch, caplog, wanted, line):
     monkeypatch.setenv(backends.VARIABLE, wanted)
     monkeypatch.setitem(sys.modules, "daidalos.simulation.rendering.gl_renderer", None)
-    backends.tell.cache_clear()
+    backends.log_once.cache_clear()
     for _ in range(2):
         assert isinstance(backends.make_renderer(PINHOLE, 0.1, 50.0, 1), Renderer)
     assert [line in record.message for record in caplog.records] == [True]

@@ -92,7 +92,7 @@ def test_zenohs_subscriber_has_our_history_whichever_comes_first(session: Sessio
     node = node_of(session, "me")
     early = Reader(stranger, domain)
     one = session.create_publisher(node, TOPIC, String, LATCHED)
-    until(lambda: one._wire._publisher.matching_status.matching)
+    until(lambda: one._remote._publisher.matching_status.matching)
     say(one, "a", "b", "c")
     assert early.read(3) == ["a", "b", "c"]
     late = Reader(stranger, domain)
@@ -191,7 +191,7 @@ def history(oracle: Oracle, received: list[int]) -> History:
 
 
 def test_what_was_kept_comes_before_what_is_sent(history, oracle, received):
-    history.ask("ab")
+    history.request_history("ab")
     assert oracle.asked[0][0] == "0/kept/x/@adv/pub/ab/**?_max=3"
     history.accept(sample(3))
     history.accept(sample(4))
@@ -206,7 +206,7 @@ def test_what_was_kept_comes_before_what_is_sent(history, oracle, received):
 
 def test_no_more_are_delivered_than_are_kept(history, oracle, received):
     other = b"o" * 16
-    history.ask("ab")
+    history.request_history("ab")
     for number in range(1, 6):
         history.accept(sample(number, stamp=number))
     history.accept(sample(6))
@@ -229,18 +229,18 @@ def test_a_session_that_is_heard_before_it_is_known_is_asked(history, oracle, re
 
 def test_a_session_is_asked_again_for_a_further_publisher(history, oracle, received):
     other = b"o" * 16
-    history.ask("ab")
-    history.ask("ab")
+    history.request_history("ab")
+    history.request_history("ab")
     oracle.answer(sample(1))
     oracle.answer(sample(1), sample(7, gid=other))
     assert received == [1, 7]
-    history.ask("ab")  # as when a link was lost and came back
+    history.request_history("ab")  # as when a link was lost and came back
     oracle.answer(sample(1), sample(2), sample(7, gid=other))
     assert received == [1, 7, 2]
 
 
 def test_a_session_that_does_not_answer_in_time_is_heard_and_asked_again(history, oracle, received):
-    history.ask("ab")
+    history.request_history("ab")
     history.accept(sample(2))
     oracle.answer(in_time=False)
     assert received == [2]
@@ -253,7 +253,7 @@ def test_a_session_that_does_not_answer_in_time_is_heard_and_asked_again(history
 def test_a_publisher_that_is_made_again_counts_anew(history, oracle, received):
     history.accept(sample(5, stamp=50))
     oracle.answer()
-    history.ask("ab")
+    history.request_history("ab")
     oracle.answer(sample(1, stamp=60))
     assert received == [5, 1]
 
@@ -268,11 +268,11 @@ def test_two_threads_deliver_in_order_and_who_is_closed_hears_nothing(oracle):
             received.append(-1)
 
     history = History(oracle, "0/kept/x", None, deliver)
-    history.ask("ab")
+    history.request_history("ab")
     assert oracle.asked[0][0] == "0/kept/x/@adv/pub/ab/**"
     oracle.answer(sample(1))
     assert received == [1, -1, 2]
     history.close()
     history.accept(sample(3))
-    history.ask("cd")
+    history.request_history("cd")
     assert (received, oracle.asked) == ([1, -1, 2], [])

@@ -132,8 +132,8 @@ class JointTrajectoryController(Controller):
 
     def _refuse(self, request: TrajectoryRequest) -> str:
         problem = problem_with(request.trajectory, self.p, self.now_ns)
-        strange = next((name for name in (*request.path, *request.goal) if name not in self._joints), "")
-        return problem or (f"tolerance for '{strange}', which is not a joint of the controller" if strange else "")
+        unknown = next((name for name in (*request.path, *request.goal) if name not in self._joints), "")
+        return problem or (f"tolerance for '{unknown}', which is not a joint of the controller" if unknown else "")
 
     def _start_goal(self, goal: Goal) -> None:
         self._replace(goal.request.trajectory, goal)

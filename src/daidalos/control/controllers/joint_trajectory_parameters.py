@@ -124,6 +124,6 @@ class JointTrajectoryParameters(Parameters):
             raise ParameterError("command_interfaces", f"can not be {', '.join(self.command_interfaces)} together")
         if set(self.state_interfaces) not in _STATES:
             raise ParameterError("state_interfaces", "must have position, before acceleration also velocity")
-        strange = [name for name in self.command_joints if name not in self.joints]
-        if strange and len(self.command_joints) != len(self.joints):
-            raise ParameterError("command_joints", f"has {strange[0]!r}, which is not in joints")
+        unknown = [name for name in self.command_joints if name not in self.joints]
+        if unknown and len(self.command_joints) != len(self.joints):
+            raise ParameterError("command_joints", f"has {unknown[0]!r}, which is not in joints")

@@ -137,9 +137,9 @@ class PidController(Controller):
 
     def _take(self, command: DofCommand, into: np.ndarray) -> None:
         names = command.names or self._dofs
-        strange = next((name for name in names if name not in self._dofs), "")
-        if strange or len(command.values) != len(names):
-            problem = f"'{strange}' is not one of {', '.join(self._dofs)}" if strange else "values and names differ"
+        unknown = next((name for name in names if name not in self._dofs), "")
+        if unknown or len(command.values) != len(names):
+            problem = f"'{unknown}' is not one of {', '.join(self._dofs)}" if unknown else "values and names differ"
             self.context.warn(f"command not accepted: {problem}")
             return
         for place, name in enumerate(names):

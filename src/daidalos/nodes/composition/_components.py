@@ -47,9 +47,9 @@ class Client(Node):
     def ask(self) -> None:
         """Send a request where somebody serves it; its answer is logged."""
         if self._client.service_is_ready():
-            self._client.call_async(self._request).add_done_callback(self._tell)
+            self._client.call_async(self._request).add_done_callback(self._notify)
         else:
             self.get_logger().info("Service not available, waiting again...")
 
-    def _tell(self, answer: Future) -> None:
+    def _notify(self, answer: Future) -> None:
         self.get_logger().info(f"Got result: [{answer.result().sum}]")

@@ -28,11 +28,11 @@ class EditingServices:
         from daidalos_msgs.srv import BringBack, GetShapes, InsertShape, ScaleEntity, SetFriction
 
         self._host = host
-        node.create_service(InsertShape, "~/insert_shape", _told(self._insert), callback_group=group)
-        node.create_service(GetShapes, "~/get_shapes", _told(self._shapes), callback_group=group)
-        node.create_service(BringBack, "~/bring_back", _told(self._bring_back), callback_group=group)
-        node.create_service(ScaleEntity, "~/scale_entity", _told(self._scale), callback_group=group)
-        node.create_service(SetFriction, "~/set_friction", _told(self._set_friction), callback_group=group)
+        node.create_service(InsertShape, "~/insert_shape", _reporting(self._insert), callback_group=group)
+        node.create_service(GetShapes, "~/get_shapes", _reporting(self._shapes), callback_group=group)
+        node.create_service(BringBack, "~/bring_back", _reporting(self._bring_back), callback_group=group)
+        node.create_service(ScaleEntity, "~/scale_entity", _reporting(self._scale), callback_group=group)
+        node.create_service(SetFriction, "~/set_friction", _reporting(self._set_friction), callback_group=group)
 
     def _insert(self, request: Any, response: Any) -> None:
         color = color_of(request.color) if request.color.a > 0 else (0.6, 0.6, 0.6, 1.0)
@@ -65,7 +65,7 @@ class EditingServices:
         self._host.paced.call(work)
 
 
-def _told(work: Callable[[Any, Any], None]) -> Callable[[Any, Any], Any]:
+def _reporting(work: Callable[[Any, Any], None]) -> Callable[[Any, Any], Any]:
     def answer(request: Any, response: Any) -> Any:
         try:
             work(request, response)

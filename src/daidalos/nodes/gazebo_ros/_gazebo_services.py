@@ -52,8 +52,8 @@ class GazeboServices:
         }
         for name, action in actions.items():
             self._offer(Empty, (f"/{name}", f"/gazebo/{name}"), _without_answer(action))
-        self._offer(Trigger, ("/gazebo/save_state",), _told("message", lambda _: self._host.save_state()))
-        self._offer(Trigger, ("/gazebo/restore_state",), _told("message", lambda _: self._host.restore_state()))
+        self._offer(Trigger, ("/gazebo/save_state",), _reporting("message", lambda _: self._host.save_state()))
+        self._offer(Trigger, ("/gazebo/restore_state",), _reporting("message", lambda _: self._host.restore_state()))
 
     # Entities
 
@@ -80,14 +80,14 @@ class GazeboServices:
             self._node.get_logger().info(f"spawned '{spawned}'")
             return f"SpawnEntity: Successfully spawned entity [{spawned}]"
 
-        return _told("status_message", work)(request, response)
+        return _reporting("status_message", work)(request, response)
 
     def _delete(self, name_of: Callable[[Any], str]) -> Callable[[Any, Any], Any]:
         def work(request: Any) -> str:
             self._host.delete(name_of(request))
             return f"Successfully deleted entity [{name_of(request)}]"
 
-        return _told("status_message", work)
+        return _reporting("status_message", work)
 
     def _list(self, request: Any, response: Any) -> Any:
         def work(simulation: Simulation) -> None:
@@ -193,10 +193,10 @@ class GazeboServices:
         """Offer a service that works on the simulation between its steps, in several places."""
 
         def answer(request: Any, response: Any) -> Any:
-            def told(_: Any) -> None:
+            def run(_: Any) -> None:
                 self._host.paced.call(lambda simulation: work(simulation, request, response))
 
-            return _told("status_message", told)(request, response)
+            return _reporting("status_message", run)(request, response)
 
         for name in names:
             self._offer(kind, tuple(f"{place}/{name}" for place in places), answer)
@@ -206,7 +206,7 @@ class GazeboServices:
             self._node.create_service(kind, name, answer, callback_group=self._group)
 
 
-def _told(field: str, work: Callable[[Any], str | None]) -> Callable[[Any, Any], Any]:
+def _reporting(field: str, work: Callable[[Any], str | None]) -> Callable[[Any, Any], Any]:
     """Return a callback that says whether some work succeeded, and what went wrong."""
 
     def answer(request: Any, response: Any) -> Any:

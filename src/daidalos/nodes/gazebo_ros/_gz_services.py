@@ -41,8 +41,8 @@ class GzServices:
         ):
             node.create_service(kind, f"{base}/{name}", self._answering(work), callback_group=group)
         for message, name, take in (
-            (EntityWrench, "wrench", lambda told: self._push(told, lasts=False)),
-            (EntityWrench, "wrench/persistent", lambda told: self._push(told, lasts=True)),
+            (EntityWrench, "wrench", lambda request: self._push(request, lasts=False)),
+            (EntityWrench, "wrench/persistent", lambda request: self._push(request, lasts=True)),
             (Entity, "wrench/clear", self._stop_pushing),
         ):
             node.create_subscription(message, f"{base}/{name}", self._warning(take), 10, callback_group=group)
@@ -72,27 +72,27 @@ class GzServices:
         name, pose = request.entity.name, pose_of(request.pose)
         self._host.paced.call(lambda simulation: set_motion(simulation, find_entity(simulation, name), "", pose, None))
 
-    def _push(self, told: Any, lasts: bool) -> None:
-        force, torque = told.wrench.force, told.wrench.torque
+    def _push(self, request: Any, lasts: bool) -> None:
+        force, torque = request.wrench.force, request.wrench.torque
 
         def work(simulation: Simulation) -> None:
             values = (force.x, force.y, force.z), (torque.x, torque.y, torque.z)
             duration = None if lasts else simulation.step_ns
-            simulation.push(*_link(simulation, told.entity.name), *values, duration_ns=duration)
+            simulation.push(*_link(simulation, request.entity.name), *values, duration_ns=duration)
 
         self._host.paced.call(work)
 
-    def _stop_pushing(self, told: Any) -> None:
-        self._host.paced.call(lambda simulation: simulation.stop_pushing(*_link(simulation, told.name)))
+    def _stop_pushing(self, request: Any) -> None:
+        self._host.paced.call(lambda simulation: simulation.stop_pushing(*_link(simulation, request.name)))
 
     def _warning(self, take: Callable[[Any], None]) -> Callable[[Any], None]:
-        def heed(message: Any) -> None:
+        def take_command(message: Any) -> None:
             try:
                 take(message)
             except SimulationError as error:
                 self._node.get_logger().warning(str(error))
 
-        return heed
+        return take_command
 
     def _answering(self, work: Callable[[Any], None]) -> Callable[[Any, Any], Any]:
         def answer(request: Any, response: Any) -> Any:

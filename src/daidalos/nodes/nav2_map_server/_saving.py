@@ -60,19 +60,19 @@ class MapSaverParameters(Parameters):
     map_subscribe_transient_local: bool = parameter(True, "Whether the map is taken from a latched topic.")
 
 
-async def save(node: Node, parameters: MapSaverParameters, wish: SaveRequest) -> bool:
+async def save(node: Node, parameters: MapSaverParameters, save_request: SaveRequest) -> bool:
     """Wait for a map and write it; False, after a word in the log, when that failed."""
     log = node.get_logger()
-    log.info(f"Saving map from '{wish.topic}' topic to '{wish.stem}' file")
-    message = await _next_map(node, parameters, wish.topic)
+    log.info(f"Saving map from '{save_request.topic}' topic to '{save_request.stem}' file")
+    message = await _next_map(node, parameters, save_request.topic)
     if message is None:
         seconds = parameters.save_map_timeout
-        log.error(f"Failed to save the map: nothing came on the topic '{wish.topic}' within {seconds:g} s")
+        log.error(f"Failed to save the map: nothing came on the topic '{save_request.topic}' within {seconds:g} s")
         return False
     info = message.info
     log.info(f"Received a {info.width} X {info.height} map @ {info.resolution:.3g} m/pix")
     try:
-        files = _write(parameters, message, wish)
+        files = _write(parameters, message, save_request)
     except MapFileError as error:
         log.error(f"Failed to save the map: {error}")
         return False
@@ -103,22 +103,22 @@ async def _next_map(node: Node, parameters: MapSaverParameters, topic: str) -> A
         node.destroy_subscription(subscription)
 
 
-def _write(parameters: MapSaverParameters, message: Any, wish: SaveRequest) -> tuple[Any, Any]:
+def _write(parameters: MapSaverParameters, message: Any, save_request: SaveRequest) -> tuple[Any, Any]:
     # The message's resolution has 32 bits; the file says what its writer meant, such as 0.05.
     resolution = float(str(np.float32(message.info.resolution)))
     x, y, yaw = pose2_of(message.info.origin).tolist()
     grid = OccupancyGrid(grid_array(message), resolution, (x, y, yaw))
-    mode = wish.mode or "trinary"
-    image_format = wish.image_format or ("png" if mode == "scale" else "pgm")
+    mode = save_request.mode or "trinary"
+    image_format = save_request.image_format or ("png" if mode == "scale" else "pgm")
     if mode not in MODES:
-        raise MapFileError(Path(wish.stem), "mode", f"expected {', '.join(MODES)}, found '{mode}'")
+        raise MapFileError(Path(save_request.stem), "mode", f"expected {', '.join(MODES)}, found '{mode}'")
     if image_format not in FORMATS:
-        raise MapFileError(Path(wish.stem), "format", f"expected {', '.join(FORMATS)}, found '{image_format}'")
+        raise MapFileError(Path(save_request.stem), "format", f"expected {', '.join(FORMATS)}, found '{image_format}'")
     return save_map(
         grid,
-        wish.stem,
+        save_request.stem,
         cast(Mode, mode),
         image_format=cast(Format, image_format),
-        occupied_thresh=wish.occupied_thresh or parameters.occupied_thresh_default,
-        free_thresh=wish.free_thresh or parameters.free_thresh_default,
+        occupied_thresh=save_request.occupied_thresh or parameters.occupied_thresh_default,
+        free_thresh=save_request.free_thresh or parameters.free_thresh_default,
     )

@@ -34,10 +34,10 @@ def _save(arguments: argparse.Namespace) -> bool:
     try:
         parameters = declare(node, MapSaverParameters)
         stem = arguments.stem or f"map_{node.get_clock().now().nanoseconds // 1_000_000_000}"
-        wish = SaveRequest(arguments.topic, stem, arguments.mode, arguments.fmt, arguments.occ, arguments.free)
+        save_request = SaveRequest(arguments.topic, stem, arguments.mode, arguments.fmt, arguments.occ, arguments.free)
         executor = SingleThreadedExecutor()
         executor.add_node(node)
-        task = executor.create_task(save, node, parameters, wish)
+        task = executor.create_task(save, node, parameters, save_request)
         executor.spin_until_future_complete(task)
         return bool(task.result())
     finally:

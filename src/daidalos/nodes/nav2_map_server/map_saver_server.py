@@ -31,7 +31,7 @@ class MapSaver(ManagedNode):
         if not self.is_active:
             self.get_logger().error("Received save_map request but not in ACTIVE state, ignoring!")
             return response
-        wish = SaveRequest(
+        save_request = SaveRequest(
             request.map_topic or "map",
             request.map_url,
             request.map_mode,
@@ -39,7 +39,7 @@ class MapSaver(ManagedNode):
             request.occupied_thresh,
             request.free_thresh,
         )
-        response.result = await save(self, self._settings, wish)
+        response.result = await save(self, self._settings, save_request)
         return response
 
 

@@ -28,7 +28,7 @@ class Frames:
             self._buffer = Buffer(node=node)
             self._listener = TransformListener(self._buffer, node, spin_thread=True)
 
-    def bring(self, cloud: PointCloud2) -> PointCloud2 | None:
+    def transform_cloud(self, cloud: PointCloud2) -> PointCloud2 | None:
         """Return a cloud in the target frame, or as it is where none is wanted; None where that is not known."""
         if not self.target or cloud.header.frame_id == self.target:
             return cloud

@@ -30,7 +30,7 @@ class LaserScanToPointCloud(Node):
     def _publish_cloud(self, scan: LaserScan) -> None:
         if self._clouds.get_subscription_count() == 0:
             return
-        cloud = self._frames.bring(self._projection.projectLaser(scan))
+        cloud = self._frames.transform_cloud(self._projection.projectLaser(scan))
         if cloud is not None:
             self._clouds.publish(cloud)
 

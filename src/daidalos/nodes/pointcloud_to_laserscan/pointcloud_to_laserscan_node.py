@@ -59,14 +59,14 @@ class PointCloudToLaserScan(Node):
     def _publish_scan(self, cloud: PointCloud2) -> None:
         if self._scans.get_subscription_count() == 0:
             return
-        brought = self._frames.bring(cloud)
-        if brought is None:
+        transformed = self._frames.transform_cloud(cloud)
+        if transformed is None:
             return
-        points = read_points_numpy(brought, ["x", "y", "z"])
+        points = read_points_numpy(transformed, ["x", "y", "z"])
         cut = self._slice
         self._scans.publish(
             LaserScan(
-                header=brought.header,
+                header=transformed.header,
                 angle_min=cut.angle_min,
                 angle_max=cut.angle_max,
                 angle_increment=cut.angle_increment,

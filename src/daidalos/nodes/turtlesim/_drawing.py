@@ -33,12 +33,12 @@ class Drawing:
         self._ink: NDArray[np.uint8] = np.zeros((PIXELS, PIXELS, 4), np.uint8)
         self._lines: list[tuple[float, float, float, float]] = []
         self._pens: list[tuple[int, int, int, int]] = []
-        self._told = 0
+        self._sent = 0
 
     def clear(self) -> None:
         """Wipe everything."""
         self.clearings += 1
-        self.drawn = self._told = 0
+        self.drawn = self._sent = 0
         self._ink[:] = 0
         self._lines.clear()
         self._pens.clear()
@@ -63,7 +63,7 @@ class Drawing:
 
         None where they are too many: who was not listening for that long asks for all of them.
         """
-        count, self._told = self.drawn - self._told, self.drawn
+        count, self._sent = self.drawn - self._sent, self.drawn
         return self._newest(count if count <= _MAX_NEWS else 0)
 
     def all_lines(self) -> tuple[NDArray[np.float32], NDArray[np.uint8]]:

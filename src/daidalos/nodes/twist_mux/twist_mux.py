@@ -44,7 +44,7 @@ class TwistMux(Node):
             self.create_subscription(Bool, lock.topic, partial(self._set_lock, lock), 10)
         self._diagnostics = Updater(self)
         self._diagnostics.setHardwareID("none")
-        self._diagnostics.add("Twist mux status", self._tell)
+        self._diagnostics.add("Twist mux status", self._notify)
 
     def _read(self, group: str, kind: type[S]) -> list[S]:
         given = {name: parameter.value for name, parameter in self.get_parameters_by_prefix(group).items()}
@@ -78,7 +78,7 @@ class TwistMux(Node):
     def _set_lock(self, lock: Lock, message: Bool) -> None:
         lock.received_at, lock.is_closed = self._now(), message.data
 
-    def _tell(self, status: DiagnosticStatusWrapper) -> DiagnosticStatusWrapper:
+    def _notify(self, status: DiagnosticStatusWrapper) -> DiagnosticStatusWrapper:
         now = self._now()
         limit, chosen = lock_priority(self._locks, now), active(self._sources, self._locks, now)
         status.summary(DiagnosticStatus.OK, "ok")

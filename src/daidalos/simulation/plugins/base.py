@@ -26,27 +26,29 @@ class ReadElement(Element):
     element : Element
     """
 
-    __slots__ = ("_asked",)
+    __slots__ = ("_read_tags",)
 
     def __init__(self, element: Element) -> None:
         super().__init__(element.tag, element.attributes, element.text, element.children, element.source, element.line)
-        self._asked: set[str] = set()
+        self._read_tags: set[str] = set()
 
     def first(self, *tags: str) -> Element | None:
         """See `Element.first`."""
-        self._asked.update(tags)
+        self._read_tags.update(tags)
         return super().first(*tags)
 
     def all(self, *tags: str) -> list[Element]:
         """See `Element.all`."""
-        self._asked.update(tags)
+        self._read_tags.update(tags)
         return super().all(*tags)
 
     def unread(self, unused: Iterable[str] = ()) -> list[str]:
         """Return the tags that were not read, each with the tag that it may be a misspelling of."""
-        known = self._asked | set(unused)
+        known = self._read_tags | set(unused)
         tags = dict.fromkeys(child.tag for child in self.children if child.tag not in known)
-        return [f"<{tag}>" + "".join(f" (did you mean <{one}>?)" for one in near(tag, self._asked)[:1]) for tag in tags]
+        return [
+            f"<{tag}>" + "".join(f" (did you mean <{one}>?)" for one in near(tag, self._read_tags)[:1]) for tag in tags
+        ]
 
 
 class LibraryPlugin:

@@ -175,7 +175,7 @@ class JointController(Plugin):
     def start(self) -> Hold:
         """Return the initial target of the description."""
         hold = Hold(self.initial, [0.0] * len(self.joints))
-        self._tell(hold)
+        self._set_servos(hold)
         return hold
 
     def update(self, now_ns: int) -> Iterable[Sample]:
@@ -187,14 +187,14 @@ class JointController(Plugin):
             lower, upper = self.integral_limits
             more = (self.integral_gain * (hold.target - view.position) * elapsed for view in self._views)
             hold.integrals = [min(max(i + m, lower), upper) for i, m in zip(hold.integrals, more, strict=True)]
-            self._tell(hold)
+            self._set_servos(hold)
         return ()
 
-    def _tell(self, hold: Hold) -> None:
+    def _set_servos(self, hold: Hold) -> None:
         """Set the servos; the integral part of the effort is added as a position offset."""
         for control, integral in zip(self._controls, hold.integrals, strict=True):
             self._data.ctrl[control] = hold.target + (integral / self.gain if self.gain > 0 else 0.0)
 
     def _command(self, command: NumberCommand) -> None:
         self.state.target = command.value
-        self._tell(self.state)
+        self._set_servos(self.state)

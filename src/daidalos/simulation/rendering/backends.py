@@ -31,16 +31,16 @@ def make_renderer(pinhole: Pinhole, near: float, far: float, mask: int) -> Rende
 
             return GlRenderer(pinhole, near, far, mask)
         except ImportError:
-            tell(f"{VARIABLE}=egl needs the extra daidalos[egl]; cameras are drawn in software")
+            log_once(f"{VARIABLE}=egl needs the extra daidalos[egl]; cameras are drawn in software")
         except Exception as problem:  # a driver may fail in any way
             reason = " ".join(str(problem).split()) or type(problem).__name__
-            tell(f"{VARIABLE}=egl: there is no usable EGL device ({reason}); cameras are drawn in software")
+            log_once(f"{VARIABLE}=egl: there is no usable EGL device ({reason}); cameras are drawn in software")
     elif wanted != "software":
-        tell(f"{VARIABLE} is {wanted!r}, expected 'software' or 'egl'; cameras are drawn in software")
+        log_once(f"{VARIABLE} is {wanted!r}, expected 'software' or 'egl'; cameras are drawn in software")
     return Renderer(pinhole, near, far, mask)
 
 
 @cache
-def tell(line: str) -> None:
+def log_once(line: str) -> None:
     """Log a message once."""
     _log.warning(line)

@@ -221,8 +221,8 @@ def _fan(element: Element | None, samples: int, scan: Element) -> Fan:
     """Read the angles of one direction; ``resolution`` scales the number of samples (SDF), at least to 1."""
     if element is None:
         return Fan(0.0, 0.0, 1)
-    asked = element.integer_of("samples", default=samples)
-    wanted = asked * element.number_of("resolution", default=1.0)
+    samples_count = element.integer_of("samples", default=samples)
+    wanted = samples_count * element.number_of("resolution", default=1.0)
     count = 1 if 0 < wanted < 1 else round(wanted)
     if not 1 <= count <= MAX_RAYS:
         raise element.error(f"expected 1 to {MAX_RAYS} rays, got {count}")

@@ -102,7 +102,7 @@ class CycloneBackend(Backend):
         info_writer = self._make(names.DISCOVERY_TOPIC, info_type, _INFO_QOS, info_hash, writes=True)
         self._info_writer = Writer(library, info_writer, names.DISCOVERY_TOPIC, _INFO_QOS.limit)
         prefix = self._gid[:PREFIX]
-        self._discovery = Discovery(library, self._participant, prefix, info_reader, graph, self._tell)
+        self._discovery = Discovery(library, self._participant, prefix, info_reader, graph, self._announce)
 
     def close(self) -> None:
         """Delete the participant with all its entities."""
@@ -172,8 +172,8 @@ class CycloneBackend(Backend):
     def declare_publisher(self, key: str, endpoint: EndpointInfo) -> BackendPublisher:
         """Return the writer and announce its node."""
         writer, _ = self._declare(key, endpoint)
-        wire = Writer(self._library, writer, endpoint.name, endpoint.qos.limit)
-        return DdsPublisher(self._library, self._reception, wire, self._closer(key, endpoint))
+        remote = Writer(self._library, writer, endpoint.name, endpoint.qos.limit)
+        return DdsPublisher(self._library, self._reception, remote, self._closer(key, endpoint))
 
     def declare_subscription(
         self, key: str, endpoint: EndpointInfo, on_sample: Callable[[Any], None]
@@ -304,7 +304,7 @@ class CycloneBackend(Backend):
         library.dds_builtintopic_free_endpoint(endpoint)
         return gid
 
-    def _tell(self) -> None:
+    def _announce(self) -> None:
         """Announce all local nodes with their writers and readers."""
         from rmw_dds_common.msg import Gid, NodeEntitiesInfo, ParticipantEntitiesInfo
 

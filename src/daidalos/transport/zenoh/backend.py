@@ -216,13 +216,13 @@ class ZenohBackend(Backend):
     def declare_publisher(self, key: str, endpoint: EndpointInfo) -> BackendPublisher:
         """Declare a publisher and its token."""
         name = self._data_key(endpoint)
-        wire = (
+        remote = (
             LatchedPublisher(self._session, name, endpoint, self._pool, self._caches)
             if endpoint.qos.transient_local
             else ZenohPublisher(self._session, name, endpoint, self._pool)
         )
-        wire.on_close = self._closer(key, endpoint)
-        return wire
+        remote.on_close = self._closer(key, endpoint)
+        return remote
 
     def declare_subscription(
         self, key: str, endpoint: EndpointInfo, on_sample: Callable[[Any], None]
@@ -230,32 +230,32 @@ class ZenohBackend(Backend):
         """Declare a subscription and its token."""
         if endpoint.qos.transient_local:
             return self._declare_latched(key, endpoint, on_sample)
-        wire = ZenohSubscription(self._session, self._data_key(endpoint), endpoint, on_sample)
-        wire.on_close = self._closer(key, endpoint)
-        return wire
+        remote = ZenohSubscription(self._session, self._data_key(endpoint), endpoint, on_sample)
+        remote.on_close = self._closer(key, endpoint)
+        return remote
 
     def _declare_latched(
         self, key: str, endpoint: EndpointInfo, on_sample: Callable[[Any], None]
     ) -> LatchedSubscription:
         """Declare a subscription that receives the history of all publishers, whichever is declared first."""
-        wire = LatchedSubscription(self._session, self._data_key(endpoint), endpoint, on_sample)
+        remote = LatchedSubscription(self._session, self._data_key(endpoint), endpoint, on_sample)
         forget = self._closer(key, endpoint)
         with self._lock:
-            self._latched.setdefault(endpoint.name, set()).add(wire)
+            self._latched.setdefault(endpoint.name, set()).add(remote)
 
         def close() -> None:
             with self._lock:
                 members = self._latched[endpoint.name]
-                members.discard(wire)
+                members.discard(remote)
                 if not members:
                     del self._latched[endpoint.name]
             forget()
 
-        wire.on_close = close
+        remote.on_close = close
         publishers = self._graph.endpoints(EndpointKind.PUBLISHER, name=endpoint.name)
         for session in {keys.session_of(one.node.key) for one in publishers if one.qos.transient_local}:
-            self._ask(wire, session)
-        return wire
+            self._ask(remote, session)
+        return remote
 
     def _on_graph_change(self, added: bool, what: NodeInfo | EndpointInfo) -> None:
         """Make subscriptions query publishers with a history that were added."""
@@ -263,25 +263,25 @@ class ZenohBackend(Backend):
             return
         if what.kind is EndpointKind.PUBLISHER:
             with self._lock:
-                wires = tuple(self._latched.get(what.name, ()))
-            for wire in wires:
-                self._ask(wire, keys.session_of(what.node.key))
+                remotes = tuple(self._latched.get(what.name, ()))
+            for remote in remotes:
+                self._ask(remote, keys.session_of(what.node.key))
 
-    def _ask(self, wire: LatchedSubscription, session: str) -> None:
+    def _ask(self, remote: LatchedSubscription, session: str) -> None:
         if session != self._session_id:  # who is in our session is served within the process
-            wire.ask(session)
+            remote.request_history(session)
 
     def declare_service(self, key: str, endpoint: EndpointInfo, on_request: Callable[[Any], None]) -> BackendService:
         """Declare a queryable and its token."""
-        wire = ZenohService(self._session, self._data_key(endpoint), on_request)
-        wire.on_close = self._closer(key, endpoint)
-        return wire
+        remote = ZenohService(self._session, self._data_key(endpoint), on_request)
+        remote.on_close = self._closer(key, endpoint)
+        return remote
 
     def declare_client(self, key: str, endpoint: EndpointInfo, on_response: Callable[[Any], None]) -> BackendClient:
         """Declare a querier and its token."""
-        wire = ZenohClient(self._session, self._data_key(endpoint), endpoint, on_response)
-        wire.on_close = self._closer(key, endpoint)
-        return wire
+        remote = ZenohClient(self._session, self._data_key(endpoint), endpoint, on_response)
+        remote.on_close = self._closer(key, endpoint)
+        return remote
 
     def _closer(self, key: str, endpoint: EndpointInfo) -> Callable[[], None]:
         """Declare an endpoint's token; return a function that undeclares it."""

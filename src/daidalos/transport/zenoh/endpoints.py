@@ -27,7 +27,7 @@ _QUERY_TIMEOUT_S = 600.0
 _UNLIMITED_S = 10 * 365 * 86400.0
 
 
-class _Wire:
+class _ZenohEndpoint:
     """Base of all endpoints: the liveliness token and the zenoh entity to undeclare."""
 
     on_close: Callable[[], None]
@@ -46,7 +46,7 @@ class _Wire:
                 entity.undeclare()
 
 
-class ZenohPublisher(_Wire, BackendPublisher):
+class ZenohPublisher(_ZenohEndpoint, BackendPublisher):
     """Publisher over zenoh."""
 
     def __init__(self, session: zenoh.Session, key: str, endpoint: EndpointInfo, pool: Pool) -> None:
@@ -75,7 +75,7 @@ class ZenohPublisher(_Wire, BackendPublisher):
         self._close(self._publisher)
 
 
-class ZenohSubscription(_Wire, BackendSubscription):
+class ZenohSubscription(_ZenohEndpoint, BackendSubscription):
     """Subscription over zenoh; zenoh's thread only queues its samples."""
 
     def __init__(
@@ -104,7 +104,7 @@ class ZenohSubscription(_Wire, BackendSubscription):
         self._close(self._subscriber)
 
 
-class ZenohService(_Wire, BackendService):
+class ZenohService(_ZenohEndpoint, BackendService):
     """Service over zenoh; a query is held until its reply is sent."""
 
     def __init__(self, session: zenoh.Session, key: str, on_request: Callable[[Any], None]) -> None:
@@ -141,7 +141,7 @@ class ZenohService(_Wire, BackendService):
         self._queries.clear()
 
 
-class ZenohClient(_Wire, BackendClient):
+class ZenohClient(_ZenohEndpoint, BackendClient):
     """Client over zenoh."""
 
     def __init__(

@@ -140,9 +140,9 @@ class LatchedSubscription(ZenohSubscription):
         self._history = History(session, key, endpoint.qos.limit, on_sample)
         super().__init__(session, key, endpoint, self._history.accept)
 
-    def ask(self, session: str) -> None:
+    def request_history(self, session: str) -> None:
         """Query a session for the kept samples of its publishers, after one of them was added."""
-        self._history.ask(session)
+        self._history.request_history(session)
 
     def close(self) -> None:
         """Undeclare."""
@@ -150,7 +150,7 @@ class LatchedSubscription(ZenohSubscription):
         super().close()
 
 
-class Question:
+class HistoryQuery:
     """Pending query of a session's cache.
 
     Attributes
@@ -190,21 +190,21 @@ class History:
         self._deliver = deliver
         self._lock = threading.Lock()
         self._closed = False
-        self._questions: dict[str, Question | None] = {}  # by session; None where one was answered
-        self._answered: dict[str, frozenset[Identity]] = {}
+        self._queries: dict[str, HistoryQuery | None] = {}  # by session; None where one was answered
+        self._replied: dict[str, frozenset[Identity]] = {}
         self._last: dict[bytes, tuple[int, int]] = {}
         self._waiting: deque[zenoh.Sample] = deque()
         self._delivering = False
 
-    def ask(self, session: str) -> None:
+    def request_history(self, session: str) -> None:
         """Query a session for the kept samples of its publishers."""
         with self._lock:
-            question = self._questions.get(session)
-            if question is not None:
-                question.again = True
+            history_query = self._queries.get(session)
+            if history_query is not None:
+                history_query.again = True
                 return
-            question = self._questions[session] = Question()
-        self._send(session, question)
+            history_query = self._queries[session] = HistoryQuery()
+        self._send(session, history_query)
 
     def accept(self, sample: zenoh.Sample) -> None:
         """Receive a sample."""
@@ -212,12 +212,12 @@ class History:
         session = str(stamp.get_id()) if stamp is not None else ""
         unheard = None
         with self._lock:
-            if session and session not in self._questions:  # it is here before its publisher is in the graph
-                unheard = self._questions[session] = Question()
-            question = self._questions.get(session)
-            if question is not None:
-                question.samples.append(sample)
-            elif (identity := _identity(sample)) not in self._answered.get(session, ()):
+            if session and session not in self._queries:  # it is here before its publisher is in the graph
+                unheard = self._queries[session] = HistoryQuery()
+            history_query = self._queries.get(session)
+            if history_query is not None:
+                history_query.samples.append(sample)
+            elif (identity := _identity(sample)) not in self._replied.get(session, ()):
                 self._note(identity)
                 self._waiting.append(sample)
         if unheard is not None:
@@ -230,15 +230,15 @@ class History:
             self._closed = True
             self._waiting.clear()
 
-    def _send(self, session: str, question: Question) -> None:
+    def _send(self, session: str, history_query: HistoryQuery) -> None:
         def on_reply(reply: zenoh.Reply) -> None:
             if reply.ok is not None:
-                question.samples.append(reply.ok)
+                history_query.samples.append(reply.ok)
             else:
-                question.again = True
+                history_query.again = True
 
         def on_end() -> None:
-            self._merge_answers(session, question)
+            self._merge_answers(session, history_query)
 
         if self._closed:
             return
@@ -253,15 +253,15 @@ class History:
                 allowed_destination=zenoh.Locality.REMOTE,
             )
 
-    def _merge_answers(self, session: str, question: Question) -> None:
+    def _merge_answers(self, session: str, history_query: HistoryQuery) -> None:
         """Merge the answers of a query, and the samples that arrived meanwhile, in order."""
         with self._lock:
-            samples = {_identity(sample): sample for sample in question.samples}
-            self._answered[session] = frozenset(samples)
+            samples = {_identity(sample): sample for sample in history_query.samples}
+            self._replied[session] = frozenset(samples)
             for identity in self._wanted(filter(self._is_news, samples)):
                 self._note(identity)
                 self._waiting.append(samples[identity])
-            following = self._questions[session] = Question() if question.again else None
+            following = self._queries[session] = HistoryQuery() if history_query.again else None
         self._deliver_waiting()
         if following is not None:
             self._send(session, following)

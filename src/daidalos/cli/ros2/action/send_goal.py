@@ -108,9 +108,9 @@ def _send(node: Node, client: ActionClient, goal: Any, show_feedback: bool) -> N
 def _cancel(node: Node, handle: ClientGoalHandle) -> None:
     """Request cancellation of the goal, and wait briefly for the response."""
     print("Canceling goal...")
-    answer = handle.cancel_goal_async()
-    spin(node, answer, _CANCEL_TIMEOUT_S)
-    canceled = answer.done() and any(info.goal_id == handle.goal_id for info in answer.result().goals_canceling)
+    response = handle.cancel_goal_async()
+    spin(node, response, _CANCEL_TIMEOUT_S)
+    canceled = response.done() and any(info.goal_id == handle.goal_id for info in response.result().goals_canceling)
     print("Goal canceled." if canceled else "Failed to cancel goal")
 
 

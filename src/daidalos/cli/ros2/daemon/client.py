@@ -16,8 +16,8 @@ _START_TIMEOUT_S = 10.0
 
 def fetch_graph() -> Graph | None:
     """Return the daemon's graph, None if no daemon runs."""
-    answer = _ask("graph")
-    return None if answer is None else graph_from_json(answer)
+    response = _ask("graph")
+    return None if response is None else graph_from_json(response)
 
 
 def is_running() -> bool:
@@ -69,12 +69,12 @@ def stop() -> bool:
 _COMMAND = [sys.executable, "-m", "daidalos.cli.ros2.daemon.server"]
 
 
-def _ask(question: str, timeout_s: float = 1.0) -> Any:
+def _ask(request: str, timeout_s: float = 1.0) -> Any:
     station = AddressFile()
     address: Address | None = station.read()
     if address is None:
         return None
     try:
-        return ask(address, question, timeout_s)
+        return ask(address, request, timeout_s)
     except (OSError, ValueError):
         return None

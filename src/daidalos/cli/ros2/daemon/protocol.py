@@ -65,7 +65,7 @@ class AddressFile:
         self.file.unlink(missing_ok=True)
 
 
-def ask(address: Address, question: str, timeout_s: float = 1.0) -> Any:
+def ask(address: Address, request: str, timeout_s: float = 1.0) -> Any:
     """Return a daemon's response.
 
     Raises
@@ -74,7 +74,7 @@ def ask(address: Address, question: str, timeout_s: float = 1.0) -> Any:
         When nobody listens there or what answers is no daemon.
     """
     with socket.create_connection(("127.0.0.1", address.port), timeout_s) as connection:
-        connection.sendall(json.dumps({"token": address.token, "ask": question}).encode() + b"\n")
+        connection.sendall(json.dumps({"token": address.token, "ask": request}).encode() + b"\n")
         with connection.makefile("rb") as file:
             return json.loads(file.readline())
 

@@ -88,32 +88,32 @@ class Server:
         connection, _ = self._listener.accept()
         connection.settimeout(1.0)
         try:
-            question = _read_question(connection)
-            if not secrets.compare_digest(str(question.get("token")), self._token):
+            request = _read_question(connection)
+            if not secrets.compare_digest(str(request.get("token")), self._token):
                 raise ValueError("the token is wrong")
             self._asked_at = time.monotonic()
-            if question.get("ask") == "stop":
+            if request.get("ask") == "stop":
                 self._stopping = connection
                 return
-            connection.sendall(json.dumps(self._answer(question.get("ask"))).encode() + b"\n")
+            connection.sendall(json.dumps(self._answer(request.get("ask"))).encode() + b"\n")
         except (OSError, ValueError) as error:
             print(f"ros2 daemon: dropped a question: {error}", file=sys.stderr)
         connection.close()
 
-    def _answer(self, question: Any) -> Any:
-        if question == "graph":
+    def _answer(self, request: Any) -> Any:
+        if request == "graph":
             return graph_to_json(self._graph)
-        if question == "stay":
+        if request == "stay":
             self._stay = True
         return {"running": True}
 
 
 def _read_question(connection: socket.socket) -> dict[str, Any]:
     with connection.makefile("rb") as file:
-        question = json.loads(file.readline(MAX_QUESTION))
-    if not isinstance(question, dict):
+        request = json.loads(file.readline(MAX_QUESTION))
+    if not isinstance(request, dict):
         raise ValueError("a question is an object")
-    return question
+    return request
 
 
 def main() -> int:
@@ -134,15 +134,15 @@ def main() -> int:
                 station.write(Address(listener.getsockname()[1], token))
             print("ready", flush=True)
             try:
-                asker = server.serve()
+                client = server.serve()
             finally:
                 with station.locked():
                     address = station.read()
                     if address is not None and address.token == token:
                         station.clear()
-        if asker is not None:
-            asker.sendall(b"{}\n")
-            asker.close()
+        if client is not None:
+            client.sendall(b"{}\n")
+            client.close()
     return 0
 
 
