@@ -97,7 +97,7 @@ class Graph:
             self._endpoints[key] = endpoint
             self._by_name.setdefault(endpoint.name, {})[key] = endpoint
             self._by_node.setdefault(endpoint.node.key, {})[key] = endpoint
-        self._tell(True, endpoint)
+        self._notify(True, endpoint)
 
     def remove_endpoint(self, key: str) -> None:
         """Remove an endpoint."""
