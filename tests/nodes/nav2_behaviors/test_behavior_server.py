@@ -13,6 +13,7 @@ from nav2_msgs.action import DriveOnHeading, Wait
 from nav2_msgs.msg import Costmap
 from rclpy.action import ActionClient
 from rclpy.executors import SingleThreadedExecutor
+from rclpy.lifecycle import TransitionCallbackReturn
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from tf2_ros import StaticTransformBroadcaster
@@ -79,3 +80,36 @@ def test_a_goal_that_waits_can_be_cancelled(executor: SingleThreadedExecutor) ->
     executor.spin_until_future_complete(ended, 5.0)
     assert ended.done()
     assert ended.result().status == GoalStatus.STATUS_CANCELED
+
+
+def test_deactivating_aborts_a_goal(executor: SingleThreadedExecutor) -> None:
+    server, robot = executor.get_nodes()
+    client = ActionClient(robot, DriveOnHeading, "drive_on_heading")
+    assert client.wait_for_server(TIMEOUT_S)
+    sent = client.send_goal_async(DriveOnHeading.Goal())
+    executor.spin_until_future_complete(sent, TIMEOUT_S)
+    server.trigger_deactivate()
+    ended = sent.result().get_result_async()
+    executor.spin_until_future_complete(ended, TIMEOUT_S)
+    assert ended.result().status == GoalStatus.STATUS_ABORTED
+    assert "deactivated" in ended.result().result.error_msg
+    refused = client.send_goal_async(DriveOnHeading.Goal())
+    executor.spin_until_future_complete(refused, TIMEOUT_S)
+    assert not refused.result().accepted
+
+
+def test_it_can_be_configured_again(executor: SingleThreadedExecutor) -> None:
+    server, robot = executor.get_nodes()
+    server.trigger_deactivate()
+    assert server.trigger_cleanup() == TransitionCallbackReturn.SUCCESS
+    assert robot.count_publishers("cmd_vel") == 0
+    assert server.trigger_configure() == TransitionCallbackReturn.SUCCESS
+    assert server.trigger_activate() == TransitionCallbackReturn.SUCCESS
+    be_somewhere(robot)
+    client = ActionClient(robot, Wait, "wait")
+    assert client.wait_for_server(TIMEOUT_S)
+    sent = client.send_goal_async(Wait.Goal(time=Duration(nanosec=1)))
+    executor.spin_until_future_complete(sent, TIMEOUT_S)
+    ended = sent.result().get_result_async()
+    executor.spin_until_future_complete(ended, TIMEOUT_S)
+    assert ended.result().status == GoalStatus.STATUS_SUCCEEDED
