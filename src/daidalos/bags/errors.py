@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from daidalos.common.errors import Location, UserError
 
-class BagError(RuntimeError):
+
+class BagError(UserError, RuntimeError):
     """A bag that cannot be read or written.
 
     Parameters
@@ -17,6 +19,6 @@ class BagError(RuntimeError):
     """
 
     def __init__(self, path: str | Path, reason: str) -> None:
-        super().__init__(f"{path}: {reason}")
+        super().__init__(reason, Location(str(path)))
         self.path = Path(path)
         self.reason = reason

@@ -5,10 +5,6 @@ from __future__ import annotations
 from typing import NamedTuple
 
 
-class UserError(Exception):
-    """A mistake of the user's; shown as one line, without a traceback."""
-
-
 class Location(NamedTuple):
     """Place in a file that an error message names.
 
@@ -33,3 +29,19 @@ class Location(NamedTuple):
     def prefix(self) -> str:
         """Return what to write in front of a message: ``file:line: 'name': ``, as far as they are known."""
         return "".join(f"{part}: " for part in (str(self), f"'{self.name}'" if self.name else "") if part)
+
+
+class UserError(Exception):
+    """A mistake of the user's; shown as one line, without a traceback.
+
+    Parameters
+    ----------
+    problem : str
+        What is wrong, and what was expected.
+    location : Location, optional
+        Where it was written; the message begins with it.
+    """
+
+    def __init__(self, problem: str, location: Location | None = None) -> None:
+        super().__init__(f"{location.prefix() if location else ''}{problem}")
+        self.location = location

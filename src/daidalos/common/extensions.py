@@ -37,18 +37,7 @@ _CLASS_PATH = re.compile(r"[A-Za-z_]\w*(\.[A-Za-z_]\w*)+")
 
 
 class ExtensionError(UserError):
-    """An extension is not known or cannot be used; one line for the user.
-
-    Parameters
-    ----------
-    problem : str
-        What is wrong.
-    asked_by : Location or None
-        The parameter, and the place in a file, that asked for the extension.
-    """
-
-    def __init__(self, problem: str, asked_by: Location | None = None) -> None:
-        super().__init__(f"{asked_by.prefix() if asked_by else ''}{problem}")
+    """An extension is not known or cannot be used; its location is the parameter that asked for it."""
 
 
 class UnknownExtension(ExtensionError):

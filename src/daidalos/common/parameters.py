@@ -34,7 +34,7 @@ class ParameterError(UserError, ValueError):
     """
 
     def __init__(self, name: str, problem: str, location: Location | None = None) -> None:
-        super().__init__(f"{location.prefix() if location else ''}parameter '{name}' {problem}")
+        super().__init__(f"parameter '{name}' {problem}", location)
         self.name = name
         self.problem = problem
 

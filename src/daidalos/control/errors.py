@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from daidalos.common.errors import UserError
 from daidalos.common.suggestions import hint
 
 
-class ControlError(Exception):
+class ControlError(UserError):
     """Something about hardware or controllers is not as it must be; one line for the user."""
 
 

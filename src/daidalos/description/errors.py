@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from daidalos.common.errors import Location, UserError
 
-class DescriptionError(Exception):
+
+class DescriptionError(UserError):
     """Unusable description; the message names the location.
 
     Parameters
@@ -19,8 +21,7 @@ class DescriptionError(Exception):
     """
 
     def __init__(self, message: str, source: str = "", line: int = 0, element: str = "") -> None:
-        place = f"{source}:{line}" if source and line else source
-        super().__init__(": ".join(part for part in (place, element, message) if part))
+        super().__init__(f"{element}: {message}" if element else message, Location(source or None, line or None))
         self.message = message
         self.source = source
         self.line = line

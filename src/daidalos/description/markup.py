@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from xml.parsers import expat
 from xml.sax.saxutils import escape, quoteattr
 
+from daidalos.common.errors import Location
 from daidalos.description.errors import DescriptionError
 
 _TRUE = frozenset({"true", "1", "yes", "on"})
@@ -98,7 +99,12 @@ class Element:
     @property
     def where(self) -> str:
         """File and line as ``file:line``."""
-        return f"{self.source}:{self.line}" if self.line else self.source
+        return str(self.location)
+
+    @property
+    def location(self) -> Location:
+        """File and line for errors."""
+        return Location(self.source or None, self.line or None)
 
     def error(self, message: str) -> DescriptionError:
         """Return an error that names this element and its location."""

@@ -11,6 +11,7 @@ import re
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
+from daidalos.common.errors import Location
 from daidalos.interfaces.parser import InterfaceError
 
 _TOKEN = re.compile(
@@ -87,7 +88,7 @@ def read_idl(text: str, name: str, source: str = "<text>") -> IdlInterface:
             lines = [line for block in blocks for line in ["---", *block]][1:]
             return IdlInterface(package, kind, name, "\n".join(lines) + "\n")
     raise InterfaceError(
-        f"{source}: there is no struct '{name}' in a module 'msg', nor the parts of a service or action"
+        f"there is no struct '{name}' in a module 'msg', nor the parts of a service or action", Location(source)
     )
 
 
@@ -103,7 +104,7 @@ def _tokens(text: str, source: str) -> list[_Token]:
     while place < len(text):
         match = _TOKEN.match(text, place)
         if match is None:
-            raise InterfaceError(f"{source}:{line}: unexpected {text[place]!r}")
+            raise InterfaceError(f"unexpected {text[place]!r}", Location(source, line))
         if match.lastgroup != "space":
             found.append(_Token(match.lastgroup or "", match[0], line))
         line += match[0].count("\n")
@@ -135,7 +136,7 @@ class _Reader:
         token = self._tokens[self._place]
         if expected and token.text not in expected and token.kind not in expected:
             wanted = " or ".join(f"'{one}'" for one in expected)
-            raise InterfaceError(f"{self._source}:{token.line}: expected {wanted}, found '{token.text}'")
+            raise InterfaceError(f"expected {wanted}, found '{token.text}'", Location(self._source, token.line))
         self._place += 1
         return token.text
 
@@ -241,7 +242,7 @@ class _Reader:
 
     def _unknown(self, word: str) -> str:
         line = self._tokens[self._place - 1].line
-        raise InterfaceError(f"{self._source}:{line}: the type '{word}' is not known")
+        raise InterfaceError(f"the type '{word}' is not known", Location(self._source, line))
 
     def _dimension(self) -> str:
         if not self._next_is("["):

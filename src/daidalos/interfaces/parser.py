@@ -6,6 +6,7 @@ import math
 import re
 from pathlib import Path
 
+from daidalos.common.errors import Location, UserError
 from daidalos.interfaces.definition import (
     INTEGER_RANGES,
     PRIMITIVES,
@@ -21,7 +22,7 @@ from daidalos.interfaces.definition import (
 )
 
 
-class InterfaceError(ValueError):
+class InterfaceError(UserError, ValueError):
     """Invalid interface file; the message names file and line."""
 
 
@@ -43,11 +44,11 @@ def parse_file(path: Path, package: str) -> Interface:
     """
     kind = path.suffix.lstrip(".")
     if kind not in {"msg", "srv", "action"}:
-        raise InterfaceError(f"{path}: expected a .msg, .srv or .action file")
+        raise InterfaceError("expected a .msg, .srv or .action file", Location(str(path)))
     try:
         text = path.read_text(encoding="utf-8-sig")
     except UnicodeDecodeError as error:
-        raise InterfaceError(f"{path}: byte {error.start} is not valid UTF-8") from None
+        raise InterfaceError(f"byte {error.start} is not valid UTF-8", Location(str(path))) from None
     return parse(text, package, kind, path.stem, str(path))
 
 
@@ -60,7 +61,7 @@ def parse(text: str, package: str, kind: str, name: str, source: str = "<text>")
         Naming `source` and the line that cannot be understood.
     """
     if not _NAME.match(name):
-        raise InterfaceError(f"{source}: '{name}' is not an interface name; use CamelCase such as 'LaserScan'")
+        raise InterfaceError(f"'{name}' is not an interface name; use CamelCase such as 'LaserScan'", Location(source))
     full = f"{package}/{kind}/{name}"
     lines = text.splitlines()
     if kind == "msg":
@@ -74,7 +75,7 @@ def parse(text: str, package: str, kind: str, name: str, source: str = "<text>")
     suffixes = ("Request", "Response") if kind == "srv" else ("Goal", "Result", "Feedback")
     if len(parts) != len(suffixes):
         raise InterfaceError(
-            f"{source}: a .{kind} file has {len(suffixes)} parts separated by '---', this one {len(parts)}"
+            f"a .{kind} file has {len(suffixes)} parts separated by '---', this one {len(parts)}", Location(source)
         )
     messages = [
         _parse_message(f"{full}_{suffix}", part, first, source, package)
@@ -103,9 +104,9 @@ def _parse_message(name: str, lines: list[str], first: int, source: str, package
         try:
             item = _parse_line(code, note, package)
         except InterfaceError as error:
-            raise InterfaceError(f"{source}:{number}: {error}") from None
+            raise InterfaceError(str(error), Location(source, number)) from None
         if item.name in {other.name for other in fields} | {other.name for other in constants}:
-            raise InterfaceError(f"{source}:{number}: '{item.name}' is defined twice")
+            raise InterfaceError(f"'{item.name}' is defined twice", Location(source, number))
         if isinstance(item, Constant):
             constants.append(item)
         else:

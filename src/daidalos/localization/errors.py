@@ -1,5 +1,7 @@
 """What can go wrong with localization."""
 
+from daidalos.common.errors import UserError
 
-class LocalizationError(Exception):
+
+class LocalizationError(UserError):
     """Localization can not be set up as asked; the message is one line for the person who asked."""

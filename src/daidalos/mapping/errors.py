@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from daidalos.common.errors import UserError
+from daidalos.common.errors import Location, UserError
 
 
 class MappingError(UserError):
@@ -21,8 +21,7 @@ class MapFileError(MappingError):
     """
 
     def __init__(self, path: Path, field: str | None, problem: str) -> None:
-        where = f"{path}: {field}" if field else str(path)
-        super().__init__(f"{where}: {problem}")
+        super().__init__(f"{field}: {problem}" if field else problem, Location(str(path)))
         self.path = path
         self.field = field
 
@@ -37,7 +36,7 @@ class LogError(MappingError):
     """
 
     def __init__(self, path: Path, problem: str) -> None:
-        super().__init__(f"{path}: {problem}")
+        super().__init__(problem, Location(str(path)))
         self.path = path
 
 
@@ -53,7 +52,6 @@ class RelationsError(MappingError):
     """
 
     def __init__(self, path: Path, line: int | None, problem: str) -> None:
-        where = f"{path}:{line}" if line is not None else str(path)
-        super().__init__(f"{where}: {problem}")
+        super().__init__(problem, Location(str(path), line))
         self.path = path
         self.line = line

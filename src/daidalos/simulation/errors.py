@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from daidalos.common.errors import UserError
 
-class SimulationError(Exception):
+
+class SimulationError(UserError):
     """Content that cannot be simulated; the message gives the reason."""
 
 

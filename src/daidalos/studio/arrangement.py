@@ -6,16 +6,17 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Literal
 
+from daidalos.common.errors import Location, UserError
 from daidalos.studio.records import to_json
 
 Value = str | float | bool
 
 
-class ArrangementError(Exception):
+class ArrangementError(UserError):
     """A layout file that can not be read; the text names the file, the line and what is wrong."""
 
     def __init__(self, path: Path | str, line: int | None, what: str) -> None:
-        super().__init__(f"{path}:{line}: {what}" if line else f"{path}: {what}")
+        super().__init__(what, Location(str(path), line))
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 
+from daidalos.common.errors import Location
 from daidalos.common.suggestions import hint
 from daidalos.interfaces.definition import Interface, messages_of
 from daidalos.interfaces.description import Description, IndividualDescription, Lookup, describe
@@ -74,10 +75,12 @@ def _read(path: Path, package: str) -> tuple[Interface, str | None]:
     try:
         text = path.read_text(encoding="utf-8-sig")
     except UnicodeDecodeError as error:
-        raise InterfaceError(f"{path}: byte {error.start} is not valid UTF-8") from None
+        raise InterfaceError(f"byte {error.start} is not valid UTF-8", Location(str(path))) from None
     found = read_idl(text, path.stem, str(path))
     if found.package != package:
-        raise InterfaceError(f"{path}: its module is '{found.package}', expected '{package}' as the package is called")
+        raise InterfaceError(
+            f"its module is '{found.package}', expected '{package}' as the package is called", Location(str(path))
+        )
     return parse(found.text, package, found.kind, found.name, str(path)), found.text
 
 
@@ -101,7 +104,7 @@ def _check_references(path: Path, interface: Interface, lookup: Lookup, known: S
                 package, _, short = name.split("/")
                 meant = hint(f"{package}/{short}", [other.replace("/msg/", "/") for other in known])
                 raise WorkspaceError(
-                    f"{path}:{_line(path, short)}: there is no message '{package}/{short}'{meant}"
+                    f"there is no message '{package}/{short}'{meant}", Location(str(path), _line(path, short))
                 ) from None
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
+from daidalos.common.errors import Location
 from daidalos.distribution import ENVIRONMENT
 from daidalos.workspaces.errors import WorkspaceError
 
@@ -38,7 +39,7 @@ def _text(path: Path) -> str:
     try:
         text = path.read_text(encoding="utf-8-sig")
     except UnicodeDecodeError as error:
-        raise WorkspaceError(f"{path}: byte {error.start} is not valid UTF-8") from None
+        raise WorkspaceError(f"byte {error.start} is not valid UTF-8", Location(str(path))) from None
     if not text.strip():
         raise WorkspaceError(f"{path}:1: the file is empty")
     return text
@@ -50,7 +51,7 @@ def _root(path: Path, text: str) -> str:
     except ElementTree.ParseError as error:
         line, column = error.position
         what = str(error).partition(":")[0]
-        raise WorkspaceError(f"{path}:{line}: not valid XML: {what} (column {column + 1})") from None
+        raise WorkspaceError(f"not valid XML: {what} (column {column + 1})", Location(str(path), line)) from None
 
 
 def _located(path: Path, text: str, message: str) -> str:

@@ -10,6 +10,8 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from daidalos.common.errors import UserError
+
 if TYPE_CHECKING:
     from daidalos.mapping.evaluation import RelationErrors, Relations
     from daidalos.mapping.log import Log
@@ -18,10 +20,6 @@ if TYPE_CHECKING:
 EPILOG = """The bag is an MCAP or sqlite3 bag with scans (sensor_msgs/LaserScan) and odometry
 (nav_msgs/Odometry, or the transform odom -> base in /tf). NAME.pgm and NAME.yaml are written as map_server
 reads them."""
-
-
-class _UserError(Exception):
-    """Invalid input of the user; the message gives the reason."""
 
 
 class MapVerb:
@@ -70,11 +68,9 @@ class MapVerb:
 
     def main(self, *, args: argparse.Namespace) -> int:
         """Map a log; return the exit status."""
-        from daidalos.mapping.errors import MappingError
-
         try:
             report = _run(args)
-        except (MappingError, _UserError) as error:
+        except UserError as error:
             print(f"daidalos map: {error}", file=sys.stderr)
             return 2
         except KeyboardInterrupt:
@@ -98,7 +94,7 @@ def _run(args: argparse.Namespace) -> dict[str, Any]:
         raw_errors = _errors(args.relations, log, log.odometry, relations)
     mapped, seconds = _map(log, args)
     if mapped.grid.data.size == 0:
-        raise _UserError(f"{args.bag}: no scan on {log.scan_topic} has enough valid ranges to map")
+        raise UserError(f"{args.bag}: no scan on {log.scan_topic} has enough valid ranges to map")
     written = list(save_map(mapped.grid, output, args.mode))
     if args.trajectory:
         _write_trajectory(args.trajectory, log, mapped)
@@ -158,7 +154,7 @@ def _errors(path: Path, log: "Log", poses: Any, relations: "Relations") -> "Rela
     try:
         return relation_errors(log.stamps_ns, poses, relations)
     except ValueError as error:
-        raise _UserError(f"{path}: {error}") from error
+        raise UserError(f"{path}: {error}") from error
 
 
 def _write_trajectory(path: Path, log: "Log", mapped: "LogMap") -> None:
@@ -172,7 +168,7 @@ def _write_trajectory(path: Path, log: "Log", mapped: "LogMap") -> None:
     try:
         path.write_text("".join(lines), encoding="ascii")
     except OSError as error:
-        raise _UserError(f"{path}: {error.strerror}") from error
+        raise UserError(f"{path}: {error.strerror}") from error
 
 
 def _report(log: "Log", mapped: "LogMap", seconds: float, written: list[Path]) -> dict[str, Any]:
@@ -214,9 +210,9 @@ def _as_text(report: dict[str, Any]) -> str:
 def _require_writable(path: Path) -> None:
     """Raise an error at once if a result could not be written later."""
     if not path.parent.is_dir():
-        raise _UserError(f"{path}: no such folder: {path.parent}")
+        raise UserError(f"{path}: no such folder: {path.parent}")
     if path.is_dir() or not os.access(path.parent, os.W_OK):
-        raise _UserError(f"{path}: can not be written")
+        raise UserError(f"{path}: can not be written")
 
 
 def _positive(text: str) -> float:

@@ -55,7 +55,7 @@ class BehaviorTree:
         try:
             text = path.read_text(encoding="utf-8")
         except (OSError, UnicodeDecodeError) as error:
-            raise TreeError(f"{path}: cannot be read: {error}") from None
+            raise TreeError(f"cannot be read: {error}", Location(str(path))) from None
         return cls.parse(text, services, blackboard, str(path))
 
     @classmethod
@@ -111,7 +111,7 @@ def _document(text: str, source: str) -> Element:
     except DescriptionError as error:
         raise TreeError(str(error)) from None
     if root.tag != "root":
-        raise TreeError(f"{root.where}: the outermost element must be <root>, not <{root.tag}>")
+        raise TreeError(f"the outermost element must be <root>, not <{root.tag}>", root.location)
     return root
 
 
@@ -122,16 +122,16 @@ def _trees(root: Element, folder: Path, seen: frozenset[Path] = frozenset()) -> 
         path = (folder / include.attributes.get("path", "")).resolve()
         if not path.is_file() or path in seen:
             why = "includes itself" if path in seen else "does not exist"
-            raise TreeError(f"{include.where}: the included file {path} {why}")
+            raise TreeError(f"the included file {path} {why}", include.location)
         inner = _document(path.read_text(encoding="utf-8"), str(path))
         trees.update(_trees(inner, path.parent, seen | {path})[0])
     own = [tree.attributes.get("ID", "MainTree") for tree in root.all("BehaviorTree")]
     trees.update(zip(own, root.all("BehaviorTree"), strict=True))
     if not trees:
-        raise TreeError(f"{root.where}: there is no <BehaviorTree>")
+        raise TreeError("there is no <BehaviorTree>", root.location)
     main = root.attributes.get("main_tree_to_execute") or (own[0] if len(own) == 1 else "MainTree")
     if main not in trees and not seen:
-        raise TreeError(f"{root.where}: there is no tree {main!r}; the trees are: {', '.join(trees)}")
+        raise TreeError(f"there is no tree {main!r}; the trees are: {', '.join(trees)}", root.location)
     return trees, main
 
 
@@ -145,12 +145,14 @@ class _Builder:
     def subtree(self, identifier: str, board: Blackboard, element: Element, path: tuple[str, ...]) -> Any:
         """Return the root node of a tree; `element` refers to it."""
         if identifier not in self._trees:
-            raise TreeError(f"{_place(element)}: there is no tree {identifier!r}{hint(identifier, self._trees)}")
+            raise TreeError(
+                f"{element.label}: there is no tree {identifier!r}{hint(identifier, self._trees)}", element.location
+            )
         if identifier in path:
-            raise TreeError(f"{_place(element)}: the tree {identifier!r} contains itself")
+            raise TreeError(f"{element.label}: the tree {identifier!r} contains itself", element.location)
         tree = self._trees[identifier]
         if len(tree.children) != 1:
-            raise TreeError(f"{tree.where}: the tree {identifier!r} must have one root, not {len(tree.children)}")
+            raise TreeError(f"the tree {identifier!r} must have one root, not {len(tree.children)}", tree.location)
         return self._node(tree.children[0], board, (*path, identifier))
 
     def _node(self, element: Element, board: Blackboard, path: tuple[str, ...]) -> Any:
@@ -188,7 +190,7 @@ def _check_number(element: Element, number: int, allowed: tuple[int, int | None]
     if number >= fewest and (most is None or number <= most):
         return
     wanted = f"at least {fewest}" if most is None else f"{fewest}" if most == fewest else f"{fewest} to {most}"
-    raise TreeError(f"{_place(element)}: it must have {wanted} children, not {number}")
+    raise TreeError(f"{element.label}: it must have {wanted} children, not {number}", element.location)
 
 
 def _place(element: Element) -> str:

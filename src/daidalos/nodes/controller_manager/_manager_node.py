@@ -251,7 +251,7 @@ class ControllerManagerNode(Node):
             )
             fallbacks = self._parameter(f"{name}.fallback_controllers", [])
             self._running.load(name, type_name, node.read_parameters, context, fallbacks)
-        except (ControlError, UserError):
+        except UserError:
             node.destroy_node()
             raise
         self._nodes[name] = node
@@ -294,7 +294,7 @@ class ControllerManagerNode(Node):
         name = request.name
         try:
             self._running.configure(name)
-        except (ControlError, UserError) as error:
+        except UserError as error:
             if name in self._nodes:
                 self._nodes[name].disconnect()
             raise ControlError(f"controller '{name}' can not be configured: {error}") from error

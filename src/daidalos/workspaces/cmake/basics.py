@@ -106,7 +106,7 @@ def _changed_list(action: str, items: list[str], values: list[str], call: Call) 
         return [item for item in items if bool(re.search(values[2], item)) == keep]
     if action == "TRANSFORM":
         return [_transformed(item, values) for item in items]
-    raise WorkspaceError(f"{call.where}: list({action}) is not known")
+    raise WorkspaceError(f"list({action}) is not known", call.where)
 
 
 def _transformed(item: str, values: list[str]) -> str:
@@ -159,7 +159,7 @@ def _file(run: Interpreter, call: Call) -> None:
     elif action == "READ":
         path = run.path(values[0])
         if not path.is_file():
-            raise WorkspaceError(f"{call.where}: file(READ) cannot open '{values[0]}'")
+            raise WorkspaceError(f"file(READ) cannot open '{values[0]}'", call.where)
         run.variables[values[1]] = path.read_text(encoding="utf-8", errors="replace")
     elif action == "RELATIVE_PATH":
         run.variables[values[0]] = os.path.relpath(values[2], values[1])
@@ -199,7 +199,7 @@ def _message(run: Interpreter, call: Call) -> None:
     kind = call.values[0] if call.values and call.values[0] in (*kinds, "DEBUG", "TRACE") else ""
     text = "".join(call.values[1:] if kind else call.values)
     if kind in ("FATAL_ERROR", "SEND_ERROR"):
-        raise WorkspaceError(f"{call.where}: {text}")
+        raise WorkspaceError(text, call.where)
     if kind in ("WARNING", "NOTICE", ""):
         run.contents.notes.append(f"{call.where}: {text}")
 
@@ -212,13 +212,13 @@ def _include(run: Interpreter, call: Call) -> None:
     if path.is_file():
         run.run_file(path)
     elif path.suffix and "OPTIONAL" not in call.values:
-        raise WorkspaceError(f"{call.where}: include() finds no file '{name}'")
+        raise WorkspaceError(f"include() finds no file '{name}'", call.where)
 
 
 def _add_subdirectory(run: Interpreter, call: Call) -> None:
     folder = run.path(call.values[0])
     if not (folder / "CMakeLists.txt").is_file():
-        raise WorkspaceError(f"{call.where}: add_subdirectory(): there is no '{call.values[0]}/CMakeLists.txt'")
+        raise WorkspaceError(f"add_subdirectory(): there is no '{call.values[0]}/CMakeLists.txt'", call.where)
     run.run_folder(folder)
 
 
@@ -226,7 +226,7 @@ def _configure_file(run: Interpreter, call: Call) -> None:
     source = run.path(call.values[0])
     target = Path(run.variables["CMAKE_CURRENT_BINARY_DIR"]) / call.values[1]
     if not source.is_file():
-        raise WorkspaceError(f"{call.where}: configure_file(): there is no '{call.values[0]}'")
+        raise WorkspaceError(f"configure_file(): there is no '{call.values[0]}'", call.where)
     target = target / source.name if target.is_dir() else target
     target.parent.mkdir(parents=True, exist_ok=True)
     if "COPYONLY" in call.values:

@@ -40,7 +40,7 @@ def _interface_files(run: Interpreter, call: Call) -> None:
     paths = [folder / name for name in found["FILES"]] if "FILES" in found else sorted(folder.glob(f"*.{kind}"))
     for path in paths:
         if not path.is_file():
-            raise WorkspaceError(f"{call.where}: {call.name}(): there is no file '{path}'")
+            raise WorkspaceError(f"{call.name}(): there is no file '{path}'", call.where)
     before = run.contents.interfaces.files if run.contents.interfaces else []
     run.contents.interfaces = Interfaces(before + paths, call.where)
 

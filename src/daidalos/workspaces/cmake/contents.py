@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from daidalos.common.errors import Location
+
 
 @dataclass(frozen=True)
 class InstalledFile:
@@ -38,7 +40,7 @@ class Interfaces:
     """Files of rosidl_generate_interfaces and the location of that call."""
 
     files: list[Path]
-    where: str
+    where: Location
 
 
 @dataclass
@@ -47,7 +49,7 @@ class Target:
 
     name: str
     kind: str
-    where: str
+    where: Location
     sources: list[Path] = field(default_factory=list)
     links: list[str] = field(default_factory=list)
     includes: list[Path] = field(default_factory=list)

@@ -43,7 +43,7 @@ def _install_files(run: Interpreter, call: Call, values: list[str], executable: 
         if not source.is_file():
             if "OPTIONAL" in found or run.is_made_by_build(source):
                 continue
-            raise WorkspaceError(f"{call.where}: install(): there is no file '{name}'")
+            raise WorkspaceError(f"install(): there is no file '{name}'", call.where)
         target = found.get("RENAME", [source.name])[0]
         run.contents.files.append(
             InstalledFile(source, _joined(destination, target), executable or os.access(source, os.X_OK))
@@ -60,7 +60,7 @@ def _install_directories(run: Interpreter, call: Call, values: list[str]) -> Non
         if not folder.is_dir():
             if "OPTIONAL" in found or run.is_made_by_build(folder):
                 continue
-            raise WorkspaceError(f"{call.where}: install(): there is no folder '{name}'")
+            raise WorkspaceError(f"install(): there is no folder '{name}'", call.where)
         # Without a slash at its end the folder itself is installed, with one what it holds.
         base = destination if name.endswith("/") else _joined(destination, folder.resolve().name)
         for path in files_below(folder):
@@ -121,7 +121,7 @@ def _destination(found: dict[str, list[str]], run: Interpreter, call: Call) -> s
     if "TYPE" in found:
         return _BY_TYPE.get(found["TYPE"][0], "share")
     if not found.get("DESTINATION"):
-        raise WorkspaceError(f"{call.where}: install() needs a DESTINATION")
+        raise WorkspaceError("install() needs a DESTINATION", call.where)
     return relative(found["DESTINATION"][0], run, call)
 
 
@@ -137,7 +137,7 @@ def relative(destination: str, run: Interpreter, call: Call) -> str:
     clean = os.path.normpath(os.path.join(prefix, destination))
     inside = os.path.relpath(clean, prefix)
     if inside.startswith(".."):
-        raise WorkspaceError(f"{call.where}: '{destination}' is outside of the folder to install to")
+        raise WorkspaceError(f"'{destination}' is outside of the folder to install to", call.where)
     return inside.replace(os.sep, "/")
 
 
@@ -152,7 +152,7 @@ def _python_package(run: Interpreter, call: Call) -> None:
     name = names[0]
     folder = run.path(found.get("PACKAGE_DIR", [name])[0])
     if not (folder / "__init__.py").is_file():
-        raise WorkspaceError(f"{call.where}: {call.name}(): there is no file '{folder / '__init__.py'}'")
+        raise WorkspaceError(f"{call.name}(): there is no file '{folder / '__init__.py'}'", call.where)
     target = relative(found.get("DESTINATION", [run.variables["PYTHON_INSTALL_DIR"]])[0], run, call)
     for path in files_below(folder):
         if path.suffix != ".pyc":
@@ -187,15 +187,15 @@ def _generate_interfaces(run: Interpreter, call: Call) -> None:
     options = ("ADD_LINTER_TESTS", "SKIP_INSTALL", "SKIP_GROUP_MEMBERSHIP_CHECK")
     files = keywords(call.values, options, ("LIBRARY_NAME",), ("DEPENDENCIES",))[1][1:]
     if not files:
-        raise WorkspaceError(f"{call.where}: {call.name}() names no .msg, .srv, .action or .idl files")
+        raise WorkspaceError(f"{call.name}() names no .msg, .srv, .action or .idl files", call.where)
     paths = []
     for name in files:
         base, _, rest = name.rpartition(":")
         path = Path(base, rest) if base and not Path(name).is_absolute() else run.path(name)
         if not path.is_file():
-            raise WorkspaceError(f"{call.where}: {call.name}(): there is no file '{name}'")
+            raise WorkspaceError(f"{call.name}(): there is no file '{name}'", call.where)
         if path.suffix not in (".msg", ".srv", ".action", ".idl"):
-            raise WorkspaceError(f"{call.where}: {call.name}(): '{name}' is not an .msg, .srv, .action or .idl file")
+            raise WorkspaceError(f"{call.name}(): '{name}' is not an .msg, .srv, .action or .idl file", call.where)
         paths.append(path)
     before = run.contents.interfaces.files if run.contents.interfaces else []
     run.contents.interfaces = Interfaces(before + paths, call.where)
@@ -215,7 +215,7 @@ def _register_resource(run: Interpreter, call: Call) -> None:
     if "CONTENT_FILE" in found:
         path = run.path(found["CONTENT_FILE"][0])
         if not path.is_file():
-            raise WorkspaceError(f"{call.where}: {call.name}(): there is no file '{path}'")
+            raise WorkspaceError(f"{call.name}(): there is no file '{path}'", call.where)
         content = path.read_text(encoding="utf-8")
     name = found.get("PACKAGE_NAME", [run.contents.project])[0]
     run.contents.resources.append(Resource(others[0], name, content))
@@ -226,7 +226,7 @@ def _environment_hooks(run: Interpreter, call: Call) -> None:
     for name in call.values:
         source = run.path(name)
         if not source.is_file():
-            raise WorkspaceError(f"{call.where}: {call.name}(): there is no file '{name}'")
+            raise WorkspaceError(f"{call.name}(): there is no file '{name}'", call.where)
         if source.suffix == ".in":
             build.mkdir(parents=True, exist_ok=True)
             filled = build / source.stem

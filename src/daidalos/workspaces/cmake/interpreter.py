@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from daidalos.common.errors import Location
 from daidalos.workspaces.cmake.conditions import is_true
 from daidalos.workspaces.cmake.contents import Contents
 from daidalos.workspaces.cmake.syntax import Block, Command, Node, parse
@@ -22,7 +23,7 @@ class Call:
 
     name: str
     values: list[str]
-    where: str
+    where: Location
 
 
 Handler = Callable[["Interpreter", Call], None]
@@ -96,7 +97,7 @@ class Interpreter:
         try:
             text = path.read_text(encoding="utf-8-sig")
         except UnicodeDecodeError as error:
-            raise WorkspaceError(f"{path}: byte {error.start} is not valid UTF-8") from None
+            raise WorkspaceError(f"byte {error.start} is not valid UTF-8", Location(str(path))) from None
         outer, self.source = self.source, path
         self.variables["CMAKE_CURRENT_LIST_DIR"] = str(path.parent)
         self.variables["CMAKE_CURRENT_LIST_FILE"] = str(path)
@@ -122,7 +123,7 @@ class Interpreter:
             self._run(nodes)
         except _Left as left:
             if str(left) != "return":
-                raise WorkspaceError(f"{self.source}: {left}() outside of a loop") from None
+                raise WorkspaceError(f"{left}() outside of a loop", Location(str(self.source))) from None
 
     def _run(self, nodes: Sequence[Node]) -> None:
         for node in nodes:
@@ -213,7 +214,7 @@ class Interpreter:
         name = command.name
         if name in ("return", "break", "continue"):
             raise _Left(name)
-        call = Call(name, expand(command.arguments, self.variables), f"{self.source}:{command.line}")
+        call = Call(name, expand(command.arguments, self.variables), Location(str(self.source), command.line))
         if name in self._defined:
             self._call_defined(self._defined[name], call)
         elif name in self._handlers:
@@ -232,7 +233,7 @@ class Interpreter:
         head, body = block.branches[0]
         parameters = expand(head.arguments, self.variables)[1:]
         if len(call.values) < len(parameters):
-            raise WorkspaceError(f"{call.where}: {call.name}() needs {len(parameters)} arguments")
+            raise WorkspaceError(f"{call.name}() needs {len(parameters)} arguments", call.where)
         own = dict(zip(parameters, call.values, strict=False))
         own |= {"ARGC": str(len(call.values)), "ARGV": ";".join(call.values)}
         own["ARGN"] = ";".join(call.values[len(parameters) :])
@@ -254,7 +255,7 @@ class Interpreter:
                 self.variables[name] = value
 
     def _fault(self, command: Command, what: str) -> WorkspaceError:
-        return WorkspaceError(f"{self.source}:{command.line}: {what}")
+        return WorkspaceError(what, Location(str(self.source), command.line))
 
 
 def keywords(

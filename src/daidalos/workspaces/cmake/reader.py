@@ -8,6 +8,7 @@ import sys
 from collections.abc import Mapping
 from pathlib import Path
 
+from daidalos.common.errors import Location
 from daidalos.workspaces.cmake import basics, catkin, installs, targets
 from daidalos.workspaces.cmake.contents import Contents
 from daidalos.workspaces.cmake.interpreter import Interpreter
@@ -42,12 +43,12 @@ def read_package(
     """
     path = folder / "CMakeLists.txt"
     if not path.is_file():
-        raise WorkspaceError(f"{folder}: a package of build type ament_cmake needs a CMakeLists.txt")
+        raise WorkspaceError("a package of build type ament_cmake needs a CMakeLists.txt", Location(str(folder)))
     variables = _variables(folder, build, prefix) | {"PYTHON_INSTALL_DIR": python_folder}
     interpreter = Interpreter(_HANDLERS, _IGNORED, variables | dict(definitions or {}), folder)
     interpreter.run_file(path)
     if not interpreter.contents.project:
-        raise WorkspaceError(f"{path}: there is no project() with the package's name")
+        raise WorkspaceError("there is no project() with the package's name", Location(str(path)))
     return interpreter.contents
 
 

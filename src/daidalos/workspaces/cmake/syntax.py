@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
+from daidalos.common.errors import Location
 from daidalos.workspaces.errors import WorkspaceError
 
 _TOKEN = re.compile(
@@ -90,14 +91,14 @@ def parse(text: str, source: str) -> list[Node]:
         elif command.name in _STARTS or command.name in ("elseif", "else"):
             start = _STARTS.get(command.name, "if")
             if not open_blocks or open_blocks[-1].kind != start:
-                raise WorkspaceError(f"{source}:{command.line}: {command.name}() without its {start}()")
+                raise WorkspaceError(f"{command.name}() without its {start}()", Location(source, command.line))
             open_blocks.pop()
             bodies.pop()
         else:
             bodies[-1].append(command)
     if open_blocks:
         first = open_blocks[-1].branches[0][0]
-        raise WorkspaceError(f"{source}:{first.line}: {first.name}() has no {_ENDS[first.name]}()")
+        raise WorkspaceError(f"{first.name}() has no {_ENDS[first.name]}()", Location(source, first.line))
     return root
 
 
@@ -107,15 +108,15 @@ def _commands(text: str, source: str) -> Iterator[Command]:
     while position < len(tokens):
         kind, name, line = tokens[position]
         if kind != "bare" or not _NAME.match(name):
-            raise WorkspaceError(f"{source}:{line}: expected the name of a command, got '{name}'")
+            raise WorkspaceError(f"expected the name of a command, got '{name}'", Location(source, line))
         if position + 1 == len(tokens) or tokens[position + 1][0] != "open":
-            raise WorkspaceError(f"{source}:{line}: expected '(' after '{name}'")
+            raise WorkspaceError(f"expected '(' after '{name}'", Location(source, line))
         position += 2
         arguments: list[Argument] = []
         depth = 1
         while True:
             if position == len(tokens):
-                raise WorkspaceError(f"{source}:{line}: the '(' after '{name}' is never closed")
+                raise WorkspaceError(f"the '(' after '{name}' is never closed", Location(source, line))
             kind, value, _ = tokens[position]
             position += 1
             depth += {"open": 1, "close": -1}.get(kind, 0)
@@ -132,7 +133,7 @@ def _tokens(text: str, source: str) -> Iterator[tuple[str, str, int]]:
         match = _TOKEN.match(text, position)
         if match is None:
             what = "a quoted text is never closed" if text[position] == '"' else f"unexpected '{text[position]}'"
-            raise WorkspaceError(f"{source}:{line}: {what}")
+            raise WorkspaceError(what, Location(source, line))
         for kind in ("open", "close", "bracket", "quoted", "bare"):
             value = match.group(kind)
             if value is not None:

@@ -33,7 +33,7 @@ def _add_sources(run: Interpreter, call: Call, target: Target, names: list[str])
         if run.is_made_by_build(path):
             target.links.append("generated code")
         elif not path.is_file():
-            raise WorkspaceError(f"{call.where}: {call.name}({target.name}): there is no file '{name}'")
+            raise WorkspaceError(f"{call.name}({target.name}): there is no file '{name}'", call.where)
         target.sources.append(path)
 
 
@@ -154,11 +154,11 @@ def _launch_test(run: Interpreter, call: Call) -> None:
 def _add_test(run: Interpreter, call: Call, name: str, kind: str, path: str, found: dict[str, list[str]]) -> None:
     where = run.path(path)
     if not where.exists():
-        raise WorkspaceError(f"{call.where}: {call.name}(): there is no file '{path}'")
+        raise WorkspaceError(f"{call.name}(): there is no file '{path}'", call.where)
     try:
         timeout = float(found.get("TIMEOUT", ["60"])[0])
     except ValueError:
-        raise WorkspaceError(f"{call.where}: {call.name}(): TIMEOUT needs a number of seconds") from None
+        raise WorkspaceError(f"{call.name}(): TIMEOUT needs a number of seconds", call.where) from None
     pairs = [item.partition("=") for item in found.get("ENV", [])]
     environment = tuple((key, value) for key, _, value in pairs)
     folder = str(run.path(found["WORKING_DIRECTORY"][0])) if "WORKING_DIRECTORY" in found else ""
