@@ -68,7 +68,7 @@ def test_a_bag_without_description_is_read_from_its_files(tmp_path):
     (folder / "metadata.yaml").unlink()
     with BagReader(folder) as bag:
         assert format_metadata(bag.metadata) == format_metadata(described)
-        assert bag.notes == [f"{folder}: there is no metadata.yaml; its files were looked through instead"]
+        assert bag.notes == [f"{folder}: there is no metadata.yaml; its files were read instead"]
         assert list(bag.messages()) == messages(300)
 
 

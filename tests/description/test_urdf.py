@@ -54,7 +54,7 @@ def test_everything_in_a_robot_is_read():
         ('<mass value="2"/>', '<mass value="-2"/>', 7, "mass should not be negative"),
         ('<box size="1 2 3"/>', '<bax size="1 2 3"/>', 5, "expected one of box"),
         ('<child link="thumb"/>', '<child link="finger"/>', 27, "child of more than one joint"),
-        ('<link name="thumb"/>', '<link name="thumb"/><link name="lost"/>', 2, "nobody's child: base, lost"),
+        ('<link name="thumb"/>', '<link name="thumb"/><link name="lost"/>', 2, "have no parent: base, lost"),
     ],
 )
 def test_mistakes_are_named_with_their_place(old, new, line, words):

@@ -257,7 +257,7 @@ def test_saved_states_replay_bit_for_bit():
     assert simulation.time_ns == SECOND
     assert numbers(simulation.advance(SECOND)) == first
     simulation.delete("robot")
-    with pytest.raises(SimulationError, match="models came or went"):
+    with pytest.raises(SimulationError, match="models were added or removed"):
         simulation.restore(state)
 
 
@@ -275,7 +275,7 @@ def test_states_outlive_changes_of_friction_and_mass():
     assert simulation.velocity("crate")[0][2] == pytest.approx(-9.8 * 0.101, rel=1e-3)
     simulation.delete("crate")
     simulation.spawn(sdf.parse_model(f"<sdf version='1.9'>{box('crate')}</sdf>"), "crate")
-    with pytest.raises(SimulationError, match="models came or went"):
+    with pytest.raises(SimulationError, match="models were added or removed"):
         simulation.restore(state)
 
 

@@ -68,7 +68,7 @@ class BagReader:
             self.metadata, faults = describe(self.path, storage_id)
             self._storage_id = self.metadata.storage_id
             if self.path.is_dir():
-                self.notes.append(f"{self.path}: there is no {FILE_NAME}; its files were looked through instead")
+                self.notes.append(f"{self.path}: there is no {FILE_NAME}; its files were read instead")
             self.notes += faults
 
     def _check_files(self) -> None:

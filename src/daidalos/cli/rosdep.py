@@ -43,7 +43,7 @@ def _parser() -> argparse.ArgumentParser:
         ("keys", _keys, "list the names of the dependencies of packages"),
     ):
         _add_package_arguments(_add(commands, name, run, text))
-    resolver = _add(commands, "resolve", _resolve, "show what stands behind names of dependencies")
+    resolver = _add(commands, "resolve", _resolve, "show the resolution of dependencies")
     resolver.add_argument("keys", nargs="+", metavar="key")
     resolver.add_argument("--rosdistro", help=argparse.SUPPRESS)
     for name, text in (("init", "nothing has to be initialised"), ("update", "nothing has to be updated")):

@@ -125,7 +125,7 @@ def _compare_with_size(link: Link, inertial: Inertial, moments: Array) -> list[s
         found.append(f"{inertial.mass:g} kg in a box of {_words(size)} m is {density:.3g} kg/m^3")
     center = np.array(inertial.pose.position)
     if (center < lower - 0.5 * size).any() or (center > upper + 0.5 * size).any():
-        found.append(f"the centre of mass {_words(center)} lies far outside the link")
+        found.append(f"the centre of mass {_words(center)} is far outside the link")
     # No body reaches farther than its corners: I <= m r^2.
     reach = float(np.linalg.norm(corners - center, axis=1).max())
     if moments[2] > inertial.mass * reach**2 * 1.01:

@@ -218,7 +218,7 @@ class Engine:
             When models came or went since.
         """
         if state.compilation != self._compilation.number:
-            raise SimulationError("models came or went since the state was saved")
+            raise SimulationError("models were added or removed since the state was saved")
         mujoco.mj_copyData(self.physics.data, self.physics.model, state.physics)
         restore_states(self._components(), state.component_states)
         self._schedule.restore(dict(state.clocks))

@@ -13,7 +13,7 @@ from daidalos.common.extensions import Extension, Kind, listing
 from daidalos.common.suggestions import hint
 
 EPILOG = """Packages add extensions by entry points of a kind's group; a class can also be named by its path,
-my_package.my_module.MyClass, wherever a name is asked for."""
+my_package.my_module.MyClass, wherever a name is expected."""
 
 _DECLARED_IN = (
     "daidalos.simulation.extensions",

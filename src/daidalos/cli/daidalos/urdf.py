@@ -22,9 +22,7 @@ class UrdfVerb:
         """Declare the arguments of `daidalos urdf`."""
         parser.add_argument("file", type=Path, help="a file in URDF, xacro or SDF, or a folder with a model.config")
         parser.add_argument("mappings", nargs="*", metavar="NAME:=VALUE", help="arguments of the xacro file")
-        parser.add_argument(
-            "--check", action="store_true", help="also load it into the simulator; says nothing but faults"
-        )
+        parser.add_argument("--check", action="store_true", help="also load it into the simulator; print errors only")
         parser.add_argument("--svg", type=Path, metavar="FILE", help="draw its tree")
         parser.add_argument("--json", action="store_true", help="print one JSON object")
 

@@ -133,7 +133,7 @@ def _check_tree(root: Element, links: Mapping[str, Link], joints: Mapping[str, J
         raise elements[closing.name].error(f"the joints form a loop: {way}")
     roots = [name for name in links if name not in above]
     if len(roots) > 1:
-        raise root.error(f"the robot should have one root link, these are nobody's child: {', '.join(roots)}")
+        raise root.error(f"the robot should have one root link, these links have no parent: {', '.join(roots)}")
     return roots[0]
 
 

@@ -233,7 +233,7 @@ class Discovery:
         try:
             message = self._codec.decode(sample.data)
         except CdrError as error:
-            _LOGGER.warning("passed over what a process told of its nodes: %s", error)
+            _LOGGER.warning("ignored an invalid message about a process's nodes: %s", error)
             return
         prefix = bytes(message.gid.data)[:PREFIX]
         if prefix == self._prefix:

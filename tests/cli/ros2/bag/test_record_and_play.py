@@ -57,7 +57,7 @@ def test_a_recorder_that_is_killed_leaves_a_bag(ros2_bag, partner, env, tmp_path
     assert record.end(signal.SIGKILL) == -signal.SIGKILL
     shown = ros2("bag", "info", "walk", env=env, cwd=tmp_path)
     assert "Count: 1000" in shown.out
-    assert "[WARN] [ros2bag]: walk: there is no metadata.yaml; its files were looked through instead" in shown.err
+    assert "[WARN] [ros2bag]: walk: there is no metadata.yaml; its files were read instead" in shown.err
     reindexed = ros2("bag", "reindex", "walk", env=env, cwd=tmp_path)
     assert reindexed.status == 0
     assert "Reindexing complete." in reindexed.err

@@ -126,7 +126,7 @@ def add_topic_arguments(parser: ArgumentParser) -> None:
         type=positive_int,
         default=1000,
         metavar="N",
-        help="How many messages are read before their time has come (default: %(default)s)",
+        help="Number of messages that are read ahead (default: %(default)s)",
     )
 
 

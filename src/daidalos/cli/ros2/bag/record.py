@@ -77,7 +77,7 @@ def _add_selection(parser: ArgumentParser) -> None:
 
 def _add_discovery(parser: ArgumentParser) -> None:
     add = parser.add_argument
-    add("--include-unpublished-topics", action="store_true", help="Record topics that nobody publishes as well")
+    add("--include-unpublished-topics", action="store_true", help="Record topics without publishers as well")
     add("--include-hidden-topics", action="store_true", help="Record hidden topics as well")
     add("--no-discovery", action="store_true", help="Record only topics that are there at the start")
     add(
@@ -88,7 +88,7 @@ def _add_discovery(parser: ArgumentParser) -> None:
         metavar="MS",
         help="Has no effect: new topics are noticed when they appear",
     )
-    add("--ignore-leaf-topics", action="store_true", help="Ignore topics that nobody subscribes to")
+    add("--ignore-leaf-topics", action="store_true", help="Ignore topics without subscribers")
     add(
         "--qos-profile-overrides-path",
         type=common.existing_file,

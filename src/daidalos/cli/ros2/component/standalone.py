@@ -39,7 +39,7 @@ class StandaloneVerb(Verb):
             with direct_node(args) as node:
                 graph = node.handle.graph
                 if not graph.wait_for(lambda: container in containers(graph), _START_S):
-                    raise CliError(f"The container node '{container}' did not come up within {_START_S:g} s")
+                    raise CliError(f"The container node '{container}' did not start within {_START_S:g} s")
                 load(node, container, args)
             return process.wait()
         finally:

@@ -33,7 +33,7 @@ class ViewHardwareStatusVerb(Verb):
         with direct_node(args) as node:
             names = [name for name, types in topics(node.handle.graph) if _TYPE in types]
             if not names:
-                raise CliError(f"No hardware tells of its status: there is no topic of type {_TYPE}")
+                raise CliError(f"No hardware publishes its status: there is no topic of type {_TYPE}")
             for name in names:
                 show = functools.partial(_show, args, name)
                 node.create_subscription(topic_class(node, name), name, show, 10)

@@ -29,7 +29,7 @@ class GenerateArtifactsVerb(Verb):
         """Create missing enclaves, and set the permissions of all enclaves in the policies."""
         root = args.keystore_root_path or os.environ.get("ROS_SECURITY_KEYSTORE")
         if not root:
-            raise CliError("Neither --keystore-root-path nor ROS_SECURITY_KEYSTORE says where the keystore is")
+            raise CliError("Neither --keystore-root-path nor ROS_SECURITY_KEYSTORE names the keystore")
         keystore = Keystore(Path(root))
         policies = {name: file for file in args.policy_files for name in enclave_paths(file)}
         if not keystore.exists:

@@ -56,7 +56,7 @@ class EchoVerb(Verb):
             service_type = service_class(args.service_type or _type_of(node, args, name))
             if not node.handle.graph.endpoints(EndpointKind.PUBLISHER, name=name + _EVENTS):
                 print(
-                    f"Nobody tells of calls of '{name}' yet: configure introspection in its client or server",
+                    f"No events of calls of '{name}' are published: configure introspection in its client or server",
                     file=sys.stderr,
                 )
             subscribe(
