@@ -42,35 +42,8 @@ def test_layers_and_types_are_checked_in_every_package() -> None:
 # Imperatives all of them, so that the linter takes them, but none says what a function does.
 BANNED = {"Be", "Begin", "Have", "Let", "Note", "Say", "See", "Tell"}
 SOURCES = REPOSITORY / "src"
-# Not swept yet; nothing may be added here.
-UNSWEPT = (
-    "daidalos/cli/",
-    "daidalos/control/",
-    "daidalos/localization/",
-    "daidalos/navigation/",
-    "daidalos/nodes/",
-    "daidalos/simulation/",
-    "daidalos/studio/",
-    "ros/diagnostic_updater/",
-    "ros/interactive_markers/",
-    "ros/launch/",
-    "ros/launch_pytest/",
-    "ros/launch_ros/",
-    "ros/launch_testing/",
-    "ros/launch_testing_ros/",
-    "ros/launch_xml/",
-    "ros/message_filters/",
-    "ros/nav2_simple_commander/",
-    "ros/rclpy/",
-    "ros/ros2cli/",
-    "ros/ros2node/",
-    "ros/ros2param/",
-    "ros/rosbag2_py/",
-    "ros/rosidl_parser/",
-    "ros/rosidl_runtime_py/",
-    "ros/tf2_py/",
-    "ros/tf2_ros/",
-)
+# Not revised yet.
+UNREVISED = ("daidalos/navigation/", "daidalos/simulation/plugins/base.py")
 
 
 def test_docstrings_begin_with_a_verb_of_the_field() -> None:
@@ -80,7 +53,7 @@ def test_docstrings_begin_with_a_verb_of_the_field() -> None:
 def _banned_beginnings() -> Iterator[str]:
     for path in SOURCES.rglob("*.py"):
         place = path.relative_to(SOURCES).as_posix()
-        if place.startswith(("generated/", "daidalos/share/", "daidalos/studio/web/", *UNSWEPT)):
+        if place.startswith(("generated/", "daidalos/share/", "daidalos/studio/web/", *UNREVISED)):
             continue
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef):

@@ -48,7 +48,7 @@ class BaseOdometry:
         self.reset()
 
     def reset(self) -> None:
-        """Be at the origin, at rest."""
+        """Set the pose to the origin and the velocities to zero."""
         self.pose: Array = np.zeros(3)
         self._velocities: deque[tuple[float, float, float]] = deque(maxlen=self._window)
 

@@ -81,7 +81,7 @@ class Switcher:
         return tuple(reversed(stop))
 
     def restart(self, now_ns: int) -> None:
-        """Let active controllers forget what was before time went back."""
+        """Deactivate and activate the active controllers again after time went back."""
         self._release(name for one in self.active for name in one.running.command_names)
         for loaded in reversed(self.order):
             if loaded.state == ACTIVE:
@@ -143,7 +143,7 @@ class Switcher:
         loaded.running.deactivate()
 
     def _release(self, names: Iterable[str]) -> None:
-        """Let nobody's commands be none."""
+        """Set commands that no controller writes to NaN."""
         for name in names:
             for component in self._components.values():
                 if name in component.hardware.commands:

@@ -121,7 +121,7 @@ class Amcl:
         self._world = LikelihoodMap(grid, self.config.laser_likelihood_max_dist)
 
     def initialise(self, pose: Array, covariance: Array) -> None:
-        """Begin around a pose.
+        """Draw the particles around a pose.
 
         Parameters
         ----------
@@ -143,7 +143,7 @@ class Amcl:
         self._begin(drawn)
 
     def global_localization(self) -> None:
-        """Begin without knowing anything: anywhere in the free space of the map."""
+        """Draw the particles anywhere in the free space of the map."""
         self._begin(self._world.draw_poses(self.config.max_particles, self._generator))
 
     def request_nomotion_update(self) -> None:

@@ -151,11 +151,11 @@ class StudioServer:
     # What the source calls, from any thread ---------------------------------------------------------------
 
     def graph_changed(self) -> None:
-        """See `Observer`."""
+        """Implement `Observer`."""
         self._soon(self._schedule_refresh)
 
     def time_advanced(self, nanoseconds: int) -> None:
-        """See `Observer`."""
+        """Implement `Observer`."""
         first, self._time = self._time is None, nanoseconds
         if first:
             self._soon(self._announce_time)
@@ -164,7 +164,7 @@ class StudioServer:
             self._soon(self._schedule_time)
 
     def parameters_changed(self, parameters: Sequence[Parameter]) -> None:
-        """See `Observer`."""
+        """Implement `Observer`."""
         self._soon(lambda: self._send_parameters(parameters))
 
     def _soon(self, call: Callable[[], object]) -> None:

@@ -217,7 +217,7 @@ class AdmittanceController(Controller):
             self.references.values[place] = np.zeros(self._count) if values is None else values
 
     def update(self, now_ns: int, period: float) -> Iterable[Sample]:
-        """Let the tip yield."""
+        """Move the joints so that the tip yields to the measured wrench."""
         self._read_references()
         values = self.states.read()
         positions = values[: self._count]

@@ -178,10 +178,10 @@ class Controller(Endpoint):
         self.commands, self.states = commands, states
 
     def activate(self, now_ns: int) -> None:
-        """Begin; the interfaces are there."""
+        """Start controlling with the assigned interfaces."""
 
     def deactivate(self) -> None:
-        """End; whatever is written to commands is the last."""
+        """Stop controlling; what is written to the commands is the last."""
 
     def take_references(self, now_ns: int, period: float) -> None:
         """Set the references from what was received; only called while no controller commands them."""

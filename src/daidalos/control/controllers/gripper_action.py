@@ -166,7 +166,7 @@ class EffortGripperController(PositionGripperController):
         super().activate(now_ns)
 
     def deactivate(self) -> None:
-        """Let go."""
+        """Set the effort to zero."""
         super().deactivate()
         self.commands.write(np.zeros(1))
 

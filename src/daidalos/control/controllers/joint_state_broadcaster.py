@@ -84,7 +84,7 @@ class JointStateBroadcaster(Controller):
         self._missing = np.array([np.nan] * len(joints) + [0.0] * (len(self._joints) - len(joints)))
 
     def _is_joint(self, name: str) -> bool:
-        """Tell whether a name belongs into joint states."""
+        """Return whether a name belongs into joint states."""
         robot = self.context.robot
         if robot is None or self.p.joints or not self.p.use_urdf_to_filter:
             return True

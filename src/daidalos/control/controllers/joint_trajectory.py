@@ -203,7 +203,7 @@ class JointTrajectoryController(Controller):
     # Trajectories
 
     def _replace(self, command: TrajectoryCommand, goal: Goal | None) -> None:
-        """Let a new trajectory take over, now or at its start."""
+        """Replace the trajectory by a new one, now or at its start."""
         self._drop_pending(_REPLACED)
         if command.start_ns > self.now_ns:
             self._pending = (command, goal)

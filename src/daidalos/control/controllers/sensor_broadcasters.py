@@ -75,7 +75,7 @@ class ImuSensorBroadcaster(Controller):
         return {"~/imu": ImuSample}
 
     def update(self, now_ns: int, period: float) -> Iterable[Sample]:
-        """Say what it measures."""
+        """Publish what the IMU measures."""
         values = self.states.read()
         x, y, z, w = (float(value) for value in values[:4])
         yield ImuSample(
@@ -229,7 +229,7 @@ class RangeSensorBroadcaster(Controller):
         return {"~/range": VariedRangeSample}
 
     def update(self, now_ns: int, period: float) -> Iterable[Sample]:
-        """Say what it measures."""
+        """Publish what the range sensor measures."""
         p = self.p
         yield VariedRangeSample(
             stamp_ns=now_ns,
@@ -285,11 +285,11 @@ class PoseBroadcaster(Controller):
         return topics
 
     def activate(self, now_ns: int) -> None:
-        """Begin with a transform."""
+        """Restart the period of the transforms."""
         self._transforming.restart()
 
     def update(self, now_ns: int, period: float) -> Iterable[Sample]:
-        """Say where it is; a transform only of a pose that is one."""
+        """Publish the pose, and its transform where the pose is finite and its orientation a unit quaternion."""
         values = self.states.read()
         position, orientation = values[:3], values[3:]
         yield PoseSample(now_ns, "~/pose", self.p.frame_id, position, orientation)

@@ -64,7 +64,7 @@ class GenericSystem(Hardware):
                 self._modes[joint] = interface
 
     def read(self, now_ns: int, period: float) -> None:
-        """Let the states follow the commands."""
+        """Copy the commands to the states."""
         if not self._ignores:
             known = self.commands.values[self._mirrored_commands]
             given = ~np.isnan(known)

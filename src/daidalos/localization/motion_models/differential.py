@@ -26,7 +26,7 @@ class DifferentialMotionModel(MotionModel):
         self.config = config
 
     def sample(self, particles: Array, before: Array, after: Array, generator: np.random.Generator) -> Array:
-        """See `MotionModel.sample`."""
+        """Implement `MotionModel.sample`."""
         c = self.config
         dx, dy = float(after[0] - before[0]), float(after[1] - before[1])
         distance = math.hypot(dx, dy)

@@ -19,7 +19,7 @@ class OmniMotionModel(MotionModel):
         self.config = config
 
     def sample(self, particles: Array, before: Array, after: Array, generator: np.random.Generator) -> Array:
-        """See `MotionModel.sample`."""
+        """Implement `MotionModel.sample`."""
         c = self.config
         step = between(before, after)
         distance, turn = math.hypot(float(step[0]), float(step[1])), float(step[2])

@@ -24,7 +24,7 @@ class BeamModel(SensorModel):
         self.config = config
 
     def likelihoods(self, particles: Array, beams: Beams, world: LikelihoodMap) -> Array:
-        """See `SensorModel.likelihoods`."""
+        """Implement `SensorModel.likelihoods`."""
         c = self.config
         return sum_over_beams(
             compose(particles, beams.sensor_pose),

@@ -25,7 +25,7 @@ class LikelihoodFieldModel(SensorModel):
         self.config = config
 
     def likelihoods(self, particles: Array, beams: Beams, world: LikelihoodMap) -> Array:
-        """See `SensorModel.likelihoods`."""
+        """Implement `SensorModel.likelihoods`."""
         return _sum_over_beams(self.config, particles, beams, world, product=False)
 
 
@@ -36,7 +36,7 @@ class LikelihoodFieldProbModel(SensorModel):
         self.config = config
 
     def likelihoods(self, particles: Array, beams: Beams, world: LikelihoodMap) -> Array:
-        """See `SensorModel.likelihoods`."""
+        """Implement `SensorModel.likelihoods`."""
         return np.exp(_sum_over_beams(self.config, particles, beams, world, product=True))
 
 
