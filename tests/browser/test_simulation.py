@@ -117,7 +117,7 @@ def test_world_is_edited_while_it_runs(browser: Chromium, tmp_path: Path, monkey
         browser.open(f"{url}?front=simulation")
         browser.wait_for(f"{_MODELS} === '3 models' && document.querySelector('[data-panel=displays]') !== null")
         simulator.interrupt()
-        browser.wait_for("document.body.textContent.includes('No simulator runs')")
+        browser.wait_for("document.body.textContent.includes('No simulator is running')")
         assert browser.errors == []
 
 

@@ -53,7 +53,7 @@ function panelOf(module: PageModule): RegisteredPanel {
   return registered;
 }
 
-/** A kind of display; where its module fails, its displays say so. */
+/** A kind of display; where its module fails, its displays report the error. */
 async function displayOf(module: PageModule): Promise<Registered<DisplayType>> {
   const failed = (error: unknown) => ({
     create: () => new FailedDisplay(describe(module, error)),
@@ -88,7 +88,7 @@ async function load<T>({ url, error }: PageModule): Promise<T> {
   return loaded.default;
 }
 
-/** The context for a module of somebody else's: an error in what it is called back with ends in `fail`. */
+/** The context for a module of another package: an error in one of its callbacks is passed to `fail`. */
 function guarded(context: PanelContext, fail: (error: unknown) => void): PanelContext {
   const guard =
     <A extends unknown[]>(call: (...values: A) => void) =>

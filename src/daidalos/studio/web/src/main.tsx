@@ -44,7 +44,7 @@ function App({ studio }: { studio: Studio }) {
   );
 }
 
-/** Said over whatever panels there are: none of them can know better. */
+/** A message over all panels while the connection is lost. */
 function Lost({ studio }: { studio: Studio }) {
   return studio.session.link.value === "lost" ? (
     <div class="lost" role="alert" data-test="lost">
@@ -63,10 +63,10 @@ function serverUrl(): string {
   return named ?? `${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/`;
 }
 
-function sayWhatIsMissing(): void {
+function reportMissingPanel(): void {
   const panel = new URLSearchParams(location.search).get("panel");
   if (panel && !opening) {
-    studio.session.addStatus({ level: 1, text: `There is no panel “${panel}” yet; this is all that there is` });
+    studio.session.addStatus({ level: 1, text: `There is no panel “${panel}”; the whole page is shown` });
   }
 }
 
@@ -75,6 +75,6 @@ const arrangement = opening?.details.layout === undefined ? undefined : await fe
 const studio = new Studio(worker, arrangement, opening?.details.fixed_frame);
 installTestHooks(studio);
 listenToKeys(attachedWorld);
-sayWhatIsMissing();
+reportMissingPanel();
 render(<App studio={studio} />, document.getElementById("app") as HTMLElement);
 studio.start(serverUrl());

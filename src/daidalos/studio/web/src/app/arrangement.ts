@@ -5,13 +5,13 @@ import type { Arrangement, Plot, Split } from "../generated/arrangement";
 
 const ADDRESS = "arrangement.json";
 
-/** Ask the server; undefined where it has nothing to say, or has gone: the page goes on and waits for it. */
+/** Fetch the layout of the file that the server was started with; undefined where there is none or no server. */
 export async function fetchArrangement(): Promise<Arrangement | undefined> {
   const answer = await fetch(ADDRESS).catch(() => undefined);
   return answer?.ok ? ((await answer.json()) as Arrangement) : undefined;
 }
 
-/** The displays that an arrangement asks for, with all that it leaves open as it is by default. */
+/** The displays of an arrangement, with the default where it has no value. */
 export function displaysOf({ displays }: Arrangement): DisplayConfig[] | undefined {
   return displays?.flatMap(({ settings, ...display }, i) => {
     const type = DISPLAYS.find(display.type);

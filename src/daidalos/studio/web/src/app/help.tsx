@@ -1,4 +1,4 @@
-// The help: keys and mouse on one card.
+// The help: keyboard and mouse.
 import { TOOLS } from "../tools/registry";
 import { Icon } from "../ui/icons";
 import { helpIsOpen } from "./help_state";
@@ -7,15 +7,15 @@ const VIEW_KEYS = [
   ["t", "Top-down view or orbit"],
   ["l", "Follow the robot"],
   ["z", "Home view"],
-  ["d", "Dark or light"],
-  ["Esc", "Put the tool away"],
-  ["?", "This card"],
+  ["d", "Dark or light theme"],
+  ["Esc", "Deselect the tool"],
+  ["?", "This help"],
 ] as const;
 
 const SIMULATION_KEYS = [
-  ["t  r  s", "Move, turn, scale a model"],
-  ["Ctrl", "In steps, while dragging"],
-  ["Del", "Delete what is selected"],
+  ["t  r  s", "Move, rotate, scale a model"],
+  ["Ctrl", "Snap while dragging"],
+  ["Del", "Delete the selected model"],
   ["Ctrl+Z", "Undo"],
 ] as const;
 
@@ -23,11 +23,11 @@ const PLOT_MOUSE = [
   ["Drag", "Zoom to a box"],
   ["Wheel", "Zoom time (Shift: values)"],
   ["Shift + drag", "Move"],
-  ["Double click", "All again, and go on"],
+  ["Double click", "Reset zoom and resume"],
 ] as const;
 
 const MOUSE = [
-  ["Left", "Turn"],
+  ["Left", "Rotate"],
   ["Middle", "Move (also Shift + left)"],
   ["Wheel", "Zoom (also right)"],
 ] as const;
@@ -39,9 +39,9 @@ export function Help() {
   const close = () => (helpIsOpen.value = false);
   return (
     <div class="backdrop" onClick={close}>
-      <div class="card" role="dialog" aria-label="Keys and mouse" onClick={(event) => event.stopPropagation()}>
+      <div class="card" role="dialog" aria-label="Keyboard and mouse" onClick={(event) => event.stopPropagation()}>
         <header>
-          <h2>Keys and mouse</h2>
+          <h2>Keyboard and mouse</h2>
           <button class="icon-button" title="Close" onClick={close}>
             <Icon name="close" />
           </button>

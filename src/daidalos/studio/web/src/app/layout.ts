@@ -1,4 +1,4 @@
-// Where the panels are: docking, the layout that everyone sees first, and keeping what the user made of it.
+// The docked panels: the default layout, and the user's, which is kept in the browser.
 import { effect, signal, untracked } from "@preact/signals";
 import {
   createDockview,
@@ -43,7 +43,7 @@ export class Layout {
     private readonly studio: Studio,
     private readonly opening?: Opening,
   ) {
-    // A panel that is opened as a window has an arrangement of its own, and leaves the other one alone.
+    // A panel that is opened as a window has a layout of its own.
     this.key = opening ? `${KEY}.${opening.panel.id}` : KEY;
     this.dock = createDockview(element, {
       theme: THEME,
@@ -80,7 +80,7 @@ export class Layout {
 
   private restore(): void {
     if (this.opening && Object.keys(this.opening.details).length) {
-      this.arrange(); // what the address says comes before what was there
+      this.arrange(); // the address has precedence over the saved layout
       return;
     }
     const saved = read<SerializedDockview | undefined>(this.key, undefined, (value): value is SerializedDockview =>
@@ -99,7 +99,7 @@ export class Layout {
   }
 
   private arrange(): void {
-    // Sizes are shares of what there is: the dock must know how much that is.
+    // Sizes are shares of the dock's size, which must be known.
     this.dock.layout(this.element.clientWidth, this.element.clientHeight);
     if (this.opening) {
       this.arrangeWindow(this.opening);
@@ -198,7 +198,7 @@ export class Layout {
 
   private save(): void {
     if (this.studio.arrangement) {
-      return; // the file says it again next time
+      return; // the file is read again next time
     }
     write(this.key, this.dock.toJSON());
   }

@@ -1,11 +1,11 @@
-// What the page's address asks for: ?panel=turtlesim&window=/turtlesim/_window shows one panel as a window of its own.
+// The query of the page's address: ?panel=turtlesim&window=/turtlesim/_window shows one panel as a window of its own.
 import type { Panel } from "../contract";
 import type { RegisteredPanel } from "../panels/registry";
 import type { Registry } from "../registry";
 
 export interface Opening {
   panel: RegisteredPanel;
-  /** What else the address says, for the panel. */
+  /** The other parameters of the query, for the panel. */
   details: Record<string, string>;
 }
 
@@ -19,7 +19,7 @@ export function readOpening(search: string, panels: Registry<Panel>): Opening | 
   return panel && { panel, details };
 }
 
-/** The panel that an address wants to be in front of the others: ?front=simulation; undefined as above. */
+/** The panel to bring to the front: ?front=simulation; undefined as above. */
 export function readFront(search: string, panels: Registry<Panel>): RegisteredPanel | undefined {
   const front = new URLSearchParams(search).get("front");
   return panels.find(front ?? "");

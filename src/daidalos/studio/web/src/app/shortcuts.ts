@@ -41,7 +41,7 @@ function act(key: string, world: World | undefined): boolean {
       world.follow(followed.value ? "" : (world.robotFrame() ?? ""));
       return true;
   }
-  return world.toolbox.takeByKey(key);
+  return world.toolbox.selectByKey(key);
 }
 
 function isTyping(target: EventTarget | null): boolean {

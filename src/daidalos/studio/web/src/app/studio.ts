@@ -1,4 +1,4 @@
-// The application: one connection, one tree of frames, one clock, and the loop that drives all that moves.
+// The application: the connection, the tree of frames, the clock, and the loop that draws.
 import { effect, signal } from "@preact/signals";
 import type { Arrangement } from "../generated/arrangement";
 import { displaysOf } from "./arrangement";
@@ -44,7 +44,7 @@ export class Studio implements contract.Studio {
 
   constructor(
     worker: Worker,
-    /** What a file asks for, where one was named. */
+    /** The layout of a file, where one was opened. */
     readonly arrangement?: Arrangement,
     fixedFrame = arrangement?.fixedFrame,
   ) {
@@ -53,7 +53,7 @@ export class Studio implements contract.Studio {
     this.session = new Session(worker);
     this.assets = new Assets(this.session);
     this.session.onClock = ({ robot, at, announced }) =>
-      this.clock.hear(robot, (at - performance.timeOrigin) / 1000, announced);
+      this.clock.add(robot, (at - performance.timeOrigin) / 1000, announced);
     this.session.onNewServer = () => {
       this.tf.clear();
       this.assets.clear();
@@ -71,7 +71,7 @@ export class Studio implements contract.Studio {
 
   start(url: string): void {
     this.session.open(url);
-    document.addEventListener("visibilitychange", () => this.session.seen(!document.hidden));
+    document.addEventListener("visibilitychange", () => this.session.setVisible(!document.hidden));
     const loop = (milliseconds: number) => {
       requestAnimationFrame(loop);
       this.frame(milliseconds / 1000);
@@ -112,14 +112,14 @@ export class Studio implements contract.Studio {
   }
 
   private receiveTransforms({ transforms }: TFMessage): void {
-    this.hearAge();
+    this.measureAge();
     for (const transform of transforms) {
       this.tf.set(transform, false);
     }
   }
 
-  /** How far transforms are behind just before new ones come tells how far behind to draw. */
-  private hearAge(): void {
+  /** Measure how old the newest transforms are just before new ones arrive: drawing is delayed by as much. */
+  private measureAge(): void {
     const now = this.clock.now(performance.now() / 1000);
     if (now === undefined) {
       return;
@@ -130,7 +130,7 @@ export class Studio implements contract.Studio {
         age = Math.max(age, now - newest);
       }
     }
-    this.clock.hearAge(age);
+    this.clock.addAge(age);
   }
 
   private reset(): void {

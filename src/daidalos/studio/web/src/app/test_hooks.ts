@@ -1,4 +1,4 @@
-// window.daidalos: what end-to-end tests (and the curious) read from the page.
+// window.daidalos: the page's state for end-to-end tests.
 import { Vector3 } from "three";
 import { MapDisplay } from "../displays/types/occupancy_grid";
 import { PointsDisplay } from "../displays/points_display";
@@ -55,7 +55,7 @@ declare global {
 let world: World | undefined;
 let editor: Editor | undefined;
 
-/** Tell the hooks of the 3-D view; returns how to take it back. */
+/** Give the hooks the 3-D view; returns how to remove it. */
 export function attachWorld(attached: World): () => void {
   world = attached;
   return () => {
@@ -65,7 +65,7 @@ export function attachWorld(attached: World): () => void {
   };
 }
 
-/** Tell the hooks of the simulation's editor; returns how to take it back. */
+/** Give the hooks the simulation's editor; returns how to remove it. */
 export function attachEditor(attached: Editor): () => void {
   editor = attached;
   return () => {
@@ -98,7 +98,7 @@ export function installTestHooks(studio: Studio): void {
       const box = world.viewport.canvas.getBoundingClientRect();
       return { x: box.left + at.x, y: box.top + at.y };
     },
-    takeTool: (id) => world?.toolbox.takeById(id),
+    takeTool: (id) => world?.toolbox.selectById(id),
     simulated: (name) => editor?.modelAt(name) ?? null,
     editing: () => editor?.isBusy ?? false,
     handle: (axis) => editor?.handleAt(axis) ?? null,

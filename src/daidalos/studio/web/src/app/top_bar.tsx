@@ -1,4 +1,4 @@
-// The bar at the top: who we are, whether we are connected, robot time, and the menus.
+// The bar at the top: name, state of the connection, robot time, and menus.
 import { PANELS } from "../panels/registry";
 import { formatTime } from "../ros/time";
 import { Icon, iconNamed } from "../ui/icons";
@@ -36,10 +36,10 @@ export function TopBar({ studio, layout }: { studio: Studio; layout: () => Layou
           Reset displays
         </MenuItem>
       </Menu>
-      <button class="icon-button" title="Keys and mouse (?)" onClick={() => (helpIsOpen.value = true)}>
+      <button class="icon-button" title="Keyboard and mouse (?)" onClick={() => (helpIsOpen.value = true)}>
         <Icon name="help" />
       </button>
-      <button class="icon-button" title="Dark or light" onClick={toggleTheme} data-test="theme">
+      <button class="icon-button" title="Dark or light theme (d)" onClick={toggleTheme} data-test="theme">
         <Icon name={theme.value === "dark" ? "sun" : "moon"} />
       </button>
     </header>

@@ -2,7 +2,7 @@
 import type { ServiceInfo, TopicInfo } from "../contract";
 import type { ParameterEntry } from "../generated/protocol";
 
-/** Who talks to whom: names of nodes by topic or service. */
+/** Publishers, subscribers and servers: names of nodes by topic or service. */
 export interface ConnectionGraph {
   publishers: ReadonlyMap<string, readonly string[]>;
   subscribers: ReadonlyMap<string, readonly string[]>;
@@ -16,7 +16,7 @@ export interface Received {
   message: unknown;
 }
 
-/** What robot time was at a moment, told by the server's clock or else by the newest message. */
+/** Robot time at an instant, by the server's clock, otherwise by the newest message. */
 export interface ClockReading {
   robot: number;
   /** Milliseconds since the epoch, by this machine's steady clock: worker and page count from different zeros. */
@@ -42,14 +42,14 @@ export type LinkState = "connecting" | "connected" | "lost";
 export type ToWorker =
   | { kind: "open"; url: string }
   | { kind: "ready" }
-  /** Whether anybody sees the page: a hidden one hears seldom. */
-  | { kind: "seen"; seen: boolean }
+  /** Whether the page is visible: a hidden one gets longer batches. */
+  | { kind: "visible"; visible: boolean }
   /** Also to change how many messages of a topic are kept; with 0 they are only counted. */
   | { kind: "subscribe"; topic: string; keep: number }
   | { kind: "unsubscribe"; topic: string }
   | { kind: "publish"; topic: string; type: string; message: unknown }
   | { kind: "call"; id: number; service: string; request: unknown }
-  /** Ask what a request of a service, or a message of a topic, looks like with nothing filled in. */
+  /** Get an empty request of a service, or an empty message of a topic. */
   | { kind: "template"; id: number; of: "service" | "topic"; name: string }
   | { kind: "fetchAsset"; id: number; uri: string }
   | { kind: "getParameters"; names: string[] }

@@ -1,4 +1,4 @@
-// Services: which there are, and the calls that wait for an answer.
+// Services, and the calls that wait for a response.
 import type { AdvertisedService } from "../generated/protocol";
 import { attempt, makeReader, makeWriter } from "./codecs";
 import { serviceRequestFrame } from "./frames";
@@ -10,7 +10,7 @@ export class Calls {
 
   constructor(private readonly out: Output) {}
 
-  /** The connection is gone, and with it every answer. */
+  /** Fail all calls after the connection was lost. */
   reset(): void {
     this.services.clear();
     for (const id of [...this.waiting.keys()]) {
@@ -22,14 +22,14 @@ export class Calls {
     for (const service of services) {
       this.services.set(service.id, service);
     }
-    this.tell();
+    this.publish();
   }
 
   withdraw(ids: readonly number[]): void {
     for (const id of ids) {
       this.services.delete(id);
     }
-    this.tell();
+    this.publish();
   }
 
   call(id: number, name: string, request: unknown): void {
@@ -75,7 +75,7 @@ export class Calls {
     this.out.toPage({ kind: "response", id, error });
   }
 
-  private tell(): void {
+  private publish(): void {
     const services = [...this.services.values()].map(({ name, type }) => ({ name, type }));
     services.sort((a, b) => a.name.localeCompare(b.name));
     this.out.toPage({ kind: "services", services });

@@ -15,12 +15,12 @@ export function makeWriter(definition: string): Writer {
   return (message) => writer.writeMessage(message);
 }
 
-/** A message with nothing filled in: what the definition gives by itself. */
+/** A message with the defaults of its definition. */
 export function emptyMessage(definition: string): unknown {
   return makeReader(definition)(makeWriter(definition)({}));
 }
 
-/** Run what may fail because of a definition or a message that others wrote. */
+/** Run what may fail because of a definition or message from elsewhere; returns the error. */
 export function attempt<T>(run: () => T): T | Error {
   try {
     return run();

@@ -18,23 +18,23 @@ describe("the connection graph", () => {
   it("is asked for once the server can be asked, and again after the connection was lost", () => {
     watch.watch(true);
     expect(toServer).toEqual([]);
-    watch.greet(true);
-    watch.greet(true);
+    watch.setOffered(true);
+    watch.setOffered(true);
     expect(toServer).toEqual(["subscribeConnectionGraph"]);
     watch.reset();
-    watch.greet(true);
+    watch.setOffered(true);
     watch.watch(false);
     expect(toServer).toEqual(["subscribeConnectionGraph", "subscribeConnectionGraph", "unsubscribeConnectionGraph"]);
   });
 
   it("is not asked of servers that do not offer it", () => {
-    watch.greet(false);
+    watch.setOffered(false);
     watch.watch(true);
     expect(toServer).toEqual([]);
   });
 
   it("follows what changes", () => {
-    watch.greet(true);
+    watch.setOffered(true);
     watch.watch(true);
     watch.update({
       publishedTopics: [{ name: "/a", publisherIds: ["/talker"] }],

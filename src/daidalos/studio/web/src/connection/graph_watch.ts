@@ -1,31 +1,31 @@
-// Who talks to whom: asked of the server while somebody in the page looks at it.
+// The connection graph: requested from the server while the page shows it.
 import type { ConnectionGraphUpdate } from "../generated/protocol";
 import type { ConnectionGraph } from "./boundary";
 import { type Output, toServer } from "./output";
 
 export class GraphWatch {
   private wanted = false;
-  private asked = false;
+  private requested = false;
   private offered = false;
   private graph = emptyGraph();
 
   constructor(private readonly out: Output) {}
 
-  /** Whether the page wants to know; again after `reset`, once the server has said hello. */
+  /** Set whether the page needs the graph; it is requested again after `reset`. */
   watch(wanted: boolean): void {
     this.wanted = wanted;
-    this.ask();
+    this.request();
   }
 
-  /** The server can be asked now. */
-  greet(offered: boolean): void {
+  /** Set whether the server offers the graph. */
+  setOffered(offered: boolean): void {
     this.offered = offered;
-    this.ask();
+    this.request();
   }
 
-  /** The connection is gone; what was known may no longer hold. */
+  /** Reset after the connection was lost. */
   reset(): void {
-    [this.asked, this.offered] = [false, false];
+    [this.requested, this.offered] = [false, false];
     this.forget();
   }
 
@@ -46,26 +46,26 @@ export class GraphWatch {
     for (const service of change.removedServices ?? []) {
       this.graph.services.delete(service);
     }
-    this.tell();
+    this.publish();
   }
 
-  private ask(): void {
-    if (this.asked === this.wanted || !this.offered) {
+  private request(): void {
+    if (this.requested === this.wanted || !this.offered) {
       return;
     }
-    this.asked = this.wanted;
+    this.requested = this.wanted;
     toServer(this.out, { op: this.wanted ? "subscribeConnectionGraph" : "unsubscribeConnectionGraph" });
     if (!this.wanted) {
-      this.forget(); // asked again, the server tells everything
+      this.forget(); // requested again, the server sends the whole graph
     }
   }
 
   private forget(): void {
     this.graph = emptyGraph();
-    this.tell();
+    this.publish();
   }
 
-  private tell(): void {
+  private publish(): void {
     this.out.toPage({ kind: "graph", graph: this.graph satisfies ConnectionGraph });
   }
 }

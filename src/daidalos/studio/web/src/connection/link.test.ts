@@ -63,13 +63,13 @@ describe("subscriptions", () => {
     for (const text of ["one", "two", "three"]) {
       link.receiveBinary(message(subscription(), text));
     }
-    expect(link.hasNews).toBe(true);
+    expect(link.hasUpdate).toBe(true);
     link.flush();
     expect(received("batch")[0]?.messages).toEqual([
       { topic: "/a", time: 3, message: { data: "two" } },
       { topic: "/a", time: 3, message: { data: "three" } },
     ]);
-    expect(link.hasNews).toBe(false);
+    expect(link.hasUpdate).toBe(false);
   });
 
   it("with nothing to keep are counted only", () => {
@@ -149,7 +149,7 @@ describe("robot time", () => {
     advertise(4, "/a");
     link.receivePage({ kind: "subscribe", topic: "/a", keep: 0 });
     link.receiveBinary(message(subscription(), "x"));
-    expect(link.hasNews).toBe(true);
+    expect(link.hasUpdate).toBe(true);
     link.flush();
     expect(received("batch")[0]?.clock).toMatchObject({ robot: 3, announced: false });
   });

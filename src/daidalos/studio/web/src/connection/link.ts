@@ -1,4 +1,4 @@
-// The worker's conversation with the server: the protocol's state, independent of what carries it.
+// The protocol's state in the worker, independent of the WebSocket.
 import { type Channel, type ClientMessage, Level, type ServerMessage } from "../generated/protocol";
 import type { ClockReading, Received, ToWorker } from "./boundary";
 import { Backlog } from "./backlog";
@@ -10,7 +10,7 @@ import { type Output, toServer } from "./output";
 import { Publishers } from "./publishers";
 import { TrafficMeter } from "./traffic";
 
-/** Frames larger than this are handed to the page, not copied. */
+/** Frames larger than this are transferred to the page, not copied. */
 const TRANSFER_BYTES = 2048;
 
 interface Subscription {
@@ -43,12 +43,12 @@ export class Link {
     });
   }
 
-  /** Whether the page has something to take. */
-  get hasNews(): boolean {
+  /** Whether there is something to send to the page. */
+  get hasUpdate(): boolean {
     return !this.backlog.empty || this.clock !== undefined;
   }
 
-  /** The connection is gone; what the page wants stays, to be asked for again. */
+  /** Reset after the connection was lost; subscriptions are kept and opened again. */
   reset(): void {
     this.channels.clear();
     this.topicOf.clear();
@@ -63,7 +63,7 @@ export class Link {
       delete subscription.number;
       delete subscription.channel;
     }
-    this.tellTopics();
+    this.sendTopics();
   }
 
   receiveText(text: string): void {
@@ -77,14 +77,14 @@ export class Link {
           session: message.sessionId ?? "",
           hasTime: this.hasClock,
         });
-        this.graph.greet(message.capabilities.includes("connectionGraph"));
+        this.graph.setOffered(message.capabilities.includes("connectionGraph"));
         break;
       case "advertise":
         for (const channel of message.channels) {
           this.channels.set(channel.id, channel);
           this.readers.delete(channel.topic);
         }
-        this.tellTopics();
+        this.sendTopics();
         this.subscribeWaiting();
         break;
       case "unadvertise":
@@ -119,7 +119,7 @@ export class Link {
   receiveBinary(buffer: ArrayBuffer): void {
     const frame = attempt(() => parseFrame(buffer));
     if (frame instanceof Error) {
-      // A newer protocol may have more to say; what we know goes on.
+      // A newer protocol may have other frames: they are skipped.
       this.reportError(frame.message, "frame");
       return;
     }
@@ -167,16 +167,16 @@ export class Link {
         this.calls.call(message.id, message.service, message.request);
         break;
       case "template":
-        this.tellTemplate(message.id, message.of, message.name);
+        this.sendTemplate(message.id, message.of, message.name);
         break;
       case "fetchAsset":
-        this.say({ op: "fetchAsset", requestId: message.id, uri: message.uri });
+        this.send({ op: "fetchAsset", requestId: message.id, uri: message.uri });
         break;
       case "getParameters":
-        this.say({ op: "getParameters", parameterNames: message.names, id: "page" });
+        this.send({ op: "getParameters", parameterNames: message.names, id: "page" });
         break;
       case "setParameters":
-        this.say({ op: "setParameters", parameters: message.parameters, id: "page" });
+        this.send({ op: "setParameters", parameters: message.parameters, id: "page" });
         break;
       case "watchGraph":
         this.graph.watch(message.on);
@@ -184,7 +184,7 @@ export class Link {
     }
   }
 
-  /** Decode what waits and hand it to the page. */
+  /** Decode the waiting messages and send them to the page. */
   flush(): void {
     const messages: Received[] = [];
     const transfer: ArrayBuffer[] = [];
@@ -209,7 +209,7 @@ export class Link {
     this.out.toPage({ kind: "batch", messages, ...(clock ? { clock } : {}) }, transfer);
   }
 
-  /** Tell the page the rates of what it subscribed to. */
+  /** Send the page the rates of its subscriptions. */
   measure(now: number): void {
     this.out.toPage({ kind: "traffic", traffic: this.meter.measure(now) });
   }
@@ -227,7 +227,7 @@ export class Link {
     this.backlog.open(topic, keep);
     this.meter.open(topic, performance.now() / 1000);
     if (wasCountedOnly && subscription.number !== undefined) {
-      // What is kept for late listeners was not looked at when it came: ask for it again.
+      // Latched messages were only counted when they arrived: subscribe again to get them.
       // Servers may refuse a second subscription to a channel, so the first one ends before.
       this.disconnect(subscription.number);
       delete subscription.number;
@@ -246,12 +246,12 @@ export class Link {
     subscription.number = number;
     subscription.channel = channel.id;
     this.topicOf.set(number, topic);
-    this.say({ op: "subscribe", subscriptions: [{ id: number, channelId: channel.id }] });
+    this.send({ op: "subscribe", subscriptions: [{ id: number, channelId: channel.id }] });
   }
 
   private disconnect(number: number): void {
     this.topicOf.delete(number);
-    this.say({ op: "unsubscribe", subscriptionIds: [number] });
+    this.send({ op: "unsubscribe", subscriptionIds: [number] });
   }
 
   private unsubscribe(topic: string): void {
@@ -283,12 +283,12 @@ export class Link {
         delete subscription.channel;
       }
     }
-    this.tellTopics();
+    this.sendTopics();
     this.subscribeWaiting();
   }
 
   private channelOf(topic: string): Channel | undefined {
-    // Two types on one name are a mistake in the graph; the first one stays.
+    // Two types of one name are an error in the graph; the first one is used.
     for (const channel of this.channels.values()) {
       if (channel.topic === topic) {
         return channel;
@@ -313,14 +313,14 @@ export class Link {
     return reader instanceof Error ? undefined : reader;
   }
 
-  private tellTemplate(id: number, of: "service" | "topic", name: string): void {
+  private sendTemplate(id: number, of: "service" | "topic", name: string): void {
     const definition = of === "service" ? this.calls.requestOf(name) : this.channelOf(name)?.schema;
     const message =
       definition === undefined ? new Error(`there is no ${of} ${name}`) : attempt(() => emptyMessage(definition));
     this.out.toPage({ kind: "response", id, ...(message instanceof Error ? { error: message.message } : { message }) });
   }
 
-  private tellTopics(): void {
+  private sendTopics(): void {
     const topics = [...this.channels.values()].map((channel) => ({
       name: channel.topic,
       type: channel.schemaName,
@@ -334,7 +334,7 @@ export class Link {
     this.out.toPage({ kind: "status", status: { level: Level.WARNING, text, ...(id === undefined ? {} : { id }) } });
   }
 
-  private say(message: ClientMessage): void {
+  private send(message: ClientMessage): void {
     toServer(this.out, message);
   }
 }

@@ -1,4 +1,4 @@
-// Where the worker's conversation with the server goes.
+// Where the worker sends frames and messages to.
 import type { ClientMessage } from "../generated/protocol";
 import type { FromWorker } from "./boundary";
 

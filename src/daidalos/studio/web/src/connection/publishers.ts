@@ -1,4 +1,4 @@
-// What the page publishes: each topic is advertised once, then messages go out as CDR.
+// The page's publishers: each topic is advertised once, messages are sent as CDR.
 import { DEFINITIONS } from "../generated/definitions";
 import { ENCODING, SCHEMA_ENCODING } from "../generated/protocol";
 import { attempt, makeWriter, type Writer } from "./codecs";
@@ -10,8 +10,8 @@ interface Publisher {
   write: Writer;
 }
 
-export interface Surroundings {
-  /** A number that no other channel or subscription of ours has. */
+export interface PublisherContext {
+  /** Return a number that no other channel or subscription of the page has. */
   number(): number;
   /** The definition of a type, where a channel of the server's carries it. */
   definitionOf(type: string): string | undefined;
@@ -22,7 +22,7 @@ export class Publishers {
 
   constructor(
     private readonly out: Output,
-    private readonly around: Surroundings,
+    private readonly around: PublisherContext,
   ) {}
 
   reset(): void {

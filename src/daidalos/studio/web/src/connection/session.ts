@@ -1,4 +1,4 @@
-// The page's view of the connection: what there is, and who in the page listens to what.
+// The page's side of the connection: the graph's topics and services, and the page's subscriptions.
 import { signal } from "@preact/signals";
 import type {
   ClockReading,
@@ -35,7 +35,7 @@ export class Session implements contract.Session {
   readonly traffic = signal<Record<string, Traffic>>({});
   readonly statuses = signal<(StatusInfo & { key: number })[]>([]);
   readonly parameters = signal<ReadonlyMap<string, ParameterEntry>>(new Map());
-  /** Who talks to whom, as long as somebody watches it. */
+  /** Publishers, subscribers and servers, while `watchGraph` is active. */
   readonly graph = signal<ConnectionGraph | undefined>(undefined);
   readonly lastPublished = signal<Publishing | undefined>(undefined);
 
@@ -45,7 +45,7 @@ export class Session implements contract.Session {
   onNewServer: () => void = () => undefined;
 
   private readonly subscribers = new Map<string, Set<Subscriber>>();
-  /** The newest message of each topic, for who begins to listen: latched ones do not come a second time. */
+  /** The newest message of each topic, for later subscribers: latched ones are not sent again. */
   private readonly latest = new Map<string, Received>();
   private readonly requests = new Map<number, (message: FromWorker) => void>();
   private server = "";
@@ -56,9 +56,9 @@ export class Session implements contract.Session {
     worker.onmessage = (event: MessageEvent<FromWorker>) => this.receive(event.data);
   }
 
-  /** Tell whether anybody sees the page: what comes is gathered for longer while nobody does. */
-  seen(seen: boolean): void {
-    this.send({ kind: "seen", seen });
+  /** Set whether the page is visible: batches are longer while it is hidden. */
+  setVisible(visible: boolean): void {
+    this.send({ kind: "visible", visible });
   }
 
   open(url: string): void {
@@ -176,7 +176,7 @@ export class Session implements contract.Session {
   private receive(message: FromWorker): void {
     switch (message.kind) {
       case "batch":
-        // At once: listeners only take note, and what is drawn next shall know the newest.
+        // At once: the next frame shows the newest message.
         for (const received of message.messages) {
           this.deliver(received);
         }
@@ -240,7 +240,7 @@ export class Session implements contract.Session {
     }
   }
 
-  /** Show the user something to heed. */
+  /** Show a status to the user. */
   addStatus(status: StatusInfo): void {
     const others = this.statuses.value.filter((each) => status.id === undefined || each.id !== status.id);
     this.statuses.value = [...others.slice(-49), { ...status, key: ++this.numbers }];

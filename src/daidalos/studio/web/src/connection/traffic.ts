@@ -32,7 +32,7 @@ export class TrafficMeter {
     }
   }
 
-  /** Return the rates now, and begin to forget what is older than the window. */
+  /** Return the rates now, and drop what is older than the window. */
   measure(now: number): Record<string, Traffic> {
     const result: Record<string, Traffic> = {};
     for (const [topic, count] of this.counts) {

@@ -1,4 +1,4 @@
-// The worker: holds the WebSocket, decodes, and hands the page one batch whenever the page is ready for it.
+// The worker: owns the WebSocket, decodes, and sends the page a batch whenever it is ready for one.
 /// <reference lib="webworker" />
 import type { FromWorker, ToWorker } from "./boundary";
 import { SUBPROTOCOLS } from "../generated/protocol";
@@ -7,8 +7,8 @@ import { Link } from "./link";
 const RETRY_FIRST_MS = 300;
 const RETRY_LAST_MS = 4000;
 const MEASURE_MS = 1000;
-const TOGETHER_MS = 8;
-const TOGETHER_UNSEEN_MS = 1000;
+const BATCH_MS = 8;
+const BATCH_HIDDEN_MS = 1000;
 
 declare const self: DedicatedWorkerGlobalScope;
 
@@ -17,7 +17,7 @@ let retryMs = RETRY_FIRST_MS;
 let pageIsReady = true;
 let flushIsDue = false;
 let flushedAt = 0;
-let togetherMs = TOGETHER_MS;
+let batchMs = BATCH_MS;
 
 const link = new Link({
   toServer(frame) {
@@ -39,8 +39,8 @@ self.onmessage = (event: MessageEvent<ToWorker>) => {
   } else if (message.kind === "ready") {
     pageIsReady = true;
     flushSoon();
-  } else if (message.kind === "seen") {
-    togetherMs = message.seen ? TOGETHER_MS : TOGETHER_UNSEEN_MS;
+  } else if (message.kind === "visible") {
+    batchMs = message.visible ? BATCH_MS : BATCH_HIDDEN_MS;
     flush();
   } else {
     link.receivePage(message);
@@ -72,16 +72,16 @@ function open(url: string): void {
 }
 
 function flushSoon(): void {
-  if (pageIsReady && !flushIsDue && link.hasNews) {
+  if (pageIsReady && !flushIsDue && link.hasUpdate) {
     flushIsDue = true;
-    // What arrives together goes together: many small messages to the page would cost more than they say.
-    setTimeout(flush, flushedAt + togetherMs - performance.now());
+    // Messages are sent to the page in batches: many small ones would cost more.
+    setTimeout(flush, flushedAt + batchMs - performance.now());
   }
 }
 
 function flush(): void {
   flushIsDue = false;
-  if (link.hasNews && pageIsReady) {
+  if (link.hasUpdate && pageIsReady) {
     flushedAt = performance.now();
     pageIsReady = false;
     link.flush();

@@ -59,9 +59,9 @@ export abstract class Display implements contract.Display {
   }
 }
 
-const PLACE = new Transform();
-/** Who moves less than this since it was drawn, in metres or as a quaternion, stands still: wheels at rest tremble. */
-const STILL = 2e-5;
+const POSE = new Transform();
+/** Motion below this since the last frame, in metres or as a quaternion, is not drawn: wheels at rest jitter. */
+const MIN_MOTION = 2e-5;
 
 /** Put an object where a frame is; false where that is not known. */
 export function place(
@@ -73,14 +73,14 @@ export function place(
   clamp: boolean,
 ): boolean {
   if (frame === fixed) {
-    PLACE.identity();
-  } else if (!context.tf.lookup(fixed, frame, when, PLACE, { clamp })) {
+    POSE.identity();
+  } else if (!context.tf.lookup(fixed, frame, when, POSE, { clamp })) {
     return false;
   }
   // A scene in which nothing moves is not drawn again.
-  if (isElsewhere(object, PLACE)) {
-    object.position.copy(PLACE.position);
-    object.quaternion.copy(PLACE.rotation);
+  if (isElsewhere(object, POSE)) {
+    object.position.copy(POSE.position);
+    object.quaternion.copy(POSE.rotation);
     context.invalidate();
   }
   return true;
@@ -89,7 +89,9 @@ export function place(
 /** Whether an object is drawn elsewhere than at a pose, by more than the trembling of what stands still. */
 export function isElsewhere({ position: p, quaternion: q }: Object3D, { position, rotation: r }: Transform): boolean {
   const turned = Math.max(Math.abs(q.x - r.x), Math.abs(q.y - r.y), Math.abs(q.z - r.z), Math.abs(q.w - r.w));
-  return Math.max(Math.abs(p.x - position.x), Math.abs(p.y - position.y), Math.abs(p.z - position.z), turned) > STILL;
+  return (
+    Math.max(Math.abs(p.x - position.x), Math.abs(p.y - position.y), Math.abs(p.z - position.z), turned) > MIN_MOTION
+  );
 }
 
 /** Free the graphics memory of an object and all below it. */

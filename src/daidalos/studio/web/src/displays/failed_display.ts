@@ -1,4 +1,4 @@
-// A display whose module failed: draws nothing and says why.
+// A display that failed: draws nothing and reports the error.
 import { signal } from "@preact/signals";
 import { Group } from "three";
 import type { Display, Status } from "../contract";

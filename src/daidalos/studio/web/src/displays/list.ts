@@ -1,4 +1,4 @@
-// The list of displays: what is configured, kept in the browser; and the first list that everyone sees.
+// The list of configured displays, kept in the browser, and the default one.
 import { signal, type Signal } from "@preact/signals";
 import { forget, isRecord, stored } from "../app/stored";
 import type { Display, DisplayType, Settings, TopicInfo, Value } from "../contract";
@@ -9,24 +9,24 @@ import type { DisplayConfig } from "./settings";
 const KEY = "displays";
 
 const MAX_DISCOVERED = 24;
-/** What navigation publishes of its inner life repeats the plan: listed, but switched off. */
-const INNER_LIFE = /(received|transformed)_global_plan|(un)?smoothed/;
+/** Intermediate plans of navigation repeat the plan: added, but disabled. */
+const INTERMEDIATE_PLAN = /(received|transformed)_global_plan|(un)?smoothed/;
 
 interface Saved {
   configs: DisplayConfig[];
-  /** Topics for which a display was made by itself once; removing it is respected. */
+  /** Topics for which a display was once added automatically; it is not added again after its removal. */
   seen: string[];
 }
 
 export class DisplayList {
-  /** The displays that live in the scene, by id. */
+  /** The displays in the scene, by id. */
   readonly live: Signal<ReadonlyMap<string, Display>> = signal(new Map());
   private readonly saved: Signal<Saved>;
 
-  /** What a file asks for holds for this window only, and nothing comes to it by itself. */
-  constructor(private readonly asked?: readonly DisplayConfig[]) {
-    const first = { configs: [...(asked ?? firstConfigs())], seen: [] };
-    this.saved = asked ? signal<Saved>(first) : stored<Saved>(KEY, first, isSaved);
+  /** The displays of a file are not kept, and none are added automatically. */
+  constructor(private readonly given?: readonly DisplayConfig[]) {
+    const first = { configs: [...(given ?? firstConfigs())], seen: [] };
+    this.saved = given ? signal<Saved>(first) : stored<Saved>(KEY, first, isSaved);
   }
 
   get configs(): readonly DisplayConfig[] {
@@ -55,15 +55,15 @@ export class DisplayList {
   }
 
   reset(): void {
-    if (!this.asked) {
+    if (!this.given) {
       forget(KEY);
     }
-    this.saved.value = { configs: [...(this.asked ?? firstConfigs())], seen: [] };
+    this.saved.value = { configs: [...(this.given ?? firstConfigs())], seen: [] };
   }
 
-  /** Make displays for topics that nobody shows yet. */
+  /** Add displays for topics that no display shows. */
   discover(topics: readonly TopicInfo[]): void {
-    if (this.asked) {
+    if (this.given) {
       return;
     }
     const { configs, seen } = this.saved.peek();
@@ -75,7 +75,7 @@ export class DisplayList {
     });
     if (found.length && configs.length < MAX_DISCOVERED) {
       const made = found.map(({ display, name }) =>
-        makeConfig(display, { topic: name, ...looksOf(name) }, shortName(name), !INNER_LIFE.test(name)),
+        makeConfig(display, { topic: name, ...settingsOf(name) }, shortName(name), !INTERMEDIATE_PLAN.test(name)),
       );
       this.saved.value = { configs: [...configs, ...made], seen: [...seen, ...found.map(({ name }) => name)] };
     }
@@ -90,7 +90,7 @@ export class DisplayList {
   }
 }
 
-/** What shows a mobile robot at its best; each entry waits quietly until its topic exists. */
+/** The default displays, for a mobile robot; each is idle until its topic exists. */
 function firstConfigs(): DisplayConfig[] {
   const entry = (type: string, name: string, settings: Settings = {}, enabled = true) => {
     const found = DISPLAYS.find(type);
@@ -112,8 +112,8 @@ function firstConfigs(): DisplayConfig[] {
   ];
 }
 
-/** How a discovered topic looks where its name says more than its type. */
-function looksOf(topic: string): Settings {
+/** The settings of a discovered topic whose name tells more than its type. */
+function settingsOf(topic: string): Settings {
   return topic.includes("costmap") && !topic.includes("footprint") ? { scheme: "glow", alpha: 0.5 } : {};
 }
 

@@ -1,4 +1,4 @@
-// Makes displays of their configurations, keeps them up to date, and takes them down.
+// Creates the displays of the configured list, updates and removes them.
 import { effect, untracked } from "@preact/signals";
 import type { Group } from "three";
 import type { Display, Settings } from "../contract";
@@ -35,7 +35,7 @@ export class DisplayManager {
     }
   }
 
-  /** Begin anew: time was turned back, or the server is another. What is kept for late listeners comes again. */
+  /** Create all displays again after time was reset or the server changed; latched messages are received again. */
   reset(): void {
     this.clear();
     this.apply(this.list.configs);
@@ -44,7 +44,7 @@ export class DisplayManager {
   dispose(): void {
     this.stop();
     this.clear();
-    this.tell();
+    this.publish();
   }
 
   private clear(): void {
@@ -75,7 +75,7 @@ export class DisplayManager {
       }
     }
     if (changed) {
-      this.tell();
+      this.publish();
     }
   }
 
@@ -92,7 +92,7 @@ export class DisplayManager {
     return true;
   }
 
-  /** Run what a display does; one that throws draws nothing any more, and says why. */
+  /** Call a display; one that throws is replaced by one that reports the error. */
   private guard(id: string, run: () => void): void {
     try {
       run();
@@ -101,11 +101,11 @@ export class DisplayManager {
       made.display.object.removeFromParent();
       made.display = new FailedDisplay(error instanceof Error ? error.message : String(error));
       this.context.invalidate();
-      this.tell();
+      this.publish();
     }
   }
 
-  private tell(): void {
+  private publish(): void {
     this.list.live.value = new Map([...this.made].map(([id, { display }]) => [id, display]));
   }
 }

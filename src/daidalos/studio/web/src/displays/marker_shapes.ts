@@ -79,7 +79,7 @@ function shapeOf(marker: Marker, context: MarkerContext): Object3D | undefined {
   return undefined;
 }
 
-/** A shape of unit size, as large as the marker says and with its image. */
+/** A shape of unit size with the marker's scale and texture. */
 function sized(geometry: BufferGeometry, marker: Marker, { assets, changed, onError }: MarkerContext): Mesh {
   const { type, scale, texture_resource: image } = marker;
   if (image) {

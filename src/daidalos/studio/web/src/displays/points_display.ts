@@ -1,4 +1,4 @@
-// What laser scans and point clouds share: points that a sensor saw at one moment, kept for a while if wished.
+// The base of laser scans and point clouds: points of one measurement each, kept for the decay time.
 import type { Stamped } from "../contract";
 import { parseColor, TURBO } from "../scene/colors";
 import { PointSprites } from "../scene/point_sprites";
@@ -37,7 +37,7 @@ export abstract class PointsDisplay<M extends Stamped> extends Display {
       : () => undefined;
   }
 
-  /** How many points a message may hold at most. */
+  /** The maximum number of points of a message. */
   protected abstract capacity(message: M): number;
   /** Write a message's points and return how many there are. */
   protected abstract write(message: M, to: PointWriter): number;
@@ -130,17 +130,17 @@ export abstract class PointsDisplay<M extends Stamped> extends Display {
   }
 }
 
-/** Paints points by a value each, on a scale from the least to the most. */
+/** Paints points by a value each, on a scale from the lowest to the highest value. */
 export function paintByValue(values: ArrayLike<number>, count: number, colors: Uint8Array): void {
-  let [least, most] = [Infinity, -Infinity];
+  let [lowest, highest] = [Infinity, -Infinity];
   for (let i = 0; i < count; i++) {
     const value = values[i] as number;
-    least = value < least ? value : least;
-    most = value > most ? value : most;
+    lowest = value < lowest ? value : lowest;
+    highest = value > highest ? value : highest;
   }
-  const scale = most > least ? 255 / (most - least) : 0;
+  const scale = highest > lowest ? 255 / (highest - lowest) : 0;
   for (let i = 0; i < count; i++) {
-    const entry = 3 * Math.round(((values[i] as number) - least) * scale);
+    const entry = 3 * Math.round(((values[i] as number) - lowest) * scale);
     colors[3 * i] = TURBO[entry] as number;
     colors[3 * i + 1] = TURBO[entry + 1] as number;
     colors[3 * i + 2] = TURBO[entry + 2] as number;

@@ -5,7 +5,7 @@ import { Display, place, type DisplayContext, type FrameInfo } from "./display";
 import { frameOf, MessageFilter, stampOf } from "./message_filter";
 import { text } from "./settings";
 
-/** Shows each message of a topic as it comes. */
+/** Shows each message of a topic when it arrives. */
 export abstract class TopicDisplay<M> extends Display {
   protected count = 0;
   private readonly unsubscribe: () => void;

@@ -105,7 +105,7 @@ function DisplayRow({ studio, config, open, onToggle }: RowProps) {
       </div>
       {open && (
         <div class="properties">
-          <StatusLine status={config.enabled ? status : { level: "idle", text: "switched off" }} />
+          <StatusLine status={config.enabled ? status : { level: "idle", text: "disabled" }} />
           {type?.properties
             .filter((property) => property.when?.(config.settings) ?? true)
             .map((property) => (

@@ -1,4 +1,4 @@
-// Graph: nodes and topics, and who talks to whom, as rqt_graph shows them.
+// Graph: nodes and topics, and their connections, as rqt_graph shows them.
 import { useSignal, type Signal } from "@preact/signals";
 import { useEffect, useLayoutEffect, useRef } from "preact/hooks";
 import type { ConnectionGraph } from "../connection/boundary";
@@ -8,7 +8,7 @@ import { Empty } from "../ui/empty";
 import { Icon } from "../ui/icons";
 import { SearchField } from "../ui/search";
 import { Canvas } from "./graph/canvas";
-import { around, diagramOf, nodeId, type Kind, type Wishes } from "./graph/diagram";
+import { around, diagramOf, nodeId, type Kind, type DiagramOptions } from "./graph/diagram";
 import { place, type Placed } from "./graph/layout";
 import { type BuiltInPanel, type PanelProps, withPreact } from "./panel";
 import "../styles/graph.css";
@@ -23,18 +23,18 @@ const SWITCHES = [
   ["tf", "tf", "Show transforms and the clock"],
   ["hidden", "Hidden", "Show names that begin with an underscore"],
 ] as const;
-const FIRST: Wishes = { kind: "active", filter: "", debug: false, tf: false, hidden: false };
+const FIRST: DiagramOptions = { kind: "active", filter: "", debug: false, tf: false, hidden: false };
 
 function GraphPanel({ studio, visible, params, remember }: PanelProps) {
   const { session } = studio;
-  const wishes = useSignal<Wishes>(wishesOf(params));
+  const options = useSignal<DiagramOptions>(optionsOf(params));
   const placed = useSignal<Placed | undefined>(undefined);
   const hovered = useSignal("");
   const picked = useSignal("");
   const isVisible = visible.value;
   useEffect(() => (isVisible ? session.watchGraph() : undefined), [isVisible]);
   const graph = session.graph.value;
-  const diagram = graph && diagramOf(graph, wishes.value);
+  const diagram = graph && diagramOf(graph, options.value);
   const told = JSON.stringify(diagram);
   useEffect(() => {
     let isNewest = true;
@@ -49,9 +49,9 @@ function GraphPanel({ studio, visible, params, remember }: PanelProps) {
       isNewest = false;
     };
   }, [told]);
-  const wish = (change: Partial<Wishes>) => {
-    wishes.value = { ...wishes.value, ...change };
-    const { filter, ...kept } = wishes.value;
+  const change = (change: Partial<DiagramOptions>) => {
+    options.value = { ...options.value, ...change };
+    const { filter, ...kept } = options.value;
     remember(kept);
   };
   return (
@@ -59,19 +59,23 @@ function GraphPanel({ studio, visible, params, remember }: PanelProps) {
       <div class="bar wrap">
         <Choice
           label="What is shown"
-          value={wishes.value.kind}
+          value={options.value.kind}
           options={KINDS}
-          onChange={(kind) => wish({ kind: kind as Kind })}
+          onChange={(kind) => change({ kind: kind as Kind })}
         />
-        <SearchField value={wishes.value.filter} placeholder="Filter by name" onChange={(filter) => wish({ filter })} />
+        <SearchField
+          value={options.value.filter}
+          placeholder="Filter by name"
+          onChange={(filter) => change({ filter })}
+        />
         {SWITCHES.map(([name, label, title]) => (
           <button
             key={name}
-            class={`chip ${wishes.value[name] ? "on" : ""}`}
+            class={`chip ${options.value[name] ? "on" : ""}`}
             title={title}
-            aria-pressed={wishes.value[name]}
+            aria-pressed={options.value[name]}
             data-test={`graph-${name}`}
-            onClick={() => wish({ [name]: !wishes.value[name] })}
+            onClick={() => change({ [name]: !options.value[name] })}
           >
             {label}
           </button>
@@ -80,8 +84,8 @@ function GraphPanel({ studio, visible, params, remember }: PanelProps) {
       {placed.value?.boxes.length ? (
         <Drawing placed={placed.value} hovered={hovered} picked={picked} />
       ) : (
-        <Empty icon="graph" title={wishes.value.filter ? "Nothing of this name" : "No nodes yet"}>
-          {wishes.value.filter ? "" : "They appear as soon as they start."}
+        <Empty icon="graph" title={options.value.filter ? "No match" : "No nodes yet"}>
+          {options.value.filter ? "" : "They appear as soon as they start."}
         </Empty>
       )}
       {graph && <Details studio={studio} graph={graph} id={hovered.value || picked.value} />}
@@ -187,10 +191,10 @@ function Drawing({ placed, hovered, picked }: DrawingProps) {
         </g>
       </svg>
       <div class="overlay-bar views" role="toolbar" aria-label="View">
-        <button class="tool" title="Larger" onClick={() => canvas.current?.zoom(1.25)}>
+        <button class="tool" title="Zoom in" onClick={() => canvas.current?.zoom(1.25)}>
           <Icon name="add" />
         </button>
-        <button class="tool" title="Smaller" onClick={() => canvas.current?.zoom(0.8)}>
+        <button class="tool" title="Zoom out" onClick={() => canvas.current?.zoom(0.8)}>
           <Icon name="minus" />
         </button>
         <button class="tool" title="Show everything (double click)" data-test="graph-fit" onClick={fit}>
@@ -205,7 +209,7 @@ function Drawing({ placed, hovered, picked }: DrawingProps) {
 function Details({ studio, graph, id }: { studio: Studio; graph: ConnectionGraph; id: string }) {
   const name = id.slice(1);
   if (!id) {
-    return <footer class="bar faint">Point at a box to see its neighbours · click to keep them</footer>;
+    return <footer class="bar faint">Hover over a box to highlight its neighbours · click to pin them</footer>;
   }
   if (id !== nodeId(name)) {
     const look = () => {
@@ -231,14 +235,14 @@ function Details({ studio, graph, id }: { studio: Studio; graph: ConnectionGraph
     const found = [...side].filter(([, nodes]) => nodes.includes(name)).map(([each]) => each);
     return { title: found.sort().join("\n"), number: found.length };
   };
-  const [says, hears, serves] = [of(graph.publishers), of(graph.subscribers), of(graph.services)];
+  const [publishes, subscribes, provides] = [of(graph.publishers), of(graph.subscribers), of(graph.services)];
   return (
     <footer class="bar faint" data-test="graph-details">
       <b>{name}</b>
       <span class="stretch" />
-      <span title={says.title}>publishes {count(says.number, "topic")}</span>
-      <span title={hears.title}>· hears {count(hears.number, "topic")}</span>
-      <span title={serves.title}>· offers {count(serves.number, "service")}</span>
+      <span title={publishes.title}>publishes {count(publishes.number, "topic")}</span>
+      <span title={subscribes.title}>· subscribes to {count(subscribes.number, "topic")}</span>
+      <span title={provides.title}>· offers {count(provides.number, "service")}</span>
     </footer>
   );
 }
@@ -247,7 +251,7 @@ function count(number: number, what: string): string {
   return `${number} ${what}${number === 1 ? "" : "s"}`;
 }
 
-function wishesOf(params: Readonly<Record<string, unknown>>): Wishes {
+function optionsOf(params: Readonly<Record<string, unknown>>): DiagramOptions {
   const kind = KINDS.find(([each]) => each === params.kind)?.[0] ?? FIRST.kind;
   const given = (name: "debug" | "tf" | "hidden") => params[name] === true;
   return { ...FIRST, kind, debug: given("debug"), tf: given("tf"), hidden: given("hidden") };

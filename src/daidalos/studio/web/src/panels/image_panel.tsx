@@ -33,7 +33,7 @@ function ImagePanel({ studio, visible, params, remember }: PanelProps) {
     let drawing = false;
     caption.value = errorText.value = "";
     return session.subscribe<Image | CompressedImage>(topic, 1, (image) => {
-      // The next one comes soon: better to leave one out than to fall behind.
+      // Decoding takes longer than the period: skip this image.
       if (!drawing) {
         drawing = true;
         draw(canvas.current, image)

@@ -16,7 +16,7 @@ function JointsPanel({ studio, visible, params, remember }: PanelProps) {
   const node = nodes.includes(chosen.value) ? chosen.value : nodes[0];
   if (node === undefined) {
     return (
-      <Empty icon="sliders" title="No joint_state_publisher_gui runs">
+      <Empty icon="sliders" title="No joint_state_publisher_gui is running">
         <code>ros2 run joint_state_publisher_gui joint_state_publisher_gui</code>
       </Empty>
     );
@@ -60,10 +60,15 @@ function Sliders({ studio, node, isVisible }: { studio: Studio; node: string; is
         ))}
       </div>
       <footer class="bar">
-        <button class="button" title="Put every joint anywhere" data-test="randomize" onClick={() => model.randomize()}>
+        <button
+          class="button"
+          title="Set every joint to a random position"
+          data-test="randomize"
+          onClick={() => model.randomize()}
+        >
           <Icon name="marker" /> Randomize
         </button>
-        <button class="button" title="Put every joint back" data-test="center" onClick={() => model.center()}>
+        <button class="button" title="Set every joint to its centre" data-test="center" onClick={() => model.center()}>
           <Icon name="focus" /> Center
         </button>
         <span class="stretch error-text ellipsis">{model.error}</span>

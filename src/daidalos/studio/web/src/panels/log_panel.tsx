@@ -1,4 +1,4 @@
-// Log: what nodes say on /rosout.
+// Log: messages of nodes on /rosout.
 import { useSignal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 import { Log } from "../generated/rcl_interfaces";
@@ -33,14 +33,14 @@ interface Line {
 
 function LogPanel({ studio, visible }: PanelProps) {
   const lines = useSignal<readonly Line[]>([]);
-  const least = useSignal<number>(Log.INFO);
+  const minLevel = useSignal<number>(Log.INFO);
   const filter = useSignal("");
   const list = useRef<HTMLDivElement>(null);
   const follows = useRef(true);
   useEffect(() => {
     let pending: Line[] = [];
     let key = 0;
-    // Also while hidden: what was said before one looks is what one looks for.
+    // Also while hidden, so that earlier messages are there when the panel is opened.
     const stop = studio.session.subscribe<Log>("/rosout", KEEP, (log) =>
       pending.push({ key: ++key, at: performance.now(), log }),
     );
@@ -58,7 +58,7 @@ function LogPanel({ studio, visible }: PanelProps) {
   const wanted = filter.value.toLowerCase();
   const shown = visible.value
     ? lines.value
-        .filter(({ log }) => log.level >= least.value && `${log.name} ${log.msg}`.toLowerCase().includes(wanted))
+        .filter(({ log }) => log.level >= minLevel.value && `${log.name} ${log.msg}`.toLowerCase().includes(wanted))
         .slice(-SHOWN_LINES)
     : [];
   useEffect(() => {
@@ -70,10 +70,10 @@ function LogPanel({ studio, visible }: PanelProps) {
     <div class="column">
       <div class="bar">
         <Choice
-          label="Least severity"
-          value={String(least.value)}
+          label="Minimum severity"
+          value={String(minLevel.value)}
           options={LEVELS.map(([level, name]) => [String(level), name])}
-          onChange={(level) => (least.value = Number(level))}
+          onChange={(level) => (minLevel.value = Number(level))}
         />
         <SearchField value={filter.value} placeholder="Filter" onChange={(text) => (filter.value = text)} />
         <button class="icon-button" title="Clear" onClick={() => (lines.value = [])}>
@@ -81,8 +81,8 @@ function LogPanel({ studio, visible }: PanelProps) {
         </button>
       </div>
       {shown.length === 0 ? (
-        <Empty icon="log" title="Nothing to report">
-          {lines.value.length ? "Nothing matches the filter." : "What nodes log appears here."}
+        <Empty icon="log" title="No log messages">
+          {lines.value.length ? "No message matches the filter." : "Log messages of nodes appear here."}
         </Empty>
       ) : (
         <div
@@ -101,7 +101,7 @@ function LogPanel({ studio, visible }: PanelProps) {
   );
 }
 
-/** What came at about the same time by when it was said: every node sends what it said before one listened. */
+/** Sort recent messages by their stamps: every node sends its latched messages at once when the page subscribes. */
 function inOrder(lines: Line[]): Line[] {
   const since = performance.now() - TOGETHER_MS;
   const old = lines.filter(({ at }) => at < since);

@@ -56,15 +56,15 @@ function MessagePanel({ studio, visible }: PanelProps) {
         />
         <button
           class={`icon-button ${paused.value ? "active" : ""}`}
-          title={paused.value ? "Go on" : "Hold"}
+          title={paused.value ? "Resume" : "Pause"}
           onClick={() => (paused.value = !paused.value)}
         >
           <Icon name={paused.value ? "play" : "pause"} />
         </button>
       </div>
       {topic === "" ? (
-        <Empty icon="message" title="No topic chosen">
-          Choose one above, or click one in Topics.
+        <Empty icon="message" title="No topic selected">
+          Select one above, or click one in Topics.
         </Empty>
       ) : latest.value ? (
         <>

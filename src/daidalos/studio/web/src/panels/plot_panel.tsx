@@ -156,7 +156,7 @@ function PlotPanel({ studio, visible, params, remember }: PanelProps) {
         />
         <button
           class={`icon-button ${heldAt.value === undefined ? "" : "active"}`}
-          title={heldAt.value === undefined ? "Hold" : "Go on (double click in the plot)"}
+          title={heldAt.value === undefined ? "Pause" : "Resume (double click in the plot)"}
           data-test="hold"
           onClick={() => (heldAt.value === undefined ? hold() : run())}
         >
@@ -164,7 +164,7 @@ function PlotPanel({ studio, visible, params, remember }: PanelProps) {
         </button>
         <button
           class="icon-button"
-          title="Another plot below"
+          title="Add a plot below"
           data-test="split"
           onClick={() => studio.openPanel("plot", { curves: [], span: span.value }, "below")}
         >

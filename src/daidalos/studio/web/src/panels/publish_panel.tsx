@@ -67,7 +67,7 @@ function PublishPanel({ studio: { session }, params, remember }: PanelProps) {
       {topic ? (
         <DraftField draft={draft} label="Message" />
       ) : (
-        <Empty icon="topics" title={name.value ? "This topic does not exist" : "No topic chosen"}>
+        <Empty icon="topics" title={name.value ? "This topic does not exist" : "No topic selected"}>
           {name.value ? "" : "Type a part of its name above."}
         </Empty>
       )}

@@ -10,11 +10,11 @@ import { type BuiltInPanel, type PanelProps, withPreact } from "./panel";
 import "../styles/view_3d.css";
 
 const MOUSE_HINT = {
-  orbit: "Left: turn · Middle: move · Right or wheel: zoom",
-  top: "Left: move · Shift + left: turn · Right or wheel: zoom",
+  orbit: "Left: rotate · Middle: move · Right or wheel: zoom",
+  top: "Left: move · Shift + left: rotate · Right or wheel: zoom",
 } as const;
 
-const INVITATION = "Send the robot somewhere: press g, then click on the map and drag to where it shall look";
+const GOAL_HINT = "Set a goal: press g, click on the map and drag in the direction of the heading";
 
 function ScenePanel({ studio, visible }: PanelProps) {
   const container = useRef<HTMLDivElement>(null);
@@ -34,7 +34,7 @@ function ScenePanel({ studio, visible }: PanelProps) {
       return undefined;
     }
   }, []);
-  // A planner's map tells that somebody drives where the goal tool says.
+  // A planner's topics show that a navigator accepts the goals of the goal tool.
   const canNavigate = studio.session.topics.value.some(({ name }) => /\/(plan|global_costmap\/costmap)$/.test(name));
   return (
     <div class="scene">
@@ -45,8 +45,8 @@ function ScenePanel({ studio, visible }: PanelProps) {
       {failure.value && (
         <div class="empty over">
           <Icon name="cube" size={28} />
-          <strong>This browser can not draw in 3-D</strong>
-          <span>{failure.value}. WebGL 2 must be switched on in its settings.</span>
+          <strong>This browser does not support WebGL 2</strong>
+          <span>{failure.value}. Enable WebGL 2 in its settings.</span>
         </div>
       )}
       <Note studio={studio} />
@@ -56,17 +56,17 @@ function ScenePanel({ studio, visible }: PanelProps) {
 
 function Toolbar({ world, canNavigate }: { world: World; canNavigate: boolean }) {
   const { toolbox } = world;
-  const invites = canNavigate && !toolbox.used.value.has("goal");
+  const showsGoalHint = canNavigate && !toolbox.used.value.has("goal");
   return (
     <div class="overlay-bar tools" role="toolbar" aria-label="Tools">
       {TOOLS.map((tool) => (
         <button
           key={tool.id}
-          class={`tool ${toolbox.active.value === tool ? "active" : ""} ${invites && tool.id === "goal" ? "inviting" : ""}`}
+          class={`tool ${toolbox.active.value === tool ? "active" : ""} ${showsGoalHint && tool.id === "goal" ? "inviting" : ""}`}
           title={`${tool.title} (${tool.key})`}
           aria-pressed={toolbox.active.value === tool}
           data-tool={tool.id}
-          onClick={() => toolbox.take(tool)}
+          onClick={() => toolbox.select(tool)}
         >
           <Icon name={tool.icon} />
           <span class="tool-title">{tool.title}</span>
@@ -108,21 +108,21 @@ function ViewButtons({ world }: { world: World }) {
 function Hint({ world, canNavigate }: { world: World; canNavigate: boolean }) {
   const { toolbox } = world;
   const tool = toolbox.active.value;
-  const invitation = canNavigate && !toolbox.used.value.has("goal") ? INVITATION : "";
+  const goalHint = canNavigate && !toolbox.used.value.has("goal") ? GOAL_HINT : "";
   return (
     <div class={`hint ${tool.create ? "busy" : ""}`} data-test="hint">
-      {toolbox.saying.value || tool.hint || invitation || MOUSE_HINT[world.viewKind.value]}
+      {toolbox.message.value || tool.hint || goalHint || MOUSE_HINT[world.viewKind.value]}
     </div>
   );
 }
 
-/** What to say while there is nothing to see. */
+/** A note while there is nothing to draw. */
 function Note({ studio }: { studio: Studio }) {
   const { link, topics } = studio.session;
   if (link.value === "connected") {
     return topics.value.length === 0 ? (
       <div class="scene-note" role="status">
-        Nothing is published yet. What robots and simulators publish appears here by itself.
+        No topics are published yet. Published data appears here automatically.
       </div>
     ) : null;
   }

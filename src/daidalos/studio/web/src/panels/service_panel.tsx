@@ -56,7 +56,7 @@ function ServicePanel({ studio: { session }, params, remember }: PanelProps) {
           </pre>
         </>
       ) : (
-        <Empty icon="message" title={name.value ? "Nobody serves this" : "No service chosen"}>
+        <Empty icon="message" title={name.value ? "This service has no server" : "No service selected"}>
           {name.value ? "" : "Type a part of its name above."}
         </Empty>
       )}

@@ -1,4 +1,4 @@
-// Simulation: the simulated world to look at and to edit, and the keys of its time.
+// Simulation: the simulated world, its editor, and the controls of its time.
 import { useSignal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 import type { Studio } from "../app/studio";
@@ -32,7 +32,7 @@ const STEPS: readonly (readonly [string, string])[] = ["1", "10", "100", "1000"]
 const MODES: readonly (readonly [Mode, IconName, string])[] = [
   ["look", "select", "Select (Esc)"],
   ["move", "move", "Move (t)"],
-  ["turn", "turn", "Turn (r)"],
+  ["turn", "turn", "Rotate (r)"],
   ["scale", "scale", "Scale (s)"],
 ];
 const SHAPES: readonly (readonly [Shape, IconName])[] = [
@@ -41,18 +41,18 @@ const SHAPES: readonly (readonly [Shape, IconName])[] = [
   ["cylinder", "cylinder"],
 ];
 const HINTS: Record<Mode, string> = {
-  look: "Click: select · Double click: look at · Left: turn · Middle: move · Wheel: zoom",
+  look: "Click: select · Double click: centre the view · Left: rotate · Middle: move · Wheel: zoom",
   move: "Drag an arrow, or the model along the ground (Shift: up and down) · Ctrl: in steps of 0.25 m · Esc: cancel",
   turn: "Drag a ring, or the model sideways · Ctrl: in steps of 15° · Esc: cancel",
   scale: "Drag a handle, or the model up and down · Ctrl: in steps of a quarter · Esc: cancel",
-  insert: "Click where it shall stand · Shift: and another one · Esc: cancel",
+  insert: "Click to insert · Shift: insert another one · Esc: cancel",
 };
 
 function SimulationPanel({ studio, visible }: PanelProps) {
   const service = studio.session.services.value.find(({ type }) => type === SIMULATOR_TYPE)?.name;
   if (service === undefined) {
     return (
-      <Empty icon="cube" title="No simulator runs">
+      <Empty icon="cube" title="No simulator is running">
         <code>ros2 launch gazebo_ros gazebo.launch.py</code>
       </Empty>
     );
@@ -98,7 +98,7 @@ function Room({ studio, name, isVisible }: { studio: Studio; name: string; isVis
             {HINTS[tools.value.editor.mode.value]}
           </div>
         )}
-        {failure.value && <Empty icon="cube" title="This browser can not draw in 3-D" />}
+        {failure.value && <Empty icon="cube" title="This browser does not support WebGL 2" />}
       </div>
       {tools.value && <Foot tools={tools.value} />}
     </div>
@@ -115,7 +115,7 @@ function open(studio: Studio, name: string, container: HTMLDivElement): [Tools, 
   const look = async () => {
     if (!isLooking) {
       isLooking = true;
-      // Nobody answers while the connection is lost or a world is exchanged: the next beat asks again.
+      // Without an answer while the connection is lost or a world is replaced: the next call is made a second later.
       await simulator.look().then(
         (looks) => stage.show(looks),
         () => undefined,
@@ -160,23 +160,23 @@ function TimeBar({ studio, tools: { simulator, editor } }: { studio: Studio; too
     <div class="bar wrap">
       <button
         class="button primary"
-        title={isPlaying ? "Let time stand still" : "Let time go on"}
+        title={isPlaying ? "Pause the simulation" : "Resume the simulation"}
         data-test="play"
         disabled={isPlaying === undefined}
-        onClick={() => void editor.do(() => simulator.play(!isPlaying))}
+        onClick={() => void editor.run(() => simulator.play(!isPlaying))}
       >
         <Icon name={isPlaying ? "pause" : "play"} /> {isPlaying ? "Pause" : "Play"}
       </button>
       <button
         class="button"
-        title="Go on by some steps, while time stands still"
+        title="Step the paused simulation"
         data-test="step"
         disabled={isPlaying !== false}
-        onClick={() => void editor.do(() => simulator.step(Number(steps.value)))}
+        onClick={() => void editor.run(() => simulator.step(Number(steps.value)))}
       >
         <Icon name="step" /> Step
       </button>
-      <Choice label="Steps at a time" value={steps.value} options={STEPS} onChange={(count) => (steps.value = count)} />
+      <Choice label="Steps per click" value={steps.value} options={STEPS} onChange={(count) => (steps.value = count)} />
       <Choice
         label="Speed"
         value={String(simulator.speed ?? "1")}
@@ -185,9 +185,9 @@ function TimeBar({ studio, tools: { simulator, editor } }: { studio: Studio; too
       />
       <button
         class="button"
-        title="Begin anew: time at zero, everything where it was"
+        title="Reset time and the states of models"
         data-test="reset"
-        onClick={() => void editor.do(() => simulator.reset())}
+        onClick={() => void editor.run(() => simulator.reset())}
       >
         <Icon name="reset" /> Reset
       </button>
@@ -210,11 +210,11 @@ function TimeBar({ studio, tools: { simulator, editor } }: { studio: Studio; too
 
 function EditBar({ tools: { simulator, editor, stage } }: { tools: Tools }) {
   const mode = editor.mode.value;
-  const goods = editor.goods.value;
+  const template = editor.template.value;
   const file = useRef<HTMLInputElement>(null);
   const readFile = async (given: File | undefined) => {
     if (given) {
-      editor.take("insert", { title: given.name, uri: "", resource_string: await given.text() });
+      editor.setMode("insert", { title: given.name, uri: "", resource_string: await given.text() });
     }
   };
   return (
@@ -226,7 +226,7 @@ function EditBar({ tools: { simulator, editor, stage } }: { tools: Tools }) {
           title={title}
           aria-pressed={mode === each}
           data-test={`mode-${each}`}
-          onClick={() => editor.take(each)}
+          onClick={() => editor.setMode(each)}
         >
           <Icon name={icon} />
         </button>
@@ -235,10 +235,10 @@ function EditBar({ tools: { simulator, editor, stage } }: { tools: Tools }) {
       {SHAPES.map(([shape, icon]) => (
         <button
           key={shape}
-          class={`tool ${mode === "insert" && goods === shape ? "active" : ""}`}
+          class={`tool ${mode === "insert" && template === shape ? "active" : ""}`}
           title={`Insert a ${shape}`}
           data-test={`insert-${shape}`}
-          onClick={() => editor.take("insert", shape)}
+          onClick={() => editor.setMode("insert", shape)}
         >
           <Icon name={icon} />
         </button>
@@ -252,7 +252,12 @@ function EditBar({ tools: { simulator, editor, stage } }: { tools: Tools }) {
         onOpen={() => void simulator.readSpawnables()}
       >
         {simulator.spawnables.value.map((model: Resource) => (
-          <MenuItem key={model.uri} icon="cube" note={model.origin ?? ""} onChoose={() => editor.take("insert", model)}>
+          <MenuItem
+            key={model.uri}
+            icon="cube"
+            note={model.origin ?? ""}
+            onChoose={() => editor.setMode("insert", model)}
+          >
             {model.title}
           </MenuItem>
         ))}
@@ -260,7 +265,7 @@ function EditBar({ tools: { simulator, editor, stage } }: { tools: Tools }) {
         <MenuItem icon="add" onChoose={() => file.current?.click()}>
           From a file (SDF or URDF) …
         </MenuItem>
-        <AddressField onChoose={(uri) => editor.take("insert", resourceAt(uri))} />
+        <AddressField onChoose={(uri) => editor.setMode("insert", resourceAt(uri))} />
       </Menu>
       <input
         ref={file}
@@ -270,7 +275,7 @@ function EditBar({ tools: { simulator, editor, stage } }: { tools: Tools }) {
         data-test="model-file"
         onChange={(event) => void readFile(event.currentTarget.files?.[0])}
       />
-      {mode === "insert" && typeof goods === "string" && (
+      {mode === "insert" && typeof template === "string" && (
         <>
           <NumberField
             label="Size"
@@ -282,7 +287,7 @@ function EditBar({ tools: { simulator, editor, stage } }: { tools: Tools }) {
             onChange={(size) => (editor.size.value = size)}
           />
           <NumberField
-            label="Mass, 0 never moves"
+            label="Mass; 0: static"
             value={editor.mass.value}
             min={0}
             max={10000}
@@ -292,7 +297,7 @@ function EditBar({ tools: { simulator, editor, stage } }: { tools: Tools }) {
           />
         </>
       )}
-      {mode === "insert" && typeof goods !== "string" && <span class="faint tool-words">{goods.title}</span>}
+      {mode === "insert" && typeof template !== "string" && <span class="faint tool-words">{template.title}</span>}
       <span class="tool-gap" />
       <button
         class="tool"
@@ -305,7 +310,7 @@ function EditBar({ tools: { simulator, editor, stage } }: { tools: Tools }) {
       </button>
       <button
         class="tool"
-        title="Delete what is selected (Delete)"
+        title="Delete the selected model (Delete)"
         data-test="delete"
         disabled={!stage.selected.value}
         onClick={() => void editor.remove()}
@@ -316,7 +321,7 @@ function EditBar({ tools: { simulator, editor, stage } }: { tools: Tools }) {
   );
 }
 
-/** For what is in no list: an address that the simulator knows how to find. */
+/** For models that are not listed: a URI that the simulator resolves. */
 function AddressField({ onChoose }: { onChoose(uri: string): void }) {
   return (
     <div class="menu-field">
@@ -354,7 +359,7 @@ function Foot({ tools: { stage, editor } }: { tools: Tools }) {
         {stage.names.value.length} {stage.names.value.length === 1 ? "model" : "models"}
       </span>
       {stage.reading.value && (
-        <span class="figures ellipsis pose" data-test="pose" title="Where the selected model is in the world">
+        <span class="figures ellipsis pose" data-test="pose" title="Pose of the selected model in the world frame">
           {describePose(stage.reading.value)}
         </span>
       )}

@@ -1,4 +1,4 @@
-// Topics: what there is, of which type, how often and how much.
+// Topics: names, types, rates and bandwidths.
 import { useSignal } from "@preact/signals";
 import { useEffect, useState } from "preact/hooks";
 import type { Studio } from "../app/studio";
@@ -12,7 +12,7 @@ import { Fields } from "./message/fields";
 import { type BuiltInPanel, type PanelProps, withPreact } from "./panel";
 import "../styles/topics.css";
 
-/** Listening only to measure would make a robot send what nobody looks at; these are large. */
+/** Large messages: subscribing only to measure their rate would make the robot send them. */
 const HEAVY = new Set([
   "sensor_msgs/msg/Image",
   "sensor_msgs/msg/CompressedImage",
@@ -20,15 +20,15 @@ const HEAVY = new Set([
   "sensor_msgs/msg/PointCloud",
 ]);
 
-/** What every node has for itself: for who looks for it, at the end. */
+/** Topics that every node has: listed at the end, folded. */
 const INNER = /\/(transition_event|parameter_events|rosout|bond)$/;
 const REFRESH_MS = 150;
-/** Who opens a topic here looks for its numbers. */
+/** The depth to which fields are unfolded. */
 const UNFOLDED = 5;
 
 function TopicsPanel({ studio, visible }: PanelProps) {
   const filter = useSignal("");
-  const showsInner = useSignal(false);
+  const showsStandard = useSignal(false);
   const { session } = studio;
   const wanted = filter.value.toLowerCase();
   const topics = session.topics.value.filter(
@@ -38,7 +38,7 @@ function TopicsPanel({ studio, visible }: PanelProps) {
   );
   const inner = topics.filter(({ name }) => INNER.test(name));
   const outer = topics.filter(({ name }) => !INNER.test(name));
-  const shown = showsInner.value || wanted !== "" ? topics : outer;
+  const shown = showsStandard.value || wanted !== "" ? topics : outer;
   const measured = visible.value ? shown.filter(({ type }) => !HEAVY.has(type)).map(({ name }) => name) : [];
   useEffect(() => {
     const stops = measured.map((name) => session.subscribe(name, 0, () => undefined));
@@ -73,17 +73,17 @@ function TopicsPanel({ studio, visible }: PanelProps) {
         {rows(outer)}
         {inner.length > 0 && !wanted && (
           <button
-            class="bare topics-inner"
-            aria-expanded={showsInner.value}
-            onClick={() => (showsInner.value = !showsInner.value)}
+            class="bare topics-standard"
+            aria-expanded={showsStandard.value}
+            onClick={() => (showsStandard.value = !showsStandard.value)}
           >
             <span class="turn">
               <Icon name="chevron" size={11} />
             </span>
-            {inner.length} of the nodes’ own
+            {inner.length} standard topics
           </button>
         )}
-        {(showsInner.value || wanted !== "") && rows(inner)}
+        {(showsStandard.value || wanted !== "") && rows(inner)}
       </div>
     </div>
   );
@@ -141,7 +141,7 @@ function TopicRow({ studio, topic, isVisible }: { studio: Studio; topic: TopicIn
   );
 }
 
-/** What the newest message says; before the first one, what a message is made of. */
+/** The fields of the newest message; before the first one, those of an empty message. */
 function TopicFields({ studio, topic, isVisible }: { studio: Studio; topic: string; isVisible: boolean }) {
   const shown = useSignal<unknown>(undefined);
   const { session } = studio;
@@ -176,7 +176,7 @@ function TopicFields({ studio, topic, isVisible }: { studio: Studio; topic: stri
   );
 }
 
-/** As for `ros2 topic list`: an underscore begins the names that are nobody's business. */
+/** Hidden as in `ros2 topic list`: a part of the name begins with an underscore. */
 function isHidden(topic: string): boolean {
   return topic.includes("/_");
 }

@@ -55,7 +55,7 @@ function TurtlesimPanel({ studio, visible, params, remember }: PanelProps) {
           </div>
         </>
       ) : (
-        <Empty icon="turtle" title="No turtlesim runs">
+        <Empty icon="turtle" title="No turtlesim is running">
           <code>ros2 run turtlesim turtlesim_node</code>
         </Empty>
       )}
@@ -133,7 +133,7 @@ function Water({ studio, topic, isVisible, isLost, shown }: WaterProps) {
       session.subscribe<TurtleWindow>(topic, KEEP, (message) => {
         newest = message;
         made.show(message);
-        follower.hear(message);
+        follower.receive(message);
       }),
       studio.onFrame((page) => {
         made.frame(page);
@@ -166,7 +166,7 @@ function Water({ studio, topic, isVisible, isLost, shown }: WaterProps) {
       <div class={`turtlesim-square ${isLost ? "lost" : ""}`} ref={square} data-test="turtlesim" onPointerMove={hover}>
         <canvas ref={drawing} />
         <canvas ref={turtles} />
-        {isLost && <div class="turtlesim-note">This turtlesim has ended</div>}
+        {isLost && <div class="turtlesim-note">This turtlesim is no longer running</div>}
       </div>
     </div>
   );

@@ -43,7 +43,7 @@ export class NodeParameters {
     return this.session.call<S>(`${this.node}/${service}`, request);
   }
 
-  /** Do something with the node; the reason why it fails is the user's. */
+  /** Run a request; why it fails is shown to the user. */
   async attempt(work: () => Promise<unknown>): Promise<void> {
     try {
       await work();
@@ -75,7 +75,7 @@ export class NodeParameters {
       void this.attempt(() => this.read());
       return;
     }
-    // What the user has moved on from is not shown again.
+    // Older values than the user's last one are not shown.
     const others = changed_parameters.filter(({ name }) => !this.isSending && !this.unsent.has(name));
     this.take(new Map(others.map(({ name, value }) => [name, fromMessage(value)])));
   }

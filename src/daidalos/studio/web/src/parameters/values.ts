@@ -10,7 +10,7 @@ export interface Parameter {
   readonly type: number;
   readonly value: Value;
   readonly description: string;
-  /** Empty where the node does not tell. */
+  /** Empty where the descriptor has none. */
   readonly unit: string;
   /** Rules in words, such as "above 0, at most 1". */
   readonly constraints: string;
@@ -65,7 +65,7 @@ export function toMessage(type: number, value: Value): Partial<ParameterValue> {
   return { type, [FIELDS[type] as ValueField]: content };
 }
 
-/** Put together what a node tells of a parameter. */
+/** Combine a parameter's value with its descriptor. */
 export function describe(name: string, value: ParameterValue, descriptor?: ParameterDescriptor): Parameter {
   const {
     description = "",

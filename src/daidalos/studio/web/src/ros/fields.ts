@@ -1,6 +1,6 @@
 // Paths into messages, as plots name them: /odom/pose/pose/position/x, /scan/ranges/0.
 
-/** The topic that a path begins with, and the fields after it. */
+/** Split a path into its topic and its fields. */
 export function splitPath(path: string, topics: Iterable<string>): { topic: string; fields: string[] } | undefined {
   let topic = "";
   for (const name of topics) {

@@ -14,7 +14,7 @@ export function toText(message: unknown): string {
   );
 }
 
-/** Read what `toText` wrote, or somebody edited. */
+/** Read a message from the text of `toText`, perhaps edited. */
 export function fromText(text: string): unknown {
   return JSON.parse(text);
 }

@@ -1,4 +1,4 @@
-// Meshes by URI: fetched through the connection, read by three.js' loaders, kept for the next who asks.
+// Meshes by URI: fetched through the connection, read by three.js' loaders, and cached.
 import {
   Color,
   Group,
@@ -101,7 +101,7 @@ export class Assets {
   private async readCollada(uri: string, text: string): Promise<Object3D> {
     const images = [...text.matchAll(/<init_from>(?:\s*<ref>)?\s*([^<]+?)\s*</g)].map((match) => match[1] as string);
     const manager = await this.managerFor(uri, images);
-    // ROS takes a file's axes as they are, whichever it says is up: the loader shall turn nothing.
+    // ROS ignores the file's up axis: the loader must not rotate the mesh.
     const collada = new ColladaLoader(manager).parse(text.replace(/<up_axis>[^<]*<\/up_axis>/, ""), "");
     if (!collada) {
       throw new Error(`${uri}: not a COLLADA file`);

@@ -40,7 +40,7 @@ export function rawPalette(): Palette {
   return palette;
 }
 
-/** A floor plan in the page's own colours: free is a quiet floor, occupied stands out, unknown is left open. */
+/** A floor plan in the page's colours: free cells are muted, occupied ones have high contrast, unknown ones are transparent. */
 export function planPalette(dark: boolean): Palette {
   const palette = illegalValues();
   const free = dark ? [58, 67, 81] : [255, 255, 255];

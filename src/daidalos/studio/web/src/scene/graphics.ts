@@ -5,7 +5,7 @@ const asked = new URLSearchParams(globalThis.location?.search ?? "").get("qualit
 /** Whether to draw as finely as possible at any cost: ?quality=best in the page's address, for pictures. */
 export const staysFine = asked === "best";
 
-/** Whether to begin finely; ?quality=fast spares any machine. */
+/** Whether to start with high quality; ?quality=fast turns it off. */
 export const beginsFine = staysFine || (asked !== "fast" && !drawsInSoftware());
 
 function drawsInSoftware(): boolean {

@@ -1,4 +1,4 @@
-// The order in which flat things are drawn over each other; what stands on the ground comes after all of them.
+// The order in which flat objects are drawn over each other; objects with a height are drawn after them.
 
 export const Layer = {
   BEHIND: -60,

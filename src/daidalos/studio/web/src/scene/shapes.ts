@@ -35,7 +35,7 @@ export function arrowGeometry({ shaftLength, shaftRadius, headLength, headRadius
   return arrow.rotateZ(-Math.PI / 2);
 }
 
-/** Lines as wide as pixels say, whatever the distance. */
+/** Lines with a width in pixels at any distance. */
 export function thickLine(color: Color | string | number, width: number): Line2 {
   const material = new LineMaterial({ color: new Color(color).getHex(), linewidth: width, transparent: true });
   const line = new Line2(new LineGeometry(), material);

@@ -101,7 +101,7 @@ export class Viewport {
     return along > 0 && along < 1e4 ? origin.clone().addScaledVector(direction, along) : undefined;
   }
 
-  /** The nearest surface under a pixel, else the ground. */
+  /** The nearest surface under a pixel, otherwise the ground. */
   surfaceAt(x: number, y: number): Vector3 | undefined {
     return this.hitAt(x, y)?.point ?? this.groundAt(x, y);
   }

@@ -14,7 +14,7 @@ import { Viewport } from "./viewport";
 const VIEW_KEY = "view";
 const FOLLOW_KEY = "follow";
 const SAVE_EVERY_S = 2;
-/** What the shadow follows, and what "follow" follows, by preference. */
+/** Frames that the shadow and "follow" use, in order of preference. */
 const ROBOT_FRAMES = ["base_footprint", "base_link", "base"];
 
 /** The frame that the camera moves along with; empty: none. */
@@ -30,7 +30,7 @@ export class World {
   private readonly stops: (() => void)[] = [];
   private readonly followedAt = new Vector3();
   private followedNow = "";
-  /** The fixed frame in which the view found the robot by itself. */
+  /** The fixed frame in which the view was centred on the robot automatically. */
   private foundIn = "";
   private savedAt = 0;
   private savedView = "";
@@ -97,7 +97,7 @@ export class World {
     this.viewKind.value = kind;
   }
 
-  /** Look at the robot, or at the origin where there is none, as at the beginning. */
+  /** Restore the initial view of the robot, or of the origin where there is none. */
   home(): void {
     const at = this.robotAt();
     this.viewport.view.restore({ ...HOME, kind: this.viewKind.value, focus: at ? [at.x, at.y, 0] : [0, 0, 0] });

@@ -62,7 +62,7 @@ interface Edge {
 export type When = number | "latest";
 
 export interface LookupOptions {
-  /** Where a transform is not known at the time, take the nearest that is. */
+  /** Whether to use the nearest transform where none is known at the time. */
   clamp?: boolean;
 }
 
@@ -164,7 +164,7 @@ export class TransformBuffer {
     );
   }
 
-  /** Say in words why `lookup` fails. */
+  /** Explain why `lookup` fails. */
   explain(target: string, source: string, when: When): string {
     for (const frame of [target, source]) {
       if (!this.has(frame)) {

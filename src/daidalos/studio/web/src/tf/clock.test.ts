@@ -5,7 +5,7 @@ import { RobotClock } from "./clock";
 function run(clock: RobotClock, factor: number, seconds: number, from = 0, hertz = 50): number {
   for (let i = 0; i <= seconds * hertz; i++) {
     const page = from + i / hertz;
-    clock.hear(100 + factor * page, page, true);
+    clock.add(100 + factor * page, page, true);
   }
   return from + seconds;
 }
@@ -23,8 +23,8 @@ it("draws in the past, steadily, and never goes back", () => {
   for (let i = 0; i < 300; i++) {
     const page = i / 60;
     if (i % 3 === 0) {
-      clock.hear(page + 0.004 * Math.sin(7 * i), page, true);
-      clock.hearAge(0.05);
+      clock.add(page + 0.004 * Math.sin(7 * i), page, true);
+      clock.addAge(0.05);
     }
     const drawn = clock.drawingTime(page) as number;
     expect(drawn).toBeGreaterThanOrEqual(before);
@@ -51,10 +51,10 @@ it("notices a pause and catches up with the last moment", () => {
 it("follows a jump, forth and back", () => {
   const clock = new RobotClock();
   const page = run(clock, 1, 2);
-  clock.hear(5000, page + 0.02, true);
+  clock.add(5000, page + 0.02, true);
   expect(clock.now(page + 0.02)).toBe(5000);
   expect(clock.drawingTime(page + 0.02)).toBeLessThanOrEqual(5000);
-  clock.hear(1, page + 0.04, true);
+  clock.add(1, page + 0.04, true);
   expect(clock.now(page + 0.04)).toBe(1);
   expect(clock.drawingTime(page + 0.04)).toBeLessThanOrEqual(1);
 });

@@ -20,7 +20,7 @@ interface Mark {
 export class RobotClock {
   /** Robot seconds per second: the real-time factor of a simulation, 1 for a robot. */
   rate = 0;
-  /** Whether a server's clock tells the time, or arriving messages do. */
+  /** Whether the time comes from the server's clock rather than from messages. */
   announced = false;
   private marks: Mark[] = [];
   private estimate: Mark | undefined;
@@ -29,7 +29,7 @@ export class RobotClock {
   private stillTicks = 0;
 
   /** Hear of robot time; `page` is the page's own clock, in seconds. */
-  hear(robot: number, page: number, announced: boolean): void {
+  add(robot: number, page: number, announced: boolean): void {
     this.announced = announced;
     const expected = this.now(page);
     const error = expected === undefined ? Infinity : robot - expected;
@@ -68,7 +68,7 @@ export class RobotClock {
   }
 
   /** Hear how old the newest transform had become just before the next one came. */
-  hearAge(age: number): void {
+  addAge(age: number): void {
     const wanted = Math.min(MAX_DELAY_S, Math.max(MIN_DELAY_S, age));
     // Up at once, so that nothing stutters; down slowly.
     this.delay += (wanted > this.delay ? 0.3 : 0.01) * (wanted - this.delay);

@@ -15,7 +15,7 @@ export class FixedFrame {
   readonly remark: ReadonlySignal<string>;
   private structure = -1;
 
-  /** A frame that the page's address asks for holds for this window only; what the user chooses is kept. */
+  /** A frame of the page's address holds for this window only; the user's choice is kept. */
   constructor(
     private readonly buffer: TransformBuffer,
     asked = AUTOMATIC,

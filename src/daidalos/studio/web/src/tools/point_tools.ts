@@ -46,7 +46,7 @@ class PublishPoint implements Tool {
   moved(at: Pointer): void {
     const point = at.surface();
     this.cursor.follow(point);
-    this.context.say(point ? words(point) : PUBLISH_POINT.hint);
+    this.context.showMessage(point ? words(point) : PUBLISH_POINT.hint);
   }
 
   released(at: Pointer): void {
@@ -109,7 +109,7 @@ class Measure implements Tool {
 
   private draw(from: Vector3, to: Vector3): void {
     setLinePoints(this.line, [...from.toArray(), ...to.toArray()]);
-    this.context.say(`Length ${from.distanceTo(to).toFixed(3)} m`);
+    this.context.showMessage(`Length ${from.distanceTo(to).toFixed(3)} m`);
     this.context.invalidate();
   }
 }
@@ -157,6 +157,6 @@ export const FOCUS: ToolType = {
   title: "Focus Camera",
   key: "f",
   icon: "focus",
-  hint: "Click what the camera shall turn around",
+  hint: "Click the point around which the camera rotates",
   create: (context) => new Focus(context),
 };

@@ -79,7 +79,7 @@ class PoseTool implements Tool {
     this.arrow.rotation.set(0, 0, this.yaw);
     this.arrow.visible = true;
     const degrees = Math.round((this.yaw * 180) / Math.PI);
-    this.context.say(`${this.verb} x ${from.x.toFixed(2)} m, y ${from.y.toFixed(2)} m, yaw ${degrees}°`);
+    this.context.showMessage(`${this.verb} x ${from.x.toFixed(2)} m, y ${from.y.toFixed(2)} m, yaw ${degrees}°`);
     this.context.invalidate();
   }
 }
@@ -93,7 +93,7 @@ export const GOAL: ToolType = {
   title: "2D Goal Pose",
   key: "g",
   icon: "goal",
-  hint: "Press where the robot shall go and drag to where it shall look",
+  hint: "Press at the goal position and drag in the direction of the heading",
   create: (context) =>
     new PoseTool(context, "#4fd17e", "Go to", (pose) =>
       context.publish("/goal_pose", "geometry_msgs/msg/PoseStamped", { header: header(context), pose }),
@@ -105,7 +105,7 @@ export const POSE_ESTIMATE: ToolType = {
   title: "2D Pose Estimate",
   key: "p",
   icon: "estimate",
-  hint: "Press where the robot is and drag to where it looks",
+  hint: "Press at the robot's position and drag in the direction of its heading",
   create: (context) =>
     new PoseTool(context, "#a78bfa", "Robot is at", (pose) => {
       const covariance = new Float64Array(36);

@@ -20,9 +20,9 @@ export interface ToolContext {
   now(): number;
   publish(topic: string, type: string, message: unknown): void;
   focusOn(point: Vector3): void;
-  /** A line for the user under the view. */
-  say(text: string): void;
-  /** The tool's work is done: the camera has the mouse again. */
+  /** Show a line for the user under the view. */
+  showMessage(text: string): void;
+  /** Deselect the tool: the mouse moves the camera again. */
   finish(): void;
   invalidate(): void;
 }
@@ -31,7 +31,7 @@ export interface Tool {
   pressed?(at: Pointer): void;
   moved?(at: Pointer, isPressed: boolean): void;
   released?(at: Pointer): void;
-  /** Put away: another tool was taken, or Escape was pressed. */
+  /** Called when another tool is selected, or Escape is pressed. */
   dispose(): void;
 }
 

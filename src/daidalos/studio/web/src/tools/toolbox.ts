@@ -1,4 +1,4 @@
-// Which tool is in hand, and what the mouse does with it.
+// The tools of the 3-D view: the selected one receives the mouse.
 import { signal } from "@preact/signals";
 import type { Viewport } from "../scene/viewport";
 import { MOVE_CAMERA, TOOLS } from "./registry";
@@ -6,17 +6,17 @@ import type { Pointer, Tool, ToolContext, ToolType } from "./tool";
 
 export class Toolbox {
   readonly active = signal<ToolType>(MOVE_CAMERA);
-  /** The tools that were in hand so far. */
+  /** The tools that have been selected so far. */
   readonly used = signal<ReadonlySet<string>>(new Set());
-  /** What the tool has to say at the moment. */
-  readonly saying = signal("");
+  /** The selected tool's message. */
+  readonly message = signal("");
   private tool: Tool | undefined;
   private pressed = false;
   private readonly listening = new AbortController();
 
   constructor(
     private readonly viewport: Viewport,
-    private readonly context: Omit<ToolContext, "say" | "finish">,
+    private readonly context: Omit<ToolContext, "showMessage" | "finish">,
   ) {
     const { signal: until } = this.listening;
     const { canvas } = viewport;
@@ -27,34 +27,34 @@ export class Toolbox {
     canvas.addEventListener("contextmenu", (event) => event.preventDefault(), { signal: until });
   }
 
-  take(type: ToolType): void {
+  select(type: ToolType): void {
     this.tool?.dispose();
     this.tool = type.create?.({
       ...this.context,
-      say: (text) => (this.saying.value = text),
-      finish: () => this.take(MOVE_CAMERA),
+      showMessage: (text) => (this.message.value = text),
+      finish: () => this.select(MOVE_CAMERA),
     });
     this.pressed = false;
     this.used.value = new Set(this.used.peek()).add(this.active.peek().id);
     this.active.value = type;
-    this.saying.value = "";
+    this.message.value = "";
     this.viewport.view.leftButton = this.tool === undefined;
     this.viewport.canvas.style.cursor = this.tool ? "crosshair" : "";
     this.viewport.invalidate();
   }
 
-  takeById(id: string): void {
+  selectById(id: string): void {
     const type = TOOLS.find((each) => each.id === id);
     if (type) {
-      this.take(type);
+      this.select(type);
     }
   }
 
-  /** Take the tool of a key; false where there is none. */
-  takeByKey(key: string): boolean {
+  /** Select the tool of a key; false where there is none. */
+  selectByKey(key: string): boolean {
     const type = key === "Escape" ? MOVE_CAMERA : TOOLS.find((each) => each.key === key);
     if (type) {
-      this.take(type);
+      this.select(type);
     }
     return type !== undefined;
   }

@@ -127,7 +127,7 @@ interface TextProps {
   onChange(value: string): void;
 }
 
-/** A text, taken over when it is entered or left. */
+/** A text; changes are reported when it is entered or loses the focus. */
 export function TextField({ value, label, disabled = false, onChange }: TextProps) {
   return (
     <input

@@ -1,4 +1,4 @@
-// What a panel says when it has nothing to show.
+// The text of a panel that has nothing to show.
 import type { ComponentChildren } from "preact";
 import { Icon, type IconName } from "./icons";
 

@@ -61,7 +61,7 @@ const PATHS = {
 
 export type IconName = keyof typeof PATHS;
 
-/** The icon of a name, which may come from somebody else's module. */
+/** The icon of a name, which may come from a module of another package. */
 export function iconNamed(name: string | undefined, otherwise: IconName): IconName {
   return name !== undefined && name in PATHS ? (name as IconName) : otherwise;
 }

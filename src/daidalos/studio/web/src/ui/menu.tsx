@@ -11,7 +11,7 @@ interface MenuProps {
   /** At which edge of the button the list hangs. */
   align?: "left" | "right";
   onOpen?(): void;
-  /** For tests: what the button is called. */
+  /** The button's `data-test`. */
   test?: string;
   children: ComponentChildren;
 }
@@ -65,7 +65,7 @@ export function Menu({ label, icon, align = "right", children, onOpen, ...rest }
 interface ItemProps {
   icon?: IconName;
   onChoose(): void;
-  /** Shown in a quieter voice at the end of the line. */
+  /** Shown in a fainter colour at the end of the line. */
   note?: string;
   children: ComponentChildren;
 }

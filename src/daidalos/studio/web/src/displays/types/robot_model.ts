@@ -1,4 +1,4 @@
-// RobotModel: the robot's links, each where TF says that it is.
+// RobotModel: the robot's links, at their poses by TF.
 import {
   CapsuleGeometry,
   Color,
@@ -54,10 +54,10 @@ class RobotModel extends TopicDisplay<StringMessage> {
         missing.push(name);
       }
     }
-    this.tell(missing, frame.fixed);
+    this.reportMissing(missing, frame.fixed);
   }
 
-  private tell(missing: string[], fixed: string): void {
+  private reportMissing(missing: string[], fixed: string): void {
     if (this.problems.length) {
       this.report("error", this.problems[0] as string);
     } else if (this.links.size === 0) {
@@ -125,7 +125,7 @@ class RobotModel extends TopicDisplay<StringMessage> {
     this.style();
   }
 
-  /** Take a link's shapes out of the loader's tree: TF moves each link by itself. */
+  /** Detach a link's shapes from the loader's tree: TF gives the pose of every link. */
   private addLink(name: string, link: URDFLink): void {
     const group = new Group();
     group.visible = false;
@@ -188,7 +188,7 @@ function robotElement(description: string): Element {
 
 const CAPSULE = "capsule:";
 
-/** The loader knows no capsules: let it take them for meshes, of which the name says all. */
+/** The loader does not support capsules: pass them as meshes with their dimensions in the name. */
 function nameCapsules(robot: Element): void {
   for (const element of [...robot.getElementsByTagName("capsule")]) {
     const mesh = element.ownerDocument.createElement("mesh");
@@ -207,7 +207,7 @@ function capsuleNamed(uri: string): Mesh | null {
     : null;
 }
 
-/** Return the images of materials by the materials' names, and leave none to the loader, which knows no `package://`. */
+/** Remove textures from the description and return them by material: the loader does not support `package://`. */
 export function takeTextures(robot: Element): Map<string, string> {
   const found = new Map<string, string>();
   for (const element of [...robot.getElementsByTagName("texture")]) {

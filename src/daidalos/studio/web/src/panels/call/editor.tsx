@@ -38,11 +38,11 @@ export interface Draft {
   text: Signal<string>;
   /** What is wrong with it. */
   error: Signal<string>;
-  /** The message, or nothing where the text is none: then `error` says why. */
+  /** Return the message, or undefined where the text is not valid: then `error` says why. */
   read(): unknown;
 }
 
-/** A draft of a request or message, begun anew when another service or topic is named. */
+/** A draft of a request or message, reset when another service or topic is selected. */
 export function useDraft(session: Session, of: "service" | "topic", name: string, isThere: boolean): Draft {
   const text = useSignal("");
   const errorText = useSignal("");

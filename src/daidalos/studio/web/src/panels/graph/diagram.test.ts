@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import type { ConnectionGraph } from "../../connection/boundary";
-import { around, diagramOf, type Wishes } from "./diagram";
+import { around, diagramOf, type DiagramOptions } from "./diagram";
 
 const GRAPH: ConnectionGraph = {
   publishers: new Map([
@@ -18,10 +18,10 @@ const GRAPH: ConnectionGraph = {
   ]),
   services: new Map([["/add", ["/server"]]]),
 };
-const WISHES: Wishes = { kind: "active", filter: "", debug: false, tf: false, hidden: false };
+const WISHES: DiagramOptions = { kind: "active", filter: "", debug: false, tf: false, hidden: false };
 
-const names = (wishes: Partial<Wishes>) =>
-  diagramOf(GRAPH, { ...WISHES, ...wishes }).boxes.map(({ is, name }) => `${is} ${name}`);
+const names = (options: Partial<DiagramOptions>) =>
+  diagramOf(GRAPH, { ...WISHES, ...options }).boxes.map(({ is, name }) => `${is} ${name}`);
 const NODES = ["node /listener", "node /server", "node /talker"];
 
 describe("the diagram", () => {

@@ -1,10 +1,10 @@
-// What of the ROS graph is drawn: boxes for nodes and topics, arrows for who says what to whom.
+// The diagram of the ROS graph: boxes for nodes and topics, arrows for publishers and subscriptions.
 import type { ConnectionGraph } from "../../connection/boundary";
 
 /** As rqt_graph has it: nodes alone, topics that connect nodes, all topics. */
 export type Kind = "nodes" | "active" | "all";
 
-export interface Wishes {
+export interface DiagramOptions {
   kind: Kind;
   /** Part of the names of what is shown, with its neighbours; empty: everything. */
   filter: string;
@@ -38,21 +38,21 @@ const DEBUG_TOPICS = new Set(["/rosout", "/parameter_events", "/statistics", "/d
 const DEBUG_NODE = /^\/(rqt_gui_py_node_\d+|rqt\w*|rviz2?|plotjuggler|foxglove_bridge|studio|.*_studio)$/;
 const SHARED_TOPICS = new Set(["/tf", "/tf_static", "/clock"]);
 
-export function diagramOf(graph: ConnectionGraph, wishes: Wishes): Diagram {
+export function diagramOf(graph: ConnectionGraph, options: DiagramOptions): Diagram {
   const isWanted = (name: string) =>
-    (wishes.hidden || !name.includes("/_")) && (wishes.debug || !DEBUG_NODE.test(name));
+    (options.hidden || !name.includes("/_")) && (options.debug || !DEBUG_NODE.test(name));
   const isTopicWanted = (name: string) =>
-    (wishes.hidden || !name.includes("/_")) &&
-    (wishes.debug || !DEBUG_TOPICS.has(name)) &&
-    (wishes.tf || !SHARED_TOPICS.has(name));
+    (options.hidden || !name.includes("/_")) &&
+    (options.debug || !DEBUG_TOPICS.has(name)) &&
+    (options.tf || !SHARED_TOPICS.has(name));
   const nodes = [...nodesOf(graph)].filter(isWanted);
   const topics = [...new Set([...graph.publishers.keys(), ...graph.subscribers.keys()])].filter(isTopicWanted).sort();
-  const draft = wishes.kind === "nodes" ? nodeDiagram(graph, topics, isWanted) : { boxes: [], arrows: [] };
-  if (wishes.kind !== "nodes") {
-    addTopics(draft, graph, topics, isWanted, wishes.kind === "active");
+  const draft = options.kind === "nodes" ? nodeDiagram(graph, topics, isWanted) : { boxes: [], arrows: [] };
+  if (options.kind !== "nodes") {
+    addTopics(draft, graph, topics, isWanted, options.kind === "active");
   }
   draft.boxes.unshift(...nodes.sort().map((name): Box => ({ id: nodeId(name), name, is: "node" })));
-  return narrow(draft, wishes.filter);
+  return narrow(draft, options.filter);
 }
 
 /** What a box is connected with, itself included; the arrows are those by their place in the diagram. */

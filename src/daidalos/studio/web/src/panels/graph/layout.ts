@@ -13,7 +13,7 @@ const PADDING = 26;
 /** As in the style sheet. */
 const FONT = "500 12.5px";
 
-/** Place a diagram; the library comes when the first one is to be placed. */
+/** Place a diagram; the library is loaded with the first one. */
 export async function place(diagram: Diagram): Promise<Placed> {
   const dagre = await import("@dagrejs/dagre");
   const graph = new dagre.Graph({ multigraph: true });

@@ -11,7 +11,7 @@ export interface Joint {
   lower: number;
   upper: number;
   value: number;
-  /** Empty where the node does not tell. */
+  /** Empty where the descriptor has none. */
   unit: string;
 }
 
@@ -40,7 +40,7 @@ export class Joints {
     return this.parameters.follow();
   }
 
-  /** Put a joint somewhere. */
+  /** Set a joint's position. */
   set(name: string, value: number): void {
     this.parameters.set(`${PREFIX}.${name}`, value);
   }

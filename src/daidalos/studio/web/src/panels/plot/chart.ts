@@ -15,9 +15,9 @@ export interface Box {
 }
 
 export interface ChartEvents {
-  /** The user wants to see this part. */
+  /** Called when the user zooms to a range. */
   onView(box: Box): void;
-  /** The user wants to see all again. */
+  /** Called when the user resets the zoom. */
   onReset(): void;
   onHover(at: { x: number; y: number } | undefined): void;
 }

@@ -42,7 +42,7 @@ export function turned(curves: readonly Curve[], toXY: boolean): readonly Curve[
   }));
 }
 
-/** What a plot remembered, or what a file asks for. */
+/** The curves of a saved layout or of a file. */
 export function curvesIn(params: unknown): readonly Curve[] | undefined {
   if (!isRecord(params) || !Array.isArray(params.curves)) {
     return undefined;

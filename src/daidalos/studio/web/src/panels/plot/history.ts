@@ -1,4 +1,4 @@
-// The values of one curve over time: appended at the end, forgotten at the beginning, never copied in between.
+// The values of one curve over time: a ring buffer that is appended at the end and dropped at the beginning.
 
 const FIRST_ROOM = 1024;
 

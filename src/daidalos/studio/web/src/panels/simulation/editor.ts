@@ -1,4 +1,4 @@
-// What the mouse and the keys do with the simulated world: look around, take hold of models, put new ones.
+// Mouse and keyboard in the simulated world: select, drag, insert and delete models.
 import { signal } from "@preact/signals";
 import { Euler, Matrix4, Quaternion, Vector3 } from "three";
 import type { Pose } from "../../generated/geometry_msgs";
@@ -13,12 +13,12 @@ export type Mode = "look" | Motion | "insert";
 export type Shape = "box" | "sphere" | "cylinder";
 
 const CLICK_PX = 4;
-const TURN_PER_PX = 0.012;
-const GROW_PER_PX = 0.007;
+const ROTATION_PER_PX = 0.012;
+const SCALE_PER_PX = 0.007;
 const MIN_FACTOR = 0.02;
-/** How large what stands for a model is that has not been put yet. */
+/** Size of the placeholder of a model that is to be inserted. */
 const UNKNOWN_SIZE_M = 0.4;
-/** Colours of what is inserted, one after the other. */
+/** Colours of inserted shapes, in turn. */
 const PALETTE = ["#e2a355", "#4d8dff", "#5fc26b", "#f2555a", "#a78bfa", "#3fc1c9"];
 const MARKERS: Record<Shape, number> = {
   box: Marker.CUBE,
@@ -28,11 +28,11 @@ const MARKERS: Record<Shape, number> = {
 /** Gazebo's keys, without Ctrl. */
 const KEYS: Readonly<Record<string, Mode>> = { t: "move", r: "turn", s: "scale" };
 
-interface Hold {
+interface Drag {
   name: string;
   mode: Motion;
-  /** Taken by a handle, else by the model itself. */
-  byHandle: boolean;
+  /** Whether a handle is dragged rather than the model itself. */
+  usesGizmo: boolean;
   from: Vector3;
   x: number;
   y: number;
@@ -43,20 +43,20 @@ interface Hold {
 
 export class Editor {
   readonly mode = signal<Mode>("look");
-  /** What is to be put next. */
-  readonly goods = signal<Shape | Resource>("box");
+  /** What is inserted next. */
+  readonly template = signal<Shape | Resource>("box");
   readonly size = signal(0.3);
   readonly mass = signal(1);
   readonly error = signal("");
   readonly undoStack = new UndoStack();
   private readonly gizmo: Gizmo;
-  private hold: Hold | undefined;
+  private drag: Drag | undefined;
   private pressed: { x: number; y: number } | undefined;
   private inserted = 0;
-  /** The last move of the hand, until the simulator has answered. */
-  private telling: Promise<void> | undefined;
-  private doing = 0;
-  private readonly listening = new AbortController();
+  /** The last pose that was sent, until the simulator has responded. */
+  private sending: Promise<void> | undefined;
+  private running = 0;
+  private readonly listeners = new AbortController();
 
   constructor(
     private readonly container: HTMLElement,
@@ -64,8 +64,8 @@ export class Editor {
     private readonly simulator: Simulator,
   ) {
     this.gizmo = new Gizmo(stage.viewport);
-    const { signal } = this.listening;
-    // Before the camera hears of it: whoever has hold of a model does not turn the view.
+    const { signal } = this.listeners;
+    // Before the camera's listeners: dragging a model does not rotate the view.
     container.addEventListener("pointerdown", (event) => this.down(event), { signal, capture: true });
     container.addEventListener("pointermove", (event) => this.move(event), { signal });
     container.addEventListener("pointerup", (event) => this.up(event), { signal });
@@ -77,41 +77,41 @@ export class Editor {
     document.addEventListener("keydown", (event) => this.key(event), { signal, capture: true });
   }
 
-  take(mode: Mode, goods: Shape | Resource = this.goods.value): void {
+  setMode(mode: Mode, template: Shape | Resource = this.template.value): void {
     this.cancel();
     this.mode.value = mode;
-    this.goods.value = goods;
+    this.template.value = template;
     this.stage.showGhost(undefined);
     this.stage.viewport.canvas.style.cursor = mode === "insert" ? "crosshair" : "";
   }
 
-  /** Take what is selected out of the world. */
+  /** Delete the selected model. */
   async remove(): Promise<void> {
     const name = this.stage.selected.value;
-    if (name && (await this.do(() => this.simulator.remove(name)))) {
-      this.undoStack.push(name, "delete", () => this.bringBack(name));
+    if (name && (await this.run(() => this.simulator.remove(name)))) {
+      this.undoStack.push(name, "delete", () => this.restore(name));
     }
   }
 
-  /** Take back what was done last: what was put goes, what was deleted comes back, all else is as before. */
+  /** Undo the last step. */
   undo(): void {
     const last = this.undoStack.pop();
     if (last) {
-      void this.do(last.undo);
+      void this.run(last.undo);
     }
   }
 
-  /** Whether the simulator has still to answer. */
+  /** Whether a request to the simulator is pending. */
   get isBusy(): boolean {
-    return this.doing > 0 || this.telling !== undefined;
+    return this.running > 0 || this.sending !== undefined;
   }
 
-  /** Do something with the simulator, say what went wrong, and look again. */
-  async do(work: () => Promise<unknown>): Promise<boolean> {
+  /** Run a request to the simulator and show the new shapes; an error is shown to the user. */
+  async run(work: () => Promise<unknown>): Promise<boolean> {
     this.error.value = "";
-    this.doing++;
+    this.running++;
     try {
-      await this.telling; // answers may overtake each other: the last word is to be the last
+      await this.sending; // requests may overtake each other: this one must be the last
       await work();
       this.stage.show(await this.simulator.look());
       return true;
@@ -119,13 +119,13 @@ export class Editor {
       this.error.value = error instanceof Error ? error.message : String(error);
       return false;
     } finally {
-      this.doing--;
+      this.running--;
     }
   }
 
-  /** Keep the handles at the selected model; once per frame. */
+  /** Place the handles at the selected model; once per frame. */
   follow(): void {
-    if (this.hold) {
+    if (this.drag) {
       return;
     }
     const mode = this.mode.value;
@@ -149,7 +149,7 @@ export class Editor {
   }
 
   dispose(): void {
-    this.listening.abort();
+    this.listeners.abort();
     this.stage.showGhost(undefined);
     this.gizmo.dispose();
   }
@@ -163,61 +163,61 @@ export class Editor {
     stage.viewport.canvas.focus({ preventScroll: true });
     this.pressed = { x, y };
     const mode = this.mode.value;
-    const hold = mode === "look" || mode === "insert" ? undefined : this.grasp(mode, x, y);
-    stage.viewport.view.leftButton = hold === undefined;
-    if (hold) {
-      this.hold = hold;
+    const drag = mode === "look" || mode === "insert" ? undefined : this.findTarget(mode, x, y);
+    stage.viewport.view.leftButton = drag === undefined;
+    if (drag) {
+      this.drag = drag;
       stage.viewport.canvas.setPointerCapture(event.pointerId);
-      stage.select(hold.name);
-      stage.hold(hold.name);
+      stage.select(drag.name);
+      stage.startDrag(drag.name);
     }
   }
 
-  private grasp(mode: Motion, x: number, y: number): Hold | undefined {
+  private findTarget(mode: Motion, x: number, y: number): Drag | undefined {
     const selected = this.stage.selected.value;
-    const byHandle = selected !== "" && this.gizmo.press(x, y);
-    const hit = byHandle ? undefined : this.stage.pick(x, y);
-    const name = byHandle ? selected : hit?.name;
+    const usesGizmo = selected !== "" && this.gizmo.press(x, y);
+    const hit = usesGizmo ? undefined : this.stage.pick(x, y);
+    const name = usesGizmo ? selected : hit?.name;
     const pose = name === undefined ? undefined : this.stage.poseOf(name);
     if (name === undefined || !pose) {
       return undefined;
     }
-    if (!byHandle) {
+    if (!usesGizmo) {
       this.stage.select(name);
       this.gizmo.place(mode, pose, this.stage.radius);
     }
     const from = hit?.point ?? new Vector3();
-    return { name, mode, byHandle, from, x, y, pose, motion: new Matrix4(), factors: new Vector3(1, 1, 1) };
+    return { name, mode, usesGizmo, from, x, y, pose, motion: new Matrix4(), factors: new Vector3(1, 1, 1) };
   }
 
   private move(event: PointerEvent): void {
-    const { hold, stage } = this;
+    const { drag, stage } = this;
     const { x, y } = this.at(event);
-    if (!hold) {
+    if (!drag) {
       this.hover(x, y, event.buttons !== 0);
       return;
     }
     const snaps = event.ctrlKey || event.metaKey;
-    if (hold.byHandle) {
+    if (drag.usesGizmo) {
       this.gizmo.drag(x, y, snaps);
     }
-    switch (hold.mode) {
+    switch (drag.mode) {
       case "move":
-        hold.motion = hold.byHandle ? this.gizmo.motion : this.shift(hold, x, y, event.shiftKey, snaps);
+        drag.motion = drag.usesGizmo ? this.gizmo.motion : this.shift(drag, x, y, event.shiftKey, snaps);
         break;
       case "turn":
-        hold.motion = hold.byHandle
+        drag.motion = drag.usesGizmo
           ? this.gizmo.motion
-          : turnAbout(hold.pose, round((x - hold.x) * TURN_PER_PX, snaps && SNAP.turn));
+          : rotationAbout(drag.pose, round((x - drag.x) * ROTATION_PER_PX, snaps && SNAP.turn));
         break;
       case "scale": {
-        const all = round(Math.exp((hold.y - y) * GROW_PER_PX), snaps && SNAP.scale);
-        hold.factors = this.allowed(hold.name, hold.byHandle ? this.gizmo.factors : new Vector3(all, all, all));
-        hold.motion = stage.growth(hold.name, hold.factors);
+        const all = round(Math.exp((drag.y - y) * SCALE_PER_PX), snaps && SNAP.scale);
+        drag.factors = this.allowed(drag.name, drag.usesGizmo ? this.gizmo.factors : new Vector3(all, all, all));
+        drag.motion = stage.growth(drag.name, drag.factors);
       }
     }
-    stage.preview(hold.name, hold.motion);
-    this.tell(hold);
+    stage.preview(drag.name, drag.motion);
+    this.sendPose(drag);
   }
 
   private hover(x: number, y: number, isPressed: boolean): void {
@@ -233,8 +233,8 @@ export class Editor {
     }
   }
 
-  /** Move along the ground, or up and down. */
-  private shift({ from, y: y0, pose }: Hold, x: number, y: number, isUpright: boolean, snaps: boolean): Matrix4 {
+  /** Return the translation along the ground, or along the vertical. */
+  private shift({ from, y: y0, pose }: Drag, x: number, y: number, isUpright: boolean, snaps: boolean): Matrix4 {
     const { viewport } = this.stage;
     const by = new Vector3();
     const at = isUpright ? undefined : viewport.planeAt(x, y, from.z);
@@ -252,7 +252,7 @@ export class Editor {
     );
   }
 
-  /** Factors that a model can take: what is round stays round, what has several parts keeps its proportions. */
+  /** Restrict scale factors: round shapes stay round, models of several links keep their proportions. */
   private allowed(name: string, { x, y, z }: Vector3): Vector3 {
     const { types, links } = this.stage.anatomy(name);
     const positive = (factor: number) => Math.max(MIN_FACTOR, factor);
@@ -267,61 +267,61 @@ export class Editor {
   }
 
   private up(event: PointerEvent): void {
-    const { pressed, hold } = this;
-    this.letGo();
+    const { pressed, drag } = this;
+    this.endDrag();
     const { x, y } = this.at(event);
     const isClick = pressed && Math.hypot(x - pressed.x, y - pressed.y) < CLICK_PX;
-    if (hold && !isClick) {
-      void this.finish(hold);
-    } else if (hold) {
-      this.stage.release(hold.name);
+    if (drag && !isClick) {
+      void this.finish(drag);
+    } else if (drag) {
+      this.stage.release(drag.name);
     } else if (isClick && event.button === 0) {
       this.click(x, y, event.shiftKey);
     }
   }
 
-  private letGo(): void {
+  private endDrag(): void {
     this.gizmo.release();
     this.stage.viewport.view.leftButton = true;
-    [this.hold, this.pressed] = [undefined, undefined];
+    [this.drag, this.pressed] = [undefined, undefined];
   }
 
-  /** Let go of a model as if it had never been taken hold of. */
+  /** Cancel the drag: the model returns to where it was. */
   private cancel(): void {
-    const { hold } = this;
-    this.letGo();
-    if (hold) {
-      this.stage.release(hold.name);
-      if (hold.mode !== "scale") {
-        void this.do(() => this.simulator.move(hold.name, hold.pose));
+    const { drag } = this;
+    this.endDrag();
+    if (drag) {
+      this.stage.release(drag.name);
+      if (drag.mode !== "scale") {
+        void this.run(() => this.simulator.move(drag.name, drag.pose));
       }
     }
   }
 
-  private click(x: number, y: number, goesOn: boolean): void {
+  private click(x: number, y: number, keepsMode: boolean): void {
     if (this.mode.value !== "insert") {
       this.stage.select(this.stage.pick(x, y)?.name ?? "");
       return;
     }
     const point = this.placeAt(x, y);
     if (point) {
-      void this.insert(point, goesOn);
+      void this.insert(point, keepsMode);
     }
   }
 
-  private async insert(point: Vector3, goesOn: boolean): Promise<void> {
-    const goods = this.goods.value;
+  private async insert(point: Vector3, keepsMode: boolean): Promise<void> {
+    const template = this.template.value;
     const color = this.color;
     let name = "";
-    if (!goesOn) {
-      this.take("look");
+    if (!keepsMode) {
+      this.setMode("look");
     }
     this.stage.showGhost(undefined);
-    await this.do(async () => {
+    await this.run(async () => {
       name =
-        typeof goods === "string"
-          ? await this.simulator.insert(goods, point, this.size.value, this.mass.value, color)
-          : await this.simulator.spawn(goods, point);
+        typeof template === "string"
+          ? await this.simulator.insert(template, point, this.size.value, this.mass.value, color)
+          : await this.simulator.spawn(template, point);
     });
     if (name) {
       this.inserted++;
@@ -330,23 +330,23 @@ export class Editor {
     }
   }
 
-  /** Let the model follow the hand in the simulation too, as fast as that answers. */
-  private tell(hold: Hold): void {
-    if (this.telling || hold.mode === "scale") {
+  /** Send the dragged model's pose to the simulator, as fast as it responds. */
+  private sendPose(drag: Drag): void {
+    if (this.sending || drag.mode === "scale") {
       return;
     }
-    this.telling = this.simulator
-      .move(hold.name, movedPose(hold.pose, hold.motion))
+    this.sending = this.simulator
+      .move(drag.name, movedPose(drag.pose, drag.motion))
       .catch((error: unknown) => {
         this.error.value = error instanceof Error ? error.message : String(error);
       })
       .finally(() => {
-        this.telling = undefined;
+        this.sending = undefined;
       });
   }
 
-  private async finish({ name, mode, pose, motion, factors }: Hold): Promise<void> {
-    const isDone = await this.do(async () => {
+  private async finish({ name, mode, pose, motion, factors }: Drag): Promise<void> {
+    const isDone = await this.run(async () => {
       if (mode === "scale") {
         await this.simulator.scale(name, factors);
       } else {
@@ -362,7 +362,7 @@ export class Editor {
     }
   }
 
-  private async bringBack(name: string): Promise<void> {
+  private async restore(name: string): Promise<void> {
     await this.simulator.bringBack(name);
     this.stage.show(await this.simulator.look());
     this.stage.select(name);
@@ -377,7 +377,7 @@ export class Editor {
   }
 
   private key(event: KeyboardEvent): void {
-    if (this.isForOthers(event.target)) {
+    if (this.isForOtherPanel(event.target)) {
       return;
     }
     const { key, ctrlKey, metaKey, altKey } = event;
@@ -389,7 +389,7 @@ export class Editor {
     } else if (key === "Delete" || key === "Backspace") {
       void this.remove();
     } else if (mode) {
-      this.take(mode);
+      this.setMode(mode);
     } else if (key === "Escape") {
       this.escape();
     } else {
@@ -400,17 +400,17 @@ export class Editor {
   }
 
   private escape(): void {
-    if (this.hold) {
+    if (this.drag) {
       this.cancel();
     } else if (this.mode.value !== "look") {
-      this.take("look");
+      this.setMode("look");
     } else {
       this.stage.select("");
     }
   }
 
-  /** Keys are the editor's where it has the focus, or where nobody has it and no other view is there. */
-  private isForOthers(target: EventTarget | null): boolean {
+  /** Whether a key is for another panel: the editor takes it with the focus, or without any focus if there is no 3-D panel. */
+  private isForOtherPanel(target: EventTarget | null): boolean {
     if (target === document.body) {
       return document.querySelector("[data-panel=scene]") !== null;
     }
@@ -428,18 +428,18 @@ export class Editor {
     return { x: box.left + at.x, y: box.top + at.y };
   }
 
-  /** Where something that is put at a pixel stands: on what is there. */
+  /** The point under a pixel at which a model is inserted. */
   private placeAt(x: number, y: number): Vector3 | undefined {
     return this.stage.pick(x, y)?.point ?? this.stage.viewport.groundAt(x, y);
   }
 
   private ghost(): Marker {
-    const goods = this.goods.value;
-    const size = typeof goods === "string" ? this.size.value : UNKNOWN_SIZE_M;
+    const template = this.template.value;
+    const size = typeof template === "string" ? this.size.value : UNKNOWN_SIZE_M;
     return {
       ns: "",
       id: 0,
-      type: typeof goods === "string" ? MARKERS[goods] : Marker.CUBE,
+      type: typeof template === "string" ? MARKERS[template] : Marker.CUBE,
       pose: { position: { x: 0, y: 0, z: size / 2 }, orientation: { x: 0, y: 0, z: 0, w: 1 } },
       scale: { x: size, y: size, z: size },
       color: this.color,
@@ -458,8 +458,8 @@ export class Editor {
   }
 }
 
-/** Turn in the world about the vertical through a pose's origin. */
-function turnAbout({ position: { x, y, z } }: Pose, angle: number): Matrix4 {
+/** A rotation about the vertical through a pose's origin. */
+function rotationAbout({ position: { x, y, z } }: Pose, angle: number): Matrix4 {
   return new Matrix4()
     .makeTranslation(x, y, z)
     .multiply(new Matrix4().makeRotationZ(angle))
@@ -470,13 +470,13 @@ function round(value: number, step: number | false): number {
   return step ? Math.round(value / step) * step : value;
 }
 
-/** The factor that is farthest from leaving things as they are. */
+/** The factor that differs most from 1. */
 function farthest(...factors: number[]): number {
   const change = (factor: number) => Math.abs(Math.log(Math.max(MIN_FACTOR, factor)));
-  return factors.reduce((most, factor) => (change(factor) > change(most) ? factor : most));
+  return factors.reduce((extreme, factor) => (change(factor) > change(extreme) ? factor : extreme));
 }
 
-/** A model's place in words: metres, and degrees about the vertical. */
+/** A model's pose as text: metres, and degrees about the vertical. */
 export function describePose({ position: { x, y, z }, orientation: o }: Pose): string {
   const yaw = new Euler().setFromQuaternion(new Quaternion(o.x, o.y, o.z, o.w), "ZYX").z;
   const metres = [x, y, z].map((each, i) => `${"xyz"[i]} ${tidy(each.toFixed(2))}`).join("  ");

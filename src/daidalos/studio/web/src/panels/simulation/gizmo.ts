@@ -1,4 +1,4 @@
-// The handles around a model by which it is moved, turned and scaled.
+// The handles that move, rotate and scale a model.
 import { Matrix4, Object3D, Vector3 } from "three";
 import { TransformControls } from "three/examples/jsm/controls/TransformControls.js";
 import type { Pose } from "../../generated/geometry_msgs";
@@ -7,7 +7,7 @@ import type { Viewport } from "../../scene/viewport";
 
 export type Motion = "move" | "turn" | "scale";
 
-/** What Ctrl rounds to. */
+/** Steps while Ctrl is pressed. */
 export const SNAP = { move: 0.25, turn: Math.PI / 12, scale: 0.25 } as const;
 
 const MODES = { move: "translate", turn: "rotate", scale: "scale" } as const;
@@ -17,7 +17,7 @@ const SIZES = [0.85, 2.2] as const;
 /** The library's measure: handles reach this far, in metres, for a size of 1 and a metre's distance. */
 const REACH_PER_SIZE = (0.5 / 4) * 1.9 * Math.tan((FIELD_OF_VIEW_DEG * Math.PI) / 360);
 const COLORS = ["#f2555a", "#5fc26b", "#4d8dff", "#ffd166"] as const;
-/** The handle in the middle would move in the picture's plane: who takes a model there moves it along the ground. */
+/** The handle in the middle moves in the image plane: it is not used, dragging the model moves it along the ground. */
 const LOOSE = "XYZ";
 
 export class Gizmo {
@@ -26,7 +26,7 @@ export class Gizmo {
   private readonly start = new Matrix4();
 
   constructor(private readonly viewport: Viewport) {
-    // Without an element of its own: the editor tells what the mouse does, so that the camera does not turn as well.
+    // Without an element: the editor passes the pointer's events on, so that the camera does not rotate as well.
     this.controls = new TransformControls(viewport.view.camera);
     this.controls.setColors(...COLORS);
     this.controls.showE = this.controls.showXYZE = false;
@@ -34,11 +34,11 @@ export class Gizmo {
     viewport.scene.add(this.handle, this.controls.getHelper());
   }
 
-  get isHeld(): boolean {
+  get isDragged(): boolean {
     return this.controls.dragging;
   }
 
-  /** How the handles were moved since they were put down. */
+  /** The motion of the handles since `place`. */
   get motion(): Matrix4 {
     this.handle.updateMatrix();
     return this.handle.matrix.clone().multiply(this.start.clone().invert());
@@ -49,7 +49,7 @@ export class Gizmo {
     return this.handle.scale.clone();
   }
 
-  /** Put the handles where a model of a radius is. */
+  /** Place the handles at a model of a radius. */
   place(motion: Motion, { position: p, orientation: o }: Pose, radius: number): void {
     this.handle.position.set(p.x, p.y, p.z);
     this.handle.quaternion.set(o.x, o.y, o.z, o.w);
@@ -81,7 +81,7 @@ export class Gizmo {
     );
   }
 
-  /** Light up the handle under a pixel; false where there is none. */
+  /** Highlight the handle under a pixel; false where there is none. */
   hover(x: number, y: number): boolean {
     this.controls.camera = this.viewport.view.camera;
     this.controls.pointerHover(this.pointer(x, y));
@@ -91,7 +91,7 @@ export class Gizmo {
     return this.controls.axis !== null;
   }
 
-  /** Take the handle under a pixel; false where there is none. */
+  /** Start to drag the handle under a pixel; false where there is none. */
   press(x: number, y: number): boolean {
     if (!this.hover(x, y)) {
       return false;
@@ -116,7 +116,7 @@ export class Gizmo {
 
   dispose(): void {
     this.controls.detach();
-    // The library's own way of ending takes its listeners from an element, which these controls do not have.
+    // The library's `dispose` removes listeners from an element, which these controls do not have.
     const helper = this.controls.getHelper();
     helper.dispose();
     helper.removeFromParent();

@@ -1,4 +1,4 @@
-// A simulator in the graph: what the page asks of it, by simulation_interfaces and daidalos_msgs.
+// A simulator in the graph, by the services of simulation_interfaces and daidalos_msgs.
 import { signal } from "@preact/signals";
 import type { Session } from "../../connection/session";
 import type { BringBack, GetShapes, GetShapes_Response, InsertShape, ScaleEntity } from "../../generated/daidalos_msgs";
@@ -29,7 +29,7 @@ export type EntityStates = Pick<ModelStates, "name" | "pose">;
 
 export interface Resource {
   title: string;
-  /** Where it comes from: the model path, or a package. */
+  /** The model path, or a package. */
   origin?: string;
   uri: string;
   resource_string: string;
@@ -47,8 +47,8 @@ export class Simulator {
     readonly name: string,
   ) {}
 
-  /** Follow its state; `beat` is called about once a second, also while time stands still. */
-  follow(states: (links: EntityStates) => void, beat: () => void): () => void {
+  /** Follow its state; `tick` is called about once a second, also while the simulation is paused. */
+  follow(states: (links: EntityStates) => void, tick: () => void): () => void {
     void this.readState();
     void this.readSpawnables();
     this.session.readParameters([this.speedParameter]);
@@ -58,13 +58,13 @@ export class Simulator {
       this.session.subscribe<PerformanceMetrics>("/performance_metrics", KEEP, (metrics) => {
         this.factor.value = metrics.real_time_factor;
         void this.readState();
-        beat();
+        tick();
       }),
     ];
     return () => stops.forEach((stop) => stop());
   }
 
-  /** How fast it is to run; 0 is as fast as possible. */
+  /** The real-time factor that is set; 0: as fast as possible. */
   get speed(): number | undefined {
     const value = this.session.parameters.value.get(this.speedParameter)?.value;
     return typeof value === "number" ? value : undefined;
@@ -84,9 +84,9 @@ export class Simulator {
     await this.call<StepSimulation>("step_simulation", { steps: BigInt(steps) });
   }
 
-  /** Begin anew: time at zero, every model where it came in. */
+  /** Reset time to zero and models to their initial states. */
   async reset(): Promise<void> {
-    // Without the scope of what was spawned: what the user put, and the robot, stay.
+    // Without SCOPE_SPAWNED: inserted models and the robot stay.
     const { SCOPE_TIME, SCOPE_STATE } = ResetSimulation_Request;
     await this.call<ResetSimulation>("reset_simulation", { scope: SCOPE_TIME | SCOPE_STATE });
   }
@@ -110,7 +110,7 @@ export class Simulator {
 
   async move(entity: string, pose: Pose): Promise<void> {
     const zero = { x: 0, y: 0, z: 0 };
-    // Gazebo's own service may have the standard one's name: what is asked is understood by both.
+    // Gazebo's own service may have the standard one's name: the request is valid for both.
     const state = {
       name: entity,
       reference_frame: "",
@@ -131,7 +131,7 @@ export class Simulator {
     await this.call<DeleteEntity>("delete_entity", { entity });
   }
 
-  /** Put back what was deleted, as it was. */
+  /** Restore a deleted model. */
   async bringBack(name: string): Promise<void> {
     await this.call<BringBack>("bring_back", { name });
   }
@@ -164,7 +164,7 @@ export class Simulator {
   }
 }
 
-/** What an address names, called as people call it. */
+/** The resource of a URI, with a readable title. */
 export function resourceAt(uri: string): Resource {
   const [scheme = "", path = ""] = uri.split("://");
   const file = uri.split("/").filter(Boolean).at(-1) ?? uri;
@@ -178,7 +178,7 @@ interface Answer {
   status_message?: string;
 }
 
-/** Why a simulator did not do what it was asked; undefined where it did. */
+/** The error of a simulator's response; undefined where there is none. */
 export function errorOf({ result, success, status_message }: Answer): string | undefined {
   if (result && result.result !== Result.RESULT_OK) {
     return result.error_message || `refused with code ${result.result}`;

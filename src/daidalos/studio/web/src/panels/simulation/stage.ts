@@ -1,4 +1,4 @@
-// The simulated world to look at and to take hold of: models by their shapes, in the world's own frame.
+// The simulated world: models by their shapes, in the world frame.
 import { signal } from "@preact/signals";
 import {
   Box3,
@@ -23,10 +23,10 @@ import { Viewport } from "../../scene/viewport";
 import type { GetShapes_Response } from "../../generated/daidalos_msgs";
 import type { EntityStates } from "./simulator";
 
-/** Flatter and larger than these, a shape is ground: the grid stands for it. */
+/** A flatter and larger shape is the ground, which the grid represents. */
 const GROUND_M2 = 100;
 const GROUND_THICKNESS_M = 0.05;
-/** A link that moves less than this, in metres and as a quaternion, has not moved: nothing is drawn again. */
+/** A link that moves less than this, in metres and as a quaternion, is not drawn again. */
 const STILL = 1e-5;
 const FRAME_COLOR = 0xe2a355;
 const GHOST_OPACITY = 0.45;
@@ -34,20 +34,20 @@ const NEAREST_M = 3.5;
 
 interface Shown {
   name: string;
-  /** Holds the links; moved only while the user has hold of the model. */
+  /** Holds the links; moved only while the user drags the model. */
   holder: Group;
   links: Map<string, Group>;
-  /** The looks from which it was made. */
-  told: string;
-  /** While the user has hold of it: where it was then. What comes from the simulator is not shown. */
-  held?: { pose: Pose; bottom: number } | undefined;
+  /** The markers that it was made of, as JSON. */
+  source: string;
+  /** Where it was when the user began to drag it; until the end of the drag, poses from the simulator are not shown. */
+  dragged?: { pose: Pose; bottom: number } | undefined;
 }
 
 export class Stage {
   readonly viewport: Viewport;
   readonly selected = signal("");
   readonly names = signal<readonly string[]>([]);
-  /** Where the selected model is. */
+  /** The pose of the selected model. */
   readonly reading = signal<Pose | undefined>(undefined);
   private readonly models = new Map<string, Shown>();
   private readonly poses = new Map<string, Pose>();
@@ -58,7 +58,7 @@ export class Stage {
   private ghost: Object3D | undefined;
   /** Of the selected model. */
   radius = 0;
-  private wasSeen = false;
+  private isViewSet = false;
   private isFramed = false;
 
   constructor(
@@ -72,7 +72,7 @@ export class Stage {
     this.viewport.scene.add(grid.object, this.frame);
   }
 
-  /** Show what the simulator says that there is. */
+  /** Show the simulator's models. */
   show({ shapes, entities, poses }: GetShapes_Response): void {
     const models = new Map<string, Marker[]>();
     for (const name of entities.filter((each) => !each.includes("::"))) {
@@ -87,13 +87,13 @@ export class Stage {
       }
     }
     for (const [name, markers] of models) {
-      const told = JSON.stringify(markers);
+      const source = JSON.stringify(markers);
       const before = this.models.get(name);
-      if (before?.told !== told) {
+      if (before?.source !== source) {
         if (before) {
           this.drop(before);
         }
-        this.models.set(name, this.make(name, markers, told));
+        this.models.set(name, this.make(name, markers, source));
       }
     }
     this.names.value = [...models.keys()];
@@ -104,7 +104,7 @@ export class Stage {
     this.look();
   }
 
-  /** Put links where they are; false where others than the known ones are told of. */
+  /** Set the poses of links; false where there are unknown ones. */
   place({ name: names, pose: poses }: EntityStates): boolean {
     let known = true;
     const seen = new Set<string>();
@@ -116,10 +116,10 @@ export class Stage {
       known &&= shown !== undefined;
       this.poses.set(name, pose);
       const group = link === undefined ? undefined : shown?.links.get(link);
-      if (group && !shown?.held && put(group, pose)) {
+      if (group && !shown?.dragged && put(group, pose)) {
         this.touch();
       }
-      // Who is held is told of as well, and where it was let go need not be where it was told to be last.
+      // Also for the dragged model, whose last pose here may differ from the simulator's.
       const read = name === this.selected.value ? this.reading.value : undefined;
       if (read && isElsewhere(read, pose)) {
         this.touch();
@@ -133,15 +133,15 @@ export class Stage {
     this.touch();
   }
 
-  /** Where a model is, as the simulator told last. */
+  /** The last pose of a model from the simulator. */
   poseOf(name: string): Pose | undefined {
     return this.poses.get(name);
   }
 
-  /** The kinds of shapes that a model consists of, and how many links it has. */
+  /** The types of a model's shapes, and the number of its links. */
   anatomy(name: string): { types: readonly number[]; links: number } {
     const shown = this.models.get(name);
-    const markers = shown ? (JSON.parse(shown.told) as Marker[]) : [];
+    const markers = shown ? (JSON.parse(shown.source) as Marker[]) : [];
     return { types: markers.map(({ type }) => type), links: shown?.links.size ?? 0 };
   }
 
@@ -156,56 +156,56 @@ export class Stage {
     return undefined;
   }
 
-  /** Where a model was when the user took hold of it. */
-  poseAtHold(name: string): Pose | undefined {
-    return this.models.get(name)?.held?.pose;
+  /** Where a model was when the user began to drag it. */
+  dragStart(name: string): Pose | undefined {
+    return this.models.get(name)?.dragged?.pose;
   }
 
-  /** Take hold of a model: from now on only `preview` moves it. */
-  hold(name: string): void {
+  /** Start to drag a model: until `release`, only `preview` moves it. */
+  startDrag(name: string): void {
     const shown = this.models.get(name);
     const pose = this.poses.get(name);
     if (shown && pose) {
-      shown.held = { pose, bottom: new Box3().setFromObject(shown.holder).min.z };
+      shown.dragged = { pose, bottom: new Box3().setFromObject(shown.holder).min.z };
       shown.holder.matrixAutoUpdate = false;
     }
   }
 
-  /** Show a held model moved from where it was. */
+  /** Show a dragged model at an offset from where it was. */
   preview(name: string, motion: Matrix4): void {
     const shown = this.models.get(name);
-    if (shown?.held) {
+    if (shown?.dragged) {
       shown.holder.matrix.copy(motion);
       shown.holder.matrixWorldNeedsUpdate = true;
       this.touch();
     }
   }
 
-  /** How a held model moves when it grows along its axes and goes on standing where it stands. */
+  /** The matrix that scales a dragged model along its axes and keeps its lowest point on the ground. */
   growth(name: string, factors: Vector3): Matrix4 {
-    const held = this.models.get(name)?.held;
-    if (!held) {
+    const dragged = this.models.get(name)?.dragged;
+    if (!dragged) {
       return new Matrix4();
     }
-    const there = matrixOf(held.pose);
+    const there = matrixOf(dragged.pose);
     const grown = there.clone().scale(factors).multiply(there.invert());
-    const { position } = held.pose;
+    const { position } = dragged.pose;
     const origin = new Vector3(position.x, position.y, position.z);
-    const lift = (origin.z - held.bottom) * (this.verticalFactor(held.pose, factors) - 1);
+    const lift = (origin.z - dragged.bottom) * (this.verticalFactor(dragged.pose, factors) - 1);
     return new Matrix4().makeTranslation(0, 0, lift).multiply(grown);
   }
 
-  /** Let go: the simulator says again where it is. */
+  /** End the drag: the model has the simulator's pose again. */
   release(name: string): void {
     const shown = this.models.get(name);
     if (shown) {
-      shown.held = undefined;
+      shown.dragged = undefined;
       shown.holder.matrixAutoUpdate = true;
       this.touch();
     }
   }
 
-  /** Show what is about to be put, and where; undefined: nothing. */
+  /** Show a placeholder of the model to insert; undefined: none. */
   showGhost(marker: Marker | undefined, at?: Vector3): void {
     if (this.ghost) {
       disposeTree(this.ghost);
@@ -241,7 +241,7 @@ export class Stage {
     this.viewport.dispose();
   }
 
-  /** Something looks different now, and the frame around what is selected may have to follow. */
+  /** Draw again, with the box around the selected model. */
   private readonly touch = (): void => {
     this.isFramed = false;
     this.viewport.invalidate();
@@ -250,7 +250,7 @@ export class Stage {
   /** A box along the selected model's own axes. */
   private drawFrame(): void {
     const shown = this.models.get(this.selected.value);
-    const pose = shown?.held?.pose ?? this.poses.get(this.selected.value);
+    const pose = shown?.dragged?.pose ?? this.poses.get(this.selected.value);
     const box = shown && pose ? boxAlong(matrixOf(pose), shown.links.values()) : new Box3();
     this.frame.visible = !box.isEmpty();
     this.radius = this.frame.visible ? box.getSize(new Vector3()).length() / 2 : 0;
@@ -266,7 +266,7 @@ export class Stage {
     }
   }
 
-  /** By how much the way down to the ground grows. */
+  /** The factor by which the distance to the ground changes. */
   private verticalFactor({ orientation: { x, y, z, w } }: Pose, factors: Vector3): number {
     const down = UP.clone().applyQuaternion(new Quaternion(x, y, z, w).invert());
     return down.multiply(factors).length();
@@ -277,12 +277,12 @@ export class Stage {
       assets: this.context.assets,
       dark: true,
       changed: this.touch,
-      onError: () => undefined, // a mesh that this page may not read: the rest is shown
+      onError: () => undefined, // a mesh that can not be read: the rest is shown
     });
   }
 
-  private make(name: string, markers: Marker[], told: string): Shown {
-    const shown: Shown = { name, holder: new Group(), links: new Map(), told };
+  private make(name: string, markers: Marker[], source: string): Shown {
+    const shown: Shown = { name, holder: new Group(), links: new Map(), source };
     shown.holder.userData.model = name;
     for (const marker of markers) {
       if (isGround(marker)) {
@@ -308,16 +308,16 @@ export class Stage {
     this.touch();
   }
 
-  /** Look at everything, once. */
+  /** Set the view to all models, once. */
   private look(): void {
     const all = new Box3();
     for (const { holder } of this.models.values()) {
       all.union(new Box3().setFromObject(holder));
     }
-    // Meshes come later than the models that they belong to.
+    // Meshes are loaded after their models.
     const isEmpty = [...this.models.values()].every(({ links }) => links.size === 0);
-    if (!this.wasSeen && (isEmpty || !all.isEmpty())) {
-      this.wasSeen = true;
+    if (!this.isViewSet && (isEmpty || !all.isEmpty())) {
+      this.isViewSet = true;
       const centre = isEmpty ? new Vector3() : all.getCenter(new Vector3());
       const size = isEmpty ? new Vector3() : all.getSize(new Vector3());
       const distance = Math.max(NEAREST_M, 1.15 * size.length());
@@ -333,7 +333,7 @@ function isGround({ scale }: Marker): boolean {
   return scale.z < GROUND_THICKNESS_M && scale.x * scale.y > GROUND_M2;
 }
 
-/** Put an object where it is; false where it was there already. */
+/** Set an object's pose; false where it has it already. */
 function put(object: Object3D, pose: Pose): boolean {
   const { position: p, orientation: o } = pose;
   if (!isElsewhere({ position: object.position, orientation: object.quaternion }, pose)) {
@@ -344,7 +344,7 @@ function put(object: Object3D, pose: Pose): boolean {
   return true;
 }
 
-/** Whether two poses differ by more than the trembling of what stands still. */
+/** Whether two poses differ by more than the jitter of a model at rest. */
 function isElsewhere({ position: at, orientation: turn }: Pose, { position: p, orientation: o }: Pose): boolean {
   const by = Math.max(Math.abs(at.x - p.x), Math.abs(at.y - p.y), Math.abs(at.z - p.z));
   const turned = Math.max(Math.abs(turn.x - o.x), Math.abs(turn.y - o.y), Math.abs(turn.z - o.z));
@@ -356,7 +356,7 @@ export function matrixOf({ position: p, orientation: o }: Pose): Matrix4 {
   return new Matrix4().compose(new Vector3(p.x, p.y, p.z), turn, new Vector3(1, 1, 1));
 }
 
-/** A pose that is moved and turned in the world. */
+/** A pose after a motion in the world frame. */
 export function movedPose(pose: Pose, motion: Matrix4): Pose {
   const [position, orientation] = [new Vector3(), new Quaternion()];
   motion.clone().multiply(matrixOf(pose)).decompose(position, orientation, new Vector3());

@@ -48,12 +48,12 @@ describe("a follower", () => {
   it("draws what comes, once", async () => {
     const sheet = new MemorySheet();
     const follower = new DrawingFollower(sheet, async () => answered(0, 2, 1, 2));
-    follower.hear(received(0, 2, 2));
+    follower.receive(received(0, 2, 2));
     await settle();
     expect(sheet.marks).toEqual([1, 2]);
-    follower.hear(received(0, 3, 3));
-    follower.hear(received(0, 3));
-    follower.hear(received(0, 5, 4, 5));
+    follower.receive(received(0, 3, 3));
+    follower.receive(received(0, 3));
+    follower.receive(received(0, 5, 4, 5));
     expect(sheet.marks).toEqual([1, 2, 3, 4, 5]);
   });
 
@@ -61,11 +61,11 @@ describe("a follower", () => {
     const sheet = new MemorySheet();
     const answers = [answered(0, 1, 1), answered(0, 6, 1, 2, 3, 4, 5, 6)];
     const follower = new DrawingFollower(sheet, async () => answers.shift() as GetTurtleDrawing_Response);
-    follower.hear(received(0, 1));
+    follower.receive(received(0, 1));
     await settle();
-    follower.hear(received(0, 5, 5));
+    follower.receive(received(0, 5, 5));
     await settle();
-    follower.hear(received(0, 7, 6, 7));
+    follower.receive(received(0, 7, 6, 7));
     expect(sheet.marks).toEqual([1, 2, 3, 4, 5, 6, 7]);
     expect(answers).toEqual([]);
   });
@@ -73,18 +73,18 @@ describe("a follower", () => {
   it("wipes the sheet when the simulator does", async () => {
     const sheet = new MemorySheet();
     const follower = new DrawingFollower(sheet, async () => answered(0, 1, 1));
-    follower.hear(received(0, 1));
+    follower.receive(received(0, 1));
     await settle();
-    follower.hear(received(1, 2, 8, 9));
+    follower.receive(received(1, 2, 8, 9));
     expect(sheet.marks).toEqual([8, 9]);
-    follower.hear(received(2, 0));
+    follower.receive(received(2, 0));
     expect(sheet.marks).toEqual([]);
   });
 
   it("shows a picture of what is too old for lines", async () => {
     const sheet = new MemorySheet();
     const follower = new DrawingFollower(sheet, async () => answered(3, 100, 99, 100));
-    follower.hear(received(3, 100));
+    follower.receive(received(3, 100));
     await settle();
     expect([sheet.pictures, ...sheet.marks]).toEqual([1, 99, 100]);
   });
@@ -98,9 +98,9 @@ describe("a follower", () => {
       }
       return answered(0, 1, 1);
     });
-    follower.hear(received(0, 1));
+    follower.receive(received(0, 1));
     await settle();
-    follower.hear(received(0, 1));
+    follower.receive(received(0, 1));
     await settle();
     expect(sheet.marks).toEqual([1]);
   });

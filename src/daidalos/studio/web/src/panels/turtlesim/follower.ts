@@ -1,4 +1,4 @@
-// Keeping a drawing in step with turtlesim's: new lines come with every message, all of them when some were missed.
+// Keeps a drawing up to date with turtlesim's: every message has the new lines; the whole drawing is requested when some were missed.
 
 import type { GetTurtleDrawing_Response, TurtleWindow } from "../../generated/daidalos_msgs";
 
@@ -22,7 +22,7 @@ export class DrawingFollower {
     private readonly ask: () => Promise<GetTurtleDrawing_Response>,
   ) {}
 
-  hear(message: TurtleWindow): void {
+  receive(message: TurtleWindow): void {
     const fresh = message.lines.length / 4;
     if (message.drawn === fresh && this.known?.clearings !== message.clearings) {
       this.sheet.wipe();
@@ -41,7 +41,7 @@ export class DrawingFollower {
     }
   }
 
-  /** Draw everything anew. */
+  /** Draw the whole drawing again. */
   async catchUp(): Promise<void> {
     if (this.asking) {
       return;

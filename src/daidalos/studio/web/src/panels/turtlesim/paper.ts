@@ -2,7 +2,7 @@
 import type { GetTurtleDrawing_Response } from "../../generated/daidalos_msgs";
 import type { Lines, Sheet } from "./follower";
 
-/** Pixels of turtlesim's own window, in which widths of pens are told. */
+/** Width of turtlesim's own window in pixels, the unit of pen widths. */
 export const PIXELS = 500;
 
 /** From units of turtlesim to its pixels. */
@@ -63,7 +63,7 @@ export class Paper implements Sheet {
     this.draw(drawing);
   }
 
-  /** Have another size; what was drawn stays, coarsely, until it is drawn anew. */
+  /** Change the size; the drawing is scaled until it is drawn again. */
   resize(size: number): void {
     const { canvas } = this;
     const before = canvas.width ? createCopy(canvas) : undefined;

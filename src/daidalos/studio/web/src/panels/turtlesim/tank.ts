@@ -4,7 +4,7 @@ import { drawShadow, drawTurtle, HALF_SHELL } from "./turtle_art";
 import type { TurtleSprite, TurtleWindow } from "../../generated/daidalos_msgs";
 
 const LARGEST_PX = 2400;
-/** How far a turtle comes with one stroke of its flippers, in units, and how far it turns, in radians. */
+/** Distance in units, and angle in radians, of one stroke of a turtle's flippers. */
 const STROKE_UNITS = 0.55;
 const STROKE_RADIANS = 0.9;
 const REACH = 0.5;
@@ -16,7 +16,7 @@ interface Gait {
   y: number;
   theta: number;
   phase: number;
-  /** How much it swims: 1 in full motion, 0 at rest. */
+  /** Amplitude of the flippers: 1 in full motion, 0 at rest. */
   vigour: number;
   /** Turning to the left, 1 to -1. */
   turning: number;
