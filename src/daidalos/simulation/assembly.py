@@ -108,7 +108,7 @@ def _sensor(description: SensorDescription, link: str, joint: str, context: Comp
     except ExtensionError as error:
         context.warn(f"{error} (left out)")
         return
-    make = partial(cls, description, link, context, joint)
+    make = partial(cls, description, replace(context, link=link, joint=joint))
     spoken_for = [sensor for plugin in description.plugins for sensor in _spoken_for(make, plugin, context)]
     yield from spoken_for or (make(),)
 

@@ -36,6 +36,8 @@ class ComponentContext:
         Returns a new generator of its random numbers, seeded by the simulation's seed and its name.
     warn : callable
         Called with a line for the user.
+    link, joint : str
+        For a sensor: the link that carries it, and the joint that it sits in; empty where there is none.
     """
 
     model: Model
@@ -44,6 +46,8 @@ class ComponentContext:
     world: World
     stream: Callable[[], np.random.Generator]
     warn: Callable[[str], None]
+    link: str = ""
+    joint: str = ""
 
 
 def random_stream(seed: int, name: str) -> np.random.Generator:

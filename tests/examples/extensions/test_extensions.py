@@ -66,6 +66,8 @@ def test_the_sensor_measures_how_far_its_link_leans(install: Install) -> None:
     assert sample.value == pytest.approx(0.6, abs=1e-6)
 
 
+@pytest.mark.usefixtures("compiled")
+@pytest.mark.timeout(300)
 def test_the_planner_plans_where_the_straight_line_is_free(install: Install, stage: Set) -> None:
     install("planner")
     plugin = {"plugin": "straight_planner::StraightPlanner", "interpolation_resolution": 0.1}
@@ -81,6 +83,8 @@ def test_the_planner_plans_where_the_straight_line_is_free(install: Install, sta
     assert "the straight line meets an obstacle" in result.error_msg
 
 
+@pytest.mark.usefixtures("compiled")
+@pytest.mark.timeout(300)
 def test_the_controller_follows_a_path(install: Install, stage: Set) -> None:
     install("controller")
     plugin = {"plugin": "carrot_controller.CarrotController", "speed": 0.4}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 
 from daidalos.description.link import Plugin as PluginDescription
 from daidalos.description.link import Sensor as SensorDescription
@@ -29,7 +30,8 @@ class ForceTorqueOfJoint(Plugin):
         rate = element.number_of("updateRate", "update_rate", default=0.0)
         source = Element("sensor", {"name": description.name}, source=element.source, line=element.line)
         sensor = ForceTorque(
-            SensorDescription(description.name, "force_torque", source, update_rate=rate), child, context, joint
+            SensorDescription(description.name, "force_torque", source, update_rate=rate),
+            replace(context, link=child, joint=joint),
         )
         sensor.topic = parameters.topic(element.text_of("topicName", "topic_name", default="wrench"))
         sensor.frame_id = frame(element.text_of("frameName", "frame_name", default=sensor.frame_id))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 
 from daidalos.common.pose3 import Pose
 from daidalos.description.link import Plugin as PluginDescription
@@ -104,8 +105,8 @@ def axis_noises(element: Element, of: str = "") -> tuple[Noise, Noise, Noise]:
 
 def _carrier(
     description: PluginDescription, context: ComponentContext, kind: str, rate: float = 0.0, pose: Pose | None = None
-) -> tuple[SensorDescription, str, ComponentContext]:
-    """Return the description of a sensor on the link ``bodyName``, by default the first link."""
+) -> tuple[SensorDescription, ComponentContext]:
+    """Return the description and the context of a sensor on the link ``bodyName``, by default the first link."""
     element, links = description.element, context.model.links
     scoped = Parameters(description, context).scoped
     link = scoped(element.text_of("bodyName", "body_name", default=next(iter(links), "")))
@@ -113,7 +114,7 @@ def _carrier(
         raise element.error(f"<bodyName> is {link!r}, expected one of the links {', '.join(links)}")
     rate = element.number_of("updateRate", "update_rate", default=rate)
     sensor = SensorDescription(description.name, kind, element, pose=pose or Pose(), update_rate=rate)
-    return sensor, link, context
+    return sensor, replace(context, link=link)
 
 
 def _name(sensor: Sensor, parameters: Parameters, topic: str, frame_id: str = "") -> None:

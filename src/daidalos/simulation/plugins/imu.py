@@ -40,8 +40,7 @@ class ImuOfModel(Plugin):
                 pose=_offset(element),
                 update_rate=element.number_of("updateRate", "update_rate", default=0.0),
             ),
-            link,
-            context,
+            replace(context, link=link),
         )
         sensor.topic = parameters.topic(element.text_of("topicName", "topic_name", default="imu"))
         sensor.frame_id = frame(element.text_of("frameName", "frame_name", default=sensor.frame_id))

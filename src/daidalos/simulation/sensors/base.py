@@ -26,11 +26,8 @@ class Sensor(Component):
     Parameters
     ----------
     description : daidalos.description.link.Sensor
-    link : str
-        The link that carries it.
+        Its part of the file.
     context : ComponentContext
-    joint : str
-        The joint that it sits in; empty for a sensor on a link.
 
     Attributes
     ----------
@@ -45,11 +42,11 @@ class Sensor(Component):
     names: ClassVar[tuple[str, ...]] = ()
     default_topic: ClassVar[str] = "data"
 
-    def __init__(self, description: Description, link: str, context: ComponentContext, joint: str = "") -> None:
+    def __init__(self, description: Description, context: ComponentContext) -> None:
         super().__init__(context)
         self.name = description.name
-        self.link_name = link
-        self.joint_name = joint
+        self.link_name = link = context.link
+        self.joint_name = context.joint
         self.pose: Pose = description.pose
         self.period = 1.0 / description.update_rate if description.update_rate > 0 else 0.0
         self.frame_id = description.element.text_of(

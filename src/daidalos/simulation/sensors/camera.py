@@ -96,9 +96,9 @@ class Camera(Sensor):
     )
     default_topic = "image"
 
-    def __init__(self, description: Description, link: str, context: ComponentContext, joint: str = "") -> None:
+    def __init__(self, description: Description, context: ComponentContext) -> None:
         self.kind = description.type.removesuffix("_camera")
-        super().__init__(description, link, context, joint)
+        super().__init__(description, context)
         if self.kind == "wideanglecamera":
             context.warn(f"{description.element.where}: sensor {self.name!r}: its lens is drawn as a pinhole")
         elements = description.element.all("camera") or [Element("camera")]

@@ -71,8 +71,8 @@ class Lidar(Sensor):
     names = ("ray", "lidar", "gpu_ray", "gpu_lidar")
     default_topic = "scan"
 
-    def __init__(self, description: Description, link: str, context: ComponentContext, joint: str = "") -> None:
-        super().__init__(description, link, context, joint)
+    def __init__(self, description: Description, context: ComponentContext) -> None:
+        super().__init__(description, context)
         self.as_both = description.type in ("lidar", "gpu_lidar")
 
     def read(self, element: Element) -> None:
