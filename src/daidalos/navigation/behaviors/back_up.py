@@ -44,11 +44,11 @@ class BackUp(Behavior[BackUpCommand]):
 
     @classmethod
     def command(cls, goal: Any) -> BackUpCommand:
-        """See `Behavior.command`; the signs of distance and speed do not matter."""
+        """Implement `Behavior.command`; the signs of distance and speed do not matter."""
         return BackUpCommand(abs(goal.target.x), abs(goal.speed), goal.time_allowance)
 
     def start(self, command: BackUpCommand, pose: Array, now: float) -> None:
-        """See `Behavior.start`."""
+        """Implement `Behavior.start`."""
         if command.backup_dist <= 0.0 or command.backup_speed <= 0.0:
             raise InvalidInput(
                 "backup_dist and backup_speed must be positive, "
@@ -58,5 +58,5 @@ class BackUp(Behavior[BackUpCommand]):
         self._drive.start(backwards, pose, now)
 
     def step(self, pose: Array, velocity: Array, costmap: Costmap, now: float) -> BehaviorStep:
-        """See `Behavior.step`."""
+        """Implement `Behavior.step`."""
         return self._drive.step(pose, velocity, costmap, now)

@@ -53,11 +53,11 @@ class DriveOnHeading(Behavior[DriveOnHeadingCommand]):
 
     @classmethod
     def command(cls, goal: Any) -> DriveOnHeadingCommand:
-        """See `Behavior.command`."""
+        """Implement `Behavior.command`."""
         return DriveOnHeadingCommand(goal.target.x, goal.speed, goal.time_allowance)
 
     def start(self, command: DriveOnHeadingCommand, pose: Array, now: float) -> None:
-        """See `Behavior.start`."""
+        """Implement `Behavior.start`."""
         if command.distance * command.speed <= 0.0:
             raise InvalidInput(
                 "distance and speed must both be positive or both negative, "
@@ -68,7 +68,7 @@ class DriveOnHeading(Behavior[DriveOnHeadingCommand]):
         self._from = pose.copy()
 
     def step(self, pose: Array, velocity: Array, costmap: Costmap, now: float) -> BehaviorStep:
-        """See `Behavior.step`."""
+        """Implement `Behavior.step`."""
         driven = math.hypot(float(pose[0] - self._from[0]), float(pose[1] - self._from[1]))
         left = abs(self._command.distance) - driven
         if left <= 0.0:

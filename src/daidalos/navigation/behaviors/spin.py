@@ -63,11 +63,11 @@ class Spin(Behavior[SpinCommand]):
 
     @classmethod
     def command(cls, goal: Any) -> SpinCommand:
-        """See `Behavior.command`."""
+        """Implement `Behavior.command`."""
         return SpinCommand(goal.target_yaw, goal.time_allowance)
 
     def start(self, command: SpinCommand, pose: Array, now: float) -> None:
-        """See `Behavior.start`."""
+        """Implement `Behavior.start`."""
         if not np.isfinite(command.target_yaw):
             raise InvalidInput(f"target_yaw must be a finite angle in radians, not {command.target_yaw}")
         self._command = command
@@ -76,7 +76,7 @@ class Spin(Behavior[SpinCommand]):
         self._turned = 0.0
 
     def step(self, pose: Array, velocity: Array, costmap: Costmap, now: float) -> BehaviorStep:
-        """See `Behavior.step`."""
+        """Implement `Behavior.step`."""
         self._turned += float(wrap(pose[2] - self._last_yaw))
         self._last_yaw = float(pose[2])
         left = self._command.target_yaw - self._turned

@@ -30,16 +30,16 @@ class Wait(Behavior[WaitCommand]):
 
     @classmethod
     def command(cls, goal: Any) -> WaitCommand:
-        """See `Behavior.command`."""
+        """Implement `Behavior.command`."""
         return WaitCommand(goal.time)
 
     def start(self, command: WaitCommand, pose: Array, now: float) -> None:
-        """See `Behavior.start`."""
+        """Implement `Behavior.start`."""
         if not command.wait_duration >= 0.0:
             raise InvalidInput(f"wait_duration must not be negative, but is {command.wait_duration} s")
         self._until = now + command.wait_duration
 
     def step(self, pose: Array, velocity: Array, costmap: Costmap, now: float) -> BehaviorStep:
-        """See `Behavior.step`."""
+        """Implement `Behavior.step`."""
         left = max(self._until - now, 0.0)
         return BehaviorStep(np.zeros(3), left <= 0.0, left)

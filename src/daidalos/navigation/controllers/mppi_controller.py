@@ -130,7 +130,7 @@ class MppiController(Controller):
 
     @property
     def look_ahead(self) -> float:
-        """See `Controller.look_ahead`."""
+        """Implement `Controller.look_ahead`."""
         p = self.parameters
         return max(p.prune_distance, p.vx_max * p.time_steps * p.model_dt) + 0.3
 
@@ -141,7 +141,7 @@ class MppiController(Controller):
         return np.stack([s.x[0], s.y[0], s.yaw[0]], axis=-1).astype(np.float64)
 
     def compute_velocity_commands(self, control: ControlInput) -> Array:
-        """See `Controller.compute_velocity_commands`."""
+        """Implement `Controller.compute_velocity_commands`."""
         self._shift()
         if self.parameters.open_loop and self._last_command is not None:
             control = replace(control, velocity=self._last_command)
@@ -161,13 +161,13 @@ class MppiController(Controller):
         )
 
     def set_speed_limit(self, speed_limit: float, *, percentage: bool) -> None:
-        """See `Controller.set_speed_limit`."""
+        """Implement `Controller.set_speed_limit`."""
         most = self.parameters.vx_max
         limit = most * speed_limit / 100.0 if percentage else speed_limit
         self._speed_limit = most if speed_limit <= 0.0 else min(limit, most)
 
     def reset(self) -> None:
-        """See `Controller.reset`."""
+        """Implement `Controller.reset`."""
         self._controls[:] = 0.0
         self._last_command = None
 

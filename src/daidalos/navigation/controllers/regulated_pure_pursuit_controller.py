@@ -83,11 +83,11 @@ class RegulatedPurePursuitController(Controller):
 
     @property
     def look_ahead(self) -> float:
-        """See `Controller.look_ahead`."""
+        """Implement `Controller.look_ahead`."""
         return max(self.parameters.max_lookahead_dist, self.parameters.lookahead_dist) + 0.5
 
     def compute_velocity_commands(self, control: ControlInput) -> Array:
-        """See `Controller.compute_velocity_commands`."""
+        """Implement `Controller.compute_velocity_commands`."""
         to_goal = between(control.pose, control.goal)
         if math.hypot(float(to_goal[0]), float(to_goal[1])) <= 0.5 * control.xy_goal_tolerance:
             self._at_goal = True
@@ -106,13 +106,13 @@ class RegulatedPurePursuitController(Controller):
         return np.array([speed, 0.0, turn])
 
     def set_speed_limit(self, speed_limit: float, *, percentage: bool) -> None:
-        """See `Controller.set_speed_limit`."""
+        """Implement `Controller.set_speed_limit`."""
         most = self.parameters.desired_linear_vel
         limit = most * speed_limit / 100.0 if percentage else speed_limit
         self._speed_limit = most if speed_limit <= 0.0 else min(limit, most)
 
     def reset(self) -> None:
-        """See `Controller.reset`."""
+        """Implement `Controller.reset`."""
         self._at_goal = False
         self._rotating = False
 

@@ -80,11 +80,11 @@ class RotationShimController(Controller):
 
     @property
     def look_ahead(self) -> float:
-        """See `Controller.look_ahead`."""
+        """Implement `Controller.look_ahead`."""
         return max(self.primary.look_ahead, self.parameters.forward_sampling_distance)
 
     def compute_velocity_commands(self, control: ControlInput) -> Array:
-        """See `Controller.compute_velocity_commands`."""
+        """Implement `Controller.compute_velocity_commands`."""
         to_goal = between(control.pose, control.goal)
         away = math.hypot(float(to_goal[0]), float(to_goal[1]))
         if self.parameters.rotate_to_goal_heading and (self._at_goal or away <= 0.8 * control.xy_goal_tolerance):
@@ -99,11 +99,11 @@ class RotationShimController(Controller):
         return self.primary.compute_velocity_commands(control)
 
     def set_speed_limit(self, speed_limit: float, *, percentage: bool) -> None:
-        """See `Controller.set_speed_limit`."""
+        """Implement `Controller.set_speed_limit`."""
         self.primary.set_speed_limit(speed_limit, percentage=percentage)
 
     def reset(self) -> None:
-        """See `Controller.reset`."""
+        """Implement `Controller.reset`."""
         self._starting = True
         self._turning = False
         self._at_goal = False

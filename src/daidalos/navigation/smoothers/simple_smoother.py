@@ -35,7 +35,7 @@ class SimpleSmoother(Smoother):
     parameters: SimpleSmootherParameters
 
     def smooth(self, path: Array, costmap: Costmap) -> Array:
-        """See `Smoother.smooth`."""
+        """Implement `Smoother.smooth`."""
         if path.shape[0] < 3:
             return path.copy()
         p = self.parameters

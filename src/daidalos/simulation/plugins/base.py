@@ -33,12 +33,12 @@ class ReadElement(Element):
         self._read_tags: set[str] = set()
 
     def first(self, *tags: str) -> Element | None:
-        """See `Element.first`."""
+        """Implement `Element.first`."""
         self._read_tags.update(tags)
         return super().first(*tags)
 
     def all(self, *tags: str) -> list[Element]:
-        """See `Element.all`."""
+        """Implement `Element.all`."""
         self._read_tags.update(tags)
         return super().all(*tags)
 

@@ -37,11 +37,11 @@ class SimpleGoalChecker(GoalChecker):
 
     @property
     def tolerances(self) -> tuple[float, float]:
-        """See `GoalChecker.tolerances`."""
+        """Implement `GoalChecker.tolerances`."""
         return self.parameters.xy_goal_tolerance, self.parameters.yaw_goal_tolerance
 
     def is_goal_reached(self, pose: Array, goal: Array, velocity: Array) -> bool:
-        """See `GoalChecker.is_goal_reached`."""
+        """Implement `GoalChecker.is_goal_reached`."""
         away = math.hypot(float(goal[0] - pose[0]), float(goal[1] - pose[1]))
         near = away <= self.parameters.xy_goal_tolerance
         if not near and not (self.parameters.stateful and self._arrived):
@@ -50,5 +50,5 @@ class SimpleGoalChecker(GoalChecker):
         return abs(float(wrap(goal[2] - pose[2]))) <= self.parameters.yaw_goal_tolerance
 
     def reset(self) -> None:
-        """See `GoalChecker.reset`."""
+        """Implement `GoalChecker.reset`."""
         self._arrived = False

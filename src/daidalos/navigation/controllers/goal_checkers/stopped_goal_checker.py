@@ -31,7 +31,7 @@ class StoppedGoalChecker(SimpleGoalChecker):
     parameters: StoppedGoalCheckerParameters
 
     def is_goal_reached(self, pose: Array, goal: Array, velocity: Array) -> bool:
-        """See `GoalChecker.is_goal_reached`."""
+        """Implement `GoalChecker.is_goal_reached`."""
         there = super().is_goal_reached(pose, goal, velocity)
         speed = math.hypot(float(velocity[0]), float(velocity[1]))
         return (

@@ -34,7 +34,7 @@ class SimpleProgressChecker(ProgressChecker):
         self._base: tuple[Array, float] | None = None
 
     def check(self, pose: Array, now: float) -> bool:
-        """See `ProgressChecker.check`."""
+        """Implement `ProgressChecker.check`."""
         if self._base is None or self.moved_enough(self._base[0], pose):
             self._base = (pose.copy(), now)
         return now - self._base[1] <= self.parameters.movement_time_allowance
@@ -45,5 +45,5 @@ class SimpleProgressChecker(ProgressChecker):
         return moved > self.parameters.required_movement_radius
 
     def reset(self) -> None:
-        """See `ProgressChecker.reset`."""
+        """Implement `ProgressChecker.reset`."""
         self._base = None

@@ -141,7 +141,7 @@ class ObstacleLayer(Layer):
 
     @property
     def inputs(self) -> tuple[Input, ...]:
-        """See `Layer.inputs`."""
+        """Implement `Layer.inputs`."""
         return tuple(
             Input(source.topic or name, LaserScanData, partial(self.add_scan, name))
             for name, source in self.sources.items()

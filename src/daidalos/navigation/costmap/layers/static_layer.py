@@ -43,7 +43,7 @@ class StaticLayer(Layer):
 
     @property
     def inputs(self) -> tuple[Input, ...]:
-        """See `Layer.inputs`."""
+        """Implement `Layer.inputs`."""
         return (Input(self.parameters.map_topic, OccupancyGrid, self.set_map),)
 
     @property

@@ -25,5 +25,5 @@ class BackUp(ActionNode):
 
     @classmethod
     def goal(cls, inputs: Mapping[str, Any]) -> dict[str, Any]:
-        """See `ActionNode.goal`."""
+        """Implement `ActionNode.goal`."""
         return {**inputs, "target.x": inputs["backup_dist"], "speed": inputs["backup_speed"]}

@@ -24,5 +24,5 @@ class ComputePathToPose(ActionNode):
 
     @classmethod
     def goal(cls, inputs: Mapping[str, Any]) -> dict[str, Any]:
-        """See `ActionNode.goal`."""
+        """Implement `ActionNode.goal`."""
         return {**inputs, "use_start": "start" in inputs}

@@ -24,5 +24,5 @@ class DriveOnHeading(ActionNode):
 
     @classmethod
     def goal(cls, inputs: Mapping[str, Any]) -> dict[str, Any]:
-        """See `ActionNode.goal`."""
+        """Implement `ActionNode.goal`."""
         return {**inputs, "target.x": inputs["dist_to_travel"]}

@@ -27,10 +27,10 @@ class SmoothPath(ActionNode):
 
     @classmethod
     def goal(cls, inputs: Mapping[str, Any]) -> dict[str, Any]:
-        """See `ActionNode.goal`."""
+        """Implement `ActionNode.goal`."""
         return {**inputs, "path": inputs["unsmoothed_path"]}
 
     @classmethod
     def outputs(cls, result: Any) -> dict[str, Any]:
-        """See `ActionNode.outputs`."""
+        """Implement `ActionNode.outputs`."""
         return {**super().outputs(result), "smoothed_path": result.path}

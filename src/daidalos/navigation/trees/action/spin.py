@@ -24,5 +24,5 @@ class Spin(ActionNode):
 
     @classmethod
     def goal(cls, inputs: Mapping[str, Any]) -> dict[str, Any]:
-        """See `ActionNode.goal`."""
+        """Implement `ActionNode.goal`."""
         return {**inputs, "target_yaw": inputs["spin_dist"]}

@@ -61,7 +61,7 @@ class CostCritic(Critic):
         self._price[NO_INFORMATION] = 0.0
 
     def score(self, rollouts: Rollouts, scene: Scene) -> None:
-        """See `Critic.score`."""
+        """Implement `Critic.score`."""
         p = self.parameters
         costmap = scene.control.costmap
         tolerated = 0

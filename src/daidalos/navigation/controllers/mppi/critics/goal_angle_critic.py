@@ -33,7 +33,7 @@ class GoalAngleCritic(Critic):
     parameters: GoalAngleCriticParameters
 
     def score(self, rollouts: Rollouts, scene: Scene) -> None:
-        """See `Critic.score`."""
+        """Implement `Critic.score`."""
         goal, pose = scene.control.goal, scene.control.pose
         away = math.hypot(float(goal[0] - pose[0]), float(goal[1] - pose[1]))
         if away > min(self.parameters.threshold_to_consider, scene.control.xy_goal_tolerance):

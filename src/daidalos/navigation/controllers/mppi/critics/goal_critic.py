@@ -28,7 +28,7 @@ class GoalCritic(Critic):
     parameters: GoalCriticParameters
 
     def score(self, rollouts: Rollouts, scene: Scene) -> None:
-        """See `Critic.score`."""
+        """Implement `Critic.score`."""
         if scene.control.distance_to_goal > self.parameters.threshold_to_consider:
             return
         x, y = (float(value) for value in scene.control.goal[:2])

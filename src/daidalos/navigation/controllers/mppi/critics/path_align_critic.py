@@ -42,7 +42,7 @@ class PathAlignCritic(Critic):
     parameters: PathAlignCriticParameters
 
     def score(self, rollouts: Rollouts, scene: Scene) -> None:
-        """See `Critic.score`."""
+        """Implement `Critic.score`."""
         p = self.parameters
         if scene.control.distance_to_goal < p.threshold_to_consider or scene.furthest < p.offset_from_furthest:
             return

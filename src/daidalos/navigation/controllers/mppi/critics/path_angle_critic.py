@@ -35,7 +35,7 @@ class PathAngleCritic(Critic):
     parameters: PathAngleCriticParameters
 
     def score(self, rollouts: Rollouts, scene: Scene) -> None:
-        """See `Critic.score`."""
+        """Implement `Critic.score`."""
         p = self.parameters
         if scene.control.distance_to_goal < p.threshold_to_consider:
             return

@@ -27,7 +27,7 @@ class PreferForwardCritic(Critic):
     parameters: PreferForwardCriticParameters
 
     def score(self, rollouts: Rollouts, scene: Scene) -> None:
-        """See `Critic.score`."""
+        """Implement `Critic.score`."""
         if scene.control.distance_to_goal < self.parameters.threshold_to_consider:
             return
         reverse = np.maximum(-rollouts.vx, 0.0).sum(axis=1) * np.float32(scene.step)

@@ -24,7 +24,7 @@ class TwirlingCritic(Critic):
     parameters: TwirlingCriticParameters
 
     def score(self, rollouts: Rollouts, scene: Scene) -> None:
-        """See `Critic.score`."""
+        """Implement `Critic.score`."""
         if scene.control.distance_to_goal < scene.control.xy_goal_tolerance:
             return
         rollouts.costs[:] += np.float32(self.parameters.cost_weight) * np.abs(rollouts.wz).mean(axis=1)
