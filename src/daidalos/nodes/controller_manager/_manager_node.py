@@ -15,11 +15,9 @@ from rclpy.parameter import Parameter
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
 from daidalos.common.errors import UserError
-from daidalos.common.extensions import listing, load
 from daidalos.control.component import INACTIVE, UNCONFIGURED
 from daidalos.control.controllers.base import ControllerContext
 from daidalos.control.errors import ControlError
-from daidalos.control.extensions import CONTROLLERS
 from daidalos.control.hardware.base import Hardware
 from daidalos.control.manager import ControllerManager
 from daidalos.control.switching import Strictness
@@ -27,17 +25,14 @@ from daidalos.description.robot import Robot
 from daidalos.description.world import Model
 from daidalos.nodes.controller_manager._controller_node import ControllerNode
 from daidalos.nodes.controller_manager._diagnostics import start_diagnostics
+from daidalos.nodes.controller_manager._listing_services import ListingServices
 from daidalos.nodes.controller_manager._reports import (
     activity_message,
     component_message,
-    controller_message,
-    interface_messages,
 )
 from daidalos.samples.sensors import Sample
 
 _LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL, reliability=ReliabilityPolicy.RELIABLE)
-_CHAINABLE = "controller_interface::ChainableControllerInterface"
-_PLAIN = "controller_interface::ControllerInterface"
 
 
 class ControllerManagerNode(Node):
@@ -154,10 +149,6 @@ class ControllerManagerNode(Node):
 
         group = MutuallyExclusiveCallbackGroup()
         for kind, name, answer in (
-            (srv.ListControllers, "list_controllers", self._list_controllers),
-            (srv.ListControllerTypes, "list_controller_types", self._list_types),
-            (srv.ListHardwareComponents, "list_hardware_components", self._list_components),
-            (srv.ListHardwareInterfaces, "list_hardware_interfaces", self._list_interfaces),
             (srv.LoadController, "load_controller", self._changing(self._load)),
             (srv.ConfigureController, "configure_controller", self._changing(self._configure)),
             (srv.CleanupController, "cleanup_controller", self._changing(self._cleanup)),
@@ -167,6 +158,7 @@ class ControllerManagerNode(Node):
             (srv.SetHardwareComponentState, "set_hardware_component_state", self._changing(self._set_component)),
         ):
             self.create_service(kind, f"~/{name}", answer, callback_group=group)
+        ListingServices(self, self._running, self.lock, group)
 
     def _changing(self, work: Callable[[Any, Any], None]) -> Callable[[Any, Any], Any]:
         """Return a service's callback for something that may fail: the answer says whether it did."""
@@ -199,32 +191,6 @@ class ControllerManagerNode(Node):
         executor = self.executor
         assert executor is not None, "a service can only be called while somebody spins"
         return executor
-
-    def _list_controllers(self, request: Any, response: Any) -> Any:
-        with self.lock:
-            response.controller = [controller_message(self._running, name) for name in self._running.controllers]
-        return response
-
-    def _list_types(self, request: Any, response: Any) -> Any:
-        for extension in sorted(listing(CONTROLLERS)):
-            try:
-                cls = load(CONTROLLERS, extension)
-            except UserError as error:
-                self.warn(str(error))
-                continue
-            response.types.append(extension.name)
-            response.base_classes.append(_CHAINABLE if cls.chainable else _PLAIN)
-        return response
-
-    def _list_components(self, request: Any, response: Any) -> Any:
-        with self.lock:
-            response.component = [component_message(self._running, name) for name in self._running.components]
-        return response
-
-    def _list_interfaces(self, request: Any, response: Any) -> Any:
-        with self.lock:
-            response.command_interfaces, response.state_interfaces = interface_messages(self._running)
-        return response
 
     def _load(self, request: Any, response: Any) -> None:
         name = request.name
