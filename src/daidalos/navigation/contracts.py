@@ -124,6 +124,16 @@ class NavigationExtension(ABC):  # noqa: B024 (each contract has its own methods
         self.parameters: Any = kind() if parameters is None and kind is not None else parameters
         self.context = context or _ALONE
 
+    def reconfigure(self, parameters: Any) -> None:
+        """Use other parameters from the next call on; those that are read-only are the same.
+
+        Raises
+        ------
+        ParameterError
+            They cannot be used.
+        """
+        self.parameters = parameters
+
 
 class GlobalPlanner(NavigationExtension):
     """Planner of a path over a costmap."""
@@ -433,6 +443,10 @@ class Behavior(NavigationExtension, Generic[Command]):
     def period(self) -> float:
         """Period of a cycle [s]."""
         return 1.0 / self.context.frequency
+
+    def set_footprint(self, footprint: Footprint) -> None:
+        """Use another outline of the robot from the next cycle on."""
+        self.context = replace(self.context, footprint=footprint)
 
     @classmethod
     @abstractmethod

@@ -9,7 +9,7 @@ from rclpy.node import Node
 
 from daidalos.common.extensions import Kind, find
 from daidalos.navigation.contracts import NavigationContext
-from daidalos.nodes.parameters import declare_plugin, location_of
+from daidalos.nodes.parameters import declare, declare_name, location_of
 
 T = TypeVar("T")
 
@@ -41,7 +41,7 @@ class ExtensionMaker:
             There is no such class, or it cannot be used.
         """
         parameter = f"{name}.plugin"
-        chosen = self._node.declare_parameter(parameter, default).value
+        chosen = declare_name(self._node, parameter, default, "Class of the plugin.")
         made: T = self._make(find(kind, chosen, asked_by=location_of(self._node, parameter)), name)
         return made
 
@@ -51,4 +51,9 @@ class ExtensionMaker:
             return self._make(found, f"{name}.{below}" if below else name)
 
         context = replace(self._context, name=name, maker=make)
-        return cls(declare_plugin(self._node, cls, name), context)
+        made: list[Any] = []
+        parameters = None
+        if cls.Parameters is not None:
+            parameters = declare(self._node, cls.Parameters, name, lambda new: made[0].reconfigure(new))
+        made.append(cls(parameters, context))
+        return made[0]

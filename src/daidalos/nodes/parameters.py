@@ -18,7 +18,7 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 
 from daidalos.common.errors import Location
-from daidalos.common.parameters import Leaf, ParameterError, Parameters, build, replace
+from daidalos.common.parameters import Constraints, Leaf, ParameterError, Parameters, build, replace
 from daidalos.common.suggestions import near
 
 if TYPE_CHECKING:
@@ -112,6 +112,23 @@ def declare(node: Node, kind: type[T], prefix: str = "", reconfigure: Callable[[
         raise _located(node, f"{before}{error.name}", error.problem) from None
     _of_nodes[node].groups[prefix, kind] = _Group(before, values, frozenset(names), reconfigure)
     return values
+
+
+def declare_name(node: Node, name: str, default: str, description: str) -> str:
+    """Declare a parameter that says which class or file to use, and return its value; it is read-only.
+
+    Raises
+    ------
+    ParameterError
+        When the given value is not a string, or empty.
+    """
+    leaf = Leaf(name, default, str, False, Constraints(description, not_empty=True, read_only=True))
+    try:
+        value: str = _value(node, leaf, "", read_only=True)
+        leaf.check(value)
+    except ParameterError as error:
+        raise _located(node, name, error.problem) from None
+    return value
 
 
 def location_of(node: Node, name: str) -> Location:
@@ -234,8 +251,3 @@ def _on_set_parameters(state: _NodeParameters, parameters: list[Parameter[Any]])
 def _is_for_all_nodes(name: str) -> bool:
     """Return whether a parameter is one that every node may be given, declared or not."""
     return name == "use_sim_time" or name.startswith(("qos_overrides.", "start_type_description_service"))
-
-
-def declare_plugin(node: Node, kind: Any, name: str) -> Any:
-    """Declare the parameters of a plugin's class, its `Parameters`, below a name; None where it has none."""
-    return None if kind.Parameters is None else declare(node, kind.Parameters, name)

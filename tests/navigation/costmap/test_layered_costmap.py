@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from daidalos.common.parameters import ParameterError
 from daidalos.mapping.grid import OccupancyGrid
 from daidalos.navigation.contracts import NavigationContext
-from daidalos.navigation.costmap.costmap import CostmapError
 from daidalos.navigation.costmap.footprint import Footprint
 from daidalos.navigation.costmap.layered_costmap import CostmapParameters, LayeredCostmap
 from daidalos.navigation.costmap.layers.inflation_layer import InflationLayer, InflationLayerParameters
@@ -148,5 +148,5 @@ def test_the_circumscribed_cost_comes_from_inflation():
 
 
 def test_sizes_must_be_positive():
-    with pytest.raises(CostmapError, match="positive"):
+    with pytest.raises(ParameterError, match="must be above 0"):
         CostmapParameters(width=0.0)

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+import numpy as np
 import pytest
 import rclpy
 from action_msgs.msg import GoalStatus
 from builtin_interfaces.msg import Duration
-from geometry_msgs.msg import TransformStamped
+from geometry_msgs.msg import Point32, Polygon, PolygonStamped, TransformStamped
 from nav2_msgs.action import DriveOnHeading, Wait
 from nav2_msgs.msg import Costmap
 from rclpy.action import ActionClient
@@ -16,6 +17,7 @@ from rclpy.executors import SingleThreadedExecutor
 from rclpy.lifecycle import TransitionCallbackReturn
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
+from rclpy.task import Future
 from tf2_ros import StaticTransformBroadcaster
 
 from daidalos.nodes.nav2_behaviors.behavior_server import BehaviorServer
@@ -39,15 +41,18 @@ def executor(domain: int) -> Iterator[SingleThreadedExecutor]:
     rclpy.shutdown(context=context)
 
 
-def be_somewhere(robot: Node) -> None:
-    """Say where the robot is, and that nothing is around it."""
+def be_somewhere(robot: Node, obstacle: tuple[float, float] | None = None) -> None:
+    """Publish where the robot is, and the costmap around it with at most one obstacle."""
     transform = TransformStamped(child_frame_id="base_link")
     transform.header.frame_id = "odom"
     transform.transform.rotation.w = 1.0
     robot.broadcaster = StaticTransformBroadcaster(robot)
     robot.broadcaster.sendTransform(transform)
     latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-    costmap = Costmap(data=bytes(40 * 40))
+    costs = np.zeros((40, 40), dtype=np.uint8)
+    if obstacle is not None:
+        costs[int((obstacle[1] + 2.0) / 0.1), int((obstacle[0] + 2.0) / 0.1)] = 254
+    costmap = Costmap(data=costs.tobytes())
     costmap.header.frame_id = "odom"
     costmap.metadata.size_x = costmap.metadata.size_y = 40
     costmap.metadata.resolution = 0.1
@@ -113,3 +118,33 @@ def test_it_can_be_configured_again(executor: SingleThreadedExecutor) -> None:
     ended = sent.result().get_result_async()
     executor.spin_until_future_complete(ended, TIMEOUT_S)
     assert ended.result().status == GoalStatus.STATUS_SUCCEEDED
+
+
+def test_the_published_footprint_is_checked_for_collisions(executor: SingleThreadedExecutor) -> None:
+    server, robot = executor.get_nodes()
+    be_somewhere(robot, obstacle=(0.65, 0.55))  # beside the way of the circle that is assumed at first
+    corners = [(0.2, 0.7), (-0.2, 0.7), (-0.2, -0.7), (0.2, -0.7)]
+    outline = PolygonStamped(polygon=Polygon(points=[Point32(x=x, y=y) for x, y in corners]))
+    outline.header.frame_id = "odom"
+    publisher = robot.create_publisher(PolygonStamped, "local_costmap/published_footprint", 1)
+    timer = robot.create_timer(0.05, lambda: publisher.publish(outline))
+    taken = Future()
+    timer_of_check = robot.create_timer(
+        0.05, lambda: taken.set_result(None) if len(server._footprint.polygon) == 4 and not taken.done() else None
+    )
+    executor.spin_until_future_complete(taken, TIMEOUT_S)
+    robot.destroy_timer(timer_of_check)
+    client = ActionClient(robot, DriveOnHeading, "drive_on_heading")
+    assert client.wait_for_server(TIMEOUT_S)
+    goal = DriveOnHeading.Goal(speed=0.5, time_allowance=Duration(sec=5))
+    goal.target.x = 1.0
+    sent = client.send_goal_async(goal)
+    executor.spin_until_future_complete(sent, TIMEOUT_S)
+    ended = sent.result().get_result_async()
+    executor.spin_until_future_complete(ended, TIMEOUT_S)
+    robot.destroy_timer(timer)
+    result = ended.result()
+    assert (result.status, result.result.error_code) == (
+        GoalStatus.STATUS_ABORTED,
+        DriveOnHeading.Result.COLLISION_AHEAD,
+    )

@@ -176,12 +176,20 @@ def test_a_new_path_takes_over_without_a_stop(bench: Bench) -> None:
 
 
 def test_a_robot_that_does_not_move_makes_no_progress(bench: Bench) -> None:
-    bench.robot.step = lambda seconds, stamp: None  # type: ignore[method-assign]
+    step = bench.robot.step
+    bench.robot.step = lambda seconds, stamp: step(0.0, stamp)  # type: ignore[method-assign]
     began = bench.stage.now
     status, result = bench.drive(straight(1.0))
     assert (status, result.error_code) == (GoalStatus.STATUS_ABORTED, FollowPath.Result.FAILED_TO_MAKE_PROGRESS)
     assert "stuck" in result.error_msg
     assert bench.stage.now - began > 3.0
+
+
+def test_a_transform_older_than_its_tolerance_is_not_used(bench: Bench) -> None:
+    bench.robot.step = lambda seconds, stamp: None  # type: ignore[method-assign]
+    status, result = bench.drive(straight(1.0))
+    assert (status, result.error_code) == (GoalStatus.STATUS_ABORTED, FollowPath.Result.TF_ERROR)
+    assert "s old, longer than transform_tolerance 0.3 s" in result.error_msg
 
 
 def test_goals_are_rejected_while_it_is_not_active(bench: Bench) -> None:
@@ -201,6 +209,15 @@ def test_deactivating_aborts_the_goal_and_stops_the_robot(bench: Bench) -> None:
     del bench.robot.commands[:]
     bench.stage.step_for(1.0)
     assert bench.robot.commands == []
+
+
+def test_parameters_of_plugins_change_while_it_is_active(bench: Bench) -> None:
+    changed = [Parameter("FollowPath.desired_linear_vel", value=0.2), Parameter("failure_tolerance", value=0.1)]
+    assert all(one.successful for one in bench.server.set_parameters(changed))
+    assert bench.drive(straight(1.0))[0] == GoalStatus.STATUS_SUCCEEDED
+    assert max(command[0] for command in bench.robot.commands) == pytest.approx(0.2)
+    refused = bench.server.set_parameters([Parameter("FollowPath.desired_linear_vel", value=0.0)])[0]
+    assert refused.reason == "parameter 'FollowPath.desired_linear_vel' must be above 0, got 0"
 
 
 def test_it_can_be_configured_again(bench: Bench) -> None:

@@ -14,6 +14,7 @@ from nav2_msgs.action import ComputePathToPose
 from nav2_msgs.msg import Costmap
 from nav_msgs.msg import Path
 from rclpy.lifecycle import TransitionCallbackReturn
+from rclpy.parameter import Parameter
 
 from daidalos.nodes.conversions import grid_message, path_array, pose_stamped
 from daidalos.nodes.nav2_planner.planner_server import PlannerServer
@@ -145,6 +146,12 @@ def test_a_goal_without_a_path_is_aborted_with_the_reason(
     assert any(word in result.error_msg for word in reason.split("|"))
     assert result.path.poses == []
     assert bench.plan(goal=pose(1.5, 0.0))[0] == GoalStatus.STATUS_SUCCEEDED
+
+
+def test_slow_planning_is_warned_of(bench: Bench, capfd: pytest.CaptureFixture[str]) -> None:
+    assert bench.server.set_parameters([Parameter("expected_planner_frequency", value=1e7)])[0].successful
+    assert bench.plan(goal=pose(1.5, 0.0))[0] == GoalStatus.STATUS_SUCCEEDED
+    assert "longer than expected_planner_frequency 1e+07 Hz allows" in capfd.readouterr().err
 
 
 def test_unknown_space_is_crossed_where_the_planner_may(bench: Bench) -> None:

@@ -13,6 +13,7 @@ from daidalos.navigation.behaviors.drive_on_heading import (
 )
 from daidalos.navigation.contracts import Behavior, BehaviorStep, NavigationContext
 from daidalos.navigation.costmap.costmap import Costmap
+from daidalos.navigation.costmap.footprint import Footprint
 from daidalos.navigation.errors import InvalidInput
 
 Array = NDArray[np.float64]
@@ -41,6 +42,16 @@ class BackUp(Behavior[BackUpCommand]):
     ) -> None:
         super().__init__(parameters, context)
         self._drive = DriveOnHeading(self.parameters, self.context)
+
+    def reconfigure(self, parameters: DriveOnHeadingParameters) -> None:
+        """See `NavigationExtension.reconfigure`."""
+        super().reconfigure(parameters)
+        self._drive.reconfigure(parameters)
+
+    def set_footprint(self, footprint: Footprint) -> None:
+        """See `Behavior.set_footprint`."""
+        super().set_footprint(footprint)
+        self._drive.set_footprint(footprint)
 
     @classmethod
     def command(cls, goal: Any) -> BackUpCommand:

@@ -106,10 +106,15 @@ class MppiController(Controller):
         critics: Sequence[Critic] | None = None,
     ) -> None:
         super().__init__(parameters, context)
-        p = self.parameters
         self.critics = self._make_critics() if critics is None else tuple(critics)
         self.period = 1.0 / self.context.frequency
         self._generator = np.random.default_rng(self.context.seed)
+        self.reconfigure(self.parameters)
+
+    def reconfigure(self, parameters: MppiParameters) -> None:
+        """See `NavigationExtension.reconfigure`; lifts the speed limit and forgets the last plan."""
+        super().reconfigure(parameters)
+        p = parameters
         self._speed_limit = p.vx_max
         self._controls: Samples = np.zeros((p.time_steps, 2), dtype=np.float32)
         self._last_command: Array | None = None

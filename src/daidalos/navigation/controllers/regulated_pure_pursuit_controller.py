@@ -81,6 +81,11 @@ class RegulatedPurePursuitController(Controller):
         self._at_goal = False
         self._rotating = False
 
+    def reconfigure(self, parameters: RegulatedPurePursuitParameters) -> None:
+        """See `NavigationExtension.reconfigure`; lifts the speed limit."""
+        super().reconfigure(parameters)
+        self._speed_limit = parameters.desired_linear_vel
+
     @property
     def look_ahead(self) -> float:
         """Implement `Controller.look_ahead`."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable
+from dataclasses import dataclass
 from types import SimpleNamespace
 from typing import Any
 
@@ -13,9 +14,12 @@ from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.time import Time
 from tf2_ros import Buffer, TransformException, TransformListener
 
+from daidalos.common.parameters import Parameters, parameter
+from daidalos.common.pose2 import transform_points
 from daidalos.navigation.contracts import Behavior, NavigationContext
 from daidalos.navigation.costmap.costmap import Costmap
 from daidalos.navigation.costmap.footprint import Footprint
+from daidalos.navigation.errors import NavigationError
 from daidalos.navigation.extensions import BEHAVIORS
 from daidalos.nodes.action_results import TransformFailed
 from daidalos.nodes.conversions import pose2_of_transform, twist_message
@@ -23,6 +27,7 @@ from daidalos.nodes.cycles import Cycle, wait_until
 from daidalos.nodes.managed import ManagedNode
 from daidalos.nodes.nav2_costmap_2d._costmap_messages import costmap_of
 from daidalos.nodes.navigation_extensions import ExtensionMaker
+from daidalos.nodes.parameters import declare
 from daidalos.nodes.runner import run
 from daidalos.samples.fields import duration_message, seconds
 
@@ -30,6 +35,9 @@ _LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 _TIMEOUT_S = 10.0
 """Timeout of a goal for the robot pose and the costmap, which arrive soon after a normal start."""
 
+
+_FOOTPRINT_TOLERANCE = 0.005
+"""Difference [m] of corners, as of rounding and of transforms, that is no other outline."""
 
 _DEFAULT_PLUGINS = {
     "spin": "nav2_behaviors::Spin",
@@ -39,20 +47,37 @@ _DEFAULT_PLUGINS = {
 }
 
 
+@dataclass(frozen=True)
+class BehaviorServerParameters(Parameters):
+    """Parameters of the node, by their Nav2 names; `robot_radius` is ours."""
+
+    cycle_frequency: float = parameter(10.0, "Cycles per second.", unit="Hz", above=0.0, read_only=True)
+    local_frame: str = parameter("odom", "Frame in which motions are measured.", not_empty=True, read_only=True)
+    robot_base_frame: str = parameter("base_link", "Frame of the robot's base.", not_empty=True, read_only=True)
+    enable_stamped_cmd_vel: bool = parameter(False, "Whether cmd_vel is stamped.", read_only=True)
+    behavior_plugins: tuple[str, ...] = parameter(
+        tuple(_DEFAULT_PLUGINS), "Names of the behaviours and of their actions.", unique=True, read_only=True
+    )
+    local_costmap_topic: str = parameter(
+        "local_costmap/costmap_raw", "Topic of the costmap for the collision checks.", not_empty=True, read_only=True
+    )
+    local_footprint_topic: str = parameter(
+        "local_costmap/published_footprint", "Topic of the robot's outline for the collision checks.", not_empty=True,
+        read_only=True,
+    )  # fmt: skip
+    robot_radius: float = parameter(
+        0.22, "Radius of the robot until its outline was received.", unit="m", above=0.0, read_only=True
+    )
+
+
 class BehaviorServer(ManagedNode):
-    """Server of an action for every behavior; parameters are Nav2's."""
+    """Server of an action for every behavior."""
 
     def __init__(self, node_name: str = "behavior_server", **kwargs: Any) -> None:
         super().__init__(node_name, **kwargs)
-        self._frequency = self.declare_parameter("cycle_frequency", 10.0).value
-        self._frame = self.declare_parameter("local_frame", "odom").value
-        self._base_frame = self.declare_parameter("robot_base_frame", "base_link").value
-        self._stamped = self.declare_parameter("enable_stamped_cmd_vel", False).value
-        self.declare_parameter("behavior_plugins", list(_DEFAULT_PLUGINS))
-        self.declare_parameter("local_costmap_topic", "local_costmap/costmap_raw")
-        self.declare_parameter("local_footprint_topic", "local_costmap/published_footprint")
-        self.declare_parameter("robot_radius", 0.22)
-        self._footprint = Footprint.circle(self.get_parameter("robot_radius").value)
+        self._settings = declare(self, BehaviorServerParameters)
+        self._footprint = Footprint.circle(self._settings.robot_radius)
+        self._behaviors: list[Behavior[Any]] = []
         self._costmap: Costmap | None = None
         self._velocity = np.zeros(3)
         self._buffer = Buffer()
@@ -60,25 +85,29 @@ class BehaviorServer(ManagedNode):
 
     def configure(self) -> None:
         """Make the behaviours and serve."""
-        from geometry_msgs.msg import Twist, TwistStamped
+        from geometry_msgs.msg import PolygonStamped, Twist, TwistStamped
         from nav2_msgs.msg import Costmap as CostmapMessage
         from nav_msgs.msg import Odometry
         from rosidl_runtime_py.utilities import get_action
 
-        self._command = self.create_publisher(TwistStamped if self._stamped else Twist, "cmd_vel", 1)
-        self.create_subscription(
-            CostmapMessage, self.get_parameter("local_costmap_topic").value, self._on_costmap, _LATCHED
+        self._command = self.create_publisher(
+            TwistStamped if self._settings.enable_stamped_cmd_vel else Twist, "cmd_vel", 1
         )
+        p = self._settings
+        self.create_subscription(CostmapMessage, p.local_costmap_topic, self._on_costmap, _LATCHED)
+        self.create_subscription(PolygonStamped, p.local_footprint_topic, self._on_footprint, 1)
         self.create_subscription(Odometry, "odom", self._on_odometry, 10)
         context = NavigationContext(
             footprint=self._footprint,
-            frequency=self._frequency,
-            global_frame=self._frame,
-            base_frame=self._base_frame,
+            frequency=p.cycle_frequency,
+            global_frame=p.local_frame,
+            base_frame=p.robot_base_frame,
         )
         maker = ExtensionMaker(self, context)
-        for name in self.get_parameter("behavior_plugins").value:
+        self._behaviors.clear()
+        for name in p.behavior_plugins:
             behavior: Behavior[Any] = maker.make(BEHAVIORS, name, _DEFAULT_PLUGINS.get(name, ""))
+            self._behaviors.append(behavior)
             action = get_action(behavior.action)
             self.serve_action(action, name, self._executor_of(behavior, action))
 
@@ -91,6 +120,27 @@ class BehaviorServer(ManagedNode):
     def _on_costmap(self, message: Any) -> None:
         self._costmap = costmap_of(message)
 
+    def _on_footprint(self, message: Any) -> None:
+        """Take the robot's outline, which is published where the robot stands."""
+        try:
+            found = self._buffer.lookup_transform(
+                self._settings.robot_base_frame, message.header.frame_id, Time.from_msg(message.header.stamp)
+            )
+        except TransformException:
+            return  # another one comes
+        corners = np.array([(point.x, point.y) for point in message.polygon.points]).reshape(-1, 2)
+        corners = transform_points(pose2_of_transform(found.transform), corners)
+        known = self._footprint.polygon
+        if corners.shape == known.shape and np.allclose(corners, known, atol=_FOOTPRINT_TOLERANCE):
+            return
+        try:
+            self._footprint = Footprint.of_corners(corners)
+        except NavigationError as error:
+            self.get_logger().warning(f"{self._settings.local_footprint_topic}: {error}")
+            return
+        for behavior in self._behaviors:
+            behavior.set_footprint(self._footprint)
+
     def _on_odometry(self, message: Any) -> None:
         twist = message.twist.twist
         self._velocity = np.array([twist.linear.x, twist.linear.y, twist.angular.z])
@@ -99,7 +149,9 @@ class BehaviorServer(ManagedNode):
         async def execute(goal_handle: Any) -> Any:
             result = action.Result()
             begun = self.get_clock().now()
-            await wait_until(lambda: self._is_over(goal_handle) or self._is_known(), self, self._frequency, _TIMEOUT_S)
+            await wait_until(
+                lambda: self._is_over(goal_handle) or self._is_known(), self, self._settings.cycle_frequency, _TIMEOUT_S
+            )
             if not self._is_over(goal_handle):
                 await self._behave(behavior, action, goal_handle)
             if not goal_handle.is_active:
@@ -117,13 +169,15 @@ class BehaviorServer(ManagedNode):
 
     def _is_known(self) -> bool:
         """Return whether the robot's pose and what is around it are known: the first goal may come before they are."""
-        return self._costmap is not None and bool(self._buffer.can_transform(self._frame, self._base_frame, Time()))
+        return self._costmap is not None and bool(
+            self._buffer.can_transform(self._settings.local_frame, self._settings.robot_base_frame, Time())
+        )
 
     async def _behave(self, behavior: Behavior[Any], action: Any, goal_handle: Any) -> None:
         """Carry out a behaviour until it is done or its goal is over, and stop the robot."""
         try:
             behavior.start(behavior.command(_plain(goal_handle.request)), self._pose(), self._now())
-            with Cycle(self, self._frequency) as cycle:
+            with Cycle(self, self._settings.cycle_frequency) as cycle:
                 while not self._is_over(goal_handle) and self._go_on(behavior, action, goal_handle):
                     await cycle.next()
         finally:
@@ -145,13 +199,13 @@ class BehaviorServer(ManagedNode):
 
     def _pose(self) -> Any:
         try:
-            found = self._buffer.lookup_transform(self._frame, self._base_frame, Time())
+            found = self._buffer.lookup_transform(self._settings.local_frame, self._settings.robot_base_frame, Time())
         except TransformException as error:
             raise TransformFailed(str(error)) from None
         return pose2_of_transform(found.transform)
 
     def _publish_velocity(self, velocity: Any) -> None:
-        frame = self._base_frame if self._stamped else None
+        frame = self._settings.robot_base_frame if self._settings.enable_stamped_cmd_vel else None
         self._command.publish(twist_message(velocity, frame, self.get_clock().now().to_msg()))
 
 

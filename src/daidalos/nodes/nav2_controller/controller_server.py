@@ -12,6 +12,7 @@ from rclpy.time import Time
 from tf2_ros import TransformException
 
 from daidalos.common.extensions import Kind
+from daidalos.common.parameters import Parameters, parameter
 from daidalos.navigation.controllers.follow_path import FollowPath
 from daidalos.navigation.errors import NavigationError
 from daidalos.navigation.extensions import CONTROLLERS, GOAL_CHECKERS, PROGRESS_CHECKERS
@@ -21,6 +22,7 @@ from daidalos.nodes.cycles import Cycle
 from daidalos.nodes.managed import ContainedNode, ManagedNode
 from daidalos.nodes.nav2_costmap_2d._costmap_node import CostmapNode
 from daidalos.nodes.navigation_extensions import ExtensionMaker
+from daidalos.nodes.parameters import declare
 from daidalos.nodes.runner import run
 
 
@@ -40,19 +42,34 @@ class _Pursuit:
     goal: Any
 
 
+@dataclass(frozen=True)
+class ControllerServerParameters(Parameters):
+    """Parameters of the node, by their Nav2 names."""
+
+    controller_frequency: float = parameter(20.0, "Control cycles per second.", unit="Hz", above=0.0, read_only=True)
+    failure_tolerance: float = parameter(
+        0.3, "How long a controller may fail before the goal is aborted; negative for ever.", unit="s"
+    )
+    costmap_update_timeout: float = parameter(0.3, "How long to wait for the costmap.", unit="s", minimum=0.0)
+    odom_topic: str = parameter("odom", "Topic of the odometry.", not_empty=True, read_only=True)
+    enable_stamped_cmd_vel: bool = parameter(False, "Whether cmd_vel is stamped.", read_only=True)
+    controller_plugins: tuple[str, ...] = parameter(
+        ("FollowPath",), "Names of the controllers.", not_empty=True, unique=True, read_only=True
+    )
+    goal_checker_plugins: tuple[str, ...] = parameter(
+        ("goal_checker",), "Names of the goal checkers.", not_empty=True, unique=True, read_only=True
+    )
+    progress_checker_plugins: tuple[str, ...] = parameter(
+        ("progress_checker",), "Names of the progress checkers.", not_empty=True, unique=True, read_only=True
+    )
+
+
 class ControllerServer(ManagedNode):
-    """Server of ``follow_path`` that publishes ``cmd_vel``; parameters are Nav2's."""
+    """Server of ``follow_path`` that publishes ``cmd_vel``."""
 
     def __init__(self, node_name: str = "controller_server", **kwargs: Any) -> None:
         super().__init__(node_name, **kwargs)
-        self._frequency = self.declare_parameter("controller_frequency", 20.0).value
-        self._tolerance = self.declare_parameter("failure_tolerance", 0.3).value
-        self._stamped = self.declare_parameter("enable_stamped_cmd_vel", False).value
-        self.declare_parameter("costmap_update_timeout", 0.3)
-        self.declare_parameter("controller_plugins", ["FollowPath"])
-        self.declare_parameter("goal_checker_plugins", ["goal_checker"])
-        self.declare_parameter("progress_checker_plugins", ["progress_checker"])
-        self.declare_parameter("odom_topic", "odom")
+        self._settings = declare(self, ControllerServerParameters, reconfigure=self._reconfigure)
         self._costmap = CostmapNode("local_costmap", self)
         self._contained = ContainedNode(self._costmap)
         self.add_managed_entity(self._contained)
@@ -61,24 +78,32 @@ class ControllerServer(ManagedNode):
         self._current: Any = None
         self._pursuit: _Pursuit | None = None
 
+    def _reconfigure(self, parameters: ControllerServerParameters) -> None:
+        """Use another tolerance and timeout from the next goal on."""
+        self._settings = parameters
+
     def configure(self) -> None:
         """Make controllers and checkers and serve."""
         from geometry_msgs.msg import Twist, TwistStamped
         from nav2_msgs.action import FollowPath as FollowPathAction
         from nav_msgs.msg import Odometry, Path
 
-        maker = ExtensionMaker(self, replace(self._costmap.extension_context, frequency=self._frequency))
+        maker = ExtensionMaker(
+            self, replace(self._costmap.extension_context, frequency=self._settings.controller_frequency)
+        )
         kinds: tuple[tuple[str, Kind[Any], str], ...] = (
             ("controller_plugins", CONTROLLERS, "nav2_mppi_controller::MPPIController"),
             ("goal_checker_plugins", GOAL_CHECKERS, "nav2_controller::SimpleGoalChecker"),
             ("progress_checker_plugins", PROGRESS_CHECKERS, "nav2_controller::SimpleProgressChecker"),
         )
         for group, kind, default in kinds:
-            names = self.get_parameter(group).value
+            names = getattr(self._settings, group)
             self._plugins[group] = {name: maker.make(kind, name, default) for name in names}
-        self._command = self.create_publisher(TwistStamped if self._stamped else Twist, "cmd_vel", 1)
+        self._command = self.create_publisher(
+            TwistStamped if self._settings.enable_stamped_cmd_vel else Twist, "cmd_vel", 1
+        )
         self._local_plan = self.create_publisher(Path, "local_plan", 1)
-        self.create_subscription(Odometry, self.get_parameter("odom_topic").value, self._on_odometry, 10)
+        self.create_subscription(Odometry, self._settings.odom_topic, self._on_odometry, 10)
         self.serve_action(FollowPathAction, "follow_path", self._follow)
 
     def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
@@ -96,10 +121,10 @@ class ControllerServer(ManagedNode):
         result = FollowPathAction.Result()
         self._current = goal_handle
         try:
-            await self._costmap.until_current(self, self.get_parameter("costmap_update_timeout").value)
+            await self._costmap.until_current(self, self._settings.costmap_update_timeout)
             if self._goes_on(goal_handle):
                 self._pursuit = self._take_up(goal_handle.request)
-            with Cycle(self, self._frequency) as cycle:
+            with Cycle(self, self._settings.controller_frequency) as cycle:
                 while self._goes_on(goal_handle) and self._drive(goal_handle):
                     await cycle.next()
             replaced = self._current is not goal_handle
@@ -134,7 +159,7 @@ class ControllerServer(ManagedNode):
                 self._named("controller_plugins", plugins[0]),
                 self._named("goal_checker_plugins", plugins[1]),
                 self._named("progress_checker_plugins", plugins[2]),
-                self._tolerance,
+                self._settings.failure_tolerance,
             )
             task.start(path)
         return _Pursuit(task, plugins, request.path.header.frame_id or self._costmap.global_frame, path[-1])
@@ -151,7 +176,7 @@ class ControllerServer(ManagedNode):
         assert self._pursuit is not None
         pose = self._costmap.robot_pose()
         if pose is None:
-            raise TransformFailed("the robot's pose in the local costmap is not known")
+            raise TransformFailed(self._costmap.pose_problem)
         with self._costmap.lock:
             layered = self._costmap.layered
             assert layered is not None
@@ -194,7 +219,7 @@ class ControllerServer(ManagedNode):
         self._publish_velocity(np.zeros(3))
 
     def _publish_velocity(self, velocity: Any) -> None:
-        frame = self._costmap.base_frame if self._stamped else None
+        frame = self._costmap.base_frame if self._settings.enable_stamped_cmd_vel else None
         self._command.publish(twist_message(velocity, frame, self.get_clock().now().to_msg()))
 
     def destroy_node(self) -> None:

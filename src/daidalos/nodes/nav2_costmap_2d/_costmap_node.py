@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+from dataclasses import dataclass
 from typing import Any
 
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
@@ -12,6 +13,7 @@ from rclpy.qos import DurabilityPolicy, QoSProfile, qos_profile_sensor_data
 from rclpy.time import Time
 from tf2_ros import TransformException, TransformListener
 
+from daidalos.common.parameters import parameter
 from daidalos.mapping.grid import OccupancyGrid
 from daidalos.mapping.scan import LaserScanData
 from daidalos.navigation.contracts import Input, Layer, NavigationContext
@@ -35,7 +37,7 @@ from daidalos.nodes.navigation_extensions import ExtensionMaker
 from daidalos.nodes.parameters import declare
 from daidalos.nodes.transforms import BlockingBuffer, SensorPoses
 from daidalos.nodes.warming import warm_up_in_background
-from daidalos.samples.fields import seconds
+from daidalos.samples.fields import nanoseconds, seconds
 
 _LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 _POLL_HZ = 20.0
@@ -45,6 +47,34 @@ _DEFAULT_PLUGINS = {
     "obstacle_layer": "nav2_costmap_2d::ObstacleLayer",
     "inflation_layer": "nav2_costmap_2d::InflationLayer",
 }
+
+
+@dataclass(frozen=True)
+class CostmapNodeParameters(CostmapParameters):
+    """Parameters of a costmap node, by their Nav2 names."""
+
+    global_frame: str = parameter("map", "Frame of the costmap.", not_empty=True, read_only=True)
+    robot_base_frame: str = parameter("base_link", "Frame of the robot's base.", not_empty=True, read_only=True)
+    update_frequency: float = parameter(
+        5.0, "Updates per second, from the next activation on; 0 for none.", unit="Hz", minimum=0.0
+    )
+    publish_frequency: float = parameter(
+        1.0, "Publications per second, from the next activation on; 0 for none.", unit="Hz", minimum=0.0
+    )
+    transform_tolerance: float = parameter(
+        0.3, "Age of the robot's transform from which it is not used.", unit="s", above=0.0
+    )
+    robot_radius: float = parameter(0.1, "Radius of a round robot.", unit="m", above=0.0, read_only=True)
+    footprint: str = parameter(
+        "[]", "Corners of the robot as [[x, y], ...], in metres; [] for a round robot.", read_only=True
+    )
+    footprint_padding: float = parameter(
+        0.01, "Distance by which the corners are moved outwards.", unit="m", minimum=0.0, read_only=True
+    )
+    plugins: tuple[str, ...] = parameter(
+        tuple(_DEFAULT_PLUGINS), "Names of the layers, the lowest first.", unique=True, read_only=True
+    )
+    map_topic: str = parameter("/map", "Topic of the map.", not_empty=True, read_only=True)
 
 
 class CostmapTimedOut(TransformFailed):
@@ -69,6 +99,8 @@ class CostmapNode(ManagedNode):
     layered : LayeredCostmap
         The costmap; hold `lock` while using it.
     lock : RLock
+    pose_problem : str
+        Why `robot_pose` was None the last time.
     """
 
     def __init__(self, name: str, parent: Node) -> None:
@@ -84,30 +116,17 @@ class CostmapNode(ManagedNode):
         )  # fmt: skip
         self.lock = threading.RLock()
         self.layered: LayeredCostmap | None = None
-        self.global_frame = self.declare_parameter("global_frame", "map").value
-        self.base_frame = self.declare_parameter("robot_base_frame", "base_link").value
-        self.declare_parameter("update_frequency", 5.0)
-        self.declare_parameter("publish_frequency", 1.0)
-        self.declare_parameter("transform_tolerance", 0.3)
-        self.declare_parameter("robot_radius", 0.1)
-        self.declare_parameter("footprint", "[]")
-        self.declare_parameter("footprint_padding", 0.01)
-        self.declare_parameter("plugins", list(_DEFAULT_PLUGINS))
-        self.declare_parameter("map_topic", "/map")
-        self._parameters_of_grid = declare(self, CostmapParameters)
-        self.footprint = self._read_footprint()
+        self._settings = p = declare(self, CostmapNodeParameters, reconfigure=self._reconfigure)
+        self.global_frame, self.base_frame = p.global_frame, p.robot_base_frame
+        self.footprint = Footprint.from_parameters(p.footprint, p.robot_radius, p.footprint_padding)
         self.buffer = BlockingBuffer(node=self)
         self._listener = TransformListener(self.buffer, self)
         self._sensor_poses = SensorPoses(self.buffer, self.base_frame, self.get_logger())
         self._compiled = warm_up_in_background("daidalos.navigation", self.get_logger())
         self._timers: list[Any] = []
 
-    def _read_footprint(self) -> Footprint:
-        return Footprint.from_parameters(
-            self.get_parameter("footprint").value,
-            self.get_parameter("robot_radius").value,
-            self.get_parameter("footprint_padding").value,
-        )
+    def _reconfigure(self, parameters: CostmapNodeParameters) -> None:
+        self._settings = parameters
 
     # Transitions.
 
@@ -117,8 +136,8 @@ class CostmapNode(ManagedNode):
         from nav2_msgs.msg import Costmap as CostmapMessage
         from nav_msgs.msg import OccupancyGrid as GridMessage
 
-        layers = [self._make_layer(name) for name in self.get_parameter("plugins").value]
-        self.layered = LayeredCostmap(self._parameters_of_grid, layers)
+        layers = [self._make_layer(name) for name in self._settings.plugins]
+        self.layered = LayeredCostmap(self._settings, layers)
         name = self.get_name()
         self._grid_publisher = self.create_publisher(GridMessage, "costmap", _LATCHED)
         self._raw_publisher = self.create_publisher(CostmapMessage, "costmap_raw", _LATCHED)
@@ -141,12 +160,12 @@ class CostmapNode(ManagedNode):
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Start to update and publish."""
         self._timers = [
-            self.create_timer(1.0 / self.get_parameter(name).value, callback)
-            for name, callback in (
-                ("update_frequency", self._update),
-                ("publish_frequency", self._publish),
+            self.create_timer(1.0 / frequency, callback)
+            for frequency, callback in (
+                (self._settings.update_frequency, self._update),
+                (self._settings.publish_frequency, self._publish),
             )
-            if self.get_parameter(name).value > 0.0
+            if frequency > 0.0
         ]
         return super().on_activate(state)
 
@@ -170,10 +189,10 @@ class CostmapNode(ManagedNode):
         """What layers, planners and controllers of the costmap may use."""
         return NavigationContext(
             footprint=self.footprint,
-            frequency=self.get_parameter("update_frequency").value,
+            frequency=self._settings.update_frequency,
             global_frame=self.global_frame,
             base_frame=self.base_frame,
-            track_unknown_space=self._parameters_of_grid.track_unknown_space,
+            track_unknown_space=self._settings.track_unknown_space,
         )
 
     def _make_layer(self, name: str) -> Layer:
@@ -193,7 +212,7 @@ class CostmapNode(ManagedNode):
             with self.lock:
                 listened.take(grid)
 
-        self.create_subscription(GridMessage, listened.topic or self.get_parameter("map_topic").value, take, _LATCHED)
+        self.create_subscription(GridMessage, listened.topic or self._settings.map_topic, take, _LATCHED)
 
     def _listen_to_scans(self, listened: Input) -> None:
         from sensor_msgs.msg import LaserScan
@@ -217,10 +236,22 @@ class CostmapNode(ManagedNode):
     # Cycle.
 
     def robot_pose(self) -> Any | None:
-        """Return the latest pose (x, y, yaw) of the robot in the costmap's frame, None while it is not known."""
+        """Return the latest pose (x, y, yaw) of the robot in the costmap's frame.
+
+        None while it is not known, or older than ``transform_tolerance``.
+        """
         try:
             found = self.buffer.lookup_transform(self.global_frame, self.base_frame, Time())
         except TransformException:
+            self.pose_problem = f"there is no transform from {self.base_frame} to {self.global_frame}"
+            return None
+        stamp_ns = nanoseconds(found.header.stamp)
+        age = (self.get_clock().now().nanoseconds - stamp_ns) * 1e-9
+        if stamp_ns and age > self._settings.transform_tolerance:  # static transforms have no time
+            self.pose_problem = (
+                f"the transform from {self.base_frame} to {self.global_frame} is {age:.3g} s old, "
+                f"longer than transform_tolerance {self._settings.transform_tolerance:g} s"
+            )
             return None
         return pose2_of_transform(found.transform)
 
@@ -254,19 +285,19 @@ class CostmapNode(ManagedNode):
 
     def _missing_inputs(self) -> str:
         if self.robot_pose() is None:
-            return f"there is no transform from {self.base_frame} to {self.global_frame}"
+            return self.pose_problem
         return "there is no map" if not self._has_maps() else "it was not yet updated"
 
     _updates = 0
+    pose_problem = ""
 
     def _update(self) -> None:
         if not self._compiled.done():
             return
         pose = self.robot_pose()
+        if pose is None:
+            self.get_logger().info(f"waiting for the robot's pose: {self.pose_problem}", throttle_duration_sec=5.0)
         if pose is None or self.layered is None:
-            self.get_logger().info(
-                f"waiting for the transform from {self.base_frame} to {self.global_frame}", throttle_duration_sec=5.0
-            )
             return
         with self.lock:
             self.layered.update(pose, self.get_clock().now().nanoseconds * 1e-9)

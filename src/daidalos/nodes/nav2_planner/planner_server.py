@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import sys
 import time
+from dataclasses import dataclass
 from typing import Any
 
 from rclpy.time import Time
 from tf2_ros import TransformException
 
+from daidalos.common.parameters import Parameters, parameter
 from daidalos.common.pose2 import compose
 from daidalos.navigation.contracts import GlobalPlanner
 from daidalos.navigation.errors import NavigationError
@@ -18,6 +20,7 @@ from daidalos.nodes.conversions import path_message, pose2_of, pose2_of_transfor
 from daidalos.nodes.managed import ContainedNode, ManagedNode
 from daidalos.nodes.nav2_costmap_2d._costmap_node import CostmapNode
 from daidalos.nodes.navigation_extensions import ExtensionMaker
+from daidalos.nodes.parameters import declare
 from daidalos.nodes.runner import run
 from daidalos.samples.fields import time_message
 
@@ -28,25 +31,40 @@ class UnknownPlanner(NavigationError):
     code = "INVALID_PLANNER"
 
 
+@dataclass(frozen=True)
+class PlannerServerParameters(Parameters):
+    """Parameters of the node, by their Nav2 names."""
+
+    planner_plugins: tuple[str, ...] = parameter(
+        ("GridBased",), "Names of the planners.", not_empty=True, unique=True, read_only=True
+    )
+    expected_planner_frequency: float = parameter(
+        1.0, "Plans per second below which a warning is logged; 0 for none.", unit="Hz", minimum=0.0
+    )
+    costmap_update_timeout: float = parameter(1.0, "How long to wait for the costmap.", unit="s", minimum=0.0)
+
+
 class PlannerServer(ManagedNode):
-    """Server of ``compute_path_to_pose``; parameters are Nav2's."""
+    """Server of ``compute_path_to_pose``."""
 
     def __init__(self, node_name: str = "planner_server", **kwargs: Any) -> None:
         super().__init__(node_name, **kwargs)
-        self.declare_parameter("planner_plugins", ["GridBased"])
-        self.declare_parameter("expected_planner_frequency", 1.0)
-        self.declare_parameter("costmap_update_timeout", 1.0)
+        self._settings = declare(self, PlannerServerParameters, reconfigure=self._reconfigure)
         self._costmap = CostmapNode("global_costmap", self)
         self._contained = ContainedNode(self._costmap)
         self.add_managed_entity(self._contained)
         self._planners: dict[str, GlobalPlanner] = {}
+
+    def _reconfigure(self, parameters: PlannerServerParameters) -> None:
+        """Use another frequency and timeout from the next goal on."""
+        self._settings = parameters
 
     def configure(self) -> None:
         """Make the planners and serve."""
         from nav2_msgs.action import ComputePathToPose
         from nav_msgs.msg import Path
 
-        self._planners = {name: self._make_planner(name) for name in self.get_parameter("planner_plugins").value}
+        self._planners = {name: self._make_planner(name) for name in self._settings.planner_plugins}
         self._plan_publisher = self.create_publisher(Path, "plan", 1)
         self.serve_action(ComputePathToPose, "compute_path_to_pose", self._compute_path)
 
@@ -59,7 +77,7 @@ class PlannerServer(ManagedNode):
 
         result = ComputePathToPose.Result()
         begun = time.monotonic_ns()
-        await self._costmap.until_current(self, self.get_parameter("costmap_update_timeout").value)
+        await self._costmap.until_current(self, self._settings.costmap_update_timeout)
         if not goal_handle.is_active:
             return result
         if goal_handle.is_cancel_requested:
@@ -67,11 +85,20 @@ class PlannerServer(ManagedNode):
             return result
         path = self._plan(goal_handle.request)
         result.path = path_message(path, self._costmap.global_frame, self.get_clock().now().to_msg())
-        took = time_message(time.monotonic_ns() - begun)
+        took_ns = time.monotonic_ns() - begun
+        took = time_message(took_ns)
         result.planning_time.sec, result.planning_time.nanosec = took.sec, took.nanosec
+        self._warn_if_slow(took_ns * 1e-9)
         self._plan_publisher.publish(result.path)
         goal_handle.succeed()
         return result
+
+    def _warn_if_slow(self, took: float) -> None:
+        frequency = self._settings.expected_planner_frequency
+        if took * frequency > 1.0:
+            self.get_logger().warning(
+                f"planning took {took:.3g} s, longer than expected_planner_frequency {frequency:g} Hz allows"
+            )
 
     def _plan(self, request: Any) -> Any:
         name = request.planner_id or next(iter(self._planners))
@@ -80,7 +107,7 @@ class PlannerServer(ManagedNode):
             raise UnknownPlanner(f"there is no planner '{name}'; there are: {', '.join(self._planners)}")
         start = self._in_global_frame(request.start) if request.use_start else self._costmap.robot_pose()
         if start is None:
-            raise TransformFailed("the robot's place on the map is not known")
+            raise TransformFailed(self._costmap.pose_problem)
         goal = self._in_global_frame(request.goal)
         return planner.create_plan(self._costmap.snapshot(), start, goal)
 

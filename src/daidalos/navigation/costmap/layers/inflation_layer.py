@@ -10,6 +10,7 @@ from daidalos.common.kernels import compiled
 from daidalos.common.parameters import Parameters, parameter
 from daidalos.navigation.contracts import Layer, NavigationContext
 from daidalos.navigation.costmap.costmap import (
+    EVERYWHERE,
     FREE_SPACE,
     INSCRIBED_INFLATED_OBSTACLE,
     LETHAL_OBSTACLE,
@@ -54,6 +55,12 @@ class InflationLayer(Layer):
         super().__init__(parameters, context)
         self.inscribed_radius = self.context.footprint.inscribed_radius
         self._table: tuple[float, Costs] | None = None
+        self._is_outdated = False
+
+    def reconfigure(self, parameters: InflationLayerParameters) -> None:
+        """See `NavigationExtension.reconfigure`; the next update inflates the whole costmap."""
+        super().reconfigure(parameters)
+        self._table, self._is_outdated = None, True
 
     def cost_at(self, distance: float) -> int:
         """Return the cost at a distance [m] from an obstacle."""
@@ -66,6 +73,9 @@ class InflationLayer(Layer):
 
     def update_bounds(self, robot_pose: Array, now: float, bounds: Bounds) -> Bounds:
         """Expand the bounds by the inflation radius."""
+        if self._is_outdated:
+            self._is_outdated = False
+            return EVERYWHERE
         return bounds.expanded(self.parameters.inflation_radius)
 
     def update_costs(self, costmap: Costmap, window: Window) -> None:

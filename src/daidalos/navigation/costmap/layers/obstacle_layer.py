@@ -122,11 +122,9 @@ class ObstacleLayer(Layer):
         self, parameters: ObstacleLayerParameters | None = None, context: NavigationContext | None = None
     ) -> None:
         super().__init__(parameters, context)
-        names = self.parameters.observation_sources.split()
-        self.sources = self.parameters.sources or {name: ObservationSource() for name in names}
         self.default = NO_INFORMATION if self.context.track_unknown_space else FREE_SPACE
         self._seen: Costmap | None = None
-        self._buffers: dict[str, list[Observation]] = {name: [] for name in self.sources}
+        self._buffers: dict[str, list[Observation]] = {name: [] for name in self.parameters.sources}
         self._under_robot: Array | None = None
 
     def add_observation(self, observation: Observation, source: str = "scan") -> None:
@@ -144,12 +142,12 @@ class ObstacleLayer(Layer):
         """Implement `Layer.inputs`."""
         return tuple(
             Input(source.topic or name, LaserScanData, partial(self.add_scan, name))
-            for name, source in self.sources.items()
+            for name, source in self.parameters.sources.items()
         )
 
     def add_scan(self, source: str, scan: LaserScanData, base_pose: Array, stamp: float) -> None:
         """Take a scan of one of the sources; see `Observation.from_scan`."""
-        inf_is_valid = self.sources[source].inf_is_valid
+        inf_is_valid = self.parameters.sources[source].inf_is_valid
         self.add_observation(Observation.from_scan(scan, base_pose, stamp, inf_is_valid=inf_is_valid), source)
 
     def match_size(self, costmap: Costmap) -> None:
@@ -164,7 +162,9 @@ class ObstacleLayer(Layer):
         if self._seen is None:
             return bounds
         readings = [
-            (self.sources[name], observation) for name, buffer in self._buffers.items() for observation in buffer
+            (self.parameters.sources[name], observation)
+            for name, buffer in self._buffers.items()
+            for observation in buffer
         ]
         for source, observation in readings:
             if source.clearing:
@@ -173,7 +173,7 @@ class ObstacleLayer(Layer):
             if source.marking:
                 bounds = bounds.including(_mark(self._seen, observation, source))
         for name, buffer in self._buffers.items():
-            oldest = now - self.sources[name].observation_persistence
+            oldest = now - self.parameters.sources[name].observation_persistence
             buffer[:] = [kept for kept in buffer if kept.stamp > oldest]
         if self.parameters.footprint_clearing_enabled:
             self._under_robot = self.context.footprint.at(robot_pose)

@@ -20,11 +20,15 @@ class StaticLayerParameters(Parameters):
 
     map_topic: str = parameter("", "Topic of the map; empty for the costmap's map_topic.", read_only=True)
     lethal_cost_threshold: int = parameter(
-        100, "Value of the map from which a cell is an obstacle.", minimum=0, maximum=100
+        100, "Value of the map from which a cell is an obstacle.", minimum=0, maximum=100, read_only=True
     )
-    unknown_cost_value: int = parameter(-1, "Value of the map that means unknown.", minimum=-1, maximum=255)
-    trinary_costmap: bool = parameter(True, "Whether cells are free, occupied or unknown, and nothing in between.")
-    track_unknown_space: bool = parameter(True, "Whether unknown cells stay unknown instead of free.")
+    unknown_cost_value: int = parameter(
+        -1, "Value of the map that means unknown.", minimum=-1, maximum=255, read_only=True
+    )
+    trinary_costmap: bool = parameter(
+        True, "Whether cells are free, occupied or unknown, and nothing in between.", read_only=True
+    )
+    track_unknown_space: bool = parameter(True, "Whether unknown cells stay unknown instead of free.", read_only=True)
 
 
 class StaticLayer(Layer):

@@ -56,8 +56,12 @@ class CostCritic(Critic):
         self, parameters: CostCriticParameters | None = None, context: NavigationContext | None = None
     ) -> None:
         super().__init__(parameters, context)
-        p = self.parameters
-        self._price = p.cost_weight * (np.arange(256) / LETHAL_OBSTACLE) ** p.cost_power
+        self.reconfigure(self.parameters)
+
+    def reconfigure(self, parameters: CostCriticParameters) -> None:
+        """See `NavigationExtension.reconfigure`."""
+        super().reconfigure(parameters)
+        self._price = parameters.cost_weight * (np.arange(256) / LETHAL_OBSTACLE) ** parameters.cost_power
         self._price[NO_INFORMATION] = 0.0
 
     def score(self, rollouts: Rollouts, scene: Scene) -> None:
