@@ -1,4 +1,4 @@
-"""Which distribution of ROS 2 this stands for."""
+"""Distribution of ROS 2 that this package implements."""
 
 from __future__ import annotations
 

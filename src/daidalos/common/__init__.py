@@ -1,1 +1,1 @@
-"""What all layers share: poses, kernels, the extension registry, errors with file and line, suggestions for names."""
+"""Shared basis of all layers: poses, kernels, the extension registry, errors with file and line, suggestions for names."""

@@ -41,7 +41,7 @@ class ParameterError(UserError, ValueError):
 
 @dataclass(frozen=True)
 class Constraints:
-    """What is declared of a parameter beside its name and type; see `parameter`."""
+    """Constraints of a parameter beside its name and type; see `parameter`."""
 
     description: str
     unit: str = ""

@@ -1,4 +1,4 @@
-"""What of navigation users extend: planners, controllers, costmap layers, behaviours, tree nodes and the like."""
+"""Registry of navigation's extensions: planners, controllers, costmap layers, behaviors, tree nodes and others."""
 
 from __future__ import annotations
 

@@ -15,7 +15,7 @@ T = TypeVar("T")
 
 
 class ExtensionMaker:
-    """Makes extensions with the parameters of a node.
+    """Factory of extensions with the parameters of a node.
 
     Parameters
     ----------

@@ -1,1 +1,1 @@
-"""What sensors measure and commands say, as dataclasses of arrays, and their messages."""
+"""Samples of sensors and commands as dataclasses of arrays, with their messages."""

@@ -37,12 +37,12 @@ class WrenchCommand:
 
 @dataclass(frozen=True)
 class SignalCommand:
-    """That something should happen now."""
+    """Trigger."""
 
 
 @dataclass(frozen=True)
 class FlagCommand:
-    """Whether something should be so."""
+    """Boolean command."""
 
     value: bool = False
 

@@ -18,7 +18,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class DynamicJointSample(Sample):
-    """All state interfaces, by joint: name to value by interface."""
+    """All state interfaces by joint: value by interface name."""
 
     joints: Mapping[str, Mapping[str, float]]
 
@@ -43,7 +43,7 @@ class TrajectoryPoint:
 
 @dataclass(frozen=True, eq=False)
 class TrajectoryCommand:
-    """Where joints should be, when.
+    """Joint positions over time.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ class TrajectoryCommand:
 
 @dataclass(frozen=True)
 class JointTolerance:
-    """What a goal allows one joint; 0 leaves it to the parameters, a negative value lifts the tolerance."""
+    """Goal tolerances of one joint; 0 means the parameters' value, a negative value no tolerance."""
 
     position: float = 0.0
     velocity: float = 0.0
@@ -88,7 +88,7 @@ class TrajectoryRequest:
 
 @dataclass(frozen=True, eq=False)
 class TrajectoryFeedback:
-    """How far a trajectory is; see `TrajectorySample`."""
+    """Progress of a trajectory; see `TrajectorySample`."""
 
     stamp_ns: int
     joints: tuple[str, ...]
@@ -99,7 +99,7 @@ class TrajectoryFeedback:
 
 @dataclass(frozen=True)
 class TrajectoryResult:
-    """How a trajectory ended: the action's error code and a line for people."""
+    """Result of a trajectory: the action's error code and a message."""
 
     SUCCESSFUL = 0
     INVALID_GOAL = -1
@@ -134,14 +134,14 @@ class TrajectorySample(Sample):
 
 @dataclass(frozen=True)
 class SpeedCommand:
-    """How fast trajectories shall run: 1 is as planned, 0 stands still."""
+    """Speed scaling of trajectories: 1 is as planned, 0 stops."""
 
     factor: float
 
 
 @dataclass(frozen=True)
 class TrajectoryStateRequest:
-    """What a trajectory wants at a time [ns]."""
+    """Request for the desired state of a trajectory at a time [ns]."""
 
     time_ns: int
 
@@ -190,7 +190,7 @@ class DofCommand:
 
 @dataclass(frozen=True)
 class Switched:
-    """Something that is switched on or off."""
+    """Request to switch something on or off."""
 
     on: bool
 
@@ -202,7 +202,7 @@ class Asked:
 
 @dataclass(frozen=True)
 class Answer:
-    """Whether a request was carried out, with a line for people."""
+    """Success of a request, with a message."""
 
     success: bool
     text: str = ""

@@ -18,7 +18,7 @@ Source = str | Callable[[Any], Any]
 
 
 class Conversion:
-    """How the objects of a dataclass become messages, or messages become such objects.
+    """Conversion of a dataclass to and from messages.
 
     Fields of equal name hold the same value. An array (n,) becomes a nested message of n numbers, such as a
     ``Vector3``, and a dataclass becomes a nested message by equal names. ``stamp_ns`` and ``frame_id`` are the header,

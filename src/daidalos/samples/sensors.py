@@ -1,4 +1,4 @@
-"""What sensors and a robot's plugins measure.
+"""Samples of sensors and of robots' plugins.
 
 Times are nanoseconds, simulated or of the node's clock; units are SI, quaternions are x, y, z, w, topics are absolute,
 frame ids are without a leading slash.

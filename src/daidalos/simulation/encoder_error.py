@@ -12,7 +12,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class EncoderError:
-    """How a wheel's measured travel differs from what it really rolled.
+    """Error of an encoder relative to the true travel of its wheel.
 
     Parameters
     ----------

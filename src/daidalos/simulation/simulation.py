@@ -155,7 +155,7 @@ class Simulation(Engine):
         return self.instance(model).joint(joint)
 
     def follow(self, model: str, course: PositionTrajectoryCommand) -> None:
-        """Put joints where a trajectory says from now on, in every step until its end, without any force.
+        """Set joints to the positions of a trajectory in every step until its end, without forces.
 
         Raises
         ------

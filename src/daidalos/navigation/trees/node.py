@@ -134,7 +134,7 @@ class Ports:
 
 @dataclass(frozen=True)
 class TreeContext:
-    """What a node of a tree may use beside its ports.
+    """Context of a tree node beside its ports.
 
     Attributes
     ----------

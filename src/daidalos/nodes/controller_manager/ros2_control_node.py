@@ -26,7 +26,7 @@ _MAX_LAG_NS = 1_000_000_000
 
 
 class Ros2ControlNode(ControllerManagerNode):
-    """Waits for ``robot_description``, then runs at ``update_rate`` of its clock."""
+    """Node that waits for ``robot_description``, then runs at ``update_rate`` of its clock."""
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__("controller_manager", **kwargs)

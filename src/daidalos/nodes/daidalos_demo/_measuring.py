@@ -23,7 +23,7 @@ LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
 class TruthRecorder:
-    """Follows the robot's true pose and compares it with where the robot believes to be.
+    """Recorder of the robot's true pose and of the error of its estimate.
 
     Parameters
     ----------

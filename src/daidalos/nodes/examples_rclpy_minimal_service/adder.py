@@ -10,7 +10,7 @@ from daidalos.nodes.runner import run
 
 
 class MinimalService(Adder):
-    """Adds two numbers."""
+    """Server that adds two numbers."""
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__("minimal_service", **kwargs)

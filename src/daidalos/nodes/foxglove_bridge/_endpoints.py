@@ -1,4 +1,4 @@
-"""What the studio's clients open on the graph: subscriptions, publications and calls of services, with bytes."""
+"""Subscriptions, publications and service calls of the studio's clients, with serialized messages."""
 
 from __future__ import annotations
 

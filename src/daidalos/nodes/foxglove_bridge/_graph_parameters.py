@@ -15,7 +15,7 @@ from daidalos.studio.source import Parameter, SourceError
 
 
 class GraphParameters:
-    """Reads and sets parameters of other nodes.
+    """Client of other nodes' parameters.
 
     Parameters
     ----------

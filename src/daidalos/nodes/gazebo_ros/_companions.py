@@ -25,7 +25,7 @@ class Companion(Protocol):
 
 
 class Companions:
-    """Starts and stops the nodes of plugins as models are added and removed.
+    """Manager of the nodes of plugins, started and stopped as models are added and removed.
 
     Parameters
     ----------

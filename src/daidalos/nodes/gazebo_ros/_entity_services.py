@@ -63,7 +63,7 @@ class EntityServices:
         create_services(node, services, group)
 
     def forget_infos(self) -> None:
-        """Forget what was set about entities, as they are of another world now."""
+        """Remove the infos of entities, since the world was replaced."""
         self._infos.clear()
 
     def _spawn(self, request: Any, response: Any) -> None:

@@ -1,4 +1,4 @@
-"""How the services of `simulation_interfaces` answer: with a result, whatever happens."""
+"""Results of the services of `simulation_interfaces`."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ UNSUPPORTED, OK, NOT_FOUND, INCORRECT_STATE, FAILED = range(5)
 
 @dataclass(frozen=True)
 class Failure(Exception):
-    """What a service answers instead: a code of its own or of `Result`, and words."""
+    """Error response of a service: a code of its own or of `Result`, and a message."""
 
     code: int
     words: str

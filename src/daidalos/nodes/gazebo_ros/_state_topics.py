@@ -21,7 +21,7 @@ _LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
 class StateTopics:
-    """Publishes ``model_states``, ``link_states`` and ``/gazebo/contacts``.
+    """Publisher of ``model_states``, ``link_states`` and ``/gazebo/contacts``.
 
     Parameters
     ----------

@@ -14,7 +14,7 @@ _ENCAPSULATION = b"\x00\x01\x00\x00"
 
 
 class TransformBytes:
-    """Writes ``tf2_msgs/msg/TFMessage`` for n pairs of frames.
+    """Serializer of ``tf2_msgs/msg/TFMessage`` for n pairs of frames.
 
     Parameters
     ----------

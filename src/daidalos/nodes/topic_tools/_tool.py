@@ -38,7 +38,7 @@ class Tool(Node):
         self.passage.publish(content)
 
     def destroy_node(self) -> None:
-        """Leave the graph."""
+        """Destroy the node with its publishers and subscriptions."""
         self.passage.close()
         super().destroy_node()
 

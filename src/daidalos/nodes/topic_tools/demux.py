@@ -37,7 +37,7 @@ class DemuxNode(Switch):
             self._passage.publish(content, self.chosen)
 
     def destroy_node(self) -> None:
-        """Leave the graph."""
+        """Destroy the node with its publishers and subscriptions."""
         self._passage.close()
         super().destroy_node()
 

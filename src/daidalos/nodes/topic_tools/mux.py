@@ -32,7 +32,7 @@ class MuxNode(Switch):
         self._passage.take_from("" if topic == NONE else topic)
 
     def destroy_node(self) -> None:
-        """Leave the graph."""
+        """Destroy the node with its publishers and subscriptions."""
         self._passage.close()
         super().destroy_node()
 

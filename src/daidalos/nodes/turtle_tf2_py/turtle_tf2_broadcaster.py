@@ -12,7 +12,7 @@ from daidalos.nodes.turtle_tf2_py._transforms import transform
 
 
 class TurtleTf2Broadcaster(Node):
-    """Follows the pose of the turtle that the parameter ``turtlename`` names."""
+    """Node that publishes the pose of the turtle of the parameter ``turtlename`` as a transform."""
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__("turtle_tf2_frame_publisher", **kwargs)

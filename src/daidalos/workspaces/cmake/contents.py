@@ -75,7 +75,7 @@ class Test:
 
 @dataclass
 class Contents:
-    """Everything that a package installs, and what was not understood."""
+    """Contents of a package: installed files, and commands that were not understood."""
 
     project: str = ""
     files: list[InstalledFile] = field(default_factory=list)

@@ -1,4 +1,4 @@
-"""The rules that tools can hold: format, lint, types, layers and how docstrings begin."""
+"""The rules that tools can check: format, lint, types, layers and how docstrings begin."""
 
 import ast
 import subprocess
