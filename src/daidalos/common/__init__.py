@@ -1,1 +1,1 @@
-"""Shared basis of all layers: poses, kernels, the extension registry, errors with file and line, suggestions for names."""
+"""Shared basis of all layers: poses, kernels, the extension registry, errors with file and line, name suggestions."""

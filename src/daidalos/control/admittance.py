@@ -18,7 +18,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class AdmittanceLaw:
-    """How a tip yields, along and about the axes of the control frame; each (6,), linear parts first.
+    """Admittance law along and about the axes of the control frame; each (6,), linear parts first.
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ class AdmittanceLaw:
 
 @dataclass
 class AdmittanceState:
-    """How far the tip yields now.
+    """Current compliant displacement of the tip.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What controllers of a base that take the wanted velocity as references have in common."""
+"""Common base of controllers with velocity references of a mobile base."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from daidalos.samples.sensors import OdometrySample, Sample, TransformSample
 
 
 class BaseController(Controller):
-    """Drives a base, and tells its odometry and its state.
+    """Controller of a mobile base that publishes its odometry and its state.
 
     Attributes
     ----------
@@ -47,7 +47,7 @@ class BaseController(Controller):
         return self.input.subscription("~/reference", self.p.use_stamped_vel)
 
     def activate(self, now_ns: int) -> None:
-        """Stand at the origin of the odometry."""
+        """Reset the odometry."""
         self.input.reset()
         self.odometry.reset()
         self.references.values[:] = np.nan

@@ -17,7 +17,7 @@ Array = NDArray[np.float64]
 
 
 class BaseOdometry:
-    """Where a base is in the plane, by arcs.
+    """Planar pose of a base, integrated by arcs.
 
     Parameters
     ----------
@@ -53,7 +53,7 @@ class BaseOdometry:
         self._velocities: deque[tuple[float, float, float]] = deque(maxlen=self._window)
 
     def move(self, forward: float, turn: float, period: float, sideways: float = 0.0) -> None:
-        """Go on by an arc.
+        """Add an arc.
 
         Parameters
         ----------

@@ -1,4 +1,4 @@
-"""What can go wrong in control."""
+"""Errors of control."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from daidalos.common.suggestions import hint
 
 
 class ControlError(UserError):
-    """Something about hardware or controllers is not as it must be; one line for the user."""
+    """Invalid hardware or controller, with a message of one line for the user."""
 
 
 class HardwareError(ControlError):

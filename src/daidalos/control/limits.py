@@ -1,4 +1,4 @@
-"""Keeps commands within the limits of joints: those of the robot's description and those of its hardware."""
+"""Limits of joint commands, from the robot's description and from its hardware."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ class CommandLimiter:
         self.reset()
 
     def reset(self) -> None:
-        """Forget the last commands."""
+        """Drop the last commands."""
         self._last = np.full(len(self._rows), math.nan)
 
     def apply(self, period: float) -> bool:

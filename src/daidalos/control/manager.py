@@ -26,7 +26,7 @@ T = TypeVar("T")
 
 
 class ControllerManager:
-    """Runs controllers on hardware.
+    """Manager of controllers and hardware.
 
     It has no clock and no thread: the caller calls `update` in each cycle, and all else between two of them.
 
@@ -166,7 +166,7 @@ class ControllerManager:
         loaded.controller, loaded.state = controller, INACTIVE
 
     def cleanup(self, name: str) -> None:
-        """Take a controller back to unconfigured.
+        """Return a controller to the state unconfigured.
 
         Raises
         ------

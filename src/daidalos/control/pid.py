@@ -83,7 +83,7 @@ class Pid:
         self._simple = not (self._conditional.any() or self._back_calculation_rate.any() or self._deadband.any())
 
     def reset(self, keep_integral: bool = False) -> None:
-        """Forget the past."""
+        """Reset integral and derivative."""
         if not keep_integral:
             self.i_term = np.zeros(self._count)
         self.p_term = np.zeros(self._count)

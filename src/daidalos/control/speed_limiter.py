@@ -37,7 +37,7 @@ class SpeedLimits(Parameters):
 
 
 class SpeedLimiter:
-    """Keeps one direction's velocity within limits.
+    """Limiter of the velocity in one direction.
 
     Parameters
     ----------

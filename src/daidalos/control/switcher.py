@@ -1,4 +1,4 @@
-"""Which controllers are active: they are started and stopped, with the hardware and the controllers that they need."""
+"""Switching of controllers, with the hardware and the controllers that they need."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from daidalos.control.switching import Candidate, Strictness, Switch, plan_switc
 
 
 class Switcher:
-    """Starts and stops controllers, between two cycles.
+    """Switcher of controllers between two cycles.
 
     Parameters
     ----------

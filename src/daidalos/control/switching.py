@@ -1,4 +1,4 @@
-"""Which controllers can be started and stopped together: interfaces are claimed once, chains stay whole."""
+"""Planning of controller switches: interfaces are claimed once, chains stay complete."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from daidalos.control.errors import SwitchError
 
 
 class Strictness(IntEnum):
-    """What to do about controllers that can not be switched.
+    """Handling of controllers that cannot be switched.
 
     ``BEST_EFFORT`` leaves them out; ``STRICT`` switches all or none; ``AUTO`` starts controllers as well that are
     needed; ``FORCE_AUTO`` also stops those that are in the way.
@@ -24,7 +24,7 @@ class Strictness(IntEnum):
 
 @dataclass(frozen=True)
 class Candidate:
-    """What a switch needs to know of a controller.
+    """State of a controller that is relevant to a switch.
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ class Candidate:
 
 @dataclass(frozen=True)
 class Switch:
-    """What is to be done.
+    """Planned switch.
 
     Parameters
     ----------
@@ -174,7 +174,7 @@ class _Planner:
             ]
 
     def _drop_one(self) -> bool:
-        """Leave out the first thing that does not work; return whether there was one."""
+        """Remove the first change that is not possible; return whether there was one."""
         running = self._running()
         for name in running:
             problem = self._missing(name, running)

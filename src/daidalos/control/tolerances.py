@@ -1,4 +1,4 @@
-"""How far joints may be from where a trajectory wants them."""
+"""Tolerances of joints along trajectories."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is wrong with a commanded trajectory, before any joint moves."""
+"""Checks of commanded trajectories before any joint moves."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _AT_REST = 1e-9
 
 
 class Rules(Protocol):
-    """What a controller allows."""
+    """Requirements of a controller on trajectories."""
 
     @property
     def joints(self) -> tuple[str, ...]:

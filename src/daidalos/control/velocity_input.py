@@ -10,7 +10,7 @@ from daidalos.samples.controllers import VelocityCommand
 
 
 class VelocityInput:
-    """Takes stamped or plain velocities and says which one holds.
+    """Input of stamped or plain velocities with a timeout.
 
     Parameters
     ----------
@@ -29,7 +29,7 @@ class VelocityInput:
         self.reset()
 
     def reset(self) -> None:
-        """Forget the last command."""
+        """Drop the last command."""
         self._command: VelocityCommand | None = None
 
     def subscription(self, topic: str, stamped: bool) -> dict[str, Subscription]:
@@ -39,11 +39,11 @@ class VelocityInput:
         return {f"{topic}_unstamped": Subscription(TwistCommand, self.take_plain)}
 
     def take_plain(self, command: TwistCommand) -> None:
-        """Take a velocity that counts from now."""
+        """Set a velocity that is valid from now."""
         self.take(VelocityCommand(command.linear, command.angular))
 
     def take(self, command: VelocityCommand) -> None:
-        """Take a velocity that counts from its stamp, or from now where it has none."""
+        """Set a velocity that is valid from its stamp, or from now without one."""
         now_ns = self._controller.now_ns
         if not (np.all(np.isfinite(command.linear)) and np.all(np.isfinite(command.angular))):
             self._controller.context.warn("a velocity that is not a number was ignored")

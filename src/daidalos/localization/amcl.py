@@ -48,7 +48,7 @@ DEFAULT_COVARIANCE = np.diag([0.25, 0.25, (math.pi / 12.0) ** 2])
 
 @dataclass(frozen=True)
 class Estimate:
-    """What the filter believes.
+    """Pose estimate of the filter.
 
     Attributes
     ----------
@@ -111,7 +111,7 @@ class Amcl:
         self.initialise(np.zeros(3), DEFAULT_COVARIANCE)
 
     def set_map(self, grid: OccupancyGrid) -> None:
-        """Go on in another map of the same frame.
+        """Continue in another map of the same frame.
 
         Raises
         ------
@@ -151,7 +151,7 @@ class Amcl:
         self._forced = True
 
     def update(self, odom_pose: Array, scan: LaserScanData) -> Estimate:
-        """Take a scan, and where the robot was by odometry at its time.
+        """Update the particles with a scan and the odometry pose at its time.
 
         Parameters
         ----------
@@ -207,7 +207,7 @@ class Amcl:
             self._resample()
 
     def _follow_average(self, average: float) -> None:
-        """Keep the two averages of the likelihood, by whose ratio a lost robot is noticed."""
+        """Update the two averages of the likelihood, whose ratio detects a lost robot."""
         if self._slow == 0.0:
             self._slow = self._fast = average
             return
@@ -235,7 +235,7 @@ class Amcl:
         return max(0.0, 1.0 - self._fast / self._slow)
 
     def _look_closely(self, odom_pose: Array) -> None:
-        """Take the pose from the heaviest cluster."""
+        """Set the pose estimate to the heaviest cluster."""
         members = heaviest_cluster(self._particles, self._weights)
         self._mean, self._covariance = mean_and_covariance(self._particles[members], self._weights[members])
         self._map_to_odom = compose(self._mean, inverse(odom_pose))

@@ -1,4 +1,4 @@
-"""What can go wrong with localization."""
+"""Errors of localization."""
 
 from daidalos.common.errors import UserError
 

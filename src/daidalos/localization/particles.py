@@ -47,7 +47,7 @@ def low_variance_indices(weights: Array, count: int, offset: float) -> NDArray[n
 
 
 def bins_of(particles: Array) -> NDArray[np.int64]:
-    """One number for the bin that each particle lies in: 20 bits each for x, y and yaw, which goes round."""
+    """Return the bin of each particle as a number: 20 bits each for x, y and yaw, which wraps around."""
     cells = np.floor(particles / BIN).astype(np.int64)
     cells[:, 2] %= TURNS
     bins: NDArray[np.int64] = ((cells[:, 0] + HALF) << 40) + ((cells[:, 1] + HALF) << 20) + cells[:, 2]

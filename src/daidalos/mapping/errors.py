@@ -1,4 +1,4 @@
-"""What can be wrong with the files of this layer: a base for all errors, a class for each kind of file."""
+"""Errors of mapping and of its files."""
 
 from pathlib import Path
 
@@ -6,7 +6,7 @@ from daidalos.common.errors import Location, UserError
 
 
 class MappingError(UserError):
-    """Something about mapping failed; the message is one line for the person who gave the input."""
+    """Error of mapping, with a message of one line for the user."""
 
 
 class MapFileError(MappingError):

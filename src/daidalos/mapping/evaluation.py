@@ -1,4 +1,4 @@
-"""How good a trajectory or a map is, against ground truth."""
+"""Evaluation of trajectories and maps against ground truth."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -66,7 +66,7 @@ class RelationErrors:
 
 @dataclass(frozen=True)
 class MapAgreement:
-    """How a map agrees with the true walls, as shares from 0 to 1.
+    """Agreement of a map with the true walls, as ratios from 0 to 1.
 
     Attributes
     ----------

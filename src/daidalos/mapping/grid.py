@@ -61,7 +61,7 @@ class ScanGrid:
         self._trace(cloud, pose, 1)
 
     def remove(self, cloud: Cloud, pose: Array) -> None:
-        """Take back the beams of a scan that was added at exactly this pose."""
+        """Remove the beams of a scan that was added at exactly this pose."""
         self._trace(cloud, pose, -1)
 
     def classify(self, occupancy_threshold: float = 0.1, min_pass_through: int = 2) -> OccupancyGrid:

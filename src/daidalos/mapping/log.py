@@ -123,7 +123,7 @@ def _codec(type_name: str) -> Codec:
 
 
 def _choose(bag: Path, topics: dict[str, str], kind: str, asked: str | None, usual: str) -> str | None:
-    """Take the topic that was asked for, else the usual one, else the only one of its type."""
+    """Return the requested topic, else the usual one, else the only one of its type."""
     if asked is not None:
         if topics.get(asked) != kind:
             found = f"it is {topics[asked]}" if asked in topics else f"the bag has {_listed(topics)}"
@@ -144,7 +144,7 @@ def _listed(topics: dict[str, str]) -> str:
 def _odometry(
     bag: Path, messages: list[Any], transforms: list[Any], odom_topic: str | None
 ) -> tuple[str, Stamps, Array, str]:
-    """Where odometry comes from, its stamps and poses, and the name of the base's frame."""
+    """Return the source of odometry, its stamps and poses, and the name of the base frame."""
     if messages:
         source = str(odom_topic)
         base = messages[0].child_frame_id or "base_link"

@@ -51,7 +51,7 @@ MAX_RESIDUAL = 0.03
 
 
 class LoopCloser:
-    """Looks for closures of the newest key scan.
+    """Detector of loop closures of the newest key scan.
 
     Parameters
     ----------

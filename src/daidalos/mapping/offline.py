@@ -16,7 +16,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class LogMap:
-    """What a log became.
+    """Map and trajectory of a log.
 
     Attributes
     ----------

@@ -205,7 +205,7 @@ def _end_of_surface(points: Array, start: int, step: int, radius: float) -> int:
 
 @compiled
 def _thin(points: Array) -> NDArray[np.int64]:
-    """Keep the indices of points that are apart from the one kept before."""
+    """Return the indices of points that are a minimum distance apart from the last one kept."""
     kept = np.empty(points.shape[0], np.int64)
     count = 0
     for i in range(points.shape[0]):

@@ -41,7 +41,7 @@ DRAWN_TURN = 0.002
 
 @dataclass(frozen=True)
 class ScanResult:
-    """What became of one scan.
+    """Result of one scan.
 
     Attributes
     ----------
@@ -143,7 +143,7 @@ class Slam:
         return list(self._edges)
 
     def add_scan(self, stamp_ns: int, scan: LaserScanData, odom_pose: ArrayLike) -> ScanResult:
-        """Take in one scan.
+        """Process one scan.
 
         Parameters
         ----------
@@ -232,7 +232,7 @@ class Slam:
         return (x, y, yaw)
 
     def _has_moved(self, odom: Array) -> bool:
-        """Whether odometry is far enough from the last key scan for the next one."""
+        """Return whether odometry has moved far enough since the last key scan."""
         x, y, turn = pose2.between(self._keys[-1].odom_pose, odom)
         travelled = np.hypot(x, y) >= self.config.minimum_travel_distance
         return bool(travelled or abs(turn) >= self.config.minimum_travel_heading)
@@ -279,7 +279,7 @@ class Slam:
         self._local = None
 
     def _close_loops(self) -> tuple[bool, bool]:
-        """Look for closures of the newest key scan: whether there are any, and whether they moved poses."""
+        """Find loop closures of the newest key scan; return whether there are any, and whether they moved poses."""
         poses = self._poses[: len(self._keys)]
         closures = self._closer.search(self.key_clouds, poses, self._edges)
         if not closures:
@@ -297,7 +297,7 @@ class Slam:
         return True, True
 
     def _move(self, poses: Array) -> None:
-        """Put the key scans where the optimisation wants them, the robot with the last one."""
+        """Set the key scans to the optimized poses, and move the robot with the last one."""
         newest = len(self._keys) - 1
         on_newest = pose2.between(self._poses[newest], self._last_pose)
         self._poses[: newest + 1] = poses

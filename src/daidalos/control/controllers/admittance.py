@@ -63,7 +63,7 @@ class CentreOfGravity(Parameters):
 
 @dataclass(frozen=True)
 class GravityCompensation(Parameters):
-    """What the sensor carries beside the outside force."""
+    """Gravity compensation of the sensor's payload."""
 
     frame: Frame = group(Frame)
     CoG: CentreOfGravity = group(CentreOfGravity)
@@ -123,7 +123,7 @@ class AdmittanceParameters(Parameters):
 
 
 class AdmittanceController(Controller):
-    """Moves joints to references from ``~/joint_references`` or other controllers, less what forces push away."""
+    """Controller of joint references from ``~/joint_references`` or other controllers, compliant to forces."""
 
     names = ("admittance_controller/AdmittanceController",)
     parameters = AdmittanceParameters
@@ -148,7 +148,7 @@ class AdmittanceController(Controller):
         self._take_law()
 
     def reconfigure(self, parameters: AdmittanceParameters) -> None:
-        """Take the law."""
+        """Apply the changed law."""
         super().reconfigure(parameters)
         if parameters.enable_parameter_update_without_reactivation:
             self._take_law()
@@ -199,7 +199,7 @@ class AdmittanceController(Controller):
         self.references.values[:] = np.nan
 
     def deactivate(self) -> None:
-        """Stand."""
+        """Stop."""
         if "velocity" in self.p.command_interfaces:
             place = self.p.command_interfaces.index("velocity") * self._count
             commands = self.commands.read()
@@ -207,7 +207,7 @@ class AdmittanceController(Controller):
             self.commands.write(commands)
 
     def take_references(self, now_ns: int, period: float) -> None:
-        """Take what was received last."""
+        """Apply the last received references."""
         if self._received is None:
             return
         rates = self._received.velocities

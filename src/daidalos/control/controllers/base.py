@@ -15,17 +15,17 @@ from daidalos.samples.sensors import Sample
 
 
 def _always(topic: str) -> bool:
-    """Take it that somebody listens."""
+    """Return True; the default without information about subscribers."""
     return True
 
 
 def _ignore(line: str) -> None:
-    """Take a line and drop it."""
+    """Ignore a line for the user."""
 
 
 @dataclass(frozen=True)
 class ControllerContext:
-    """Where a controller finds itself when it is configured.
+    """Context of a controller.
 
     Parameters
     ----------
@@ -63,7 +63,7 @@ class Service:
 
 @dataclass(eq=False)
 class Goal:
-    """What an action is asked to do, and how it is going.
+    """Goal of an action, with its callbacks.
 
     Parameters
     ----------
@@ -111,7 +111,7 @@ class Action:
 
 
 class Controller(Endpoint):
-    """Turns states into commands, once in each of its periods.
+    """Controller that computes commands from states once per period.
 
     Names of topics, services and actions that begin with ``~/`` go below its own.
 
@@ -170,11 +170,11 @@ class Controller(Endpoint):
         """Set the names of the interfaces, and make what the controller needs."""
 
     def reconfigure(self, parameters: Any) -> None:
-        """Take changed parameters while running; those that are read only stay as they are."""
+        """Apply parameters that changed at run time; read-only ones never change."""
         self.p = parameters
 
     def assign(self, commands: LoanedInterfaces, states: LoanedInterfaces) -> None:
-        """Take the interfaces, in the order of their names."""
+        """Set the interfaces, in the order of their names."""
         self.commands, self.states = commands, states
 
     def activate(self, now_ns: int) -> None:

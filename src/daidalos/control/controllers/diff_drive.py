@@ -85,7 +85,7 @@ class DiffDriveParameters(Parameters):
 
 
 class DiffDriveController(Controller):
-    """Drives a base on wheels that do not steer; all wheels of a side turn alike."""
+    """Controller of a differential-drive base; all wheels of a side rotate alike."""
 
     names = ("diff_drive_controller/DiffDriveController",)
     parameters = DiffDriveParameters
@@ -114,7 +114,7 @@ class DiffDriveController(Controller):
         self._take_parameters()
 
     def reconfigure(self, parameters: DiffDriveParameters) -> None:
-        """Take limits, sizes and the timeout."""
+        """Apply changed limits, sizes and timeout."""
         super().reconfigure(parameters)
         self._take_parameters()
 
@@ -144,7 +144,7 @@ class DiffDriveController(Controller):
         return self._input.subscription("~/cmd_vel", self.p.use_stamped_vel)
 
     def activate(self, now_ns: int) -> None:
-        """Stand at the origin of the odometry."""
+        """Reset the odometry."""
         self._input.reset()
         self._odometry.reset()
         self.references.values[:] = np.nan
@@ -153,11 +153,11 @@ class DiffDriveController(Controller):
         self._publishing.restart()
 
     def deactivate(self) -> None:
-        """Stand."""
+        """Stop."""
         self.commands.write(np.zeros(len(self.command_names)))
 
     def take_references(self, now_ns: int, period: float) -> None:
-        """Take the last velocity that is fresh."""
+        """Apply the last velocity that has not timed out."""
         latest = self._input.latest(now_ns)
         if latest is not None:
             self.references.values[:] = latest[0], latest[2]
@@ -188,7 +188,7 @@ class DiffDriveController(Controller):
         self.commands.write(np.repeat(speeds, self._count))
 
     def _measure(self, period: float) -> None:
-        """Go on by what the wheels did since the last cycle, or by what they were told."""
+        """Update the odometry by the wheels' motion since the last cycle, or by their commands."""
         if self.p.open_loop:
             self._odometry.move(float(self._last[0]) * period, float(self._last[1]) * period, period)
             return

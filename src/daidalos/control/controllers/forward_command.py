@@ -78,11 +78,11 @@ class ForwardController(Controller):
         self.references.values[:] = np.nan
 
     def deactivate(self) -> None:
-        """Forget the command."""
+        """Drop the command."""
         self._received = None
 
     def take_references(self, now_ns: int, period: float) -> None:
-        """Take what was received last."""
+        """Apply the last received references."""
         if self._received is not None:
             self.references.values[:] = self._received
 
@@ -142,7 +142,7 @@ class JointGroupVelocityController(JointGroupPositionController):
     kind = "velocity"
 
     def deactivate(self) -> None:
-        """Stand."""
+        """Stop."""
         super().deactivate()
         self.commands.write(np.zeros(len(self.command_names)))
 

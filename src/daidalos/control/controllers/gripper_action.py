@@ -63,7 +63,7 @@ class ParallelGripperParameters(GripperParameters):
 
 
 class PositionGripperController(Controller):
-    """Moves a finger by its position."""
+    """Position controller of a gripper."""
 
     names = ("position_controllers/GripperActionController",)
     parameters = GripperParameters
@@ -150,7 +150,7 @@ class PositionGripperController(Controller):
 
 
 class EffortGripperController(PositionGripperController):
-    """Moves a finger by its effort, from its position error."""
+    """Effort controller of a gripper with feedback of the position error."""
 
     names = ("effort_controllers/GripperActionController",)
     command_kind = "effort"
@@ -178,7 +178,7 @@ class EffortGripperController(PositionGripperController):
 
 
 class ParallelGripperController(PositionGripperController):
-    """Moves a finger by its position, and tells the hardware how hard and fast at most."""
+    """Position controller of a gripper with limits of effort and velocity."""
 
     names = ("parallel_gripper_action_controller/GripperActionController",)
     parameters = ParallelGripperParameters

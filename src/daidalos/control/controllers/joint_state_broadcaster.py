@@ -18,7 +18,7 @@ _FIELDS = ("position", "velocity", "effort")
 
 @dataclass(frozen=True)
 class InterfaceMap(Parameters):
-    """Which interfaces stand for the fields of the message."""
+    """Interfaces of the message's fields."""
 
     position: str = parameter("position", "Interface that positions are taken from.", read_only=True)
     velocity: str = parameter("velocity", "Interface that velocities are taken from.", read_only=True)

@@ -41,7 +41,7 @@ _REPLACED = TrajectoryResult(TrajectoryResult.INVALID_GOAL, "Current goal cancel
 
 
 class JointTrajectoryController(Controller):
-    """Follows trajectories from ``~/joint_trajectory`` and from the action ``~/follow_joint_trajectory``.
+    """Controller of trajectories from ``~/joint_trajectory`` and from the action ``~/follow_joint_trajectory``.
 
     A new trajectory takes over at its start; one that starts later leaves the current one running until then.
     Waypoints that are past are left out. Joints that it does not mention stay, where partial goals are allowed.
@@ -77,7 +77,7 @@ class JointTrajectoryController(Controller):
         self._take_gains()
 
     def reconfigure(self, parameters: JointTrajectoryParameters) -> None:
-        """Take gains and tolerances."""
+        """Apply changed gains and tolerances."""
         super().reconfigure(parameters)
         self._take_gains()
 
@@ -214,7 +214,7 @@ class JointTrajectoryController(Controller):
         self._begin(begin, goal, start, self.now_ns)
 
     def _begin(self, command: TrajectoryCommand, goal: Goal | None, start: Motion, begun_ns: int) -> None:
-        """Go over to a trajectory, from a state at an instant."""
+        """Start a trajectory from a state at an instant."""
         self._end_goal("aborted", _REPLACED)
         self._trajectory = self._plan(command, start, (begun_ns - command.start_ns) * 1e-9)
         self._start_ns, self._begun_ns = command.start_ns, begun_ns

@@ -38,7 +38,7 @@ class JointGains(Gains):
 
 @dataclass(frozen=True)
 class Constraints(Parameters):
-    """When a goal counts as reached."""
+    """Tolerances of goals."""
 
     stopped_velocity_tolerance: float = parameter(
         0.01, "Largest velocity of each joint at the end; 0 for any.", unit="rad/s or m/s", minimum=0.0
@@ -58,7 +58,7 @@ class JointConstraints(Parameters):
 
 @dataclass(frozen=True)
 class SpeedScaling(Parameters):
-    """How much slower than planned trajectories run."""
+    """Speed scaling of trajectories."""
 
     initial_scaling_factor: float = parameter(
         1.0, "Speed of trajectories at first: 1 is as planned, 0 stands still.", minimum=0.0

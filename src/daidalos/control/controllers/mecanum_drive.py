@@ -92,7 +92,7 @@ class MecanumParameters(Parameters):
 
 
 class MecanumDriveController(BaseController):
-    """Drives a base on four mecanum wheels."""
+    """Controller of a base with four mecanum wheels."""
 
     names = ("mecanum_drive_controller/MecanumDriveController",)
     parameters = MecanumParameters
@@ -121,7 +121,7 @@ class MecanumDriveController(BaseController):
         self._take_parameters()
 
     def reconfigure(self, parameters: MecanumParameters) -> None:
-        """Take sizes and the timeout."""
+        """Apply changed sizes and timeout."""
         super().reconfigure(parameters)
         self._take_parameters()
 
@@ -135,11 +135,11 @@ class MecanumDriveController(BaseController):
         self._to_wheels = np.column_stack((np.ones(4), _SIDE, _TURN * size_of_base)) / kinematics.wheels_radius
 
     def deactivate(self) -> None:
-        """Stand."""
+        """Stop."""
         self.commands.write(np.zeros(4))
 
     def take_references(self, now_ns: int, period: float) -> None:
-        """Take the last velocity that is fresh."""
+        """Apply the last velocity that has not timed out."""
         latest = self.input.latest(now_ns)
         if latest is not None:
             self.references.values[:] = latest

@@ -90,7 +90,7 @@ class PidController(Controller):
         self._take_gains()
 
     def reconfigure(self, parameters: PidParameters) -> None:
-        """Take gains."""
+        """Apply changed gains."""
         super().reconfigure(parameters)
         self._pid.set_gains([parameters.gains[name] for name in parameters.dof_names])
         self._take_gains()
@@ -157,7 +157,7 @@ class PidController(Controller):
         self._pid.reset(keep_integral=keeps)
 
     def take_references(self, now_ns: int, period: float) -> None:
-        """Take what was received last."""
+        """Apply the last received references."""
         known = ~np.isnan(self._received.ravel())
         self.references.values[known] = self._received.ravel()[known]
 

@@ -57,7 +57,7 @@ class ImuParameters(Parameters):
 
 
 class ImuSensorBroadcaster(Controller):
-    """Publishes ``~/imu``."""
+    """Broadcaster of ``~/imu``."""
 
     names = ("imu_sensor_broadcaster/IMUSensorBroadcaster",)
     parameters = ImuParameters
@@ -110,7 +110,7 @@ class WrenchNames(Parameters):
 
 @dataclass(frozen=True)
 class AxisOffsets(Parameters):
-    """What is added to three axes."""
+    """Offsets of three axes."""
 
     x: float = parameter(0.0, "Added along x.", unit="N or N m")
     y: float = parameter(0.0, "Added along y.", unit="N or N m")
@@ -119,7 +119,7 @@ class AxisOffsets(Parameters):
 
 @dataclass(frozen=True)
 class WrenchOffsets(Parameters):
-    """What is added to force and torque."""
+    """Offsets of force and torque."""
 
     force: AxisOffsets = group(AxisOffsets)
     torque: AxisOffsets = group(AxisOffsets)
@@ -127,7 +127,7 @@ class WrenchOffsets(Parameters):
 
 @dataclass(frozen=True)
 class AxisFactors(Parameters):
-    """What three axes are multiplied with."""
+    """Factors of three axes."""
 
     x: float = parameter(1.0, "Factor along x.")
     y: float = parameter(1.0, "Factor along y.")
@@ -136,7 +136,7 @@ class AxisFactors(Parameters):
 
 @dataclass(frozen=True)
 class WrenchFactors(Parameters):
-    """What force and torque are multiplied with, after the offsets."""
+    """Factors of force and torque, applied after the offsets."""
 
     force: AxisFactors = group(AxisFactors)
     torque: AxisFactors = group(AxisFactors)
@@ -167,7 +167,7 @@ class ForceTorqueParameters(Parameters):
 
 
 class ForceTorqueSensorBroadcaster(Controller):
-    """Publishes ``~/wrench``; other controllers may use what it exports."""
+    """Broadcaster of ``~/wrench``; other controllers may use its exported interfaces."""
 
     names = ("force_torque_sensor_broadcaster/ForceTorqueSensorBroadcaster",)
     parameters = ForceTorqueParameters
@@ -213,7 +213,7 @@ class RangeParameters(Parameters):
 
 
 class RangeSensorBroadcaster(Controller):
-    """Publishes ``~/range``."""
+    """Broadcaster of ``~/range``."""
 
     names = ("range_sensor_broadcaster/RangeSensorBroadcaster",)
     parameters = RangeParameters
@@ -246,7 +246,7 @@ class RangeSensorBroadcaster(Controller):
 
 @dataclass(frozen=True)
 class TransformParameters(Parameters):
-    """Whether and how a pose is published as a transform."""
+    """Parameters of a pose's transform."""
 
     enable: bool = parameter(True, "Whether the transform is published.", read_only=True)
     child_frame_id: str = parameter("", "Frame whose pose it is; empty for pose_name.", read_only=True)
@@ -265,7 +265,7 @@ class PoseParameters(Parameters):
 
 
 class PoseBroadcaster(Controller):
-    """Publishes ``~/pose`` and its transform."""
+    """Broadcaster of ``~/pose`` and its transform."""
 
     names = ("pose_broadcaster/PoseBroadcaster",)
     parameters = PoseParameters

@@ -204,7 +204,7 @@ class AckermannParameters(SteeringParameters):
 
 
 class BicycleSteeringController(BaseController):
-    """Drives a base with one driven wheel and a steered one."""
+    """Controller of a base with one driven wheel and one steered wheel."""
 
     names = ("bicycle_steering_controller/BicycleSteeringController",)
     parameters: ClassVar[type] = BicycleParameters
@@ -237,12 +237,12 @@ class BicycleSteeringController(BaseController):
         self.input.timeout = p.reference_timeout
 
     def reconfigure(self, parameters: SteeringParameters) -> None:
-        """Take the timeout."""
+        """Apply the changed timeout."""
         super().reconfigure(parameters)
         self.input.timeout = parameters.reference_timeout
 
     def activate(self, now_ns: int) -> None:
-        """Stand, with the wheels as they are."""
+        """Reset the odometry and the references; the wheels keep their state."""
         super().activate(now_ns)
         self._turned: np.ndarray | None = None
         measured = self.states.read()[self._count :]
@@ -250,13 +250,13 @@ class BicycleSteeringController(BaseController):
         self._last = (0.0, 0.0)
 
     def deactivate(self) -> None:
-        """Stand."""
+        """Stop."""
         commands = self.commands.read()
         commands[: self._count] = 0.0
         self.commands.write(commands)
 
     def take_references(self, now_ns: int, period: float) -> None:
-        """Take the last velocity that is fresh."""
+        """Apply the last velocity that has not timed out."""
         latest = self.input.latest(now_ns)
         if latest is not None:
             self.references.values[:] = latest[0], latest[2]
@@ -296,14 +296,14 @@ class BicycleSteeringController(BaseController):
 
 
 class TricycleSteeringController(BicycleSteeringController):
-    """Drives a base with two driven wheels and a steered one."""
+    """Controller of a base with two driven wheels and one steered wheel."""
 
     names = ("tricycle_steering_controller/TricycleSteeringController",)
     parameters: ClassVar[type] = TricycleParameters
 
 
 class AckermannSteeringController(BicycleSteeringController):
-    """Drives a base with two driven wheels and two steered ones."""
+    """Controller of a base with two driven wheels and two steered wheels."""
 
     names = ("ackermann_steering_controller/AckermannSteeringController",)
     parameters: ClassVar[type] = AckermannParameters

@@ -78,7 +78,7 @@ class TricycleDriveParameters(Parameters):
 
 
 class TricycleController(Controller):
-    """Drives a base whose front wheel does everything; it can turn on the spot."""
+    """Controller of a base with a driven and steered front wheel, which can rotate in place."""
 
     names = ("tricycle_controller/TricycleController",)
     parameters = TricycleDriveParameters
@@ -110,7 +110,7 @@ class TricycleController(Controller):
         self._input.timeout = p.cmd_vel_timeout * 1e-3
 
     def reconfigure(self, parameters: TricycleDriveParameters) -> None:
-        """Take the timeout."""
+        """Apply the changed timeout."""
         super().reconfigure(parameters)
         self._input.timeout = parameters.cmd_vel_timeout * 1e-3
 
@@ -139,14 +139,14 @@ class TricycleController(Controller):
         return Answer(success=True)
 
     def activate(self, now_ns: int) -> None:
-        """Stand, with the wheel as it is."""
+        """Reset the odometry; the wheel keeps its state."""
         self._input.reset()
         self._odometry.reset()
         self._angle = float(np.nan_to_num(self.states.read()[1]))
         self._speed = self._before = 0.0
 
     def deactivate(self) -> None:
-        """Stand."""
+        """Stop."""
         self.commands.write(np.array((0.0, self._angle)))
 
     def update(self, now_ns: int, period: float) -> Iterable[Sample]:

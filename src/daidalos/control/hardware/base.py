@@ -13,12 +13,12 @@ from daidalos.description.ros2_control import ComponentInfo, HardwareInfo, Inter
 
 
 def _ignore(line: str) -> None:
-    """Take a line and drop it."""
+    """Ignore a line for the user."""
 
 
 @dataclass(frozen=True)
 class HardwareContext:
-    """Where hardware finds itself.
+    """Context of hardware.
 
     Parameters
     ----------
@@ -91,7 +91,7 @@ class Hardware:
         """Refuse, with a `HardwareError`, command interfaces that cannot be claimed or released together."""
 
     def switch(self, start: Sequence[str], stop: Sequence[str]) -> None:
-        """Go over to other command interfaces; those in `stop` that are not in `start` are not used any more."""
+        """Switch command interfaces; those in `stop` that are not in `start` are no longer used."""
 
     def set_initial(self) -> None:
         """Set the states and commands to the initial values that the description gives."""

@@ -57,7 +57,7 @@ class GenericSystem(Hardware):
         self._follow_leaders()
 
     def switch(self, start: Sequence[str], stop: Sequence[str]) -> None:
-        """Take as a joint's mode the interface that was claimed last."""
+        """Set each joint's mode to the interface that was claimed last."""
         for name in start:
             joint, _, interface = name.rpartition("/")
             if interface in _MOTION:

@@ -1,4 +1,4 @@
-"""Where the tool is on the flange, and where the workpiece is in the cell, from touched points."""
+"""Calibration of tools on the flange and of work objects in the cell from touched points."""
 
 from daidalos.industry.calibration.tool import CalibrationError, ToolCalibration, calibrate_tool
 from daidalos.industry.calibration.work_object import work_object_frame

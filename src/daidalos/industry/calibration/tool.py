@@ -17,7 +17,7 @@ class CalibrationError(ValueError):
 
 @dataclass(frozen=True)
 class ToolCalibration:
-    """What four or more touches tell about a tool.
+    """Result of a tool calibration from four or more touches.
 
     Attributes
     ----------

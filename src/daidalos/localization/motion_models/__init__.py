@@ -1,1 +1,1 @@
-"""Where a robot may be after a motion that its odometry measured."""
+"""Motion models of odometry."""

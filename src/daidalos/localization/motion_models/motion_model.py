@@ -9,7 +9,7 @@ Array = NDArray[np.float64]
 
 
 class MotionModel(ABC):
-    """Draws poses after a motion."""
+    """Sampler of poses after a motion."""
 
     @abstractmethod
     def sample(self, particles: Array, before: Array, after: Array, generator: np.random.Generator) -> Array:

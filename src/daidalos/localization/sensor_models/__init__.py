@@ -1,1 +1,1 @@
-"""How likely a scan is at a pose."""
+"""Sensor models: likelihoods of scans."""

@@ -16,7 +16,7 @@ FULL = 255
 
 @dataclass(frozen=True)
 class Likelihood:
-    """How likely a beam is to end in each cell.
+    """Likelihood that a beam ends in each cell.
 
     Attributes
     ----------

@@ -25,7 +25,7 @@ SEARCH_POINTS = 120
 
 @dataclass(frozen=True)
 class Window:
-    """Where and how finely a correlation searches.
+    """Range and resolution of a correlation search.
 
     Attributes
     ----------
