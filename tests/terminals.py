@@ -14,7 +14,7 @@ from pathlib import Path
 
 import psutil
 
-TIMEOUT_S = 100.0
+TIMEOUT_S = 240.0
 _ROWS, _COLUMNS = 60, 240
 _ESCAPES = re.compile(r"\x1b(?:\[[0-9;?]*[A-Za-z]|\][^\x07]*\x07|[=>])")
 _CTRL_C = "\x03"

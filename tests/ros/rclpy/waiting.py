@@ -6,7 +6,7 @@ from collections.abc import Callable
 from rclpy.executors import Executor, SingleThreadedExecutor
 from rclpy.node import Node
 
-LONG = 10.0
+LONG = 30.0
 """Seconds after which a test that waits has failed."""
 
 
