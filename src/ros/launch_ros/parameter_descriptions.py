@@ -6,6 +6,7 @@ import contextlib
 import os
 import pathlib
 import tempfile
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from launch.frontend.parse_substitution import parse_substitution
@@ -24,7 +25,9 @@ from launch.utilities.typing_file_path import FilePath
 if TYPE_CHECKING:
     from launch import LaunchContext
 
-    from .parameters_type import EvaluatedParameterValue
+EvaluatedParameterValue = (
+    str | int | float | bool | bytes | Sequence[str] | Sequence[int] | Sequence[float] | Sequence[bool]
+)
 
 
 class ParameterValue:

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import pathlib
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any, Union
+from typing import Any, Union
 
 from launch.some_substitutions_type import SomeSubstitutionsType
 from launch.some_substitutions_type import SomeSubstitutionsType_types_tuple as SomeSubstitutionsType_types_tuple
 from launch.substitution import Substitution
 
-if TYPE_CHECKING:
-    from .parameter_descriptions import Parameter, ParameterFile, ParameterValue
+from .parameter_descriptions import EvaluatedParameterValue as EvaluatedParameterValue
+from .parameter_descriptions import Parameter, ParameterFile, ParameterValue
 
 SomeParameterName = SomeSubstitutionsType
 SomeParametersDict = Mapping[SomeParameterName, Any]
@@ -21,7 +21,4 @@ ParameterName = tuple[Substitution, ...]
 ParametersDict = dict[ParameterName, Union[Any, "ParameterValue"]]
 Parameters = Sequence[Union["ParameterFile", "Parameter", ParametersDict]]
 
-EvaluatedParameterValue = (
-    str | int | float | bool | bytes | Sequence[str] | Sequence[int] | Sequence[float] | Sequence[bool]
-)
 EvaluatedParameters = Sequence[Union[pathlib.Path, "Parameter", dict[str, EvaluatedParameterValue]]]

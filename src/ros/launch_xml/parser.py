@@ -38,6 +38,8 @@ class Parser(BaseParser):
         from . import ros1
 
         if ros1.is_ros1(root):
+            from .ros1 import actions as actions  # exposes what translated files are made of
+
             root = ros1.translate(root)
         return Entity(root), cls()
 

@@ -2,25 +2,28 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable
 
 from daidalos.common.pose3 import Vector, rotate, rotation_vector
 
-from ._rigid import compose, inverse
+from ._rigid import Rigid, compose, inverse
 
-if TYPE_CHECKING:
-    from .buffer_core import BufferCore
+Lookup = Callable[[str, str, int], tuple[int, Rigid]]
+"""Returns the time [ns] and the transform of a target frame, a source frame and a time [ns]."""
 
 
 def velocity(
-    buffer: BufferCore, tracking: str, observation: str, middle_ns: int, span_ns: int
+    lookup: Lookup, latest_ns: int, tracking: str, observation: str, middle_ns: int, span_ns: int
 ) -> tuple[Vector, Vector]:
     """Return the linear and angular velocity of the tracking frame's origin, in the axes of the observation frame."""
-    return velocity_of_point(buffer, tracking, observation, observation, (0.0, 0.0, 0.0), tracking, middle_ns, span_ns)
+    return velocity_of_point(
+        lookup, latest_ns, tracking, observation, observation, (0.0, 0.0, 0.0), tracking, middle_ns, span_ns
+    )
 
 
 def velocity_of_point(
-    buffer: BufferCore,
+    lookup: Lookup,
+    latest_ns: int,
     tracking: str,
     observation: str,
     reference: str,
@@ -30,16 +33,16 @@ def velocity_of_point(
     span_ns: int,
 ) -> tuple[Vector, Vector]:
     """Return the velocity of a point that moves with the tracking frame, in the axes of `reference`."""
-    end_ns = min(middle_ns + span_ns // 2, buffer.get_latest_common_time(observation, tracking).nanoseconds)
+    end_ns = min(middle_ns + span_ns // 2, latest_ns)
     start_ns = max(end_ns - span_ns, 1)
     seconds = (end_ns - start_ns) / 1e9
     if seconds <= 0.0:
         raise ValueError(f"there is no span of time to average over: {span_ns} ns that end at {end_ns} ns")
-    _, start = buffer._lookup(observation, tracking, start_ns)
-    _, end = buffer._lookup(observation, tracking, end_ns)
-    _, axes = buffer._lookup(reference, observation, middle_ns)
-    _, origin = buffer._lookup(reference, tracking, middle_ns)
-    _, place = buffer._lookup(reference, point_frame, middle_ns)
+    _, start = lookup(observation, tracking, start_ns)
+    _, end = lookup(observation, tracking, end_ns)
+    _, axes = lookup(reference, observation, middle_ns)
+    _, origin = lookup(reference, tracking, middle_ns)
+    _, place = lookup(reference, point_frame, middle_ns)
     moved = ((end[0] - start[0]) / seconds, (end[1] - start[1]) / seconds, (end[2] - start[2]) / seconds)
     turned = rotation_vector(compose(inverse(start), end)[3:])
     turned = rotate(start[3:], turned)

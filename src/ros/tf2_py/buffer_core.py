@@ -348,7 +348,9 @@ class BufferCore:
         """
         from ._velocity import velocity
 
-        return velocity(self, tracking_frame, observation_frame, time_ns(time), duration_ns(averaging_interval))
+        latest_ns = self.get_latest_common_time(observation_frame, tracking_frame).nanoseconds
+        span_ns = duration_ns(averaging_interval)
+        return velocity(self._lookup, latest_ns, tracking_frame, observation_frame, time_ns(time), span_ns)
 
     def lookupVelocityFullCore(
         self,
@@ -374,7 +376,8 @@ class BufferCore:
         from ._velocity import velocity_of_point
 
         return velocity_of_point(
-            self,
+            self._lookup,
+            self.get_latest_common_time(observation_frame, tracking_frame).nanoseconds,
             tracking_frame,
             observation_frame,
             reference_frame,

@@ -7,7 +7,6 @@ import textwrap
 from collections.abc import Iterator
 
 from .._reader import LocatedElement
-from . import actions as actions  # exposes what translated files are made of
 from .packages import DROPPED_OPTIONS, INCLUDES, NODES, PROGRAMS, NodeMapping, ros2_program
 from .rosbag import VERBS
 

@@ -9,13 +9,10 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import IntEnum
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
 from rclpy.clock_type import ClockType
 from rclpy.impl.handle import Destroyable
-
-if TYPE_CHECKING:
-    from rclpy.impl.timer import TimerHandle
 
 _SOURCES: dict[ClockType, Callable[[], int]] = {
     ClockType.ROS_TIME: time.time_ns,
@@ -47,6 +44,19 @@ class _JumpCallback:
         return forward or 0 > self.min_backward_ns >= delta_ns
 
 
+class ClockTimer(Protocol):
+    """What a clock needs of the timers that follow it."""
+
+    on_due: Callable[[], None]
+    version: int
+
+    def reschedule(self) -> None:
+        """Schedule the next call anew, in place of the one before."""
+
+    def on_backward_jump(self, now_ns: int) -> None:
+        """Restart the period at the new time [ns]."""
+
+
 class ClockHandle(Destroyable):
     """A clock. One of type ROS_TIME can be overridden: then it shows what it is told, not the system's time."""
 
@@ -57,7 +67,7 @@ class ClockHandle(Destroyable):
         self._override: int | None = None
         self._last_override = 0
         self._jumps: list[_JumpCallback] = []
-        self._timers: list[tuple[int, int, int, TimerHandle]] = []
+        self._timers: list[tuple[int, int, int, ClockTimer]] = []
         self._count = itertools.count().__next__
         self.changed = threading.Condition(threading.RLock())
 
@@ -129,7 +139,7 @@ class ClockHandle(Destroyable):
         for jump in told:
             jump.owner.call_post(change, after - before)
 
-    def _pop_due(self, now_ns: int) -> list[TimerHandle]:
+    def _pop_due(self, now_ns: int) -> list[ClockTimer]:
         due = []
         while self._timers and self._timers[0][0] <= now_ns:
             _, _, version, timer = heapq.heappop(self._timers)
@@ -137,7 +147,7 @@ class ClockHandle(Destroyable):
                 due.append(timer)
         return due
 
-    def schedule(self, deadline_ns: int, timer: TimerHandle) -> None:
+    def schedule(self, deadline_ns: int, timer: ClockTimer) -> None:
         """Call `timer.on_due` when the overridden clock reaches `deadline_ns`."""
         with self.changed:
             if self._override is not None and deadline_ns > self._override:

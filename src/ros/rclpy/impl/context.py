@@ -7,7 +7,7 @@ import sys
 import threading
 import weakref
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 from daidalos.transport import shared
 from daidalos.transport.environment import Environment, read_environment
@@ -17,8 +17,12 @@ from rclpy.impl.errors import RCLError
 from rclpy.impl.handle import Destroyable
 from rclpy.impl.interrupts import uninterrupted
 
-if TYPE_CHECKING:
-    from rclpy.impl.entities import NodeHandle
+
+class GraphMember(Protocol):
+    """What leaves the graph with a context: the handle of a node."""
+
+    def retire(self) -> None:
+        """Leave the graph; the handle stays, and reaches no other node."""
 
 
 class ContextHandle(Destroyable):
@@ -40,7 +44,7 @@ class ContextHandle(Destroyable):
         self._lock = threading.RLock()  # a signal may come while it is held
         self._ok = True
         self._released = False
-        self._nodes: weakref.WeakSet[NodeHandle] = weakref.WeakSet()
+        self._nodes: weakref.WeakSet[GraphMember] = weakref.WeakSet()
         self._on_shutdown: list[weakref.ref[Callable[[], None]]] = []
 
     def ok(self) -> bool:
@@ -52,7 +56,7 @@ class ContextHandle(Destroyable):
         """Whether the graph has been left."""
         return self._released
 
-    def own(self, node: NodeHandle) -> None:
+    def own(self, node: GraphMember) -> None:
         """Register a node that leaves the graph with the context."""
         self._nodes.add(node)
 
