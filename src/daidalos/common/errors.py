@@ -1,4 +1,4 @@
-"""Mistakes of the user's, and where they were written."""
+"""Errors of the user, with their location in a file."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 
 class Location(NamedTuple):
-    """Place in a file that an error message names.
+    """Location in a file that an error message names.
 
     Attributes
     ----------
@@ -27,12 +27,12 @@ class Location(NamedTuple):
         return ":".join(str(part) for part in (self.file, self.line if self.file else None) if part is not None)
 
     def prefix(self) -> str:
-        """Return what to write in front of a message: ``file:line: 'name': ``, as far as they are known."""
+        """Return the prefix of a message: ``file:line: 'name': ``, as far as they are known."""
         return "".join(f"{part}: " for part in (str(self), f"'{self.name}'" if self.name else "") if part)
 
 
 class UserError(Exception):
-    """A mistake of the user's; shown as one line, without a traceback.
+    """Error of the user, shown as one line without a traceback.
 
     Parameters
     ----------

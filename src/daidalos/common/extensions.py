@@ -1,4 +1,4 @@
-"""The registry of everything that users bring: planners, sensors, controllers, verbs, panels and the like.
+"""Registry of extensions: planners, sensors, controllers, verbs, panels and the like.
 
 A *kind* of extension is declared in its layer, beside its contract. An extension is one class in one file, found by
 
@@ -37,15 +37,15 @@ _CLASS_PATH = re.compile(r"[A-Za-z_]\w*(\.[A-Za-z_]\w*)+")
 
 
 class ExtensionError(UserError):
-    """An extension is not known or cannot be used; its location is the parameter that asked for it."""
+    """Unknown or unusable extension; its location is the parameter that refers to it."""
 
 
 class UnknownExtension(ExtensionError):
-    """There is no extension of that name."""
+    """Unknown name of an extension."""
 
 
 class Extension(NamedTuple):
-    """A class that was found, and not yet imported.
+    """Extension that was found and not yet imported.
 
     Attributes
     ----------
@@ -87,7 +87,7 @@ def _same(name: str) -> str:
 
 
 class Kind(NamedTuple, Generic[T]):
-    """A kind of extension.
+    """Kind of extension.
 
     Attributes
     ----------
@@ -216,7 +216,7 @@ def _spelling(name: str) -> str:
 
 
 def from_entry_points(group: str) -> Iterator[Extension]:
-    """Yield what the entry points of a group offer, without importing it."""
+    """Yield the extensions of a group of entry points without importing them."""
     from importlib.metadata import entry_points
 
     for point in entry_points(group=group):
@@ -230,7 +230,7 @@ def _origin(point: EntryPoint) -> str:
 
 
 def _by_path(name: str) -> Extension | None:
-    """Return the extension of a class path whose module there is."""
+    """Return the extension of a class path if its module exists."""
     path = name.strip().replace("::", ".").replace("/", ".").replace(":", ".")
     if not _CLASS_PATH.fullmatch(path):
         return None

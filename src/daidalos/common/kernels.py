@@ -1,4 +1,4 @@
-"""Compiled hot loops: numba kernels, cached on disk, and their compilation ahead of the first use.
+"""Numba kernels, cached on disk, and their compilation ahead of the first use.
 
 A kernel is a function over arrays under `compiled`. A package of kernels has a module `warming`, whose generator
 `steps` calls each of them with data of the types of real use, and yields the share done and the name of each next step.

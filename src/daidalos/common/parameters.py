@@ -21,7 +21,7 @@ _TYPE_NAMES = {bool: "a boolean", int: "an integer", float: "a float", str: "a s
 
 
 class ParameterError(UserError, ValueError):
-    """A parameter has a value that it cannot have.
+    """Invalid value of a parameter.
 
     Parameters
     ----------
@@ -76,7 +76,7 @@ class Constraints:
 
 @dataclass(frozen=True)
 class Leaf:
-    """One parameter.
+    """Single parameter of a parameter class.
 
     Parameters
     ----------
@@ -172,7 +172,7 @@ class Leaf:
 
     @property
     def _is_nan_allowed(self) -> bool:
-        """Whether NaN stands for "none", as it does where it is the default."""
+        """Return whether NaN stands for "none", as it does where it is the default."""
         return isinstance(self.default, float) and math.isnan(self.default)
 
 
@@ -388,7 +388,7 @@ def table(kind: type[Parameters]) -> str:
 
 @dataclass(frozen=True)
 class _Entry:
-    """A field of a parameter class: a parameter, a group, or groups by the names in the field `by`."""
+    """Field of a parameter class: a parameter, a group, or groups by the names in the field `by`."""
 
     field: str
     name: str
@@ -398,7 +398,7 @@ class _Entry:
 
     @property
     def prefix(self) -> str:
-        """What the names of a group's parameters begin with."""
+        """Prefix of the names of a group's parameters."""
         return f"{self.name}." if self.name else ""
 
 

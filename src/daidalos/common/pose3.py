@@ -47,7 +47,7 @@ class Pose:
 
     @property
     def inverse(self) -> Pose:
-        """The pose of the parent in this frame."""
+        """Pose of the parent in this frame."""
         x, y, z, w = self.orientation
         turn = (-x, -y, -z, w)
         px, py, pz = rotate(turn, self.position)
@@ -55,7 +55,7 @@ class Pose:
 
     @property
     def matrix(self) -> NDArray[np.float64]:
-        """The homogeneous (4, 4) matrix."""
+        """Homogeneous (4, 4) matrix."""
         import numpy as np
 
         matrix = np.eye(4)

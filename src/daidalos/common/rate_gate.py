@@ -1,10 +1,10 @@
-"""Gates that let something happen at a rate of its own in a loop that runs at another."""
+"""Rate gates: events at a rate of their own in a loop that runs at another."""
 
 from __future__ import annotations
 
 
 class RateGate:
-    """Opens at a rate, however the loop's cycles fall; times that were missed are not made up for.
+    """Gate that opens at a rate in a loop of arbitrary cycles; missed times are not made up for.
 
     Parameters
     ----------
@@ -17,7 +17,7 @@ class RateGate:
         self.restart()
 
     def restart(self) -> None:
-        """Open at the next cycle, and count periods from then on."""
+        """Open the gate at the next cycle, and count periods from then on."""
         self._start_ns = self._last_ns = -1
         self._count = 0
 

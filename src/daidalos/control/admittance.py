@@ -1,4 +1,4 @@
-"""Admittance: a tip that yields to forces like a mass on a spring and a damper.
+"""Admittance control: motion of a tip under forces as of a mass on a spring and a damper.
 
 Hogan, *Impedance Control: An Approach to Manipulation*, Journal of Dynamic Systems, Measurement, and Control 107, 1985.
 """
@@ -74,7 +74,7 @@ class AdmittanceState:
 
     @classmethod
     def none(cls, count: int) -> AdmittanceState:
-        """Return the state of a tip that does not yield."""
+        """Return the state of a tip without offset."""
         return cls(np.zeros(count), np.zeros(count), np.zeros(6), np.zeros(6), np.zeros(6))
 
 
@@ -87,7 +87,7 @@ def advance(
     wrench: Array,
     period: float,
 ) -> AdmittanceState:
-    """Return how far the tip yields one period later.
+    """Return the state of the admittance law one period later.
 
     Parameters
     ----------
@@ -124,7 +124,7 @@ def advance(
 
 
 def without_weight(wrench: Array, rotation: Array, weight: float, centre: Array, down: Array) -> Array:
-    """Return a sensor's wrench without the weight of what hangs on it.
+    """Return a sensor's wrench without the weight of the tool on it.
 
     Parameters
     ----------

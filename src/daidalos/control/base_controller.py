@@ -43,7 +43,7 @@ class BaseController(Controller):
 
     @property
     def subscriptions(self) -> Mapping[str, Subscription]:
-        """The wanted velocity."""
+        """Commanded velocity."""
         return self.input.subscription("~/reference", self.p.use_stamped_vel)
 
     def activate(self, now_ns: int) -> None:
@@ -53,7 +53,7 @@ class BaseController(Controller):
         self.references.values[:] = np.nan
 
     def odometry_samples(self, now_ns: int) -> Iterator[Sample]:
-        """Yield where the base is, and the transform where it is wanted."""
+        """Yield the odometry, and its transform if enabled."""
         yield self.odometry.sample(now_ns, "~/odometry")
         if self.p.enable_odom_tf:
             yield self.odometry.transform(now_ns, "~/tf_odometry")

@@ -1,4 +1,4 @@
-"""Odometry of a base from what its wheels did: pose, smoothed velocity, messages."""
+"""Wheel odometry of a base: pose, smoothed velocity and samples."""
 
 from __future__ import annotations
 
@@ -97,7 +97,7 @@ class BaseOdometry:
 
 
 def prefixed_frame(frame: str, namespace: str, prefix: str, enabled: bool) -> str:
-    """Return a frame with a prefix in front: the given one, or the controller's namespace where that is empty."""
+    """Return a frame with a prefix: the given one, or the controller's namespace where that is empty."""
     if not enabled:
         return frame
     prefix = (prefix or namespace).strip("/")

@@ -1,4 +1,4 @@
-"""A chain of joints from one link to another: pose and Jacobian of its end."""
+"""Kinematic chain between two links: pose and Jacobian of its tip."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _TURNING = (JointType.REVOLUTE, JointType.CONTINUOUS)
 
 
 class Chain:
-    """Links between a base and a tip.
+    """Kinematic chain between a base and a tip.
 
     Parameters
     ----------
@@ -85,7 +85,7 @@ class Chain:
         return matrix[:3, 3], matrix[:3, :3]
 
     def row(self, link: str) -> int:
-        """Return a link's place; an error where the robot has none of that name."""
+        """Return the index of a link; raises an error for an unknown name."""
         if link not in self._rows:
             raise UnknownError("link", link, self._rows)
         return self._rows[link]

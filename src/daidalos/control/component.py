@@ -1,4 +1,4 @@
-"""The life of one piece of hardware: unconfigured, inactive, active, finalized."""
+"""Life cycle of a hardware component: unconfigured, inactive, active, finalized."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _STEPS = (UNCONFIGURED, INACTIVE, ACTIVE)
 
 
 class Component:
-    """Hardware with its state, read and written at its own rate.
+    """Hardware with its life-cycle state, read and written at its own rate.
 
     Parameters
     ----------
@@ -38,12 +38,12 @@ class Component:
 
     @property
     def takes_commands(self) -> bool:
-        """Whether its command interfaces are available."""
+        """Return whether the command interfaces are available."""
         return self.state == ACTIVE
 
     @property
     def tells_states(self) -> bool:
-        """Whether its state interfaces are available."""
+        """Return whether the state interfaces are available."""
         return self.state in (INACTIVE, ACTIVE)
 
     def interfaces(self, kind: str) -> Interfaces:
@@ -90,7 +90,7 @@ class Component:
             self.state = UNCONFIGURED
 
     def read(self, now_ns: int, period: float) -> None:
-        """Read when it is due; `period` [s] counts where nothing was read before."""
+        """Read the hardware when it is due; `period` [s] is used where nothing was read before."""
         if not self.tells_states or not self._reading.is_due(now_ns):
             return
         elapsed = (now_ns - self._last_read) * 1e-9 if 0 <= self._last_read < now_ns else period
@@ -98,7 +98,7 @@ class Component:
         self.hardware.read(now_ns, elapsed)
 
     def write(self, now_ns: int, period: float) -> None:
-        """Limit the commands and write them when that is due."""
+        """Limit the commands, and write them when it is due."""
         if not self.takes_commands or not self._writing.is_due(now_ns):
             return
         elapsed = (now_ns - self._last_write) * 1e-9 if 0 <= self._last_write < now_ns else period

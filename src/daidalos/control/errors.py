@@ -13,11 +13,11 @@ class ControlError(UserError):
 
 
 class HardwareError(ControlError):
-    """Hardware refuses or fails; raise it from a hardware class of your own."""
+    """Failure or refusal of hardware; raised by hardware classes."""
 
 
 class UnknownError(ControlError):
-    """A name that is not there; says which are.
+    """Unknown name; the message suggests known ones.
 
     Parameters
     ----------
@@ -34,7 +34,7 @@ class UnknownError(ControlError):
 
 
 class StateError(ControlError):
-    """A transition that the state of a controller or component does not allow."""
+    """Transition that the state of a controller or component does not allow."""
 
 
 class SwitchError(ControlError):

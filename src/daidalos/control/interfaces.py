@@ -1,4 +1,4 @@
-"""Values that hardware and controllers share: named places in arrays."""
+"""Interfaces shared by hardware and controllers: named values in arrays."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ Array = NDArray[np.float64]
 
 
 class Interfaces:
-    """The command or state interfaces of one owner, hardware or controller.
+    """Command or state interfaces of one owner, hardware or controller.
 
     Parameters
     ----------
@@ -52,7 +52,7 @@ class Interfaces:
 
 
 class LoanedInterfaces:
-    """Interfaces of one or several owners in the order in which a controller wants them.
+    """Interfaces of one or several owners in the order that a controller requests.
 
     Parameters
     ----------

@@ -16,7 +16,7 @@ Array = NDArray[np.float64]
 
 
 class CommandLimiter:
-    """Limits of all commands of some hardware.
+    """Limiter of all commands of a hardware component.
 
     Positions, speeds and efforts stay within the joint's limits, every interface within its own ``min`` and
     ``max``; a position changes no faster than the joint's speed allows. A speed or effort limit of zero, which many
@@ -58,7 +58,7 @@ class CommandLimiter:
         self._last = np.full(len(self._rows), math.nan)
 
     def apply(self, period: float) -> bool:
-        """Bring the commands within their limits; return whether any was outside.
+        """Limit the commands; return whether any exceeded its limits.
 
         Parameters
         ----------

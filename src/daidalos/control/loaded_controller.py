@@ -1,4 +1,4 @@
-"""A controller in the manager, from loading to unloading."""
+"""Controllers in the manager, from loading to unloading."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Reader = Callable[[type], object]
 
 @dataclass(eq=False)
 class LoadedController:
-    """A controller in the manager.
+    """Controller in the manager.
 
     Parameters
     ----------
@@ -50,14 +50,14 @@ class LoadedController:
 
     @property
     def running(self) -> Controller:
-        """The controller; an error where it is not configured."""
+        """Configured controller; raises an error otherwise."""
         if self.controller is None:
             raise StateError(f"controller '{self.name}' is not configured")
         return self.controller
 
     @property
     def candidate(self) -> Candidate:
-        """What a switch needs to know of it."""
+        """Candidate for a switch."""
         return Candidate(
             state=self.state,
             commands=self.controller.command_names if self.controller else (),
@@ -68,7 +68,7 @@ class LoadedController:
 
 
 def prefixed(name: str, interfaces: Interfaces) -> Interfaces:
-    """Return the same values under names with the controller's in front."""
+    """Return the same values under names prefixed by the controller's."""
     result = Interfaces(f"{name}/{one}" for one in interfaces.names)
     result.values = interfaces.values
     return result

@@ -1,4 +1,4 @@
-"""The controller manager: hardware, controllers, who holds what, and the loop that runs them all."""
+"""Controller manager: hardware, controllers, claims of interfaces, and the control cycle."""
 
 from __future__ import annotations
 
@@ -84,11 +84,11 @@ class ControllerManager:
 
     @property
     def state_names(self) -> tuple[str, ...]:
-        """All state interfaces of the hardware."""
+        """Names of all state interfaces of the hardware."""
         return tuple(name for one in self.components.values() for name in one.hardware.states.names)
 
     def set_component_state(self, name: str, target: str) -> None:
-        """Bring hardware to a state; controllers that can not run without it are stopped.
+        """Bring hardware to a state; controllers that need it are stopped.
 
         Raises
         ------
@@ -100,7 +100,7 @@ class ControllerManager:
         component.go_to(target)
 
     def claimed(self, interface: str) -> str:
-        """Return which active controller holds a command interface, nothing where none does."""
+        """Return the active controller that claims a command interface, or an empty string."""
         return next((one.name for one in self._switcher.active if interface in one.running.command_names), "")
 
     # Controllers
@@ -142,7 +142,7 @@ class ControllerManager:
         return loaded
 
     def configure(self, name: str) -> None:
-        """Read a controller's parameters and make it; an inactive one is made anew.
+        """Read a controller's parameters and create it; an inactive one is recreated.
 
         Raises
         ------
@@ -218,7 +218,7 @@ class ControllerManager:
         return self._switcher.switch(start, stop, strictness, self.time_ns)
 
     def chained_to(self, name: str) -> dict[str, tuple[str, ...]]:
-        """Return whom a controller commands: references by the name of their controller."""
+        """Return the references that a controller commands, by the name of their controller."""
         controller = _find(self.controllers, "controller", name).controller
         commands = controller.command_names if controller is not None else ()
         found = {

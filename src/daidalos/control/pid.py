@@ -20,7 +20,7 @@ STRATEGIES = ("none", "legacy", "back_calculation", "conditional_integration")
 
 @dataclass(frozen=True)
 class Gains(Parameters):
-    """Gains of one loop; u = p e + i int(e) + d de/dt.
+    """Gains of one loop: ``u = p e + i int(e) + d de/dt``.
 
     Anti-windup: ``none`` only clamps; ``legacy`` is the same, for old files; ``conditional_integration`` rests while
     the output is saturated and the error drives it further; ``back_calculation`` bleeds the integral by
@@ -44,7 +44,7 @@ class Gains(Parameters):
 
 
 class Pid:
-    """n independent loops.
+    """PID control of n independent loops.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ class Pid:
         self.reset()
 
     def set_gains(self, gains: Sequence[Gains]) -> None:
-        """Change the gains; the integrals stay. See the class for what it raises."""
+        """Set the gains without a change of the integrals; raises the same errors as the class."""
         for one in gains:
             for kind in ("i_clamp", "u_clamp"):
                 lower, upper = getattr(one, f"{kind}_min"), getattr(one, f"{kind}_max")
@@ -120,7 +120,7 @@ class Pid:
         return output
 
     def _allowed(self, change: Array, error: Array, wanted: Array, period: float) -> Array:
-        """Return how much of the integral's change the anti-windup strategies let pass."""
+        """Return the part of the integral's change that the anti-windup strategies allow."""
         saturated = np.minimum(np.maximum(wanted, self._u_min), self._u_max)
         further = (wanted != saturated) & (wanted * error > 0.0)
         change = np.where(self._conditional & further, 0.0, change)

@@ -13,7 +13,7 @@ NAN = math.nan
 
 @dataclass(frozen=True)
 class SpeedLimits(Parameters):
-    """Limits of one direction of motion; NaN where there is none.
+    """Limits of one direction of motion; NaN for none.
 
     An acceleration or jerk of zero, with which nothing could ever move, is no limit either.
     """
@@ -69,7 +69,7 @@ class SpeedLimiter:
         self._jerk = math.isfinite(self.jerk_up) or math.isfinite(self.jerk_down)
 
     def limit(self, wanted: float, last: float, before: float, period: float) -> float:
-        """Return the velocity that is allowed.
+        """Return the limited velocity.
 
         Parameters
         ----------
@@ -90,7 +90,7 @@ class SpeedLimiter:
         return min(max(wanted, self.lower), self.upper)
 
     def _reachable(self, last: float, period: float) -> tuple[float, float]:
-        """Return the velocities between which one cycle can lead."""
+        """Return the range of velocities reachable in one cycle."""
         up, down, back, stop = (
             rate * period if math.isfinite(rate) else math.inf
             for rate in (self.speed_up, self.slow_down, self.speed_up_reverse, self.slow_down_reverse)

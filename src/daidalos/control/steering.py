@@ -41,12 +41,12 @@ class SteeredBase:
 
     @property
     def traction_count(self) -> int:
-        """How many wheels are driven."""
+        """Number of driven wheels."""
         return 2 if self.traction_track > 0.0 else 1
 
     @property
     def steering_count(self) -> int:
-        """How many wheels steer."""
+        """Number of steered wheels."""
         return 2 if self.steering_track > 0.0 else 1
 
     def steering_angle(self, speed: float, turn: float) -> float | None:
@@ -68,7 +68,7 @@ class SteeredBase:
         return np.array([middle * (1 + inner), middle * (1 - inner)])
 
     def wheel_angles(self, angle: float) -> Array:
-        """Return the steered wheels' angles, right before left [rad]; their axles meet where the base turns about."""
+        """Return the steered wheels' angles, right before left [rad]; their axles meet in the centre of rotation."""
         if self.steering_count == 1:
             return np.array([angle])
         forward, half = self.wheelbase * math.sin(angle), self.steering_track / 2 * math.sin(angle)
@@ -88,7 +88,7 @@ class SteeredBase:
 
 
 def speed_share(error: float) -> float:
-    """Return how much of its speed a base may have while its steering is off by `error` [rad].
+    """Return the ratio of its speed that a base may have at a steering error [rad].
 
     All of it up to 30 degrees, then less, and next to nothing from 90 degrees on.
     """

@@ -41,17 +41,17 @@ class Switcher:
 
     @property
     def active(self) -> list[LoadedController]:
-        """The controllers that are active."""
+        """Active controllers."""
         return [one for one in self._controllers.values() if one.state == ACTIVE]
 
     def switch(self, start: Sequence[str], stop: Sequence[str], strictness: Strictness, now_ns: int) -> Switch:
-        """Plan and carry out what a request leads to; see `ControllerManager.switch`."""
+        """Plan and perform a switch; see `ControllerManager.switch`."""
         plan = plan_switch(self._candidates(), start, stop, strictness, self._problem_with)
         self._carry_out(plan, now_ns)
         return plan
 
     def stop(self, names: Iterable[str], now_ns: int) -> None:
-        """Stop controllers, in this order, whoever needs them."""
+        """Stop controllers, in this order, including those that others need."""
         self._carry_out(Switch(stop=tuple(names), start=()), now_ns)
 
     def stop_users(self, component: Component, kept: Sequence[str], reason: str, now_ns: int) -> None:
@@ -150,7 +150,7 @@ class Switcher:
                     component.hardware.commands[name] = float("nan")
 
     def _settle(self) -> None:
-        """After a switch: find the order and who is commanded by whom."""
+        """Update the order of controllers and their chains after a switch."""
         self.order = tuple(self._controllers[name] for name in update_order(self._candidates()))
         commanded = {name for one in self.active for name in one.running.command_names}
         for loaded in self._controllers.values():

@@ -66,7 +66,7 @@ def plan_switch(
     strictness: Strictness,
     problem_with: Callable[[str, str], str],
 ) -> Switch:
-    """Decide what a request to switch controllers leads to.
+    """Plan a switch of controllers.
 
     Parameters
     ----------
@@ -91,7 +91,7 @@ def plan_switch(
 
 
 def update_order(controllers: Mapping[str, Candidate]) -> tuple[str, ...]:
-    """Return the names so that whoever commands another comes before it, and whoever only reads one after it."""
+    """Return the names sorted so that a controller comes before those it commands and after those it only reads."""
     owner = {name: key for key, one in controllers.items() for name in one.references}
     source = {name: key for key, one in controllers.items() for name in one.exported}
     before: dict[str, set[str]] = {key: set() for key in controllers}
@@ -153,7 +153,7 @@ class _Planner:
                     self._leave_out(names, name, f"controller '{name}' is {state} and can not be {doing}")
 
     def _add_dependencies(self) -> None:
-        """Add the controllers whose references are needed, and stop those in the way where that is wanted."""
+        """Add the controllers whose references are needed, and stop conflicting ones if requested."""
         for name in self._start:  # grows on the way
             for interface in self._all[name].commands:
                 owner = self._owner.get(interface)
@@ -201,12 +201,12 @@ class _Planner:
         return False
 
     def _running(self) -> list[str]:
-        """Return who runs afterwards: those that go on, then those that start."""
+        """Return the controllers that run afterwards: the continuing ones, then the started ones."""
         going_on = [n for n, one in self._all.items() if one.state == "active" and n not in self._stop]
         return [*(name for name in going_on if name not in self._start), *self._start]
 
     def _missing(self, name: str, running: Sequence[str]) -> str:
-        """Return why a controller can not run beside the others, nothing when it can."""
+        """Return why a controller cannot run beside the others, or an empty string."""
         offered = {interface for other in running if other != name for interface in self._offers(other)}
         for kind, interfaces in (("command", self._all[name].commands), ("state", self._all[name].states)):
             for interface in interfaces:

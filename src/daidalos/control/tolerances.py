@@ -16,7 +16,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Tolerances:
-    """Largest errors of n joints, each (n,); infinite where anything goes."""
+    """Maximum errors of n joints, each (n,); infinite for no limit."""
 
     position: Array
     velocity: Array
@@ -24,7 +24,7 @@ class Tolerances:
 
     @classmethod
     def of(cls, position: Sequence[float], velocity: float = 0.0) -> Tolerances:
-        """Return tolerances as parameters give them, where 0 is none."""
+        """Return the tolerances of parameters, where 0 is no limit."""
         count = len(position)
         return cls(
             np.array([one if one > 0.0 else math.inf for one in position]),
@@ -33,7 +33,7 @@ class Tolerances:
         )
 
     def changed(self, joints: Sequence[str], by_joint: Mapping[str, JointTolerance]) -> Tolerances:
-        """Return them with those that a goal gives: 0 leaves a tolerance as it is, a negative one lifts it."""
+        """Return the tolerances changed by a goal: 0 keeps a tolerance, a negative value removes it."""
         columns = {}
         for kind in ("position", "velocity", "acceleration"):
             column = getattr(self, kind).copy()
@@ -45,7 +45,7 @@ class Tolerances:
         return Tolerances(**columns)
 
     def violation(self, joints: Sequence[str], position: Array, velocity: Array, acceleration: Array) -> str:
-        """Return which joint's error is too large, nothing when none is; errors that are NaN are not known."""
+        """Return the joint whose error is too large, or an empty string; errors of NaN are ignored."""
         for kind, error, largest, unit in (
             ("position", position, self.position, ""),
             ("velocity", velocity, self.velocity, "/s"),

@@ -1,4 +1,4 @@
-"""Trajectories of joints through waypoints: polynomials as smooth as what the waypoints say."""
+"""Joint trajectories through waypoints: polynomials of the degree that the waypoints' derivatives determine."""
 
 from __future__ import annotations
 
@@ -110,7 +110,7 @@ class Trajectory:
 
 
 def waypoints(points: Sequence[TrajectoryPoint], count: int) -> tuple[Array, Array, Array, Array]:
-    """Return times (k,), positions, velocities and accelerations (k, n) of points; NaN where they say nothing."""
+    """Return times (k,), positions, velocities and accelerations (k, n) of points; NaN where not given."""
 
     def rows(name: str) -> Array:
         unknown = np.full(count, np.nan)

@@ -21,19 +21,19 @@ class Rules(Protocol):
 
     @property
     def allow_partial_joints_goal(self) -> bool:
-        """Whether joints may be left out."""
+        """Return whether joints may be left out."""
 
     @property
     def allow_integration_in_goal_trajectories(self) -> bool:
-        """Whether waypoints may give velocities alone."""
+        """Return whether waypoints may give velocities alone."""
 
     @property
     def allow_nonzero_velocity_at_trajectory_end(self) -> bool:
-        """Whether it may end in motion."""
+        """Return whether a trajectory may end in motion."""
 
 
 def problem_with(command: TrajectoryCommand, rules: Rules, now_ns: int) -> str:
-    """Return why a trajectory can not be followed, nothing when it can.
+    """Return why a trajectory cannot be followed, or an empty string.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Commanded velocities of a base: the last one counts, for as long as it is fresh."""
+"""Commanded velocity of a base: the last one, until its timeout."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ class VelocityInput:
         self._command = VelocityCommand(command.linear, command.angular, stamp_ns)
 
     def latest(self, now_ns: int) -> tuple[float, float, float] | None:
-        """Return speed ahead, to the left and turn rate; None without a command, at rest when it is too old."""
+        """Return forward speed, sideways speed and turn rate; None without a command, zeros when it is too old."""
         command = self._command
         if command is None:
             return None

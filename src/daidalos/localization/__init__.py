@@ -1,1 +1,1 @@
-"""Finding a robot's pose in a known map."""
+"""Localization of a robot in a known map."""

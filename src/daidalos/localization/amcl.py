@@ -193,7 +193,7 @@ class Amcl:
         return far or abs(float(step[2])) >= self.config.update_min_a
 
     def _weigh(self, beams: Beams) -> None:
-        """Weigh the particles by a scan, and draw them anew when it is time."""
+        """Weight the particles by a scan, and resample them when it is due."""
         likelihoods = self._sensor.likelihoods(self._particles, beams, self._world)
         weights = self._weights * likelihoods
         average = float(weights.sum())
@@ -229,7 +229,7 @@ class Amcl:
         self._weights = np.full(count, 1.0 / count)
 
     def _share_of_random(self) -> float:
-        """Share of particles to draw anywhere: by how much the fast average has fallen below the slow one."""
+        """Return the ratio of random particles: how far the fast average has fallen below the slow one."""
         if self.config.recovery_alpha_slow == 0.0 or self._slow <= 0.0:
             return 0.0
         return max(0.0, 1.0 - self._fast / self._slow)

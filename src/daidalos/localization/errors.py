@@ -4,4 +4,4 @@ from daidalos.common.errors import UserError
 
 
 class LocalizationError(UserError):
-    """Localization can not be set up as asked; the message is one line for the person who asked."""
+    """Invalid configuration or map."""

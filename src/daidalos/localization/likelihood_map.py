@@ -1,4 +1,4 @@
-"""A map as the sensor models need it: what is occupied, and how far each cell is from that."""
+"""Likelihood maps: occupancy and the distance of each cell to the nearest obstacle."""
 
 import numpy as np
 from numpy.typing import NDArray

@@ -1,4 +1,4 @@
-"""Sets of weighted particles: drawing anew, how many are needed, and what they say about the pose."""
+"""Sets of weighted particles: resampling, required number, clusters and moments."""
 
 import math
 from statistics import NormalDist
@@ -23,7 +23,7 @@ HALF = 1 << 19
 
 @compiled
 def low_variance_indices(weights: Array, count: int, offset: float) -> NDArray[np.int64]:
-    """Choose particles by their weights with one random number (Thrun, Burgard and Fox 2005, table 4.4).
+    """Resample particles by their weights with one random number (Thrun, Burgard and Fox 2005, table 4.4).
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ def bins_of(particles: Array) -> NDArray[np.int64]:
 
 
 def kld_bound(bins: int, error: float, probability: float) -> int:
-    """Particles that are needed so that the Kullback-Leibler distance to the truth is small (Fox 2003).
+    """Return the number of particles that bounds the Kullback-Leibler divergence to the truth (Fox 2003).
 
     Parameters
     ----------
@@ -75,7 +75,7 @@ def kld_bound(bins: int, error: float, probability: float) -> int:
 
 
 def heaviest_cluster(particles: Array, weights: Array) -> NDArray[np.bool_]:
-    """Members of the cluster with the largest weight; clusters are bins that touch."""
+    """Return the members of the cluster with the largest weight; clusters are adjacent bins."""
     bins, inverse = np.unique(bins_of(particles), return_inverse=True)
     cluster = clusters(bins)[inverse]
     members: NDArray[np.bool_] = cluster == np.argmax(np.bincount(cluster, weights))
@@ -84,7 +84,7 @@ def heaviest_cluster(particles: Array, weights: Array) -> NDArray[np.bool_]:
 
 @compiled
 def clusters(bins: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Join bins, given by sorted numbers, that touch; each gets the index of one bin of its cluster."""
+    """Join adjacent bins, given by sorted numbers; return for each the index of one bin of its cluster."""
     leader = np.arange(bins.shape[0])
     for i in range(bins.shape[0]):
         yaw = bins[i] & (2 * HALF - 1)
@@ -110,7 +110,7 @@ def _leader(leader: NDArray[np.int64], i: int) -> int:
 
 
 def mean_and_covariance(particles: Array, weights: Array) -> tuple[Array, Array]:
-    """Weighted mean pose, its yaw on the circle, and covariance (3, 3) of (x, y, yaw)."""
+    """Return the weighted mean pose, with its circular mean of yaw, and the covariance (3, 3) of (x, y, yaw)."""
     share = weights / weights.sum()
     x, y = share @ particles[:, 0], share @ particles[:, 1]
     yaw = math.atan2(float(share @ np.sin(particles[:, 2])), float(share @ np.cos(particles[:, 2])))

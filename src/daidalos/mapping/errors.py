@@ -10,7 +10,7 @@ class MappingError(UserError):
 
 
 class MapFileError(MappingError):
-    """A map file can not be read or written.
+    """Error of a map file that cannot be read or written.
 
     Attributes
     ----------
@@ -27,7 +27,7 @@ class MapFileError(MappingError):
 
 
 class LogError(MappingError):
-    """A bag can not be read, or what is needed is not in it.
+    """Error of a bag that cannot be read or lacks the needed topics.
 
     Attributes
     ----------
@@ -41,7 +41,7 @@ class LogError(MappingError):
 
 
 class RelationsError(MappingError):
-    """A file of ground-truth relations can not be used.
+    """Error of a file of ground-truth relations.
 
     Attributes
     ----------

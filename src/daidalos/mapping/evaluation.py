@@ -53,7 +53,7 @@ class RelationErrors:
         )
 
     def summary(self) -> dict[str, float]:
-        """Means and standard deviations in metres and degrees."""
+        """Return means and standard deviations in metres and degrees."""
         degrees = np.degrees(self.rotation)
         return {
             "translation_mean_m": float(self.translation.mean()),
@@ -149,7 +149,7 @@ def relation_errors(stamps_ns: Stamps, poses: Array, relations: Relations) -> Re
 
 
 def poses_at(stamps_ns: Stamps, poses: Array, times_ns: Stamps) -> Array:
-    """Poses of a trajectory at other times, on the straight line between its neighbours."""
+    """Interpolate the poses of a trajectory at other times, linearly between the neighbouring poses."""
     if stamps_ns.size == 1:
         return np.repeat(poses, times_ns.size, axis=0)
     before = np.clip(np.searchsorted(stamps_ns, times_ns, side="right") - 1, 0, stamps_ns.size - 2)
@@ -159,7 +159,7 @@ def poses_at(stamps_ns: Stamps, poses: Array, times_ns: Stamps) -> Array:
 
 
 def absolute_trajectory_error(estimated: Array, true: Array) -> float:
-    """Root mean squared distance [m] of two trajectories (n, 3) after rigid alignment (Umeyama 1991)."""
+    """Compute the root mean squared distance [m] of two trajectories (n, 3) after rigid alignment (Umeyama 1991)."""
     a, b = estimated[:, :2], true[:, :2]
     centred_a, centred_b = a - a.mean(axis=0), b - b.mean(axis=0)
     along = np.sum(centred_a * centred_b)
@@ -202,13 +202,13 @@ def compare_with_truth(
 
 
 def _occupied_middles(grid: OccupancyGrid) -> Array:
-    """Middles of the occupied cells (n, 2) [m] in the frame the origin is given in."""
+    """Return the centres of the occupied cells (n, 2) [m] in the frame that the origin is given in."""
     rows, columns = np.nonzero(grid.data == OCCUPIED)
     middles = (np.stack([columns, rows], axis=1).astype(np.float64) + 0.5) * grid.resolution
     return pose2.transform_points(grid.origin, middles)
 
 
 def _nanoseconds(seconds: str) -> int:
-    """Turn decimal seconds into nanoseconds; a float can not hold the time since 1970 that finely."""
+    """Convert decimal seconds to nanoseconds; a float cannot hold the time since 1970 that finely."""
     whole, _, fraction = seconds.partition(".")
     return int(whole) * 10**9 + int(f"{fraction:0<9.9}")

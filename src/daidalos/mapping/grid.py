@@ -1,4 +1,4 @@
-"""Occupancy grids: beams counted in cells, scan by scan, so that a scan can be moved elsewhere."""
+"""Occupancy grids of beams counted per cell, from which single scans can be removed again."""
 
 from dataclasses import dataclass
 
@@ -65,7 +65,7 @@ class ScanGrid:
         self._trace(cloud, pose, -1)
 
     def classify(self, occupancy_threshold: float = 0.1, min_pass_through: int = 2) -> OccupancyGrid:
-        """Occupied, free or unknown by the share of beams that ended among those that reached a cell.
+        """Classify cells as occupied, free or unknown by the ratio of the beams that ended in them.
 
         The grid spans the known cells; without any it has none.
 
@@ -149,7 +149,7 @@ def _copy_known(old: Counts, new: Counts, row: int, column: int) -> None:
 
 @compiled
 def _bounds(points: Array, cleared: Array, origin: Array, pose: Array, resolution: float) -> NDArray[np.int64]:
-    """First and last column and row that the beams touch: left, bottom, right, top."""
+    """Return the first and last column and row that the beams touch: left, bottom, right, top."""
     cosine, sine = np.cos(pose[2]), np.sin(pose[2])
     x = pose[0] + cosine * origin[0] - sine * origin[1]
     y = pose[1] + sine * origin[0] + cosine * origin[1]
@@ -183,7 +183,7 @@ def _count(
     sign: int,
     is_hit: bool,
 ) -> None:
-    """Walk along beams cell by cell (Amanatides, Woo 1987: "A fast voxel traversal algorithm")."""
+    """Count beams along their cells (Amanatides, Woo 1987: "A fast voxel traversal algorithm")."""
     cosine, sine = np.cos(pose[2]), np.sin(pose[2])
     start_x = (pose[0] + cosine * origin[0] - sine * origin[1]) / resolution - corner[0]
     start_y = (pose[1] + sine * origin[0] + cosine * origin[1]) / resolution - corner[1]

@@ -1,4 +1,4 @@
-"""Logs of real robots: laser scans and odometry out of a bag, as arrays."""
+"""Logs of real robots: laser scans and odometry from a bag, as arrays."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -117,7 +117,7 @@ def _collect(bag: Path, reader: BagReader, scan_topic: str | None, odom_topic: s
 
 
 def _codec(type_name: str) -> Codec:
-    """Return what makes messages of a type out of their bytes."""
+    """Return the function that deserializes messages of a type."""
     package, kind, name = type_name.split("/")
     return codec_of(getattr(import_module(f"{package}.{kind}"), name))
 
@@ -165,7 +165,7 @@ def _odometry(
 
 
 def _mounts(transforms: Sequence[Any], base: str) -> dict[str, Array]:
-    """Pose (x, y, yaw) on the base of every frame that transforms tie to it."""
+    """Return the pose (x, y, yaw) in the base of every frame that static transforms connect to it."""
     children: dict[str, dict[str, Array]] = {}
     for t in transforms:
         parent, child = _frame(t.header.frame_id), _frame(t.child_frame_id)
@@ -203,7 +203,7 @@ def _stamp(header: Any) -> int:
 
 
 def _frame(name: str) -> str:
-    """ROS 1 wrote frames with a leading slash."""
+    """Return a frame's name without the leading slash of ROS 1."""
     return name.lstrip("/")
 
 

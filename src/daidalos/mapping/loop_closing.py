@@ -1,4 +1,4 @@
-"""Recognising places: matches between what the robot sees now and key scans it made long before."""
+"""Loop closing: matches of the newest key scan with key scans made long before."""
 
 from collections.abc import Sequence
 
@@ -126,7 +126,7 @@ class LoopCloser:
 
 
 def possible_drift(source: int, poses: Array, edges: Sequence[Edge]) -> Array:
-    """Bound how far [m] each pose may be off relative to one, shape (n,): the shortest way through the graph.
+    """Bound the drift [m] of each pose relative to one, shape (n,), by the shortest path through the graph.
 
     After Olson 2009, "Recognizing places using spectrally clustered local matches", with bounds where he has
     covariances.

@@ -1,4 +1,4 @@
-"""Map files of map_server: a YAML file that says what the grey values of an image mean."""
+"""Map files of map_server: a YAML file that defines the meaning of an image's grey values."""
 
 import contextlib
 import math
@@ -158,7 +158,7 @@ def _to_grey(data: NDArray[np.int8], known: NDArray[np.bool_], mode: Mode, occup
 
 
 def _unknown_grey(occupied: float, free: float) -> int:
-    """Return the grey value between the thresholds that is read as unknown: the usual one where it is."""
+    """Return a grey value between the thresholds, which is read as unknown; the usual one if possible."""
     if free < 1.0 - UNKNOWN_GREY / 255.0 < occupied:
         return UNKNOWN_GREY
     return round(255.0 * (1.0 - (free + occupied) / 2.0))
@@ -220,7 +220,7 @@ def _origin(path: Path, fields: dict[str, Any]) -> tuple[float, float, float]:
 
 
 def _write_together(contents: dict[Path, bytes]) -> None:
-    """Write several files so that a failure leaves the old ones."""
+    """Write several files so that a failure keeps the old ones."""
     parts = {path: path.with_name(f".{path.name}.part") for path in contents}
     try:
         for path, part in parts.items():

@@ -1,4 +1,4 @@
-"""Images of map files: grey values, and perhaps which of them are there."""
+"""Images of map files: grey values and optional transparency."""
 
 import io
 import re

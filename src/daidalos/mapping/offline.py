@@ -1,4 +1,4 @@
-"""From a recorded log to a map and a trajectory, as fast as the machine allows."""
+"""Offline SLAM: map and trajectory of a recorded log."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace

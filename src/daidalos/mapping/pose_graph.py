@@ -1,4 +1,4 @@
-"""Pose graphs: the poses that agree best with many relative measurements, some of which may be wrong."""
+"""Pose graphs: least-squares poses from relative measurements with outliers."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -29,7 +29,7 @@ MIN_DAMPING, START_DAMPING, MAX_DAMPING = 1e-12, 1e-5, 1e10
 
 @dataclass(frozen=True)
 class Edge:
-    """One relative measurement between two poses.
+    """Relative measurement between two poses.
 
     Attributes
     ----------
@@ -52,7 +52,7 @@ class Edge:
 
 @dataclass(frozen=True)
 class Solution:
-    """Poses that agree best with the edges.
+    """Poses that fit the edges best.
 
     Attributes
     ----------
@@ -86,7 +86,7 @@ class _Edges(NamedTuple):
 
 
 def optimize(poses: Array, edges: Sequence[Edge], *, chordal: bool = False) -> Solution:
-    """Find the poses that agree best with the edges.
+    """Find the poses that fit the edges best.
 
     Closures carry a Cauchy kernel; those that still disagree after the first solution are rejected and the
     rest is solved again.

@@ -1,4 +1,4 @@
-"""Laser scans: from the ranges of one sweep to points with normals in the frame of the robot's base."""
+"""Laser scans: conversion of ranges to points with normals in the frame of the robot's base."""
 
 from dataclasses import dataclass
 
@@ -18,7 +18,7 @@ LINE_TOLERANCE = 0.05
 
 @dataclass(frozen=True)
 class LaserScanData:
-    """One sweep of a planar lidar, as `sensor_msgs/LaserScan` carries it.
+    """Scan of a planar lidar, with the fields of `sensor_msgs/LaserScan`.
 
     Attributes
     ----------
@@ -46,7 +46,7 @@ class LaserScanData:
 
 @dataclass(frozen=True)
 class Cloud:
-    """The points of one scan in the frame of the base, at the time of its first beam.
+    """Points of one scan in the frame of the base at the time of its first beam.
 
     Attributes
     ----------
@@ -70,7 +70,7 @@ class Cloud:
 
 
 def to_cloud(scan: LaserScanData, max_range: float, twist: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> Cloud:
-    """Turn ranges into points with normals.
+    """Convert ranges to points with normals.
 
     Parameters
     ----------
@@ -157,7 +157,7 @@ def _ends_and_normals(
 
 @compiled
 def _normals(points: Array, reach: Array, increment: float, sensor: Array) -> Array:
-    """Fit a total least squares line to each point's neighbours along the sweep and take its normal."""
+    """Compute normals as those of total least squares lines through each point's neighbours along the scan."""
     count = points.shape[0]
     normals = np.zeros((count, 2))
     for i in range(count):
@@ -192,7 +192,7 @@ def _normals(points: Array, reach: Array, increment: float, sensor: Array) -> Ar
 
 @compiled
 def _end_of_surface(points: Array, start: int, step: int, radius: float) -> int:
-    """Last index in one direction along the sweep that is within the radius and reached without a jump."""
+    """Return the last index in one direction along the scan within the radius and without a jump."""
     i = start
     while 0 <= i + step < points.shape[0]:
         gap = np.hypot(points[i + step, 0] - points[i, 0], points[i + step, 1] - points[i, 1])

@@ -1,4 +1,4 @@
-"""Simultaneous localisation and mapping: scans and odometry in, the robot's pose and a map out."""
+"""Simultaneous localisation and mapping (SLAM) from laser scans and odometry."""
 
 from dataclasses import dataclass
 
@@ -110,7 +110,7 @@ class Slam:
         self._stale: list[int] = []
 
     def reconfigure(self, config: SlamConfig) -> None:
-        """Use other parameters from the next scan on; the map's resolution stays."""
+        """Use other parameters from the next scan on; the map's resolution does not change."""
         self.config = self._closer.config = config
 
     @property
@@ -192,7 +192,7 @@ class Slam:
         return self._grid.classify(self.config.occupancy_threshold, self.config.min_pass_through)
 
     def render(self, limit: int | None = None) -> int:
-        """Draw or move at most `limit` scans on the grid; returns how many are left to do."""
+        """Draw or move at most `limit` scans on the grid; return the number of remaining ones."""
         waiting = [*range(len(self._drawn), len(self._keys)), *self._stale]
         count = len(waiting) if limit is None else min(limit, len(waiting))
         for index in waiting[:count]:
@@ -207,7 +207,7 @@ class Slam:
         return len(waiting) - count
 
     def finish(self) -> None:
-        """Bring all poses into their best agreement, once nothing more comes."""
+        """Optimise all poses after the last scan."""
         from daidalos.mapping.refinement import refine_poses
 
         if len(self._keys) > 1:
@@ -224,7 +224,7 @@ class Slam:
         return ScanResult(odom, added=True)
 
     def _twist(self, step: Array, stamp_ns: int) -> tuple[float, float, float]:
-        """Velocity of the base since the last scan, by odometry; zero where that was too long ago to tell."""
+        """Return the velocity of the base since the last scan by odometry; zero where that was too long ago."""
         elapsed_ns = stamp_ns - self._last_stamp_ns
         if not 0 < elapsed_ns < MAX_STEP_NS:
             return (0.0, 0.0, 0.0)
@@ -310,7 +310,7 @@ class Slam:
 
 
 def _fuse(predicted: Array, certainty: Array, match: Refinement) -> _Match:
-    """Weigh a match against odometry, which decides where lines do not: along a corridor."""
+    """Fuse a match with odometry, which constrains directions that lines do not, such as along a corridor."""
     information = match_information(match.normal_matrix)
     gap = pose2.between(match.pose, predicted)
     shift = np.linalg.solve(information + certainty, certainty @ gap)
@@ -318,7 +318,7 @@ def _fuse(predicted: Array, certainty: Array, match: Refinement) -> _Match:
 
 
 def _odometry_information(moved: Array) -> Array:
-    """Inverse covariance of a motion by odometry alone, taken to be poor: wheels slip and are never round."""
+    """Return the inverse covariance of a motion by odometry alone, assumed to be inaccurate."""
     distance, turn = float(np.hypot(moved[0], moved[1])), abs(float(moved[2]))
     deviation = np.array([0.05 + 0.2 * distance, 0.05 + 0.2 * distance, 0.2 + 0.2 * turn])
     return np.diag(1.0 / deviation**2)

@@ -15,7 +15,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class TwistCommand:
-    """A wanted velocity in the frame of the base.
+    """Commanded velocity in the frame of the base.
 
     Parameters
     ----------
@@ -29,7 +29,7 @@ class TwistCommand:
 
 @dataclass(frozen=True, eq=False)
 class WrenchCommand:
-    """A wanted force (3,) [N] and torque (3,) [N m]."""
+    """Commanded force (3,) [N] and torque (3,) [N m]."""
 
     force: Array = field(default_factory=lambda: np.zeros(3))
     torque: Array = field(default_factory=lambda: np.zeros(3))
@@ -49,7 +49,7 @@ class FlagCommand:
 
 @dataclass(frozen=True, eq=False)
 class NumberCommand:
-    """A wanted position, speed or effort of one joint."""
+    """Commanded position, speed or effort of one joint."""
 
     value: float = 0.0
 

@@ -25,7 +25,7 @@ class DynamicJointSample(Sample):
 
 @dataclass(frozen=True, eq=False)
 class TrajectoryPoint:
-    """n joints at one instant; None where nothing is known of a derivative.
+    """State of n joints at one instant; None where a derivative is not known.
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ class JointTolerance:
 
 @dataclass(frozen=True, eq=False)
 class TrajectoryRequest:
-    """A goal of ``follow_joint_trajectory``.
+    """Goal of ``follow_joint_trajectory``.
 
     Parameters
     ----------
@@ -148,7 +148,7 @@ class TrajectoryStateRequest:
 
 @dataclass(frozen=True, eq=False)
 class TrajectoryStateResponse:
-    """The wanted state, or that there is none."""
+    """State of a trajectory, or that it is not known."""
 
     known: bool
     joints: tuple[str, ...] = ()
@@ -157,7 +157,7 @@ class TrajectoryStateResponse:
 
 @dataclass(frozen=True, eq=False)
 class VelocityCommand:
-    """A wanted velocity of the base; `TwistCommand` with a stamp, which is 0 where the sender gave none."""
+    """Commanded velocity of the base with a stamp, which is 0 where the sender gave none."""
 
     linear: Array = field(default_factory=lambda: np.zeros(3))
     angular: Array = field(default_factory=lambda: np.zeros(3))
@@ -166,7 +166,7 @@ class VelocityCommand:
 
 @dataclass(frozen=True, eq=False)
 class VelocitySample(Sample):
-    """A velocity that a controller lets pass; linear, angular (3,) [m/s, rad/s]."""
+    """Velocity after a controller's limits; linear, angular (3,) [m/s, rad/s]."""
 
     linear: Array
     angular: Array
@@ -174,14 +174,14 @@ class VelocitySample(Sample):
 
 @dataclass(frozen=True, eq=False)
 class ValuesCommand:
-    """One number for each of a controller's interfaces."""
+    """Commanded values, one for each of a controller's interfaces."""
 
     values: Array
 
 
 @dataclass(frozen=True, eq=False)
 class DofCommand:
-    """Wanted values of degrees of freedom, and of their derivatives where given."""
+    """Commanded values of degrees of freedom, and of their derivatives where given."""
 
     names: tuple[str, ...]
     values: Array
@@ -197,7 +197,7 @@ class Switched:
 
 @dataclass(frozen=True)
 class Asked:
-    """A request without content."""
+    """Request without content."""
 
 
 @dataclass(frozen=True)
@@ -231,7 +231,7 @@ class DofSample(Sample):
 
 @dataclass(frozen=True)
 class GripperRequest:
-    """A goal of a gripper: where to [m, rad], and how hard at most [N, N m] (0: as it can)."""
+    """Goal of a gripper: position [m, rad] and maximum effort [N, N m] (0: no limit)."""
 
     position: float
     max_effort: float = 0.0
@@ -239,7 +239,7 @@ class GripperRequest:
 
 @dataclass(frozen=True)
 class ParallelGripperRequest(GripperRequest):
-    """The same with a largest speed [m/s, rad/s] (0: as it can) and the joint that is meant, if one is named."""
+    """Goal of a parallel gripper, with a maximum speed [m/s, rad/s] (0: no limit) and an optional joint."""
 
     max_velocity: float = 0.0
     joint: str = ""
@@ -260,7 +260,7 @@ class GripperState:
 
 @dataclass(frozen=True, eq=False)
 class StampedWrenchCommand:
-    """A wanted force [N] and torque [N m], each (3,), in a frame; empty for the sensor's."""
+    """Commanded force [N] and torque [N m], each (3,), in a frame; empty for the sensor's."""
 
     force: Array
     torque: Array
@@ -269,7 +269,7 @@ class StampedWrenchCommand:
 
 @dataclass(frozen=True, eq=False)
 class VariedRangeSample(Sample):
-    """A distance [m] and what the sensor is; see ``sensor_msgs/msg/Range``."""
+    """Distance [m] with the sensor's properties; see ``sensor_msgs/msg/Range``."""
 
     radiation_type: int
     field_of_view: float
@@ -281,7 +281,7 @@ class VariedRangeSample(Sample):
 
 @dataclass(frozen=True, eq=False)
 class PoseSample(Sample):
-    """A pose: position (3,) [m], orientation (4,)."""
+    """Pose: position (3,) [m], orientation (4,)."""
 
     position: Array
     orientation: Array

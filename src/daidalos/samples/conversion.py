@@ -75,7 +75,7 @@ def _names(kind: type) -> frozenset[str]:
 
 
 def _writer(message: Any, sources: Mapping[str, Source], names: frozenset[str]) -> Callable[[Any], Any]:
-    """Return what makes a message of a class from an object with fields of these names."""
+    """Return the function that makes a message of a class from an object with fields of these names."""
     direct = {path: source for path, source in sources.items() if "." not in path}
     nested: dict[str, dict[str, Source]] = {}
     for path, source in sources.items():
@@ -102,7 +102,7 @@ def _writer(message: Any, sources: Mapping[str, Source], names: frozenset[str]) 
 
 
 def _part(source: Source, kind: Any, single: bool) -> Callable[[Any], Any]:
-    """Return what makes the value of one field of a message."""
+    """Return the function that makes the value of one field of a message."""
     get = attrgetter(source) if isinstance(source, str) else source
     if isinstance(kind, str):
         if single:
@@ -144,14 +144,14 @@ def _by_names(message: Any, kind: Any) -> Callable[[Any], Any]:
 
 
 def _reader(kind: type, message: Any, sources: Mapping[str, Source]) -> Callable[[Any], Any]:
-    """Return what makes an object of a dataclass from a message of a class."""
+    """Return the function that makes an object of a dataclass from a message of a class."""
     paths = {source: path for path, source in sources.items() if isinstance(source, str)}
     parts = [(field.name, _value(message, paths.get(field.name, field.name))) for field in fields(kind)]
     return lambda received: kind(**{name: part(received) for name, part in parts})
 
 
 def _value(message: Any, path: str) -> Callable[[Any], Any]:
-    """Return what reads one value from a message."""
+    """Return the function that reads one value from a message."""
     if path == "stamp_ns":
         return lambda received: nanoseconds(received.header.stamp)
     if path == "frame_id":

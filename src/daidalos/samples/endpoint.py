@@ -1,4 +1,4 @@
-"""The contract of what publishes samples and takes commands on topics."""
+"""Contract of publishers of samples and receivers of commands."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from daidalos.samples.sensors import Sample
 
 @dataclass(frozen=True)
 class Subscription:
-    """Class of the commands of a topic, and what takes them."""
+    """Class of the commands of a topic, and the callback that takes them."""
 
     type: type
     take: Callable[[Any], None]

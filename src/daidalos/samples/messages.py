@@ -1,4 +1,4 @@
-"""The table of samples and commands with their messages."""
+"""Table of samples and commands with their messages."""
 
 from __future__ import annotations
 

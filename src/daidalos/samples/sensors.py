@@ -19,7 +19,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Sample:
-    """A measurement of a sensor, plugin or controller at one instant.
+    """Measurement of a sensor, plugin or controller at one instant.
 
     Parameters
     ----------

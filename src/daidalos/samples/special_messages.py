@@ -1,4 +1,4 @@
-"""Messages whose fields are not those of their samples: pictures, clouds, contacts and trajectories."""
+"""Conversions that need more than field names: images, clouds, contacts and trajectories."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""Controllers, one file each, under the names that parameter files know them by."""
+"""Controllers, one per file, with the type names of parameter files."""

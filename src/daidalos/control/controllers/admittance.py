@@ -1,4 +1,4 @@
-"""Admittance controller: joints follow their references and yield to what a force sensor feels."""
+"""Admittance controller: joints follow their references and yield to the wrench of a force sensor."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from daidalos.samples.sensors import Sample
 
 @dataclass(frozen=True)
 class Kinematics(Parameters):
-    """The chain of joints."""
+    """Chain of joints."""
 
     base: str = parameter("", "Link that the chain starts at.", not_empty=True, read_only=True)
     tip: str = parameter("", "Link that the chain ends at.", not_empty=True, read_only=True)
@@ -29,7 +29,7 @@ class Kinematics(Parameters):
 
 @dataclass(frozen=True)
 class Frame(Parameters):
-    """A frame: a link of the robot, or one outside of it."""
+    """Frame: a link of the robot, or one outside of it."""
 
     id: str = parameter("", "Name of the frame.", not_empty=True, read_only=True)
     external: bool = parameter(False, "Whether the frame is outside of the robot.", read_only=True)
@@ -37,7 +37,7 @@ class Frame(Parameters):
 
 @dataclass(frozen=True)
 class ForceSensor(Parameters):
-    """The force-torque sensor."""
+    """Force-torque sensor."""
 
     name: str = parameter("", "Name of the sensor in its state interfaces.", not_empty=True, read_only=True)
     frame: Frame = group(Frame)
@@ -48,7 +48,7 @@ class ForceSensor(Parameters):
 
 @dataclass(frozen=True)
 class FrameHolder(Parameters):
-    """A named frame."""
+    """Named frame."""
 
     frame: Frame = group(Frame)
 
@@ -71,7 +71,7 @@ class GravityCompensation(Parameters):
 
 @dataclass(frozen=True)
 class LawParameters(Parameters):
-    """The law along and about the axes of the control frame; see `AdmittanceLaw`."""
+    """Admittance law along and about the axes of the control frame; see `AdmittanceLaw`."""
 
     selected_axes: tuple[bool, ...] = parameter((True,) * 6, "Axes along and about which the tip yields.", length=6)
     mass: tuple[float, ...] = parameter(
@@ -114,7 +114,7 @@ class AdmittanceParameters(Parameters):
     )
 
     def check(self) -> None:
-        """Refuse what can not be controlled."""
+        """Check the combination of interfaces and joints."""
         if "position" not in self.state_interfaces:
             raise ParameterError("state_interfaces", "must have position")
         if self.command_joints and len(self.command_joints) != len(self.joints):
@@ -131,7 +131,7 @@ class AdmittanceController(Controller):
     p: AdmittanceParameters
 
     def configure(self) -> None:
-        """Name interfaces and find the chain."""
+        """Set the interface names, and find the chain."""
         p = self.p
         if self.context.robot is None:
             raise ControlError("the robot's description is needed for its kinematics, and is not there")
@@ -166,12 +166,12 @@ class AdmittanceController(Controller):
 
     @property
     def publications(self) -> Mapping[str, type[Sample]]:
-        """The state of the law."""
+        """State of the admittance law."""
         return {"~/status": AdmittanceSample}
 
     @property
     def subscriptions(self) -> Mapping[str, Subscription]:
-        """References."""
+        """References of the joints."""
         return {"~/joint_references": Subscription(TrajectoryPoint, self._take)}
 
     def _take(self, point: TrajectoryPoint) -> None:
@@ -186,7 +186,7 @@ class AdmittanceController(Controller):
         self._received = point
 
     def activate(self, now_ns: int) -> None:
-        """Hold the joints where they are; what the sensor feels counts from now."""
+        """Hold the joints at their positions, and use the sensor from now on."""
         self._take_law()
         values = self.states.read()
         self._reference = values[: self._count].copy()
@@ -240,11 +240,11 @@ class AdmittanceController(Controller):
             target[known] = values[known]
 
     def _rotation(self, frame: Frame, positions: np.ndarray) -> np.ndarray:
-        """Return a frame's rotation in the base; one outside of the robot is taken to be the base's."""
+        """Return a frame's rotation in the base; a frame outside of the robot counts as the base's."""
         return np.eye(3) if frame.external else self._chain.pose(positions, frame.id)[1]
 
     def _filtered(self, measured: np.ndarray, positions: np.ndarray) -> np.ndarray:
-        """Return the outside wrench in the base's axes, smoothed; a sensor that says nothing feels nothing."""
+        """Return the filtered external wrench in the base's axes; a missing measurement counts as zero."""
         tool, sensor = self.p.gravity_compensation, self.p.ft_sensor.frame
         rotation = self._rotation(sensor, positions)
         centre = self._rotation(tool.frame, positions) @ np.array(tool.CoG.pos)

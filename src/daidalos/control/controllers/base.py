@@ -1,4 +1,4 @@
-"""The contract of controllers: interfaces in, interfaces out, commands and samples beside."""
+"""Contract of controllers: state interfaces in, command interfaces out, and topics, services and actions."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ class ControllerContext:
 
 @dataclass(frozen=True)
 class Service:
-    """A question that a controller answers: the class of the question and who answers it."""
+    """Service of a controller: the class of the request and the function that answers it."""
 
     type: type
     answer: Callable[[Any], Any]
@@ -82,7 +82,7 @@ class Goal:
     result: Any = None
 
     def finish(self, status: str, result: Any) -> None:
-        """End, once."""
+        """Finish the goal; only the first call counts."""
         if not self.status:
             self.status, self.result = status, result
             self.done(status, result)
@@ -90,7 +90,7 @@ class Goal:
 
 @dataclass(frozen=True)
 class Action:
-    """An action that a controller carries out.
+    """Action of a controller.
 
     Parameters
     ----------
@@ -187,7 +187,7 @@ class Controller(Endpoint):
         """Set the references from what was received; only called while no controller commands them."""
 
     def update(self, now_ns: int, period: float) -> Iterable[Sample]:
-        """Write commands and return what there is to say.
+        """Write commands and return the samples to publish.
 
         Parameters
         ----------
@@ -200,10 +200,10 @@ class Controller(Endpoint):
 
     @property
     def services(self) -> Mapping[str, Service]:
-        """Questions that it answers."""
+        """Services of the controller, by name."""
         return {}
 
     @property
     def actions(self) -> Mapping[str, Action]:
-        """Actions that it carries out."""
+        """Actions of the controller, by name."""
         return {}

@@ -1,4 +1,4 @@
-"""Differential drive: wheel speeds from a wanted velocity of the base, odometry from the wheels."""
+"""Differential drive controller: wheel speeds from the base's commanded velocity, odometry from the wheels."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ class DiffDriveParameters(Parameters):
     angular: AngularLimits = group(AngularLimits)
 
     def check(self) -> None:
-        """Refuse sides of different size."""
+        """Check that both sides have the same number of wheels."""
         left, right = len(self.left_wheel_names), len(self.right_wheel_names)
         if left != right:
             raise ParameterError("right_wheel_names", f"has {right} elements, left_wheel_names has {left}")
@@ -93,7 +93,7 @@ class DiffDriveController(Controller):
     p: DiffDriveParameters
 
     def configure(self) -> None:
-        """Name the wheels' interfaces."""
+        """Set the names of the wheels' interfaces."""
         p, context = self.p, self.context
         wheels = (*p.left_wheel_names, *p.right_wheel_names)
         feedback = "position" if p.position_feedback else "velocity"
@@ -130,7 +130,7 @@ class DiffDriveController(Controller):
 
     @property
     def publications(self) -> Mapping[str, type[Sample]]:
-        """Odometry, its transform, and what the limits let pass."""
+        """Odometry, its transform, and the limited velocity."""
         topics: dict[str, type[Sample]] = {"~/odom": OdometrySample}
         if self.p.enable_odom_tf:
             topics["/tf"] = TransformSample
@@ -140,7 +140,7 @@ class DiffDriveController(Controller):
 
     @property
     def subscriptions(self) -> Mapping[str, Subscription]:
-        """The commanded velocity."""
+        """Commanded velocity."""
         return self._input.subscription("~/cmd_vel", self.p.use_stamped_vel)
 
     def activate(self, now_ns: int) -> None:
@@ -163,7 +163,7 @@ class DiffDriveController(Controller):
             self.references.values[:] = latest[0], latest[2]
 
     def update(self, now_ns: int, period: float) -> Iterable[Sample]:
-        """Measure the wheels, then tell them their speeds."""
+        """Update the odometry from the wheels, then command their speeds."""
         wanted = np.nan_to_num(self.references.values)
         self._measure(period)
         allowed = np.array(

@@ -1,4 +1,4 @@
-"""Forward controllers: what is commanded goes to the interfaces as it is."""
+"""Forward controllers: commands are written to the interfaces unchanged."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from daidalos.samples.sensors import Sample
 
 @dataclass(frozen=True)
 class ForwardCommandParameters(Parameters):
-    """Joints, and the interface of each that is commanded."""
+    """Joints, and the commanded interface of each."""
 
     joints: tuple[str, ...] = parameter(
         (), "Joints that are commanded, in the order of the command's values.", not_empty=True, unique=True,
@@ -27,7 +27,7 @@ class ForwardCommandParameters(Parameters):
 
 @dataclass(frozen=True)
 class MultiInterfaceParameters(Parameters):
-    """One joint, and those of its interfaces that are commanded."""
+    """Joint, and its commanded interfaces."""
 
     joint: str = parameter("", "Joint that is commanded.", not_empty=True, read_only=True)
     interface_names: tuple[str, ...] = parameter(
@@ -37,7 +37,7 @@ class MultiInterfaceParameters(Parameters):
 
 @dataclass(frozen=True)
 class GroupParameters(Parameters):
-    """Joints of a group."""
+    """Joints of a group controller."""
 
     joints: tuple[str, ...] = parameter(
         (), "Joints that are commanded, in the order of the command's values.", not_empty=True, unique=True,
@@ -46,23 +46,23 @@ class GroupParameters(Parameters):
 
 
 class ForwardController(Controller):
-    """Base of all that forward ``~/commands``; the order is that of the interfaces."""
+    """Base of the controllers that forward ``~/commands``, in the order of the interfaces."""
 
     chainable = True
 
     def interfaces(self) -> tuple[str, ...]:
-        """Return the names of the interfaces that are commanded."""
+        """Return the names of the commanded interfaces."""
         raise NotImplementedError
 
     def configure(self) -> None:
-        """Offer each interface to other controllers as well."""
+        """Set the interface names, and export each as a reference."""
         self.command_names = self.interfaces()
         self.references = Interfaces(self.command_names)
         self._received: np.ndarray | None = None
 
     @property
     def subscriptions(self) -> Mapping[str, Subscription]:
-        """The commands."""
+        """Commands, in the order of the interfaces."""
         return {"~/commands": Subscription(ValuesCommand, self._take)}
 
     def _take(self, command: ValuesCommand) -> None:
@@ -73,7 +73,7 @@ class ForwardController(Controller):
         self._received = np.asarray(command.values, dtype=np.float64)
 
     def activate(self, now_ns: int) -> None:
-        """Wait for the first command."""
+        """Clear the references until the first command."""
         self._received = None
         self.references.values[:] = np.nan
 
@@ -87,7 +87,7 @@ class ForwardController(Controller):
             self.references.values[:] = self._received
 
     def update(self, now_ns: int, period: float) -> tuple[Sample, ...]:
-        """Write the references that are known; where one is not, the interface keeps its command."""
+        """Write the known references; interfaces without one keep their command."""
         wanted = self.references.values
         unknown = np.isnan(wanted)
         if unknown.any():
@@ -99,7 +99,7 @@ class ForwardController(Controller):
 
 
 class ForwardCommandController(ForwardController):
-    """One interface of several joints."""
+    """Forward controller of one interface of several joints."""
 
     names = ("forward_command_controller/ForwardCommandController",)
     parameters = ForwardCommandParameters
@@ -111,7 +111,7 @@ class ForwardCommandController(ForwardController):
 
 
 class MultiInterfaceForwardCommandController(ForwardController):
-    """Several interfaces of one joint."""
+    """Forward controller of several interfaces of one joint."""
 
     names = ("forward_command_controller/MultiInterfaceForwardCommandController",)
     parameters = MultiInterfaceParameters
@@ -123,7 +123,7 @@ class MultiInterfaceForwardCommandController(ForwardController):
 
 
 class JointGroupPositionController(ForwardController):
-    """Positions of joints."""
+    """Forward controller of joint positions."""
 
     names = ("position_controllers/JointGroupPositionController",)
     parameters = GroupParameters
@@ -136,7 +136,7 @@ class JointGroupPositionController(ForwardController):
 
 
 class JointGroupVelocityController(JointGroupPositionController):
-    """Velocities of joints; they stand when it stops."""
+    """Forward controller of joint velocities; they are zero after deactivation."""
 
     names = ("velocity_controllers/JointGroupVelocityController",)
     kind = "velocity"
@@ -148,7 +148,7 @@ class JointGroupVelocityController(JointGroupPositionController):
 
 
 class JointGroupEffortController(JointGroupVelocityController):
-    """Efforts of joints; none when it stops."""
+    """Forward controller of joint efforts; they are zero after deactivation."""
 
     names = ("effort_controllers/JointGroupEffortController",)
     kind = "effort"

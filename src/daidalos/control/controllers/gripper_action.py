@@ -1,4 +1,4 @@
-"""Gripper controllers: close or open until the goal is reached or something is in between."""
+"""Gripper controllers: move until the goal is reached or the gripper stalls."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _ACTION = "~/gripper_cmd"
 
 @dataclass(frozen=True)
 class GripperParameters(Parameters):
-    """Parameters of the gripper, as ROS names them."""
+    """Parameters of the gripper controllers, with ROS's names."""
 
     joint: str = parameter("", "Joint that opens and closes.", not_empty=True, read_only=True)
     action_monitor_rate: float = parameter(
@@ -45,7 +45,7 @@ class GripperParameters(Parameters):
 
 @dataclass(frozen=True)
 class ParallelGripperParameters(GripperParameters):
-    """The same, with interfaces that take the largest effort and speed."""
+    """Parameters of the parallel gripper, with interfaces for the maximum effort and speed."""
 
     max_effort: float = parameter(
         10.0, "Largest effort where a goal names none; 0 for no limit.", unit="N or N m", minimum=0.0
@@ -72,7 +72,7 @@ class PositionGripperController(Controller):
     p: GripperParameters
 
     def configure(self) -> None:
-        """Name interfaces."""
+        """Set the interface names."""
         self.command_names = (f"{self.p.joint}/{self.command_kind}",)
         self.state_names = (f"{self.p.joint}/position", f"{self.p.joint}/velocity")
         self._monitor = RateGate(self.p.action_monitor_rate)
@@ -80,7 +80,7 @@ class PositionGripperController(Controller):
 
     @property
     def actions(self) -> Mapping[str, Action]:
-        """Opening and closing."""
+        """Action of the gripper."""
         return {_ACTION: Action(self.request, self._refuse, self._start, self._cancel)}
 
     def _refuse(self, request: GripperRequest) -> str:
@@ -103,13 +103,13 @@ class PositionGripperController(Controller):
             self._end("canceled")
 
     def activate(self, now_ns: int) -> None:
-        """Hold the finger where it is."""
+        """Hold the finger at its position."""
         self.now_ns = now_ns
         self._effort, self._output = self.p.max_effort or math.inf, 0.0
         self._hold()
 
     def deactivate(self) -> None:
-        """End the goal."""
+        """Cancel the goal."""
         self._end("aborted")
 
     def _hold(self) -> None:
@@ -125,7 +125,7 @@ class PositionGripperController(Controller):
         return GripperState(self.now_ns, self.p.joint, float(position), float(velocity), self._output, stalled, reached)
 
     def update(self, now_ns: int, period: float) -> Iterable[Sample]:
-        """Command the finger and see how the goal is going."""
+        """Command the finger, and check the goal."""
         position, velocity = self.states.read()
         self._watch(now_ns, self._target - float(position), abs(float(velocity)))
         self._command(self._target - float(position), -float(velocity), period)
@@ -156,12 +156,12 @@ class EffortGripperController(PositionGripperController):
     command_kind = "effort"
 
     def configure(self) -> None:
-        """Make the loop."""
+        """Create the PID loop."""
         super().configure()
         self._pid = Pid([self.p.gains.get(self.p.joint, Gains())])
 
     def activate(self, now_ns: int) -> None:
-        """Hold."""
+        """Hold the finger at its position."""
         self._pid.reset()
         super().activate(now_ns)
 
@@ -186,13 +186,13 @@ class ParallelGripperController(PositionGripperController):
     p: ParallelGripperParameters
 
     def configure(self) -> None:
-        """Name the interfaces for effort and speed as well."""
+        """Set the interface names, including those of maximum effort and speed."""
         super().configure()
         extra = (self.p.max_effort_interface, self.p.max_velocity_interface)
         self.command_names = (*self.command_names, *(name for name in extra if name))
 
     def activate(self, now_ns: int) -> None:
-        """Hold."""
+        """Hold the finger at its position."""
         self._speed = self.p.max_velocity
         super().activate(now_ns)
 

@@ -1,4 +1,4 @@
-"""Joint state broadcaster: publishes what the hardware says of its joints."""
+"""Joint state broadcaster: publishes the joint states of the hardware."""
 
 from __future__ import annotations
 
@@ -52,14 +52,14 @@ class JointStateBroadcasterParameters(Parameters):
 
 
 class JointStateBroadcaster(Controller):
-    """``joint_states`` of joints that have a position, velocity or effort; ``dynamic_joint_states`` of everything."""
+    """Broadcaster of ``joint_states`` (position, velocity, effort) and ``dynamic_joint_states`` (all interfaces)."""
 
     names = ("joint_state_broadcaster/JointStateBroadcaster",)
     parameters = JointStateBroadcasterParameters
     p: JointStateBroadcasterParameters
 
     def configure(self) -> None:
-        """Choose interfaces and joints."""
+        """Select interfaces and joints."""
         p = self.p
         if p.joints and p.interfaces:
             self.state_names = tuple(f"{joint}/{interface}" for joint in p.joints for interface in p.interfaces)
@@ -92,14 +92,14 @@ class JointStateBroadcaster(Controller):
 
     @property
     def publications(self) -> Mapping[str, type[Sample]]:
-        """Joint states, and all interfaces where they are wanted."""
+        """Joint states, and dynamic joint states if enabled."""
         topics: dict[str, type[Sample]] = {self._topic: JointStateSample}
         if self.p.publish_dynamic_joint_states:
             topics[self._dynamic_topic] = DynamicJointSample
         return topics
 
     def update(self, now_ns: int, period: float) -> Iterable[Sample]:
-        """Read all and say it."""
+        """Read the interfaces and return the samples."""
         values = self.states.read()
         if self.context.has_subscribers(self._topic):
             yield self._joint_states(now_ns, values)

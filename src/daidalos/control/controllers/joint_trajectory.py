@@ -1,4 +1,4 @@
-"""Joint trajectory controller: moves joints along splines, watches how far they are off."""
+"""Joint trajectory controller: moves joints along splines and checks tolerances."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ class JointTrajectoryController(Controller):
     p: JointTrajectoryParameters
 
     def configure(self) -> None:
-        """Name interfaces; find joints that turn without end."""
+        """Set the interface names; find continuous joints."""
         p = self.p
         self._joints = p.joints
         self.command_names = interface_names(p.command_joints or p.joints, p.command_interfaces)
@@ -95,12 +95,12 @@ class JointTrajectoryController(Controller):
 
     @property
     def publications(self) -> Mapping[str, type[Sample]]:
-        """The controller's state."""
+        """State of the controller."""
         return {"~/controller_state": TrajectorySample}
 
     @property
     def subscriptions(self) -> Mapping[str, Subscription]:
-        """Trajectories, and how fast they run."""
+        """Trajectories, and their speed factor."""
         taken = {"~/joint_trajectory": Subscription(TrajectoryCommand, self._take)}
         if not self.p.speed_scaling.state_interface:
             taken["~/speed_scaling_input"] = Subscription(SpeedCommand, self._take_speed)
@@ -108,12 +108,12 @@ class JointTrajectoryController(Controller):
 
     @property
     def services(self) -> Mapping[str, Service]:
-        """What is wanted at a time."""
+        """Query of the trajectory's state at a time."""
         return {"~/query_state": Service(TrajectoryStateRequest, self._answer)}
 
     @property
     def actions(self) -> Mapping[str, Action]:
-        """Trajectories with feedback and an end."""
+        """Action that follows a trajectory."""
         action = Action(TrajectoryRequest, self._refuse, self._start_goal, self._cancel)
         return {"~/follow_joint_trajectory": action}
 
@@ -155,7 +155,7 @@ class JointTrajectoryController(Controller):
     # Life
 
     def activate(self, now_ns: int) -> None:
-        """Hold the joints where the last command left them, or where they are."""
+        """Hold the joints at the last command, or at their positions."""
         self.now_ns = now_ns
         position = self._actual()[0]
         if "position" in self.p.command_interfaces and self.p.set_last_command_interface_value_as_state_on_activation:
@@ -171,7 +171,7 @@ class JointTrajectoryController(Controller):
         self._hold(position)
 
     def deactivate(self) -> None:
-        """End the goal and stand."""
+        """Cancel the goal and stop."""
         ended = TrajectoryResult(TrajectoryResult.INVALID_GOAL, "the controller was deactivated")
         self._end_goal("aborted", ended)
         self._drop_pending(ended)
@@ -266,7 +266,7 @@ class JointTrajectoryController(Controller):
     # Watching
 
     def _supervise(self, now_ns: int, desired: Motion, actual: Motion, error: Motion) -> bool:
-        """Watch the trajectory; return whether the joints are to hold instead."""
+        """Check tolerances and the goal; return whether the joints must hold instead."""
         if not self._moving:
             return False
         late = (now_ns - self._start_ns) * 1e-9 - self._trajectory.duration
@@ -311,7 +311,7 @@ class JointTrajectoryController(Controller):
     # Interfaces
 
     def _actual(self) -> Motion:
-        """Return the state; NaN where nothing is measured."""
+        """Return the measured state; NaN where there is no measurement."""
         values = np.full((3, self._count), np.nan)
         measured = self.states.read()[: len(self.p.state_interfaces) * self._count].reshape(-1, self._count)
         values[: len(measured)] = measured
@@ -337,7 +337,7 @@ class JointTrajectoryController(Controller):
         return np.concatenate(columns)
 
     def _write(self, output: Array) -> None:
-        """Command the joints and, where it wants to know, tell the hardware the speed."""
+        """Command the joints and, if configured, the hardware's speed scaling."""
         self.commands.write(np.append(output, self._speed) if self.p.speed_scaling.command_interface else output)
 
     def _sample(self, now_ns: int, desired: Motion, actual: Motion, error: Motion, output: Array) -> TrajectorySample:

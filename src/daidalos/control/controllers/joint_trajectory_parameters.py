@@ -30,7 +30,7 @@ class JointGains(Gains):
 
     @property
     def clamped(self) -> Gains:
-        """The gains of the loop alone."""
+        """Gains of the PID loop alone."""
         if self.i_clamp == 0.0 or math.isfinite(self.i_clamp_max) or math.isfinite(self.i_clamp_min):
             return self
         return replace(self, i_clamp_max=abs(self.i_clamp), i_clamp_min=-abs(self.i_clamp))
@@ -50,7 +50,7 @@ class Constraints(Parameters):
 
 @dataclass(frozen=True)
 class JointConstraints(Parameters):
-    """Largest position errors of one joint."""
+    """Maximum position errors of one joint."""
 
     trajectory: float = parameter(0.0, "Largest position error on the way; 0 for any.", unit="rad or m", minimum=0.0)
     goal: float = parameter(0.0, "Largest position error at the end; 0 for any.", unit="rad or m", minimum=0.0)
@@ -119,7 +119,7 @@ class JointTrajectoryParameters(Parameters):
     joint_constraints: dict[str, JointConstraints] = per_name(JointConstraints, by="joints", at="constraints")
 
     def check(self) -> None:
-        """Refuse combinations that can not be controlled."""
+        """Check the combination of interfaces."""
         if set(self.command_interfaces) not in _COMMANDS:
             raise ParameterError("command_interfaces", f"can not be {', '.join(self.command_interfaces)} together")
         if set(self.state_interfaces) not in _STATES:

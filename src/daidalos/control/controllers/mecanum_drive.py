@@ -1,4 +1,4 @@
-"""Mecanum drive: four wheels with rollers, a base that moves any way."""
+"""Mecanum drive controller: omnidirectional base with four mecanum wheels."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _TURN = np.array([-1.0, -1.0, 1.0, 1.0])
 
 @dataclass(frozen=True)
 class BaseOffset(Parameters):
-    """The base's frame in the frame of the wheels' centre."""
+    """Pose of the base's frame in the frame of the wheels' centre."""
 
     x: float = parameter(0.0, "Offset ahead.", unit="m")
     y: float = parameter(0.0, "Offset to the left.", unit="m")
@@ -101,7 +101,7 @@ class MecanumDriveController(BaseController):
     p: MecanumParameters
 
     def configure(self) -> None:
-        """Name interfaces."""
+        """Set the interface names."""
         p = self.p
         commands = [getattr(p, f"{wheel}_wheel_command_joint_name") for wheel in _WHEELS]
         states = [
@@ -145,7 +145,7 @@ class MecanumDriveController(BaseController):
             self.references.values[:] = latest
 
     def update(self, now_ns: int, period: float) -> Iterable[Sample]:
-        """Measure the wheels, then tell them their speeds."""
+        """Update the odometry from the wheels, then command their speeds."""
         wheels = self.states.read()
         if not np.isnan(wheels).any():
             centre = np.linalg.lstsq(self._to_wheels, wheels, rcond=None)[0]

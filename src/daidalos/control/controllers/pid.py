@@ -1,4 +1,4 @@
-"""PID controller: closes a loop around each of several degrees of freedom."""
+"""PID controller of several degrees of freedom."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ class PidParameters(Parameters):
     enable_feedforward: bool = parameter(False, "Whether feedforward is on when the controller starts.")
 
     def check(self) -> None:
-        """Refuse lists that do not fit together."""
+        """Check the lengths of the lists."""
         measured = len(self.reference_and_state_dof_names)
         if measured not in (0, len(self.dof_names)):
             wanted = len(self.dof_names)
@@ -68,7 +68,7 @@ class PidParameters(Parameters):
 
 
 class PidController(Controller):
-    """Commands so that what is measured becomes what is wanted."""
+    """Controller with a PID loop for each degree of freedom."""
 
     names = ("pid_controller/PidController",)
     parameters = PidParameters
@@ -76,7 +76,7 @@ class PidController(Controller):
     p: PidParameters
 
     def configure(self) -> None:
-        """Name interfaces."""
+        """Set the interface names."""
         p = self.p
         self._dofs = p.reference_and_state_dof_names or p.dof_names
         names = interface_names(self._dofs, p.reference_and_state_interfaces)
@@ -102,12 +102,12 @@ class PidController(Controller):
 
     @property
     def publications(self) -> Mapping[str, type[Sample]]:
-        """The state of the loops."""
+        """State of the loops."""
         return {"~/controller_state": DofSample}
 
     @property
     def subscriptions(self) -> Mapping[str, Subscription]:
-        """References, and measurements where they come from outside."""
+        """References, and measurements if these are received on a topic."""
         topics = {"~/reference": Subscription(DofCommand, self._take_reference)}
         if self.p.use_external_measured_states:
             topics["~/measured_state"] = Subscription(DofCommand, self._take_measured)
@@ -115,7 +115,7 @@ class PidController(Controller):
 
     @property
     def services(self) -> Mapping[str, Service]:
-        """Feedforward on or off; integrals back to zero."""
+        """Switch of feedforward, and reset of the integrals."""
         return {
             "~/set_feedforward_control": Service(Switched, self._set_feedforward),
             "~/reset_integral": Service(Asked, self._reset),
@@ -149,7 +149,7 @@ class PidController(Controller):
                 into[1, row] = command.rates[place] if len(command.rates) == len(names) else 0.0
 
     def activate(self, now_ns: int) -> None:
-        """Wait for the first reference."""
+        """Clear the references until the first one is received."""
         shape = (1 + self._with_rates, self._count)
         self._received, self._measured = np.full(shape, np.nan), np.full(shape, np.nan)
         self.references.values[:] = np.nan
@@ -162,7 +162,7 @@ class PidController(Controller):
         self.references.values[known] = self._received.ravel()[known]
 
     def update(self, now_ns: int, period: float) -> Iterable[Sample]:
-        """Close the loops whose reference and measurement are known."""
+        """Update the loops whose reference and measurement are known."""
         wanted = self.references.values.reshape(-1, self._count)
         external = self.p.use_external_measured_states
         measured = self._measured if external else self.states.read().reshape(-1, self._count)

@@ -1,4 +1,4 @@
-"""Broadcasters of sensors: IMU, force-torque, range and pose."""
+"""Sensor broadcasters: IMU, force-torque, range and pose."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _IMU = (
 
 @dataclass(frozen=True)
 class RotationOffset(Parameters):
-    """Rotation that an orientation is off by."""
+    """Rotation offset of an orientation."""
 
     roll: float = parameter(0.0, "Roll.", unit="rad", read_only=True)
     pitch: float = parameter(0.0, "Pitch.", unit="rad", read_only=True)
@@ -64,14 +64,14 @@ class ImuSensorBroadcaster(Controller):
     p: ImuParameters
 
     def configure(self) -> None:
-        """Name the sensor's interfaces."""
+        """Set the names of the sensor's interfaces."""
         self.state_names = tuple(f"{self.p.sensor_name}/{name}" for name in _IMU)
         turn = self.p.rotation_offset
         self._turn = Pose.from_xyz_rpy((0.0, 0.0, 0.0), (turn.roll, turn.pitch, turn.yaw)).orientation
 
     @property
     def publications(self) -> Mapping[str, type[Sample]]:
-        """One topic."""
+        """Topic of the sensor."""
         return {"~/imu": ImuSample}
 
     def update(self, now_ns: int, period: float) -> Iterable[Sample]:
@@ -93,7 +93,7 @@ class ImuSensorBroadcaster(Controller):
 
 @dataclass(frozen=True)
 class AxisNames(Parameters):
-    """Interfaces of three axes; empty where there is none."""
+    """Interface names of three axes; empty for none."""
 
     x: str = parameter("", "Full name of the interface of the x axis; empty for none.", read_only=True)
     y: str = parameter("", "Full name of the interface of the y axis; empty for none.", read_only=True)
@@ -102,7 +102,7 @@ class AxisNames(Parameters):
 
 @dataclass(frozen=True)
 class WrenchNames(Parameters):
-    """Interfaces of a force-torque sensor, full names."""
+    """Full interface names of a force-torque sensor."""
 
     force: AxisNames = group(AxisNames)
     torque: AxisNames = group(AxisNames)
@@ -156,12 +156,12 @@ class ForceTorqueParameters(Parameters):
 
     @property
     def given(self) -> tuple[str, ...]:
-        """The six interfaces by name; empty where none is given."""
+        """Names of the six interfaces; empty where none is given."""
         names = self.interface_names
         return (names.force.x, names.force.y, names.force.z, names.torque.x, names.torque.y, names.torque.z)
 
     def check(self) -> None:
-        """Refuse a sensor that is named in both ways, or in none."""
+        """Check that the sensor is named in exactly one way."""
         if bool(self.sensor_name) == any(self.given):
             raise ParameterError("sensor_name", "or interface_names must be given, and not both")
 
@@ -174,7 +174,7 @@ class ForceTorqueSensorBroadcaster(Controller):
     p: ForceTorqueParameters
 
     def configure(self) -> None:
-        """Name the interfaces."""
+        """Set the interface names."""
         axes = tuple(f"{kind}.{axis}" for kind in ("force", "torque") for axis in "xyz")
         given = tuple(f"{self.p.sensor_name}/{axis}" for axis in axes) if self.p.sensor_name else self.p.given
         self._places = np.array([place for place, name in enumerate(given) if name], dtype=np.intp)
@@ -183,11 +183,11 @@ class ForceTorqueSensorBroadcaster(Controller):
 
     @property
     def publications(self) -> Mapping[str, type[Sample]]:
-        """One topic."""
+        """Topic of the sensor."""
         return {"~/wrench": WrenchSample}
 
     def update(self, now_ns: int, period: float) -> Iterable[Sample]:
-        """Correct and say what it measures; axes that there are not are NaN."""
+        """Return the corrected measurement; missing axes are NaN."""
         values = np.full(6, np.nan)
         values[self._places] = self.states.read()
         values = (values + _six(self.p.offset)) * _six(self.p.multiplier)
@@ -220,12 +220,12 @@ class RangeSensorBroadcaster(Controller):
     p: RangeParameters
 
     def configure(self) -> None:
-        """Name the interface."""
+        """Set the interface name."""
         self.state_names = (f"{self.p.sensor_name}/range",)
 
     @property
     def publications(self) -> Mapping[str, type[Sample]]:
-        """One topic."""
+        """Topic of the sensor."""
         return {"~/range": VariedRangeSample}
 
     def update(self, now_ns: int, period: float) -> Iterable[Sample]:
@@ -272,13 +272,13 @@ class PoseBroadcaster(Controller):
     p: PoseParameters
 
     def configure(self) -> None:
-        """Name the interfaces."""
+        """Set the interface names."""
         self.state_names = tuple(f"{self.p.pose_name}/{name}" for name in _POSE)
         self._transforming = RateGate(self.p.tf.publish_rate)
 
     @property
     def publications(self) -> Mapping[str, type[Sample]]:
-        """The pose, and its transform where that is wanted."""
+        """Pose, and its transform if enabled."""
         topics: dict[str, type[Sample]] = {"~/pose": PoseSample}
         if self.p.tf.enable:
             topics["/tf"] = TransformSample

@@ -80,7 +80,7 @@ class SteeringParameters(Parameters):
 
     @property
     def base(self) -> SteeredBase:
-        """The base's sizes."""
+        """Sizes of the base."""
         raise NotImplementedError
 
     @property
@@ -92,20 +92,20 @@ class SteeringParameters(Parameters):
 
     @property
     def steering(self) -> tuple[str, ...]:
-        """Joints that steer."""
+        """Joints of the steered wheels."""
         return self.steering_joints_names or (
             self.front_wheels_names if self.front_steering else self.rear_wheels_names
         )
 
     @property
     def traction_states(self) -> tuple[str, ...]:
-        """Where the driven wheels are measured."""
+        """Joints whose states measure the driven wheels."""
         old = self.rear_wheels_state_names if self.front_steering else self.front_wheels_state_names
         return self.traction_joints_state_names or old or self.traction
 
     @property
     def steering_states(self) -> tuple[str, ...]:
-        """Where the steered wheels are measured."""
+        """Joints whose states measure the steered wheels."""
         old = self.front_wheels_state_names if self.front_steering else self.rear_wheels_state_names
         return self.steering_joints_state_names or old or self.steering
 
@@ -114,7 +114,7 @@ class SteeringParameters(Parameters):
         return either or (rear if self.front_steering else front)
 
     def check(self) -> None:
-        """Refuse missing sizes, and lists that are longer or shorter than the base has wheels."""
+        """Check the sizes, and the lengths of the lists."""
         base = self.base
         if base.wheel_radius <= 0.0:
             raise ParameterError("traction_wheels_radius", "or the radius of the driven wheels must be above 0")
@@ -138,7 +138,7 @@ class BicycleParameters(SteeringParameters):
 
     @property
     def base(self) -> SteeredBase:
-        """The base's sizes."""
+        """Sizes of the base."""
         radius = self.radius(self.front_wheel_radius, self.rear_wheel_radius, self.traction_wheel_radius)
         return SteeredBase(self.wheelbase, radius)
 
@@ -159,7 +159,7 @@ class TricycleParameters(SteeringParameters):
 
     @property
     def base(self) -> SteeredBase:
-        """The base's sizes."""
+        """Sizes of the base."""
         radius = self.radius(self.front_wheels_radius, self.rear_wheels_radius, self.traction_wheels_radius)
         track = self.traction_track_width or self.wheel_track
         if track <= 0.0:
@@ -193,7 +193,7 @@ class AckermannParameters(SteeringParameters):
 
     @property
     def base(self) -> SteeredBase:
-        """The base's sizes."""
+        """Sizes of the base."""
         radius = self.radius(self.front_wheels_radius, self.rear_wheels_radius, self.traction_wheels_radius)
         rear, front = self.rear_wheel_track, self.front_wheel_track
         traction = self.traction_track_width or (rear if self.front_steering else front)
@@ -213,7 +213,7 @@ class BicycleSteeringController(BaseController):
     p: SteeringParameters
 
     def configure(self) -> None:
-        """Name interfaces."""
+        """Set the interface names."""
         p = self.p
         self._base = p.base
         feedback = "position" if p.position_feedback else "velocity"
@@ -262,7 +262,7 @@ class BicycleSteeringController(BaseController):
             self.references.values[:] = latest[0], latest[2]
 
     def update(self, now_ns: int, period: float) -> Iterable[Sample]:
-        """Measure the wheels, then tell them speeds and angles."""
+        """Update the odometry from the wheels, then command speeds and angles."""
         values = self.states.read()
         self._measure(values, period)
         speed, turn = (float(one) for one in np.nan_to_num(self.references.values))

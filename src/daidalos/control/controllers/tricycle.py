@@ -1,4 +1,4 @@
-"""Tricycle controller: one wheel in front that is driven and steered."""
+"""Tricycle controller: one front wheel, driven and steered."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ class TricycleDriveParameters(Parameters):
     steering: SteeringLimits = group(SteeringLimits)
 
     def check(self) -> None:
-        """Refuse limits that leave no angle."""
+        """Check the limits of the angle."""
         if self.steering.min_position > self.steering.max_position:
             raise ParameterError("steering.min_position", "is above steering.max_position")
 
@@ -85,7 +85,7 @@ class TricycleController(Controller):
     p: TricycleDriveParameters
 
     def configure(self) -> None:
-        """Name interfaces."""
+        """Set the interface names."""
         p = self.p
         self.command_names = (f"{p.traction_joint_name}/velocity", f"{p.steering_joint_name}/position")
         self.state_names = self.command_names
@@ -124,14 +124,14 @@ class TricycleController(Controller):
 
     @property
     def subscriptions(self) -> Mapping[str, Subscription]:
-        """The wanted velocity."""
+        """Commanded velocity."""
         if self.p.use_stamped_vel:
             return {"~/cmd_vel": Subscription(VelocityCommand, self._input.take)}
         return {"~/cmd_vel": Subscription(TwistCommand, self._input.take_plain)}
 
     @property
     def services(self) -> Mapping[str, Service]:
-        """The odometry back to its origin."""
+        """Reset of the odometry."""
         return {"~/reset_odometry": Service(Asked, self._reset)}
 
     def _reset(self, question: Asked) -> Answer:
@@ -150,7 +150,7 @@ class TricycleController(Controller):
         self.commands.write(np.array((0.0, self._angle)))
 
     def update(self, now_ns: int, period: float) -> Iterable[Sample]:
-        """Measure the wheel, then tell it speed and angle."""
+        """Update the odometry from the wheel, then command its speed and angle."""
         measured = self.states.read()
         wheel = (self._speed, self._angle) if self.p.open_loop else (float(measured[0]), float(measured[1]))
         self._measure(*wheel, period)

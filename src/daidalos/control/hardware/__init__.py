@@ -1,1 +1,1 @@
-"""Hardware that controllers read and command: the contract, mock hardware, and the simulation's."""
+"""Hardware that controllers read and command: the contract, and mock hardware."""

@@ -1,4 +1,4 @@
-"""The contract of hardware: what stands between controllers and motors."""
+"""Contract of hardware between controllers and motors."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class HardwareContext:
 
 
 class Hardware:
-    """A robot, or a part of one.
+    """Hardware of a robot or of a part of it.
 
     Subclass it for your own robot: read sensors into `states` in `read`, send `commands` in `write`. Name the
     class in ``<plugin>`` as ``my_package.my_module.MyRobot``, or by an entry point of the group
@@ -71,10 +71,10 @@ class Hardware:
         """Power up; commands count from now on."""
 
     def deactivate(self) -> None:
-        """Stop moving."""
+        """Stop motion."""
 
     def read(self, now_ns: int, period: float) -> None:
-        """Bring `states` up to date.
+        """Update `states` from the hardware.
 
         Parameters
         ----------
@@ -107,7 +107,7 @@ class Hardware:
 
 
 def initial_value(component: ComponentInfo, interface: InterfaceInfo, kind: str) -> float:
-    """Return where an interface starts, NaN where nothing says so.
+    """Return the initial value of an interface, NaN where none is given.
 
     A state without a value of its own starts where the command of its name does.
     """

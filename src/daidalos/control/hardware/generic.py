@@ -1,4 +1,4 @@
-"""Hardware that is not there: states follow commands at once, as ``mock_components/GenericSystem``."""
+"""Mock hardware: states follow commands at once, as ``mock_components/GenericSystem``."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _AT_REST = (*_MOTION, "effort")
 
 
 class GenericSystem(Hardware):
-    """Mirrors commands into states.
+    """Mock hardware that mirrors commands into states.
 
     Its parameters are ROS's: ``calculate_dynamics`` derives what is not commanded (speed from positions, positions
     from speeds or accelerations), ``disable_commands`` ignores commands, ``position_state_following_offset`` (with
@@ -46,7 +46,7 @@ class GenericSystem(Hardware):
         self._joints = [_Motion(joint, self) for joint in self.info.joints] if self._dynamics else []
 
     def configure(self) -> None:
-        """Start at the initial values; joints rest."""
+        """Set the initial values, with joints at rest."""
         self.commands.values[:] = np.nan
         self.states.values[:] = np.nan
         for joint in self.info.joints:
@@ -98,7 +98,7 @@ class GenericSystem(Hardware):
 
 
 class _Motion:
-    """The motion of one joint, from whichever of its interfaces is commanded."""
+    """Motion of one joint from its commanded interface."""
 
     def __init__(self, joint: ComponentInfo, system: GenericSystem) -> None:
         self.name = joint.name
@@ -134,7 +134,7 @@ class _Motion:
 
 
 def _with_mock_commands(info: HardwareInfo) -> HardwareInfo:
-    """Return the hardware with a command for each state of its sensors and GPIOs, where that is asked for."""
+    """Return the hardware with mock commands for the states of its sensors and GPIOs, if enabled."""
     kinds = {
         kind
         for kind, names in (

@@ -1,4 +1,4 @@
-"""The tool centre point from flange poses in which the tool's tip touched one and the same point."""
+"""Calibration of the tool centre point from flange poses in which the tool's tip touched the same point."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _WORST_CONDITION = 1e6
 
 
 class CalibrationError(ValueError):
-    """The poses do not determine what was asked for; the message says what to do."""
+    """Error of poses that do not determine the result; the message states the remedy."""
 
 
 @dataclass(frozen=True)
@@ -42,7 +42,7 @@ class ToolCalibration:
 
 
 def calibrate_tool(positions: ArrayLike, rotations: ArrayLike) -> ToolCalibration:
-    """Find the tool centre point by least squares of ``R_i t + p_i = c`` over all poses.
+    """Compute the tool centre point by least squares of ``R_i t + p_i = c`` over all poses.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The frame of a workpiece from three touched points."""
+"""Calibration of a workpiece's frame from three touched points."""
 
 from __future__ import annotations
 

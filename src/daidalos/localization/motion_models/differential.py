@@ -1,4 +1,4 @@
-"""Motion of a robot that drives along its heading: turn, drive, turn."""
+"""Motion model of a robot that drives along its heading: rotation, translation, rotation."""
 
 import math
 
@@ -50,5 +50,5 @@ class DifferentialMotionModel(MotionModel):
 
 
 def _from_axis(angle: float) -> float:
-    """Angle from the nearer of forwards and backwards."""
+    """Return the angle from the nearer of forwards and backwards [rad]."""
     return min(abs(angle), abs(float(wrap(angle - math.pi))))

@@ -1,4 +1,4 @@
-"""The contract of a motion model."""
+"""Contract of motion models."""
 
 from abc import ABC, abstractmethod
 

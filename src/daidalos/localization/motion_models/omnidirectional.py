@@ -1,4 +1,4 @@
-"""Motion of a robot that drives in any direction."""
+"""Motion model of a robot that drives in any direction."""
 
 import math
 
@@ -13,7 +13,7 @@ Array = NDArray[np.float64]
 
 
 class OmniMotionModel(MotionModel):
-    """A translation in the measured direction, one across it, and a turn, each with noise."""
+    """Motion model of a noisy translation along and across the measured direction, and a noisy rotation."""
 
     def __init__(self, config: AmclConfig) -> None:
         self.config = config

@@ -1,4 +1,4 @@
-"""The beam model: a beam is likely when it is as long as the way to the first obstacle in the map."""
+"""Beam model: compares each range with the distance to the first obstacle in the map."""
 
 import math
 
@@ -49,7 +49,7 @@ def sum_over_beams(
     origin: Array,
     mixture: Array,
 ) -> Array:
-    """For each sensor pose 1 plus the sum of p^3 over the beams."""
+    """Return for each sensor pose 1 plus the sum of p^3 over the beams."""
     z_hit, z_short, z_max, z_rand = mixture[0], mixture[1], mixture[2], mixture[3]
     scale = -0.5 / (mixture[4] * mixture[4])
     rate = mixture[5]
@@ -85,7 +85,7 @@ def cast_ray(
     angle: float,
     max_range: float,
 ) -> float:
-    """Distance along a ray to the first occupied cell, in steps as long as the map's distances allow."""
+    """Return the distance along a ray to the first occupied cell, by sphere tracing in the distance field."""
     cosine, sine = math.cos(angle), math.sin(angle)
     travelled = 0.0
     while travelled < max_range:

@@ -1,4 +1,4 @@
-"""Likelihood fields: a beam is likely where it ends near an obstacle of the map."""
+"""Likelihood-field models: likelihood of a beam by the distance of its end to the nearest obstacle."""
 
 import math
 
@@ -14,7 +14,7 @@ Array = NDArray[np.float64]
 
 
 class LikelihoodFieldModel(SensorModel):
-    """The model of AMCL's name: `1 + sum p^3` over the beams.
+    """AMCL's model ``likelihood_field``: ``1 + sum p^3`` over the beams.
 
     Each beam's p is the mixture of Thrun, Burgard and Fox 2005, table 6.3. The sum of cubes takes the place
     of the product, as in AMCL, for beams are not independent: a product of sixty makes the filter far too
@@ -30,7 +30,7 @@ class LikelihoodFieldModel(SensorModel):
 
 
 class LikelihoodFieldProbModel(SensorModel):
-    """The product of the beams' likelihoods: sharper, for maps that change little and scans of few beams."""
+    """AMCL's model ``likelihood_field_prob``: product of the beams' likelihoods, for static maps and few beams."""
 
     def __init__(self, config: AmclConfig) -> None:
         self.config = config
@@ -43,7 +43,7 @@ class LikelihoodFieldProbModel(SensorModel):
 def _sum_over_beams(
     config: AmclConfig, particles: Array, beams: Beams, world: LikelihoodMap, *, product: bool
 ) -> Array:
-    """Judge by the beams that met something; the others say nothing about distances to obstacles."""
+    """Evaluate the beams with an echo; the others hold no distance to an obstacle."""
     met = beams.ranges < beams.max_range
     angle = beams.sensor_pose[2] + beams.angles[met]
     direction = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
@@ -74,7 +74,7 @@ def sum_over_ends(
     outside: float,
     product: bool,
 ) -> Array:
-    """For each pose 1 plus the sum of p^3 over the beams, or the sum of log p for their product."""
+    """Return for each pose 1 plus the sum of p^3 over the beams, or the sum of log p for their product."""
     total = np.zeros(particles.shape[0])
     scale = -0.5 / (sigma * sigma)
     height, width = distance.shape

@@ -1,4 +1,4 @@
-"""The contract of a sensor model, and the beams it sees."""
+"""Contract of sensor models, and the beams that they evaluate."""
 
 import math
 from abc import ABC, abstractmethod
@@ -16,7 +16,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Beams:
-    """Some beams of a scan.
+    """Selected beams of a scan.
 
     Attributes
     ----------
@@ -37,7 +37,7 @@ class Beams:
 
     @classmethod
     def of_scan(cls, scan: LaserScanData, config: AmclConfig) -> "Beams":
-        """Choose beams of a scan, spread evenly, without those that are no measurement."""
+        """Select evenly spread beams of a scan, without invalid measurements."""
         ranges = np.asarray(scan.ranges, dtype=np.float64)
         count = min(config.max_beams, ranges.size)
         chosen = np.unique(np.linspace(0, ranges.size - 1, count).astype(np.int64))
@@ -58,11 +58,11 @@ class Beams:
 
 
 class SensorModel(ABC):
-    """Weighs poses by a scan."""
+    """Sensor model: weights poses by a scan."""
 
     @abstractmethod
     def likelihoods(self, particles: Array, beams: Beams, world: LikelihoodMap) -> Array:
-        """Judge poses.
+        """Return the likelihoods of poses.
 
         Parameters
         ----------

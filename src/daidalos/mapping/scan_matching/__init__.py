@@ -1,1 +1,1 @@
-"""The pose of a scan among points: correlation for the neighbourhood, point to line for the millimetres."""
+"""Scan matching: correlative search for a coarse pose, point-to-line refinement for an accurate one."""

@@ -1,4 +1,4 @@
-"""Correlative search of a window for the pose of a scan, exact and fast by bounds over blocks of poses.
+"""Correlative scan matching in a window by branch and bound over blocks of poses.
 
 The score is that of Olson 2009, "Real-time correlative scan matching"; its two resolutions become any number
 of them as in Hess et al. 2016, "Real-time loop closure in 2D LIDAR SLAM".
@@ -170,7 +170,7 @@ def _rotate(
     columns: NDArray[np.int32],
     rows: NDArray[np.int32],
 ) -> None:
-    """Cells of the scan's points at one heading for the shift to the lower left corner of the window."""
+    """Return the cells of the scan's points at one heading, shifted to the lower left corner of the window."""
     cosine, sine = np.cos(centre[2] + turn), np.sin(centre[2] + turn)
     for i in range(points.shape[0]):
         x = centre[0] + cosine * points[i, 0] - sine * points[i, 1]
@@ -193,7 +193,7 @@ def _score(cells: Cells, columns: NDArray[np.int32], rows: NDArray[np.int32], dx
 
 @compiled
 def _shift(x: int, y: int, width: int, half: int) -> float:
-    """Squared distance in cells from the middle of the window to the nearest shift of a block."""
+    """Return the squared distance in cells from the centre of the window to the nearest shift of a block."""
     dx = max(x - half, 0, half - (x + width - 1))
     dy = max(y - half, 0, half - (y + width - 1))
     return float(dx * dx + dy * dy)

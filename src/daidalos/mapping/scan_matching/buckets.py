@@ -1,4 +1,4 @@
-"""Points with normals, merged where many show one spot and sorted into cells to find the nearest ones."""
+"""Points with normals, merged where they coincide and sorted into cells for nearest-neighbour search."""
 
 from dataclasses import dataclass
 

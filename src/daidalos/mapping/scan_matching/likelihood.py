@@ -1,4 +1,4 @@
-"""Points smeared onto a grid, and the bounds of that over larger and larger windows, for a correlation."""
+"""Likelihood grids for correlative matching, with upper bounds over windows of increasing size."""
 
 from dataclasses import dataclass
 
@@ -35,7 +35,7 @@ class Likelihood:
 
 
 def build_likelihood(points: Array, resolution: float, deviation: float, depth: int) -> Likelihood:
-    """Smear points (m, 2) with a Gaussian of a standard deviation [m] and build the bounds above it."""
+    """Convolve points (m, 2) with a Gaussian of a standard deviation [m] and build the upper bounds."""
     margin = 2.0 * deviation + 2.0 * resolution
     # A window may begin left of or below every point and still hold one: room for it on those sides.
     corner = points.min(axis=0) - margin - (1 << depth) * resolution
@@ -76,7 +76,7 @@ def _blur(points: Array, cells: Cells, corner: Array, resolution: float, kernel:
 
 @compiled
 def _widen(narrow: Cells, wide: Cells, step: int) -> None:
-    """Largest value over a window twice as wide: the four windows of the narrower level that tile it."""
+    """Return the maxima over windows twice as wide, from the four windows of the narrower level that tile each."""
     rows, columns = narrow.shape
     for r in range(rows):
         below = min(r + step, rows - 1) if r + step < rows else -1

@@ -1,4 +1,4 @@
-"""A scan against the points of others: correlation finds the neighbourhood, point to line the millimetres."""
+"""Matcher of a scan against the points of others: correlation first, point-to-line refinement second."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -51,12 +51,12 @@ class Window:
 
     @property
     def depth(self) -> int:
-        """How often the search halves its blocks: often enough for a handful of them to cover the window."""
+        """Number of halvings of the search blocks, such that few initial blocks cover the window."""
         return max(0, int(np.log2(max(1.0, 0.5 * self.distance / self.resolution))))
 
 
 class PointMap:
-    """Points of several scans in one frame, prepared for matching when they are first matched against.
+    """Points of several scans in one frame, prepared for matching on first use.
 
     Parameters
     ----------
@@ -72,11 +72,11 @@ class PointMap:
 
     @cached_property
     def reference(self) -> Reference:
-        """The points sorted for nearest neighbours."""
+        """Points sorted for nearest-neighbour search."""
         return build_reference(self.points, self.normals, REACH)
 
     def likelihood(self, window: Window) -> Likelihood:
-        """Smear the points for a correlation over a window."""
+        """Return the likelihood grid for a correlation over a window."""
         key = (window.resolution, window.deviation, window.depth)
         if key not in self._likelihoods:
             self._likelihoods[key] = build_likelihood(self.points, *key)
@@ -99,12 +99,12 @@ class PointMap:
         )
 
     def refine(self, points: Array, normals: Array, guess: Array, *, iterations: int = 30) -> Refinement:
-        """Move points with normals (n, 2) onto the lines of the map, from a good guess."""
+        """Refine the pose of points with normals (n, 2) against the lines of the map, from a good guess."""
         return refine(points, normals, self.reference, guess, reach=REACH, iterations=iterations)
 
 
 def merge(clouds: Sequence[Cloud], poses: Array) -> tuple[Array, Array]:
-    """Points and normals (n, 2) of several scans in the frame their poses (m, 3) are given in."""
+    """Return points and normals (n, 2) of several scans in the frame that their poses (m, 3) are given in."""
     total = sum(cloud.points.shape[0] for cloud in clouds)
     points, normals = np.empty((total, 2)), np.empty((total, 2))
     start = 0

@@ -1,4 +1,4 @@
-"""Iterative closest line: the last millimetres of a match.
+"""Point-to-line refinement of a match (iterative closest line).
 
 After Censi 2008, "An ICP variant using a point-to-line metric".
 """
@@ -68,7 +68,7 @@ def refine(
     reach: float = 0.2,
     iterations: int = 30,
 ) -> Refinement:
-    """Move a scan onto the lines of a reference by Gauss-Newton steps with a Geman-McClure weight.
+    """Match a scan to the lines of a reference by Gauss-Newton steps with Geman-McClure weights.
 
     Parameters
     ----------
@@ -100,7 +100,7 @@ def refine(
 
 
 def match_information(normal_matrix: Array) -> Array:
-    """Inverse covariance (3, 3) of a match; a direction that no line constrains has ten metres.
+    """Return the inverse covariance (3, 3) of a match; an unconstrained direction has a deviation of 10 m.
 
     What noisy normals alone would seem to tell is taken off every direction.
     """
