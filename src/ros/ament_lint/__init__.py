@@ -1,1 +1,1 @@
-"""What the linters that packages call in their tests have in common."""
+"""Common base of the linters that packages call in their tests."""

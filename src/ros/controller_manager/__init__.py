@@ -1,4 +1,4 @@
-"""What launch files import to start controllers, and what programs import to ask a controller manager."""
+"""Launch functions that start controllers, and clients of a controller manager's services."""
 
 from typing import Any
 

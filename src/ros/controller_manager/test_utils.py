@@ -1,4 +1,4 @@
-"""What tests of robots ask: whether nodes and controllers run, and joints are told."""
+"""Checks for tests of robots: whether nodes and controllers run, and whether joint states are published."""
 
 from __future__ import annotations
 

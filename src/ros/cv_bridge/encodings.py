@@ -1,4 +1,4 @@
-"""What the names of image encodings mean."""
+"""Names of image encodings."""
 
 from __future__ import annotations
 

@@ -13,7 +13,7 @@ from ._diagnostic_updater import DiagnosticTask
 
 
 class FrequencyStatusParam:
-    """What frequency is right.
+    """Accepted frequencies.
 
     Parameters
     ----------
@@ -104,7 +104,7 @@ class FrequencyStatus(DiagnosticTask):
 
 
 class TimeStampStatusParam:
-    """What delay of a stamp, in seconds, is right; stamps of the future have a negative one."""
+    """Accepted delays of stamps [s]; stamps of the future have a negative delay."""
 
     def __init__(self, min_acceptable: float = -1, max_acceptable: float = 5) -> None:
         self.max_acceptable = max_acceptable

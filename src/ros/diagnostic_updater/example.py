@@ -1,4 +1,4 @@
-"""How to report diagnostics: functions, methods, classes, combinations, and a topic that is watched."""
+"""Example of diagnostics: functions, methods, classes, combinations and a monitored topic."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def dummy_diagnostic(stat: DiagnosticStatusWrapper) -> DiagnosticStatusWrapper:
 
 
 class DummyClass:
-    """Something with a method that reports."""
+    """Class with a reporting method."""
 
     def produce_diagnostics(self, stat: DiagnosticStatusWrapper) -> DiagnosticStatusWrapper:
         """Fill in a status."""

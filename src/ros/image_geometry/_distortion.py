@@ -1,4 +1,4 @@
-"""How lenses bend rays, by the distortion models of `sensor_msgs/CameraInfo`.
+"""Lens distortion by the models of `sensor_msgs/CameraInfo`.
 
 The models are those of D. C. Brown, "Decentering distortion of lenses" (1966), with OpenCV's rational extension, and of
 J. Kannala and S. Brandt, "A generic camera model and calibration method" (2006), for fisheye lenses.

@@ -22,7 +22,7 @@ class LaserProjection:
     LASER_SCAN_MAX_RANGE = -3.0
 
     class ChannelOption:
-        """What the points have besides x, y and z; options are added with ``|``."""
+        """Channels of the points besides x, y and z; options are combined with ``|``."""
 
         NONE = 0x00
         """Nothing."""

@@ -40,7 +40,7 @@ _SIGKILL = getattr(signal, "SIGKILL", signal.SIGTERM)
 
 @dataclass(frozen=True)
 class RunOptions:
-    """How a process is run; the meaning of each is that of the parameter of `ExecuteLocal`."""
+    """Options of a process; each has the meaning of the parameter of `ExecuteLocal`."""
 
     shell: bool
     emulate_tty: bool

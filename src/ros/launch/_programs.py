@@ -1,4 +1,4 @@
-"""Where programs are looked for: on the PATH, and then beside the Python interpreter that runs the launch.
+"""Lookup of programs: on the PATH, then beside the Python interpreter of the launch.
 
 The commands of a virtual environment (`ros2`, `xacro`) are found although nobody activated it.
 """

@@ -2,6 +2,6 @@
 
 
 class Event:
-    """Something that happened; event handlers react to it."""
+    """Base of events, which event handlers react to."""
 
     name = "launch.Event"

@@ -1,4 +1,4 @@
-"""What is known while launching: configurations, environment, locals, event handlers and events."""
+"""State of a launch: configurations, environment, locals, event handlers and events."""
 
 from __future__ import annotations
 

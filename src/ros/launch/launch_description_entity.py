@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 class LaunchDescriptionEntity:
-    """Something that can be visited by the launch service: an action or a whole description."""
+    """Base of everything that the launch service visits: actions and launch descriptions."""
 
     def describe(self) -> str:
         """Return a short text that tells this entity from others."""

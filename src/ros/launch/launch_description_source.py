@@ -1,4 +1,4 @@
-"""Where a launch description comes from: a file or the program itself."""
+"""Sources of launch descriptions: files or the program itself."""
 
 from __future__ import annotations
 

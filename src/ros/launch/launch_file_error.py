@@ -1,4 +1,4 @@
-"""Where in a launch file a mistake is: `file:line: reason` for any exception raised while launching."""
+"""Location of errors in launch files: `file:line: reason` for any exception raised while launching."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which tests are launch tests, of which launch, and whether they run after its end."""
+"""Marks of launch tests: their launch, and whether they run after its shutdown."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Everything that launch files in markup may use of ROS; importing this module exposes it."""
+"""Extension of launch files in markup for ROS; importing this module registers it."""
 
 from .actions import composable_node_container as composable_node_container
 from .actions import lifecycle_node as lifecycle_node

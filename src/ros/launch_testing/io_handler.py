@@ -1,4 +1,4 @@
-"""What processes print, kept for tests."""
+"""Recorder of processes' output for tests."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What became of processes, kept for tests."""
+"""Recorder of processes' exit codes for tests."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How long a test waits for its processes to be ready."""
+"""Timeout of a test's wait for its processes to be ready."""
 
 from __future__ import annotations
 

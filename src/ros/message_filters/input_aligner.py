@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 @dataclass
 class QueueStatus:
-    """How one input of an `InputAligner` fares."""
+    """State of one input of an `InputAligner`."""
 
     active: bool
     queue_size: int

@@ -1,4 +1,4 @@
-"""What filters need to know of messages."""
+"""Properties of messages for filters."""
 
 from __future__ import annotations
 

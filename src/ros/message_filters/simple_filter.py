@@ -1,4 +1,4 @@
-"""What every filter has: callbacks for its output."""
+"""Common base of filters: callbacks for the output."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""What the packages of Nav2 share; `launch` is what launch files import."""
+"""Common parts of Nav2's packages; `launch` is for launch files."""

@@ -1,4 +1,4 @@
-"""What a navigator asks of the costmaps."""
+"""Requests of a navigator to costmaps."""
 
 from __future__ import annotations
 

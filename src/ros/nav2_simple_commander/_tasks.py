@@ -1,4 +1,4 @@
-"""What a navigator has others do: actions that it starts, watches and cancels, and services that it calls."""
+"""Tasks of a navigator: actions that it starts, monitors and cancels, and services that it calls."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from rclpy.node import Node
 
 
 class TaskResult(Enum):
-    """How a task ended."""
+    """Result of a task."""
 
     UNKNOWN = 0
     SUCCEEDED = 1
@@ -22,7 +22,7 @@ class TaskResult(Enum):
 
 
 class RunningTask(Enum):
-    """Which task runs; every member counts as true."""
+    """Running task; every member counts as true."""
 
     NONE = 0
     NAVIGATE_TO_POSE = 1

@@ -1,4 +1,4 @@
-"""Whether a robot's outline is free of obstacles on a costmap."""
+"""Collision check of a robot's footprint on a costmap."""
 
 from __future__ import annotations
 

@@ -68,11 +68,11 @@ class BasicNavigator(Costmaps):
         self.initial_pose_pub = self.create_publisher(PoseWithCovarianceStamped, "initialpose", 10)
 
     def destroyNode(self) -> None:
-        """Leave the graph."""
+        """Destroy the node."""
         self.destroy_node()
 
     def destroy_node(self) -> None:
-        """Leave the graph."""
+        """Destroy the node."""
         self._destroy_clients()
         super().destroy_node()
 

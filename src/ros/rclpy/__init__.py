@@ -59,7 +59,7 @@ def __getattr__(name: str) -> Any:
 
 
 class InitContextManager:
-    """What `init` returns: ``with rclpy.init():`` shuts down at its end."""
+    """Result of `init`: ``with rclpy.init():`` shuts down at its end."""
 
     def __init__(self, context: Context, owns_handlers: bool) -> None:
         self.context = context

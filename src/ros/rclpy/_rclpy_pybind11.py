@@ -1,4 +1,4 @@
-"""What programs reach for in rclpy's compiled part, under the same names."""
+"""Names of rclpy's compiled module that programs use."""
 
 from __future__ import annotations
 

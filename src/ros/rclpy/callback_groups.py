@@ -1,4 +1,4 @@
-"""Which callbacks may run at the same time."""
+"""Groups of callbacks that may or may not run concurrently."""
 
 from __future__ import annotations
 

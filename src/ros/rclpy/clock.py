@@ -29,7 +29,7 @@ __all__ = [
 
 
 class JumpThreshold:
-    """Which time jumps to be told of.
+    """Time jumps of which a callback is notified.
 
     Parameters
     ----------

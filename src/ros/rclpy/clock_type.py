@@ -4,7 +4,7 @@ from enum import IntEnum
 
 
 class ClockType(IntEnum):
-    """What a clock counts, with rcl's values."""
+    """Type of a clock, with rcl's values."""
 
     UNINITIALIZED = 0
     ROS_TIME = 1

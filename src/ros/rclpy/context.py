@@ -18,7 +18,7 @@ g_logging_ref_count = 0
 
 
 class Context(AbstractContextManager["Context"]):
-    """Everything that one `init` and `shutdown` enclose; usable as ``with Context() as context:`` too."""
+    """Scope of one `init` and `shutdown`; usable as ``with Context() as context:`` too."""
 
     def __init__(self) -> None:
         self._lock = threading.RLock()

@@ -5,7 +5,7 @@ from typing import Any, Protocol
 
 
 class DestroyableType(Protocol):
-    """Something that can be kept in use and destroyed."""
+    """Object that can be kept in use and destroyed."""
 
     def __enter__(self) -> Any: ...
 

@@ -10,7 +10,7 @@ _MAX = 2**63 - 1
 
 
 class DurationType(Protocol):
-    """What the middleware takes for a duration."""
+    """Duration in the form of the middleware."""
 
     nanoseconds: int
 

@@ -87,7 +87,7 @@ class QoSEventHandler(EventHandler):
 
 
 class _EventCallbacks:
-    """What publishers' and subscriptions' callbacks share."""
+    """Common base of publishers' and subscriptions' event callbacks."""
 
     use_default_callbacks: bool
 

@@ -46,7 +46,7 @@ class ShutdownException(Exception):
 
 
 class ConditionReachedException(Exception):
-    """What was waited for has come true."""
+    """The awaited condition has come true."""
 
 
 class TimeoutObject:

@@ -265,7 +265,7 @@ class Node(NodeEntities, NodeGraph):
             executor.wake()
 
     def destroy_node(self) -> None:
-        """Leave the graph; everything the node made is destroyed with it. Does nothing the second time."""
+        """Destroy the node with everything that it created. Does nothing the second time."""
         if self.handle.is_destroyed:
             return
         self._time_source.detach_node()

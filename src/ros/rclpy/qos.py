@@ -313,7 +313,7 @@ class QoSPresetProfiles(Enum):
 
 
 class QoSCompatibility(IntEnum):
-    """Whether a publisher and a subscription can talk."""
+    """Compatibility of a publisher and a subscription."""
 
     OK = 0
     WARNING = 1
@@ -321,7 +321,7 @@ class QoSCompatibility(IntEnum):
 
 
 class QoSCheckCompatibleResult(NamedTuple):
-    """What `qos_check_compatible` found, and why; the reason is empty where all is well."""
+    """Result of `qos_check_compatible` with a reason, which is empty for compatible profiles."""
 
     compatibility: QoSCompatibility
     reason: str

@@ -43,7 +43,7 @@ class InvalidQosOverridesError(Exception):
 
 
 class QoSOverridingOptions:
-    """Which policies of a publisher or subscription parameters may override.
+    """Policies of a publisher or subscription that parameters may override.
 
     Parameters
     ----------

@@ -4,7 +4,7 @@ from enum import IntEnum
 
 
 class ServiceIntrospectionState(IntEnum):
-    """What is told of a request or a response."""
+    """Content of service introspection."""
 
     OFF = 0
     METADATA = 1

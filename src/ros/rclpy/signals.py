@@ -20,7 +20,7 @@ from rclpy.impl.interrupts import is_uninterrupted
 
 
 class SignalHandlerOptions(IntFlag):
-    """Which signals are handled."""
+    """Selection of handled signals."""
 
     NO = 0
     SIGINT = 1

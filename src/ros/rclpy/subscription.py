@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 class MessageInfo(TypedDict):
-    """What is known of a message beside its data; stamps are Unix time in nanoseconds."""
+    """Metadata of a message; stamps are Unix time in nanoseconds."""
 
     source_timestamp: int
     received_timestamp: int
@@ -38,7 +38,7 @@ class Subscription:
     __class_getitem__: ClassVar[Any] = classmethod(GenericAlias)
 
     class CallbackType(Enum):
-        """What the callback takes."""
+        """Arguments of the callback."""
 
         MessageOnly = 0
         WithMessageInfo = 1

@@ -28,11 +28,11 @@ def _write_warning(error: BaseException) -> None:
 
 
 def _no_executor() -> None:
-    """Stand in for the reference to an executor."""
+    """Return None, in place of a reference to an executor."""
 
 
 class TaskRunner(Protocol):
-    """What a future needs of an executor."""
+    """Contract of executors for futures."""
 
     def create_task(self, callback: Callable[..., Any] | Coroutine[Any, Any, Any], *args: Any, **kwargs: Any) -> Task:
         """Schedule a function or coroutine, and return it as a task."""

@@ -12,7 +12,7 @@ _MAX = 2**63 - 1
 
 
 class TimeHandle(Protocol):
-    """What the middleware takes for a point in time."""
+    """Time in the form of the middleware."""
 
     nanoseconds: int
     clock_type: ClockType

@@ -1,4 +1,4 @@
-"""Where ROS time comes from: the system, or ``/clock`` when the parameter ``use_sim_time`` is true."""
+"""Source of ROS time: the system, or ``/clock`` if the parameter ``use_sim_time`` is true."""
 
 from __future__ import annotations
 

@@ -20,7 +20,7 @@ from rclpy.utilities import get_default_context
 
 
 class TimerInfo:
-    """When a call of a timer was due, and when it was made."""
+    """Expected and actual time of a timer's call."""
 
     def __init__(
         self,

@@ -1,4 +1,4 @@
-"""What the graph knows of a topic's publisher or subscription."""
+"""Information in the graph about a topic's publisher or subscription."""
 
 from __future__ import annotations
 

@@ -10,7 +10,7 @@ from rclpy.task import Future
 
 
 class NumberOfEntities:
-    """How many entities of each kind a waitable adds to a wait set."""
+    """Number of entities of each type that a waitable adds to a wait set."""
 
     __slots__ = (
         "num_clients",
@@ -61,7 +61,7 @@ class NumberOfEntities:
 
 
 class Waitable:
-    """Something made of entities that becomes ready when one of them does.
+    """Group of entities that becomes ready when one of them does.
 
     An executor calls `add_to_wait_set` to learn of its entities, `is_ready` when one of them is ready, and
     then `take_data` and `execute`.

@@ -11,7 +11,7 @@ from daidalos.common.extensions import Extension, Kind, describe, listing, load
 
 @runtime_checkable
 class Subcommand(Protocol):
-    """What a command or verb is: a class with `main`, whose docstring is its description.
+    """Command or verb: a class with `main`, whose docstring is its description.
 
     It declares its arguments in ``add_arguments(parser, cli_name)``, and `main` takes them as ``args``.
     """

@@ -1,4 +1,4 @@
-"""What topics, services and nodes have in common where commands ask about them."""
+"""Common parts of the commands' queries of topics, services and nodes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How bags are compressed."""
+"""Compression options of bags."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from daidalos.bags.compression import Compression
 
 
 class CompressionMode(IntEnum):
-    """What is compressed."""
+    """Units of compression."""
 
     NONE = 0
     FILE = 1
@@ -18,7 +18,7 @@ class CompressionMode(IntEnum):
 
 @dataclass
 class CompressionOptions:
-    """What is compressed, how, and by how many threads (0: one for each processor)."""
+    """Compression mode, format and number of threads (0: one for each processor)."""
 
     compression_format: str = ""
     compression_mode: CompressionMode = CompressionMode.NONE

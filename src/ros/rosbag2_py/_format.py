@@ -1,4 +1,4 @@
-"""What a bag holds, as `ros2 bag info` prints it."""
+"""Description of a bag as printed by `ros2 bag info`."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _ORDERS: dict[str, Callable[[TopicCount], Any]] = {
 
 @dataclass
 class Contents:
-    """What is learnt by reading a bag through: bytes of each topic; requests and responses of each service's topic."""
+    """Totals of a bag's messages: bytes of each topic; requests and responses of each service's topic."""
 
     sizes: Counter[str] = field(default_factory=Counter)
     requests: Counter[str] = field(default_factory=Counter)

@@ -1,4 +1,4 @@
-"""What a bag holds."""
+"""Description of a bag."""
 
 from __future__ import annotations
 

@@ -88,7 +88,7 @@ class FileInformation:
 
 @dataclass(repr=False)
 class BagMetadata:
-    """What a bag holds."""
+    """Description of a bag."""
 
     version: int = bags.VERSION
     bag_size: int = 0

@@ -1,4 +1,4 @@
-"""What a program says of how to record and to play."""
+"""Options of recording and playing."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class ServiceRequestsSource(IntEnum):
 
 @dataclass
 class PlayOptions:
-    """How to play; times in seconds unless a name says otherwise, negative for no limit.
+    """Options of playing; times in seconds unless a name says otherwise, negative for no limit.
 
     `node_prefix` and `disable_loan_message` are there for programs that set them; they change nothing.
     """
@@ -75,7 +75,7 @@ class PlayOptions:
 
 @dataclass
 class RecordOptions:
-    """What to record, and how.
+    """Options of recording.
 
     There for programs that set them, without effect: `topic_polling_interval` (topics are noticed when they appear),
     `rmw_serialization_format` (it is CDR), `compression_queue_size` and `compression_threads_priority` (nothing is

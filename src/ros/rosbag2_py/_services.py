@@ -10,7 +10,7 @@ from rclpy.node import Node
 
 
 class Pausable(Protocol):
-    """What can be paused and stopped: a recorder or a player."""
+    """Recorder or player that can be paused and stopped."""
 
     @property
     def is_paused(self) -> bool: ...

@@ -35,7 +35,7 @@ _SECOND = 1_000_000_000
 
 @dataclass
 class StorageOptions:
-    """Where a bag is and how it is written; sizes in bytes, durations in seconds, times in nanoseconds."""
+    """Location and storage settings of a bag; sizes in bytes, durations in seconds, times in nanoseconds."""
 
     uri: str
     storage_id: str = ""
@@ -78,7 +78,7 @@ class ConverterOptions:
 
 @dataclass
 class StorageFilter:
-    """Which topics are wanted; all where none is named."""
+    """Selection of topics; all if none is named."""
 
     topics: Sequence[str] = ()
     services_events: Sequence[str] = ()

@@ -1,4 +1,4 @@
-"""Where a player's messages go: a publisher for every topic, or clients that send recorded requests again."""
+"""Publishers of a player's messages, and clients that repeat recorded requests."""
 
 from __future__ import annotations
 

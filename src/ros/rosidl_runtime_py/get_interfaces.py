@@ -1,4 +1,4 @@
-"""Which interfaces there are."""
+"""Lookup of interfaces."""
 
 from __future__ import annotations
 

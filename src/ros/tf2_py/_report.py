@@ -1,4 +1,4 @@
-"""What the buffer tells people: bad input in the log, and its tree as text."""
+"""Reports of a buffer: warnings of bad input, and its tree as text."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def old_data(child: str, stamp: int, authority: str) -> None:
 
 
 class _Row(NamedTuple):
-    """What is shown of a frame; times in nanoseconds."""
+    """Row of a frame; times in nanoseconds."""
 
     frame: str
     parent: str

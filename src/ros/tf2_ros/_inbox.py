@@ -54,7 +54,7 @@ class Inbox(Subscription):
 
 
 def _do_nothing() -> None:
-    """Stand in for a callback that has already run."""
+    """Do nothing, in place of a callback that has already run."""
 
 
 def create_inbox(

@@ -1,4 +1,4 @@
-"""What every source of transforms offers, and the register of what can be transformed and converted."""
+"""Interface of transform sources, and registries of transformable and convertible types."""
 
 from __future__ import annotations
 
@@ -141,7 +141,7 @@ class NotImplementedException(Exception):
 
 
 class TransformRegistration:
-    """How to transform which type; all instances share one register."""
+    """Registry of transformation functions by type; all instances share one registry."""
 
     _callbacks: ClassVar[dict[Any, Callable[[Any, TransformStamped], Any]]] = {}
 
@@ -165,7 +165,7 @@ class TransformRegistration:
 
 
 class ConvertRegistration:
-    """How to convert between types, directly or by way of a message; all instances share one register."""
+    """Registry of conversion functions between types; all instances share one registry."""
 
     _to_msg: ClassVar[dict[Any, Callable[[Any], Any]]] = {}
     _from_msg: ClassVar[dict[Any, Callable[[Any], Any]]] = {}

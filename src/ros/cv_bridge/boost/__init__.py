@@ -1,1 +1,1 @@
-"""Where ROS 2's own package keeps its compiled part."""
+"""Location of the compiled part in ROS 2's own package."""

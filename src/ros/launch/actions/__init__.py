@@ -1,4 +1,4 @@
-"""What a launch can do."""
+"""Launch actions."""
 
 from launch._lazy import attach_stub
 

@@ -1,4 +1,4 @@
-"""What actions that set or remove something by its name have in common."""
+"""Common base of actions that set or remove something by name."""
 
 from __future__ import annotations
 

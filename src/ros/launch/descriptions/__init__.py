@@ -1,4 +1,4 @@
-"""What is to be executed, apart from how."""
+"""Descriptions of executables."""
 
 from launch._lazy import attach_stub
 

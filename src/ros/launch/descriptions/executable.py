@@ -46,7 +46,7 @@ class PreparedExecutable:
 
 
 class Executable:
-    """What to execute.
+    """Command line and environment of a process.
 
     Parameters
     ----------

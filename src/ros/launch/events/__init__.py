@@ -1,4 +1,4 @@
-"""What can happen while launching."""
+"""Launch events."""
 
 from launch._lazy import attach_stub
 

@@ -1,4 +1,4 @@
-"""What launch files in markup (XML, YAML) are made of, and how extensions add to it."""
+"""Front ends of launch files in markup (XML, YAML), and their extension points."""
 
 from launch._lazy import attach_stub
 

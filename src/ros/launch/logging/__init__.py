@@ -1,4 +1,4 @@
-"""What launch and its processes print: to the screen, to the main log file and to files of their own.
+"""Output of launch and its processes: screen, main log file and log files of their own.
 
 `launch_config` is where all of it is configured. The files lie in a folder of their own for each launch,
 below `$ROS_LOG_DIR`, `$ROS_HOME/log` or `~/.ros/log`.

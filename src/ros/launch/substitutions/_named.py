@@ -1,4 +1,4 @@
-"""What substitutions by the value of something with a name have in common."""
+"""Common base of substitutions by name."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What substitutions of two values have in common."""
+"""Common base of substitutions of two values."""
 
 from __future__ import annotations
 

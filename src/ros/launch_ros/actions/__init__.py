@@ -1,4 +1,4 @@
-"""What a launch can do with ROS."""
+"""Launch actions for ROS."""
 
 from launch._lazy import attach_stub
 

@@ -1,4 +1,4 @@
-"""What can be loaded into a process, and the descriptions of parameters."""
+"""Descriptions of composable nodes and of parameters."""
 
 from launch._lazy import attach_stub
 

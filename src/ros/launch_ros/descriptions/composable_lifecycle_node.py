@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class ComposableLifecycleNode(ComposableNode):
-    """What to load.
+    """Lifecycle node to be loaded into a container.
 
     Parameters
     ----------

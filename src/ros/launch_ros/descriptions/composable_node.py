@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 class ComposableNode:
-    """What to load.
+    """Node to be loaded into a container.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What can happen to nodes, and what can be asked of them."""
+"""Events of nodes, and requests to nodes."""
 
 from launch._lazy import attach_stub
 

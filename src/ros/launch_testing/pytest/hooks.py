@@ -32,7 +32,7 @@ class LaunchTestFailure(Exception):
 
 
 class LaunchTestFailureRepr:
-    """What to show of failures.
+    """Representation of failures.
 
     Parameters
     ----------

@@ -15,7 +15,7 @@ from launch.launch_description import LaunchDescription
 
 
 class ProcessProxy:
-    """What a test sees of a process that a launch runs.
+    """Process of a launch, for tests.
 
     Parameters
     ----------

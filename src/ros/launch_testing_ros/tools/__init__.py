@@ -1,3 +1,3 @@
-"""What helps to look at the output of nodes."""
+"""Tools for the output of nodes."""
 
 from .output import basic_output_filter as basic_output_filter

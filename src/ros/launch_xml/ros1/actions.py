@@ -1,4 +1,4 @@
-"""What translated launch files are made of beside the actions of ROS 2."""
+"""Actions of translated launch files beside those of ROS 2."""
 
 from __future__ import annotations
 

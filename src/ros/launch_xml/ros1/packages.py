@@ -1,4 +1,4 @@
-"""What became of the packages, nodes, parameters and launch files of ROS 1: the table to extend.
+"""Table of ROS 1's packages, nodes, parameters and launch files with their successors, to be extended.
 
 A node that is not listed keeps its package and name.
 """
@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 
 @dataclass(frozen=True)
 class NodeMapping:
-    """What a node of ROS 1 is today.
+    """Successor of a ROS 1 node.
 
     Parameters
     ----------
@@ -38,7 +38,7 @@ class NodeMapping:
 
 @dataclass(frozen=True)
 class IncludeMapping:
-    """What a launch file of ROS 1 is today.
+    """Successor of a ROS 1 launch file.
 
     Parameters
     ----------

@@ -18,7 +18,7 @@ _CLOCK_HZ = 100.0
 
 @dataclass(frozen=True)
 class BagCommand:
-    """What `ros2 bag` is told today.
+    """Command line of `ros2 bag`.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What clients and servers of actions have in common: three services, feedback and status."""
+"""Common base of action clients and servers: three services, feedback and status."""
 
 from __future__ import annotations
 
@@ -112,4 +112,4 @@ class ActionEnd(Waitable):
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """Leave it as it is."""
+        """Do nothing."""

@@ -25,7 +25,7 @@ class GoalState(IntEnum):
 
 
 class GoalEvent(IntEnum):
-    """What may happen to a goal."""
+    """Event of a goal."""
 
     EXECUTE = 0
     CANCEL_GOAL = 1

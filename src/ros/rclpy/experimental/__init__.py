@@ -1,4 +1,4 @@
-"""What ROS 2's newer distributions try out: an executor driven by events, and nodes for asyncio."""
+"""Experimental parts of newer distributions: an event-driven executor, and nodes for asyncio."""
 
 from rclpy.experimental.asyncio import AsyncClient, AsyncClock, AsyncNode, AsyncPublisher, AsyncTimer
 from rclpy.experimental.events_executor import EventsExecutor

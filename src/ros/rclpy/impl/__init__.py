@@ -1,1 +1,1 @@
-"""What the public modules of rclpy are built on."""
+"""Internal modules of rclpy."""

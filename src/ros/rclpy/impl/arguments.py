@@ -30,7 +30,7 @@ class GivenParameter(NamedTuple):
 
 @dataclass
 class RosArguments:
-    """What the arguments ask for.
+    """Parsed ROS arguments.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""How an executor runs what is ready: the callback of one entity, as far as its callback group allows."""
+"""Execution of ready entities' callbacks, within the limits of their callback groups."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is behind a clock: its source of time, its time jumps, and the timers that follow it."""
+"""Implementation of clocks: time source, time jumps and timers."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _SOURCES: dict[ClockType, Callable[[], int]] = {
 
 
 class ClockChange(IntEnum):
-    """What happened to a clock's source of time."""
+    """Change of a clock's time source."""
 
     ROS_TIME_NO_CHANGE = 1
     ROS_TIME_ACTIVATED = 2

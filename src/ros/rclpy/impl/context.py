@@ -1,4 +1,4 @@
-"""What is behind a context: its arguments and its membership in the graph."""
+"""Implementation of contexts: arguments and membership in the graph."""
 
 from __future__ import annotations
 

@@ -26,7 +26,7 @@ class UnsupportedEventTypeError(RCLError):
 
 
 class UnknownROSArgsError(RuntimeError):
-    """Something between ``--ros-args`` and ``--`` is not a ROS argument."""
+    """Invalid argument between ``--ros-args`` and ``--``."""
 
 
 class RCLInvalidROSArgsError(RCLError):

@@ -31,35 +31,35 @@ class QoSSubscriptionEventType(IntEnum):
 
 @dataclass(frozen=True)
 class CountStatus:
-    """How often something happened, and how often since the last look."""
+    """Number of events, and of those since the last call."""
 
     total_count: int = 0
     total_count_change: int = 0
 
 
 class OfferedDeadlineMissedStatus(CountStatus):
-    """How often a publisher was later than its deadline."""
+    """Number of missed deadlines of a publisher."""
 
 
 class RequestedDeadlineMissedStatus(CountStatus):
-    """How often nothing came to a subscription within its deadline."""
+    """Number of missed deadlines of a subscription."""
 
 
 class LivelinessLostStatus(CountStatus):
-    """How often a publisher failed to show that it was alive."""
+    """Number of times that a publisher lost its liveliness."""
 
 
 class MessageLostStatus(CountStatus):
-    """How many messages did not reach a subscription."""
+    """Number of messages that did not reach a subscription."""
 
 
 class IncompatibleTypeStatus(CountStatus):
-    """How many endpoints could not be matched because of their type."""
+    """Number of endpoints that could not be matched because of their type."""
 
 
 @dataclass(frozen=True)
 class MatchedStatus:
-    """How many endpoints of the other kind are and were matched, and the changes since the last look."""
+    """Number of matched endpoints, current and total, with the changes since the last call."""
 
     total_count: int = 0
     total_count_change: int = 0
@@ -69,7 +69,7 @@ class MatchedStatus:
 
 @dataclass(frozen=True)
 class IncompatibleQosStatus:
-    """How many endpoints could not be matched because of their QoS, and the last policy that was at fault."""
+    """Number of endpoints that could not be matched because of their QoS, and the last incompatible policy."""
 
     total_count: int = 0
     total_count_change: int = 0
@@ -86,7 +86,7 @@ class RequestedIncompatibleQosStatus(IncompatibleQosStatus):
 
 @dataclass(frozen=True)
 class LivelinessChangedStatus:
-    """How many of the matched publishers are alive and how many are not, and the changes since the last look."""
+    """Number of alive and not alive matched publishers, with the changes since the last call."""
 
     alive_count: int = 0
     not_alive_count: int = 0

@@ -1,4 +1,4 @@
-"""Tells of the requests and responses that pass a client or a service."""
+"""Service introspection: events of the requests and responses of a client or a service."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where log messages go: the console, the log file and whoever else asks (``/rosout``).
+"""Outputs of log messages: console, log file and further callbacks (``/rosout``).
 
 Formats, colours, environment variables and file names are those of rcutils and rcl_logging_spdlog.
 """

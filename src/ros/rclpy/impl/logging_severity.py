@@ -4,7 +4,7 @@ from enum import IntEnum
 
 
 class LoggingSeverity(IntEnum):
-    """How important a message is, with rcutils' values."""
+    """Severity of a message, with rcutils' values."""
 
     UNSET = 0
     DEBUG = 10

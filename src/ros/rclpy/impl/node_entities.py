@@ -1,4 +1,4 @@
-"""What makes a node's publishers, subscriptions, services, clients, timers and more."""
+"""Factory of a node's publishers, subscriptions, services, clients and timers."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a node can tell of the graph."""
+"""Graph queries of a node."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a node consists of: its publishers, subscriptions, services, clients, timers and more, and their end."""
+"""Members of a node, such as publishers, subscriptions, services, clients and timers, and their destruction."""
 
 from __future__ import annotations
 

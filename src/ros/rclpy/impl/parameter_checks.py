@@ -1,4 +1,4 @@
-"""Whether a parameter may have a value: by its type, its range and whether it may change at all."""
+"""Checks of parameter values: type, range and whether the value may change."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How a declaration becomes a parameter with its first value, and what it says of the parameter's type."""
+"""Declaration of parameters: first value and type."""
 
 from __future__ import annotations
 

@@ -118,7 +118,7 @@ class Throttle(LoggingFilter):
 
 
 class SkipFirst(LoggingFilter):
-    """All but the first call."""
+    """Filter that skips the first call."""
 
     params: ClassVar[dict[str, Any]] = {"skip_first": None}
 

@@ -1,4 +1,4 @@
-"""How an entity tells the executor that there is something to do."""
+"""Notification of executors by entities that become ready."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ class ReadyHook:
 
 
 def _nothing() -> None:
-    """Stand in for a function that was not set."""
+    """Do nothing; the default callback."""
 
 
 class ReadyNotifier:

@@ -1,4 +1,4 @@
-"""What an executor waits on: a queue of what is ready, and timers by deadline, behind one gate."""
+"""Queue of ready entities and timers by deadline, on which an executor waits."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which callback the present thread is in: who blocks in one must not block the executor that runs it."""
+"""Callback of the current thread, so that blocking calls in it do not block its executor."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What clients and services of a node have in common."""
+"""Common base of a node's clients and services."""
 
 from __future__ import annotations
 

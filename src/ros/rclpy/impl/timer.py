@@ -1,4 +1,4 @@
-"""What is behind a timer: when it is due, on whatever clock."""
+"""Implementation of timers on any clock."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Answers to ``type_description_interfaces/srv/GetTypeDescription``."""
+"""Server of ``type_description_interfaces/srv/GetTypeDescription``."""
 
 from __future__ import annotations
 

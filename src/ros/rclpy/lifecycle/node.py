@@ -31,7 +31,7 @@ class LifecycleState(NamedTuple):
 
 
 class LifecycleNodeMixin(ManagedEntity):
-    """What makes a `Node` a managed one.
+    """Mixin that makes a `Node` a managed one.
 
     Parameters
     ----------
@@ -261,6 +261,6 @@ class LifecycleNode(LifecycleNodeMixin, Node):
         LifecycleNodeMixin.__init__(self, enable_communication_interface=enable_communication_interface)
 
     def destroy_node(self) -> None:
-        """Leave the graph."""
+        """Destroy the node."""
         self._rcl_transition_event_publisher = None
         Node.destroy_node(self)

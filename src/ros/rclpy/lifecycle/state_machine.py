@@ -11,7 +11,7 @@ from rclpy.impl.errors import RCLError
 
 
 class TransitionCallbackReturn(IntEnum):
-    """How a transition's callback went."""
+    """Result of a transition's callback."""
 
     SUCCESS = 97
     FAILURE = 98

@@ -1,4 +1,4 @@
-"""What can happen to a process, and what can be asked of it."""
+"""Events of processes, and requests to processes."""
 
 from launch._lazy import attach_stub
 

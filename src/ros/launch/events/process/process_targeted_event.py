@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 class ProcessTargetedEvent(Event):
-    """Something is asked of those processes that a function picks.
+    """Request to the processes that a function selects.
 
     Parameters
     ----------

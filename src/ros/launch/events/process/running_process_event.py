@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 class RunningProcessEvent(Event):
-    """Something happened to a process.
+    """Event of a process.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What stands in for an executor in an asyncio event loop."""
+"""Dispatcher of callbacks in an asyncio event loop, in place of an executor."""
 
 from __future__ import annotations
 

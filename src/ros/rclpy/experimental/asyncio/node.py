@@ -93,7 +93,7 @@ class AsyncNode(Node):
             raise RuntimeError("the node was destroyed")
 
     def destroy_node(self) -> None:
-        """Leave the graph; callbacks that run, sleepers and callers are cancelled. Further calls do nothing."""
+        """Destroy the node, and cancel running callbacks, sleepers and callers. Further calls do nothing."""
         if self.handle.is_destroyed:
             return
         self._stopped.set()
