@@ -14,6 +14,7 @@ from typing import Any, TypeVar
 
 import aiohttp
 import pytest
+from filelock import FileLock
 
 from daidalos.studio.build import build, is_fresh
 
@@ -61,7 +62,9 @@ def require_chromium() -> None:
 def require_page() -> None:
     """Build the page where it is not; skip the test where that can not be done, unless it must be."""
     words: list[str] = []
-    if not is_fresh() and not build(words.append):
+    with FileLock(Path(tempfile.gettempdir()) / "daidalos-test-page.lock"):  # tests run in several processes
+        built = is_fresh() or build(words.append)
+    if not built:
         text = f"the page can not be built: {words}"
         if os.environ.get("DAIDALOS_REQUIRE_BROWSER"):
             pytest.fail(text)
