@@ -85,7 +85,7 @@ def test_the_example_panel_shows_a_value(browser, source, server, install: Insta
     source.add_topic("/battery_state", "sensor_msgs/msg/BatteryState", latched=True)
     source.send("/battery_state", battery(0.7))
     show(browser, server.url)
-    choose(browser, "Panels", "battery")
+    choose(browser, "Panels", "Battery")
     browser.wait_for(f"{text_of('battery')} === '70 %, 12.1 V'")
     source.send("/battery_state", battery(0.4))
     browser.wait_for(f"{text_of('battery')} === '40 %, 12.1 V'")
@@ -118,7 +118,7 @@ def test_a_panel_that_fails_says_why_and_leaves_the_rest_alone(
     install("broken", PANELS, {"broken": "broken_of_test:broken.js"})
     source.add_topic("/odom", "nav_msgs/msg/Odometry")
     show(browser, server.url)
-    choose(browser, "Panels", "broken")
+    choose(browser, "Panels", "Broken")
     found = browser.wait_for(f"document.querySelector('[data-panel=broken] [role=alert]') && {text_of('broken')}")
     assert found.startswith("broken (broken 1.0): ")
     assert error in found

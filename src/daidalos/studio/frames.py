@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import struct
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 from daidalos.studio.protocol import ENCODING, ProtocolError
@@ -26,6 +28,8 @@ class Layout:
         self.opcode = opcode
         self._name = name
         self._struct = struct.Struct("<B" + "".join(fields.values()))
+        # Returns the bytes of the opcode and the fields; every message to a client passes here.
+        self.pack: Callable[..., bytes] = partial(self._struct.pack, opcode)
         self.offsets: dict[str, int] = {}
         offset = 1
         for field, code in fields.items():
@@ -36,10 +40,6 @@ class Layout:
     def size(self) -> int:
         """Bytes of the opcode and the fields."""
         return self._struct.size
-
-    def pack(self, *values: int) -> bytes:
-        """Return the bytes of the opcode and the fields."""
-        return self._struct.pack(self.opcode, *values)
 
     def unpack(self, frame: bytes) -> tuple[Any, ...]:
         """Return the values of the fields.

@@ -2,6 +2,7 @@
 import type { DisplayModule, DisplayType, Panel, PanelContext } from "./contract";
 import { DISPLAYS } from "./displays/registry";
 import { FailedDisplay } from "./displays/failed_display";
+import { KIT } from "./displays/kit";
 import type { PageModule, PageModules } from "./generated/extensions";
 import { PANELS, type RegisteredPanel } from "./panels/registry";
 import type { Registered } from "./registry";
@@ -30,7 +31,7 @@ async function fetchModules(): Promise<PageModules> {
 function panelOf(module: PageModule): RegisteredPanel {
   const registered: RegisteredPanel = {
     id: module.name,
-    title: module.name.replaceAll("_", " "),
+    title: module.name.charAt(0).toUpperCase() + module.name.slice(1).replaceAll("_", " "),
     mount(element, context) {
       let unmount: (() => void) | void;
       let isOpen = true;
@@ -59,8 +60,7 @@ async function displayOf(module: PageModule): Promise<Registered<DisplayType>> {
     create: () => new FailedDisplay(describe(module, error)),
   });
   try {
-    const [make, { KIT }] = await Promise.all([load<DisplayModule>(module), import("./displays/kit")]);
-    const type = make(KIT);
+    const type = (await load<DisplayModule>(module))(KIT);
     return {
       ...type,
       id: module.name,

@@ -18,9 +18,9 @@ import { loadExtensions } from "./extensions";
 import { PANELS } from "./panels/registry";
 
 let layout: Layout;
-const extensions = loadExtensions();
-if (asksForMore(location.search, PANELS)) {
-  await extensions;
+const needsExtensions = asksForMore(location.search, PANELS);
+if (needsExtensions) {
+  await loadExtensions();
 }
 const opening = readOpening(location.search, PANELS);
 
@@ -78,3 +78,7 @@ listenToKeys(attachedWorld);
 reportMissingPanel();
 render(<App studio={studio} />, document.getElementById("app") as HTMLElement);
 studio.start(serverUrl());
+if (!needsExtensions) {
+  // After the first paint: the page's own panels do not wait for those of packages.
+  requestAnimationFrame(() => setTimeout(() => void loadExtensions()));
+}

@@ -1,4 +1,4 @@
-// What displays of installed packages are made with; loaded only where there are such.
+// What displays of installed packages are made with.
 import {
   BoxGeometry,
   BufferAttribute,
