@@ -100,7 +100,7 @@ class ManagedNode(LifecycleNode):
         )
 
     def _abort_goals(self) -> None:
-        for goal, action in self._goals.items():
+        for goal, action in list(self._goals.items()):
             if goal.is_active:
                 goal.abort(set_error(action.Result(), NavigationError(f"{self.get_name()} was deactivated")))
 
