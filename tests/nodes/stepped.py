@@ -35,6 +35,9 @@ TIMEOUT_S = 30.0
 STEP_S = 0.05
 """Simulated time [s] of a step."""
 
+_CALLBACKS_A_STEP = 50
+"""At least so many callbacks that are ready run in a step, however slow the machine is."""
+
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
@@ -139,7 +142,9 @@ class Stage:
         self._clock.publish(Clock(clock=self.stamp))
         if self.robot is not None:
             self.robot.step(seconds, self.stamp)
-        self._executor.spin_until_future_complete(Future(), 0.005)
+        for _ in range(_CALLBACKS_A_STEP):
+            self._executor.spin_once(timeout_sec=0.0)
+        self._executor.spin_until_future_complete(Future(), 0.005)  # what comes from other threads
 
     def step_for(self, seconds: float) -> None:
         """Step until so much simulated time has passed."""

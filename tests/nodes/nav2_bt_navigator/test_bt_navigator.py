@@ -95,6 +95,7 @@ class Bench:
         path = np.stack([np.linspace(0.0, x, 11), np.zeros(11), np.zeros(11)], axis=1)
         self.planner.end(path=path_message(path, "map", self.stage.stamp))
         self.stage.step_until(lambda: len(self.controller.handles) > count)
+        self.stage.step()  # the navigator learns that its goal was accepted
 
     def drive(self, goal: PoseStamped, **more: Any) -> Any:
         """Return the handle of a goal for which the controller is at work."""
