@@ -57,7 +57,7 @@ class ReadAhead:
             batch: list[BagMessage] = []
             try:
                 batch.extend(islice(self._messages, _BATCH))
-            except Exception as raised:  # Whatever it is, who asks for the next message gets it.
+            except Exception as raised:  # re-raised by `next`
                 error = raised
             if batch or error is None:
                 self._put(batch)

@@ -44,7 +44,7 @@ def to_svg(robot: Robot | Model) -> str:
     ]
     joints = [(joint, nodes[joint.parent], nodes[joint.child]) for joint in robot.joints.values()]
     parts += [_arrow(parent, child, joint) for joint, parent, child in joints]
-    # A label stands over its child, but that of a joint that closes a loop below its parent: the other place is taken.
+    # A label is above its child, but that of a joint that closes a loop is below its parent, where space is free.
     parts += [
         _label(parent if joint in tree.closing else child, parent, child, joint) for joint, parent, child in joints
     ]
@@ -69,7 +69,7 @@ def _place(tree: LinkTree) -> tuple[dict[str, _Node], float]:
     for name, depth in order:
         order += [(joint.child, depth + 1) for joint in tree.children.get(name, ())]
     own = {name: max(_LETTER * len(name) + 16, 60.0) for name, _ in order}
-    # The label of the joint above needs room too.
+    # Include the label of the joint above.
     label = {j.child: _LETTER * 0.9 * len(j.name) + 12 for joints in tree.children.values() for j in joints}
     span: dict[str, float] = {}
     for name, _ in reversed(order):

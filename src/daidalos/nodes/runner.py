@@ -47,7 +47,7 @@ def run_program(body: Callable[[], None], interrupted: int = 0) -> int:
             raise
         print(f"error: {error}", file=sys.stderr)
         return 2
-    except BrokenPipeError:  # whoever reads what is printed has seen enough, as `head` has
+    except BrokenPipeError:  # the reader of the output has closed it, such as `head`
         sys.stdout = io.StringIO()  # nothing is left to be written at the end
         return 1
     except BaseException as error:

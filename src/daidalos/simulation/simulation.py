@@ -133,7 +133,7 @@ class Simulation(Engine):
         instance.set_pose(pose)
         self.physics.changed()
         if instance.build.base is not None:
-            # What stands in the world is built into the compiled model.
+            # Static models are part of the compiled model.
             instance.build.place_base(pose)
             self._recompile()
 

@@ -125,7 +125,7 @@ class Publisher:
         """Connect to the middleware; `undo` disconnects."""
         self._remote, self._undo = remote, undo
         if self._latched:
-            self._has_remote_subscribers = True  # the middleware keeps the samples for who comes later
+            self._has_remote_subscribers = True  # the middleware keeps the samples for late subscriptions
 
     def set_remote_subscribers(self, present: bool) -> None:
         """Record whether other processes have matching subscriptions."""

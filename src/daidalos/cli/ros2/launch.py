@@ -265,7 +265,7 @@ def _complete_argument(prefix: str, args: Any) -> list[str]:
         path, _ = _file_and_arguments(args)
         declared = _load(path)[1].get_launch_arguments()
     except CliError:
-        return []  # what stands before is not complete itself
+        return []  # the preceding argument is incomplete
     name, separator, _ = prefix.partition(":=")
     if not separator:
         return [f"{argument.name}:=" for argument in declared]

@@ -49,7 +49,7 @@ def run_interruptible(argv: list[str]) -> int:
     except KeyboardInterrupt:
         return _INTERRUPTED
     finally:
-        # While the interpreter tidies up, nobody is there to catch an exception.
+        # During the interpreter's shutdown no code would catch the exception.
         signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 

@@ -44,12 +44,12 @@ class BackUp(Behavior[BackUpCommand]):
         self._drive = DriveOnHeading(self.parameters, self.context)
 
     def reconfigure(self, parameters: DriveOnHeadingParameters) -> None:
-        """See `NavigationExtension.reconfigure`."""
+        """Implement `NavigationExtension.reconfigure`."""
         super().reconfigure(parameters)
         self._drive.reconfigure(parameters)
 
     def set_footprint(self, footprint: Footprint) -> None:
-        """See `Behavior.set_footprint`."""
+        """Implement `Behavior.set_footprint`."""
         super().set_footprint(footprint)
         self._drive.set_footprint(footprint)
 

@@ -112,7 +112,7 @@ class MppiController(Controller):
         self.reconfigure(self.parameters)
 
     def reconfigure(self, parameters: MppiParameters) -> None:
-        """See `NavigationExtension.reconfigure`; lifts the speed limit and forgets the last plan."""
+        """Implement `NavigationExtension.reconfigure`; lifts the speed limit and forgets the last plan."""
         super().reconfigure(parameters)
         p = parameters
         self._speed_limit = p.vx_max

@@ -82,7 +82,7 @@ class RegulatedPurePursuitController(Controller):
         self._rotating = False
 
     def reconfigure(self, parameters: RegulatedPurePursuitParameters) -> None:
-        """See `NavigationExtension.reconfigure`; lifts the speed limit."""
+        """Implement `NavigationExtension.reconfigure`; lifts the speed limit."""
         super().reconfigure(parameters)
         self._speed_limit = parameters.desired_linear_vel
 

@@ -105,7 +105,7 @@ class ControllerManagerNode(Node):
         prefix = "hardware_components_initial_state"
         return {name: state for state in (UNCONFIGURED, INACTIVE) for name in self._parameter(f"{prefix}.{state}", [])}
 
-    # The loop: called by whoever has the clock.
+    # Control loop, called by the owner of the clock.
 
     def cycle(self, now_ns: int) -> list[tuple[str, Sample]]:
         """Run all controllers once; return what there is to publish."""

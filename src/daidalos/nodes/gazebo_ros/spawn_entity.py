@@ -125,7 +125,7 @@ def _wait_for(entity: str, node: Any, base: str, timeout: float) -> None:
     client = node.create_client(GetModelList, f"{base}/get_model_list")
     clock = Clock(clock_type=ClockType.STEADY_TIME)
     end = clock.now() + Duration(seconds=timeout)
-    # Asked rather than heard: while time stands still the simulation says nothing.
+    # Requested by a service, since a paused simulation publishes nothing.
     while client.wait_for_service(max(0.0, (end - clock.now()).nanoseconds * 1e-9)):
         response = client.call(GetModelList.Request(), timeout)
         if response is not None and entity in response.model_names:

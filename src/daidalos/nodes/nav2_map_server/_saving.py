@@ -93,7 +93,7 @@ async def _next_map(node: Node, parameters: MapSaverParameters, topic: str) -> A
     latched = parameters.map_subscribe_transient_local
     durability = DurabilityPolicy.TRANSIENT_LOCAL if latched else DurabilityPolicy.VOLATILE
     qos = QoSProfile(depth=1, durability=durability)
-    group = MutuallyExclusiveCallbackGroup()  # who waits for the map may hold the node's own
+    group = MutuallyExclusiveCallbackGroup()  # the caller may hold the node's own group
     subscription = node.create_subscription(OccupancyGridMessage, topic, take, qos, callback_group=group)
     timer = node.create_timer(parameters.save_map_timeout, lambda: take(None), callback_group=group)
     try:

@@ -55,7 +55,7 @@ class TeleopTwistJoy(Node):
             self._publish(self._velocity(joy, ""))
             self._stands_still = False
         elif not self._stands_still:
-            # Once only, so that others may drive when nobody holds the button.
+            # Once only, so that other nodes may drive while the button is released.
             self._publish(Twist())
             self._stands_still = True
 

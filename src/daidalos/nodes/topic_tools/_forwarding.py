@@ -38,7 +38,7 @@ class TopicForwarder:
         self._subscription: Any = None
         self._publishers: dict[str, Any] = {}
         self._outputs = [node.resolve_topic_name(name) for name in outputs]
-        # The graph tells of changes on a thread of its own; what is to be done is done in the executor.
+        # The graph reports changes on its own thread; they are processed in the executor.
         self._look = node.create_guard_condition(self._update)
         self._stop = node.handle.graph.listen(lambda added, what: self._look.trigger())
 

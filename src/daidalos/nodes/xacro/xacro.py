@@ -48,7 +48,7 @@ def _located(said: str) -> str:
         way = [line for line in said.splitlines() if line.startswith(_WAY)]
         more = [f"... and {len(way) - _SHOWN} more"] if len(way) > _SHOWN else []
         return "\n".join([f"error: {error}", *way[:_SHOWN], *more]) + "\n"
-    return said  # such as an M_PI that nobody defines, which is known elsewhere
+    return said  # such as an undefined M_PI, which other tools define
 
 
 if __name__ == "__main__":

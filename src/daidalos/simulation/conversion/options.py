@@ -46,6 +46,6 @@ def set_options(spec: Any, world: World, timestep: float) -> None:
     option.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
     option.impratio = 10.0
     option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_AUTORESET)
-    # What rests is not simulated until something touches it: a cluttered room costs little.
+    # Bodies at rest are not simulated until something touches them, so that cluttered worlds are cheap.
     option.enableflags |= int(mujoco.mjtEnableBit.mjENBL_SLEEP)
     option.sleep_tolerance = SLEEP_SPEED

@@ -104,7 +104,7 @@ class Ros2Control(Plugin):
         """Return the state with the joints at their initial values."""
         self.drives.place(self._initial)
         state = self.drives.start(self.holds)
-        if self.state is not None:  # a reset; whoever commands the joints goes on
+        if self.state is not None:  # a reset; the joints' command modes stay
             state.modes = self.state.modes
         self.drives.command(state, self.period)
         return state
@@ -183,7 +183,7 @@ def _update_rate(files: Iterable[Path], manager: str) -> float:
         try:
             content = yaml.safe_load(file.read_text(encoding="utf-8"))
         except (yaml.YAMLError, UnicodeDecodeError):
-            continue  # whoever reads all parameters says what is wrong
+            continue  # errors are reported where all parameters are read
         for name, section in _sections(content):
             value = section.get("update_rate")
             if isinstance(value, int | float) and value > 0:

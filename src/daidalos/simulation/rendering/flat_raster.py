@@ -49,7 +49,7 @@ def draw_flat(
             continue
         pose = placed[part]
         transform_vertices(vertex_ranges[part, 0], vertex_ranges[part, 1], pose, vertices, transformed)
-        # The light's direction in the part's frame: what a closed shape turns away from it lies behind the rest.
+        # The light's direction in the part's frame: back faces of a closed shape are hidden.
         lx = pose[0, 1] * pose[1, 2] - pose[0, 2] * pose[1, 1]
         ly = pose[0, 2] * pose[1, 0] - pose[0, 0] * pose[1, 2]
         lz = pose[0, 0] * pose[1, 1] - pose[0, 1] * pose[1, 0]

@@ -156,7 +156,7 @@ def draw(
         if not wanted[part] or outside(pose, spheres[part], left, right, top, bottom, near, far):
             continue
         project_vertices(vertex_ranges[part, 0], vertex_ranges[part, 1], pose, lens, vertices, projected)
-        # The eye in the part's frame: it tells which triangles turn towards it.
+        # The camera position in the part's frame, to find the triangles that face it.
         ex = -(pose[0, 0] * pose[0, 3] + pose[1, 0] * pose[1, 3] + pose[2, 0] * pose[2, 3])
         ey = -(pose[0, 1] * pose[0, 3] + pose[1, 1] * pose[1, 3] + pose[2, 1] * pose[2, 3])
         ez = -(pose[0, 2] * pose[0, 3] + pose[1, 2] * pose[1, 3] + pose[2, 2] * pose[2, 3])

@@ -268,7 +268,7 @@ class ZenohBackend(Backend):
                 self._ask(remote, keys.session_of(what.node.key))
 
     def _ask(self, remote: LatchedSubscription, session: str) -> None:
-        if session != self._session_id:  # who is in our session is served within the process
+        if session != self._session_id:  # endpoints of this session are served within the process
             remote.request_history(session)
 
     def declare_service(self, key: str, endpoint: EndpointInfo, on_request: Callable[[Any], None]) -> BackendService:

@@ -149,7 +149,7 @@ def _transport_settings() -> dict[str, Any]:
         # A peer that is stopped (Ctrl-Z, a debugger) must not stop those who publish to it for long: its link
         # is closed, and made again when it goes on.
         "transport/link/tx/queue/congestion_control/block/wait_before_close": 1_000_000,
-        # Nor must it hold up who meets it, or ends while it tries: it tries again.
+        # Nor must it block peers that connect, or the shutdown: it retries.
         "transport/unicast/open_timeout": 2_000,
         # A new peer is told of all our endpoints at once. What does not fit into the queue makes zenoh give the
         # peer up; this much, the most it takes, holds some six thousand.

@@ -21,7 +21,7 @@ _SECTIONS = {
 }
 _ACTION_PARTS = ("send_goal", "cancel_goal", "get_result", "feedback", "status")
 
-# What passes which way, for who publishes, subscribes, serves and calls.
+# Message flows of publishers, subscriptions, servers and clients.
 _FLOWS = {
     "publish": (("egress", ("put", "delete")), ("ingress", ("declare_subscriber",))),
     "subscribe": (("ingress", ("put", "delete")), ("egress", ("declare_subscriber",))),

@@ -58,7 +58,7 @@ class InflationLayer(Layer):
         self._is_outdated = False
 
     def reconfigure(self, parameters: InflationLayerParameters) -> None:
-        """See `NavigationExtension.reconfigure`; the next update inflates the whole costmap."""
+        """Implement `NavigationExtension.reconfigure`; the next update inflates the whole costmap."""
         super().reconfigure(parameters)
         self._table, self._is_outdated = None, True
 

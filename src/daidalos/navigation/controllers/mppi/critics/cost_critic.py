@@ -59,7 +59,7 @@ class CostCritic(Critic):
         self.reconfigure(self.parameters)
 
     def reconfigure(self, parameters: CostCriticParameters) -> None:
-        """See `NavigationExtension.reconfigure`."""
+        """Implement `NavigationExtension.reconfigure`."""
         super().reconfigure(parameters)
         self._price = parameters.cost_weight * (np.arange(256) / LETHAL_OBSTACLE) ** parameters.cost_power
         self._price[NO_INFORMATION] = 0.0
