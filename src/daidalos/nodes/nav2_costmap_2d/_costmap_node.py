@@ -20,19 +20,17 @@ from daidalos.navigation.contracts import Input, Layer, NavigationContext
 from daidalos.navigation.costmap.costmap import Costmap
 from daidalos.navigation.costmap.footprint import Footprint
 from daidalos.navigation.costmap.layered_costmap import CostmapParameters, LayeredCostmap
-from daidalos.navigation.costmap.occupancy import to_occupancy
 from daidalos.navigation.extensions import COSTMAP_LAYERS
 from daidalos.nodes.action_results import TransformFailed
 from daidalos.nodes.conversions import (
     grid_array,
-    grid_message,
     pose2_of,
     pose2_of_transform,
     scan_data,
 )
 from daidalos.nodes.cycles import wait_until
 from daidalos.nodes.managed import ManagedNode
-from daidalos.nodes.nav2_costmap_2d._costmap_messages import costmap_message, footprint_message
+from daidalos.nodes.nav2_costmap_2d._costmap_interface import CostmapInterface
 from daidalos.nodes.navigation_extensions import ExtensionMaker
 from daidalos.nodes.parameters import declare
 from daidalos.nodes.transforms import BlockingBuffer, SensorPoses
@@ -132,30 +130,9 @@ class CostmapNode(ManagedNode):
 
     def configure(self) -> None:
         """Make the layers, the subscriptions that they need and the publishers."""
-        from geometry_msgs.msg import PolygonStamped
-        from nav2_msgs.msg import Costmap as CostmapMessage
-        from nav_msgs.msg import OccupancyGrid as GridMessage
-
         layers = [self._make_layer(name) for name in self._settings.plugins]
         self.layered = LayeredCostmap(self._settings, layers)
-        name = self.get_name()
-        self._grid_publisher = self.create_publisher(GridMessage, "costmap", _LATCHED)
-        self._raw_publisher = self.create_publisher(CostmapMessage, "costmap_raw", _LATCHED)
-        self._footprint_publisher = self.create_publisher(PolygonStamped, "published_footprint", 1)
-        self._create_services(name)
-
-    def _create_services(self, name: str) -> None:
-        from nav2_msgs.srv import (
-            ClearCostmapAroundRobot,
-            ClearCostmapExceptRegion,
-            ClearEntireCostmap,
-            GetCostmap,
-        )
-
-        self.create_service(ClearEntireCostmap, f"clear_entirely_{name}", self._on_clear_entirely)
-        self.create_service(ClearCostmapAroundRobot, f"clear_around_{name}", self._on_clear_around)
-        self.create_service(ClearCostmapExceptRegion, f"clear_except_{name}", self._on_clear_except)
-        self.create_service(GetCostmap, "get_costmap", self._on_get_costmap)
+        self._interface = CostmapInterface(self)
 
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Start to update and publish."""
@@ -310,44 +287,5 @@ class CostmapNode(ManagedNode):
             return self.layered.costmap.copy()
 
     def _publish(self) -> None:
-        if not self._updates:
-            return
-        stamp = self.get_clock().now().to_msg()
-        if self._grid_publisher.handle.has_subscribers:
-            costmap = self.snapshot()
-            values = to_occupancy(costmap.costs)
-            self._grid_publisher.publish(
-                grid_message(values, costmap.resolution, costmap.origin, self.global_frame, stamp)
-            )
-        if self._raw_publisher.handle.has_subscribers:
-            self._raw_publisher.publish(costmap_message(self.snapshot(), self.global_frame, stamp))
-        if self._footprint_publisher.handle.has_subscribers:
-            pose = self.robot_pose()
-            if pose is not None:
-                self._footprint_publisher.publish(footprint_message(self.footprint, pose, self.global_frame, stamp))
-
-    # Services.
-
-    def _on_clear_entirely(self, request: Any, response: Any) -> Any:
-        with self.lock:
-            if self.layered is not None:
-                self.layered.clear_entirely()
-        return response
-
-    def _on_clear_around(self, request: Any, response: Any) -> Any:
-        pose = self.robot_pose()
-        with self.lock:
-            if self.layered is not None and pose is not None:
-                self.layered.clear_around(pose, request.reset_distance)
-        return response
-
-    def _on_clear_except(self, request: Any, response: Any) -> Any:
-        pose = self.robot_pose()
-        with self.lock:
-            if self.layered is not None and pose is not None:
-                self.layered.clear_except(pose, request.reset_distance)
-        return response
-
-    def _on_get_costmap(self, request: Any, response: Any) -> Any:
-        response.map = costmap_message(self.snapshot(), self.global_frame, self.get_clock().now().to_msg())
-        return response
+        if self._updates:
+            self._interface.publish()

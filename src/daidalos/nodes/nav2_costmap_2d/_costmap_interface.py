@@ -1,0 +1,93 @@
+"""Topics and services of a costmap."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from rclpy.qos import DurabilityPolicy, QoSProfile
+
+from daidalos.navigation.costmap.occupancy import to_occupancy
+from daidalos.nodes.conversions import grid_message
+from daidalos.nodes.nav2_costmap_2d._costmap_messages import costmap_message, footprint_message
+
+if TYPE_CHECKING:
+    from daidalos.nodes.nav2_costmap_2d._costmap_node import CostmapNode
+
+_LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+
+
+class CostmapInterface:
+    """Publishers of a costmap node, and its services that clear and return the costmap.
+
+    Parameters
+    ----------
+    node : CostmapNode
+    """
+
+    def __init__(self, node: CostmapNode) -> None:
+        from geometry_msgs.msg import PolygonStamped
+        from nav2_msgs.msg import Costmap as CostmapMessage
+        from nav_msgs.msg import OccupancyGrid as GridMessage
+
+        self._node = node
+        self._grid_publisher = node.create_publisher(GridMessage, "costmap", _LATCHED)
+        self._raw_publisher = node.create_publisher(CostmapMessage, "costmap_raw", _LATCHED)
+        self._footprint_publisher = node.create_publisher(PolygonStamped, "published_footprint", 1)
+        self._create_services(node.get_name())
+
+    def _create_services(self, name: str) -> None:
+        from nav2_msgs.srv import (
+            ClearCostmapAroundRobot,
+            ClearCostmapExceptRegion,
+            ClearEntireCostmap,
+            GetCostmap,
+        )
+
+        self._node.create_service(ClearEntireCostmap, f"clear_entirely_{name}", self._on_clear_entirely)
+        self._node.create_service(ClearCostmapAroundRobot, f"clear_around_{name}", self._on_clear_around)
+        self._node.create_service(ClearCostmapExceptRegion, f"clear_except_{name}", self._on_clear_except)
+        self._node.create_service(GetCostmap, "get_costmap", self._on_get_costmap)
+
+    def publish(self) -> None:
+        """Publish the costmap and the footprint on the topics that have subscribers."""
+        stamp = self._node.get_clock().now().to_msg()
+        if self._grid_publisher.handle.has_subscribers:
+            costmap = self._node.snapshot()
+            values = to_occupancy(costmap.costs)
+            self._grid_publisher.publish(
+                grid_message(values, costmap.resolution, costmap.origin, self._node.global_frame, stamp)
+            )
+        if self._raw_publisher.handle.has_subscribers:
+            self._raw_publisher.publish(costmap_message(self._node.snapshot(), self._node.global_frame, stamp))
+        if self._footprint_publisher.handle.has_subscribers:
+            pose = self._node.robot_pose()
+            if pose is not None:
+                self._footprint_publisher.publish(
+                    footprint_message(self._node.footprint, pose, self._node.global_frame, stamp)
+                )
+
+    def _on_clear_entirely(self, request: Any, response: Any) -> Any:
+        with self._node.lock:
+            if self._node.layered is not None:
+                self._node.layered.clear_entirely()
+        return response
+
+    def _on_clear_around(self, request: Any, response: Any) -> Any:
+        pose = self._node.robot_pose()
+        with self._node.lock:
+            if self._node.layered is not None and pose is not None:
+                self._node.layered.clear_around(pose, request.reset_distance)
+        return response
+
+    def _on_clear_except(self, request: Any, response: Any) -> Any:
+        pose = self._node.robot_pose()
+        with self._node.lock:
+            if self._node.layered is not None and pose is not None:
+                self._node.layered.clear_except(pose, request.reset_distance)
+        return response
+
+    def _on_get_costmap(self, request: Any, response: Any) -> Any:
+        response.map = costmap_message(
+            self._node.snapshot(), self._node.global_frame, self._node.get_clock().now().to_msg()
+        )
+        return response
