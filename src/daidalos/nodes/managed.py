@@ -8,7 +8,6 @@ from typing import Any
 from rclpy.action import ActionServer, CancelResponse, GoalResponse
 from rclpy.exceptions import ParameterException
 from rclpy.lifecycle import LifecycleNode, LifecycleState, ManagedEntity, TransitionCallbackReturn
-from rclpy.parameter import Parameter
 
 from daidalos.common.errors import UserError
 from daidalos.navigation.errors import NavigationError
@@ -36,12 +35,6 @@ class ManagedNode(LifecycleNode):
     def is_active(self) -> bool:
         """Whether the node is active, or about to be."""
         return self.current_state.label in ("activating", "active")
-
-    def declare_parameter(self, name: str, *args: Any, **kwargs: Any) -> Parameter[Any]:
-        """Declare a parameter; one that an earlier configuration declared keeps its value."""
-        return (
-            self.get_parameter(name) if self.has_parameter(name) else super().declare_parameter(name, *args, **kwargs)
-        )
 
     def configure(self) -> None:
         """Create what the node needs while it is inactive or active.

@@ -133,7 +133,8 @@ def test_the_published_footprint_is_checked_for_collisions(executor: SingleThrea
         0.05, lambda: taken.set_result(None) if len(server._footprint.polygon) == 4 and not taken.done() else None
     )
     executor.spin_until_future_complete(taken, TIMEOUT_S)
-    robot.destroy_timer(timer_of_check)
+    for one in (timer, timer_of_check):
+        robot.destroy_timer(one)
     client = ActionClient(robot, DriveOnHeading, "drive_on_heading")
     assert client.wait_for_server(TIMEOUT_S)
     goal = DriveOnHeading.Goal(speed=0.5, time_allowance=Duration(sec=5))
@@ -142,7 +143,6 @@ def test_the_published_footprint_is_checked_for_collisions(executor: SingleThrea
     executor.spin_until_future_complete(sent, TIMEOUT_S)
     ended = sent.result().get_result_async()
     executor.spin_until_future_complete(ended, TIMEOUT_S)
-    robot.destroy_timer(timer)
     result = ended.result()
     assert (result.status, result.result.error_code) == (
         GoalStatus.STATUS_ABORTED,
