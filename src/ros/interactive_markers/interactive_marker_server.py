@@ -1,4 +1,4 @@
-"""The server of interactive markers: it keeps them, tells clients such as RViz of them and hears what people do."""
+"""The server of interactive markers: it publishes them to clients such as RViz and receives their feedback."""
 
 from __future__ import annotations
 
@@ -27,12 +27,12 @@ if TYPE_CHECKING:
 FeedbackCallback = Callable[[InteractiveMarkerFeedback], Any]
 
 _HOLD = 1.0
-"""For how long [s] after a word of one client those of others are not heard."""
+"""For how long [s] after feedback of one client that of others is ignored."""
 
 
 @dataclass
 class MarkerContext:
-    """A marker that clients know of, and who is told what people do with it."""
+    """A marker that was published, and its callbacks for feedback."""
 
     int_marker: InteractiveMarker
     last_feedback: RosTime | None = None
@@ -41,13 +41,13 @@ class MarkerContext:
     feedback_callbacks: dict[int, FeedbackCallback] = field(default_factory=dict)
 
     def callback_for(self, event_type: int) -> FeedbackCallback | None:
-        """Return who is told of an event."""
+        """Return the callback for an event."""
         return self.feedback_callbacks.get(event_type, self.default_feedback_callback)
 
 
 @dataclass
 class UpdateContext:
-    """A change that clients were not told of yet."""
+    """A change that was not published yet."""
 
     FULL_UPDATE = 0
     POSE_UPDATE = 1
@@ -254,7 +254,7 @@ class InteractiveMarkerServer:
     def processFeedback(self, feedback: InteractiveMarkerFeedback) -> None:
         """Process feedback about a marker, and pass it to the callbacks.
 
-        While one client moves a marker, others are not heard: for a second after its last word.
+        While one client moves a marker, others are ignored: until a second after its last feedback.
         """
         with self.mutex:
             context = self.marker_contexts.get(feedback.marker_name)

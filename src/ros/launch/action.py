@@ -52,7 +52,7 @@ class Action(LaunchDescriptionEntity):
         return self.__condition
 
     def describe(self) -> str:
-        """Return a short text that tells this action from others."""
+        """Return a short text that distinguishes this action from others."""
         return repr(self)
 
     def get_sub_entities(self) -> list[LaunchDescriptionEntity]:

@@ -22,7 +22,7 @@ class Condition:
         self._predicate = predicate
 
     def describe(self) -> str:
-        """Return a short text that tells this condition from others."""
+        """Return a short text that distinguishes this condition from others."""
         return repr(self)
 
     def evaluate(self, context: LaunchContext) -> bool:

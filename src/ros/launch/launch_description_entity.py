@@ -15,7 +15,7 @@ class LaunchDescriptionEntity:
     """Base of everything that the launch service visits: actions and launch descriptions."""
 
     def describe(self) -> str:
-        """Return a short text that tells this entity from others."""
+        """Return a short text that distinguishes this entity from others."""
         return repr(self)
 
     def describe_sub_entities(self) -> list[LaunchDescriptionEntity]:

@@ -62,7 +62,7 @@ def add_location(error: BaseException, file: str | None, line: int | None) -> No
 
 
 def register_launch_file(file: str) -> None:
-    """Remember a Python launch file, so that its lines can be told from those of libraries."""
+    """Register a Python launch file, so that its lines can be distinguished from those of libraries."""
     _loaded_launch_files.add(file)
 
 

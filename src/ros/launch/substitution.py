@@ -12,7 +12,7 @@ class Substitution:
     """A piece of text that is only known while launching."""
 
     def describe(self) -> str:
-        """Return a short text that tells this substitution from others."""
+        """Return a short text that distinguishes this substitution from others."""
         return repr(self)
 
     def perform(self, context: LaunchContext) -> str:

@@ -60,7 +60,7 @@ def is_same_launch_test_fixture(left_item: Any, right_item: Any) -> bool:
 
 
 def launch_of(item: Any) -> Any:
-    """Return what tells the launch of an item from others."""
+    """Return what identifies the launch of an item."""
     name = get_launch_test_fixturename(item)
     scope = fixture_scope(item)
     parameters = getattr(getattr(item, "callspec", None), "indices", {})

@@ -112,7 +112,7 @@ class ActiveIoHandler:
         strip_ansi_escape_sequences: bool = True,
         stream: str = "stderr",
     ) -> bool:
-        """Wait for some output and tell whether it came.
+        """Wait for some output and return whether it came.
 
         Parameters
         ----------

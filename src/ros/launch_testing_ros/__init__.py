@@ -1,4 +1,4 @@
-"""Tests of launched nodes: waiting for their topics, and changing what they tell each other."""
+"""Tests of launched nodes: waiting for their topics, and changing their messages."""
 
 from launch._lazy import attach_stub
 

@@ -225,7 +225,7 @@ class BasicNavigator(Costmaps):
     def getAndTrackRoute(
         self, start: PoseStamped | int, goal: PoseStamped | int, use_start: bool = False
     ) -> RunningTask | None:
-        """Start to plan a route and to tell how far the robot is on it; see `getRoute`."""
+        """Start planning a route and tracking the robot on it; see `getRoute`."""
         fields = _ends_of_route(start, goal, use_start)
         return self._start(
             RunningTask.COMPUTE_AND_TRACK_ROUTE, ComputeAndTrackRoute, "compute_and_track_route", **fields

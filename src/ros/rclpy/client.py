@@ -131,7 +131,7 @@ class Client(ServiceEnd[ClientHandle]):
             self._rcl_hook()
 
     def _rcl_take(self) -> tuple[Callable[..., Any], tuple[Any, ...]] | None:
-        """Take a response, after what became ready together with it: messages tell how it came about."""
+        """Take a response, after the messages that became ready before it."""
         executor = THREAD.executor
         if not self._has_stood_back and executor is not None and not executor._ready.empty():
             self._has_stood_back = True

@@ -38,12 +38,12 @@ class JumpThreshold:
     min_backward
         The smallest jump backward, a negative duration, or None for no jump backward.
     on_clock_change
-        Whether to be told when ROS time begins or ends to be overridden.
+        Whether the callback is called when the override of ROS time is switched on or off.
 
     Raises
     ------
     ValueError
-        For a duration of the wrong sign, or when nothing would ever be told.
+        For a duration of the wrong sign, or when the callback could never be called.
     """
 
     def __init__(

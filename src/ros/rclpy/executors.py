@@ -240,7 +240,7 @@ class Executor(CallbackRunner, AbstractContextManager["Executor"]):
         self._run_one(_deadline(timeout_sec), future._pending_over)
 
     def can_execute(self, entity: Any) -> bool:
-        """Return whether the entity's callback group lets it run now."""
+        """Return whether the entity's callback group allows it to run now."""
         group = entity.callback_group
         return group is None or group.can_execute(entity)
 

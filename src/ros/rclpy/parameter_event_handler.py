@@ -123,7 +123,7 @@ class ParameterEventHandler:
 
     @staticmethod
     def get_parameter_from_event(event: ParameterEvent, parameter_name: str, node_name: str) -> Any:
-        """Return the ``rcl_interfaces/msg/Parameter`` of that name and node that an event tells of, or None."""
+        """Return the ``rcl_interfaces/msg/Parameter`` of that name and node in an event, or None."""
         if event.node != node_name:
             return None
         parameters = ParameterEventHandler.get_parameters_from_event(event)

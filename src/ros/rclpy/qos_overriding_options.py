@@ -78,7 +78,7 @@ class QoSOverridingOptions:
 
     @property
     def entity_id(self) -> str | None:
-        """What tells entities of one topic apart."""
+        """The text that distinguishes entities of one topic."""
         return self._entity_id
 
     @classmethod

@@ -1,4 +1,4 @@
-"""Ctrl-C and termination: the contexts are shut down, so that `spin` and everyone who waits comes back."""
+"""Ctrl-C and termination: the contexts are shut down, so that `spin` and all waiting calls return."""
 
 from __future__ import annotations
 
@@ -114,7 +114,7 @@ def _quiet_thread_excepthook(arguments: threading.ExceptHookArgs) -> None:
 
 
 def is_orderly(error: BaseException) -> bool:
-    """Return whether an exception only says that the program is to end.
+    """Return whether an exception only ends the program.
 
     An interrupt while a compiled module is being imported arrives as the cause of an ImportError.
     """

@@ -18,7 +18,7 @@ _SECOND = 1_000_000_000
 _EVENT_INFO = struct.Struct("<4xB3xiI16s4xq")
 """Header of CDR, then service_msgs/ServiceEventInfo: kind of event, stamp, client, number of the call."""
 _REQUESTS, _RESPONSES = (0, 1), (2, 3)
-"""Events of kinds SENT and RECEIVED: the same call may be told of by its client and by its server."""
+"""Events of kinds SENT and RECEIVED: client and server may both publish events of the same call."""
 _ORDERS: dict[str, Callable[[TopicCount], Any]] = {
     "name": lambda one: one.topic.name,
     "type": lambda one: (one.topic.type, one.topic.name),
@@ -56,7 +56,7 @@ def contents(bag: BagReader) -> Contents:
 
 
 def format_metadata(metadata: BagMetadata, size: int, *, sort: str = "name", contents: Contents | None = None) -> str:
-    """Return what a bag holds as text; `size` in bytes, `contents` for what is told in detail."""
+    """Return what a bag holds as text; `size` in bytes, `contents` for the details."""
     topics = [one for one in metadata.topics if not one.topic.is_service_event]
     services = [one for one in metadata.topics if one.topic.is_service_event]
     duration = f"{metadata.duration_ns // _SECOND}.{metadata.duration_ns % _SECOND:09d}s"

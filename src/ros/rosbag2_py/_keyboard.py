@@ -77,7 +77,7 @@ class Keyboard:
         try:
             tty.setcbreak(terminal)
             wanted = termios.tcgetattr(terminal)
-            # Ctrl-C discards keys that `select` may have told of already: reading must not wait for others.
+            # Ctrl-C discards keys that `select` may have reported already: reading must not wait for others.
             wanted[6][termios.VMIN] = 0
             termios.tcsetattr(terminal, termios.TCSANOW, wanted)
             while not self._ended.is_set():

@@ -52,7 +52,7 @@ class PlayerNode(Node):
     BagError
         When a bag can not be read.
     ValueError
-        When an option makes no sense.
+        When an option is not valid.
     """
 
     def __init__(self, storage: Sequence[StorageOptions], options: PlayOptions, name: str, context: Context) -> None:

@@ -326,7 +326,7 @@ class RecorderNode(Node):
         return take
 
     def _qos_for(self, name: str, publishers: list[EndpointInfo]) -> QoSProfile:
-        """Return the strictest profile by which every publisher is heard, unless another is wanted."""
+        """Return the strictest profile that matches every publisher, unless another is requested."""
         override = self._options.topic_qos_profile_overrides.get(name)
         if override is not None:
             self.get_logger().info(f"Overriding subscription profile for {name}")

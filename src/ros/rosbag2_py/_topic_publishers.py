@@ -21,7 +21,7 @@ from rosbag2_py._types import message_class, opaque_class, service_class
 
 _DEPTH = 10
 _REQUEST_EVENTS = {ServiceRequestsSource.SERVICE_INTROSPECTION: 1, ServiceRequestsSource.CLIENT_INTROSPECTION: 0}
-"""Kind of the event by which a service, or a client, tells of a request."""
+"""Kind of the event that a service, or a client, publishes of a request."""
 
 
 class TopicPublishers:
@@ -118,7 +118,7 @@ class TopicPublishers:
         return QoSProfile.from_resolved(offered)
 
     def _request_sender(self, topic: Topic, event_class: Any) -> Callable[[bytes], None] | None:
-        """Return what sends the requests again that a service's events tell of."""
+        """Return a client that sends the requests of a service's events again."""
         logger = self._node.get_logger()
         kind = service_class(topic.service_type)
         if kind is None or event_class is None:

@@ -45,7 +45,7 @@ def set_message_fields(
             fault = f"'{type(msg).__name__}' object has no attribute '{name}'"
             raise AttributeError(fault, name=str(name), obj=msg)
         fields = (field for field in getattr(msg, "_FIELDS", ()) if field[0] == name)
-        # What is not a generated message, but looks like one, tells its fields' types by what they hold.
+        # What is not a generated message, but looks like one, has the field types of the values that it holds.
         spec = next(fields, None) or (name, type(getattr(msg, name)), "single", 0, None)
         _set(msg, spec, value, expand_header_auto, expand_time_now, stampers)
     return stampers

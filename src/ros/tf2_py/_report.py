@@ -14,7 +14,7 @@ _MIN_DURATION_S = 1e-4
 
 
 def problem_with(parent: str, child: str, motion: Rigid, authority: str, tolerance: float) -> str:
-    """Return why a transform makes no sense, "" when it does."""
+    """Return why a transform is not valid, "" when it is."""
     parent, child = parent.removeprefix("/"), child.removeprefix("/")
     rotation = "({:f} {:f} {:f} {:f})".format(*motion[3:])
     if not child:

@@ -8,5 +8,5 @@ from ..event import Event
 
 
 def event_named(name: str) -> Callable[[Event], bool]:
-    """Return a function that tells whether an event has this name."""
+    """Return a function that returns whether an event has this name."""
     return lambda event: event.name == name

@@ -22,7 +22,7 @@ class OnActionEventBase(BaseEventHandler):
     Parameters
     ----------
     action_matcher
-        The action, a function that tells whether an action is meant, or None for all.
+        The action, a function that returns whether an action is meant, or None for all.
     on_event
         The entities to visit, or a function that takes the event and the context and returns them.
     target_event_cls

@@ -10,5 +10,5 @@ if TYPE_CHECKING:
 
 
 def matches_action(target_action: Action) -> Callable[[Action], bool]:
-    """Return a function that tells whether an action is `target_action`."""
+    """Return a function that returns whether an action is `target_action`."""
     return lambda action: action is target_action

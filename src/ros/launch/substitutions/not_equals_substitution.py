@@ -1,4 +1,4 @@
-"""The substitution that tells two values apart."""
+"""The substitution by whether two values differ."""
 
 from __future__ import annotations
 

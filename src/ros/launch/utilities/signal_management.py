@@ -77,7 +77,7 @@ class AsyncSafeSignalManager:
             return
         try:
             signal.set_wakeup_fd(self.__told_before)
-        except (OSError, ValueError):  # who was told before has gone meanwhile
+        except (OSError, ValueError):  # the receiver before has gone meanwhile
             signal.set_wakeup_fd(-1)
         reader, writer = self.__waker
         self.__waker = None

@@ -37,7 +37,7 @@ _STATES = {
 
 
 def match_node_name_start_goal(node_name: str, start_state: str, goal_state: str) -> Callable[[Event], bool]:
-    """Return a function that tells whether an event is a node's transition between two states."""
+    """Return a function that returns whether an event is a node's transition between two states."""
     return lambda event: (
         isinstance(event, StateTransition)
         and event.action.node_name == node_name
@@ -47,7 +47,7 @@ def match_node_name_start_goal(node_name: str, start_state: str, goal_state: str
 
 
 def match_node_name_goal(node_name: str, goal_state: str) -> Callable[[Event], bool]:
-    """Return a function that tells whether an event is a node's transition to a state."""
+    """Return a function that returns whether an event is a node's transition to a state."""
     return lambda event: (
         isinstance(event, StateTransition) and event.action.node_name == node_name and event.goal_state == goal_state
     )

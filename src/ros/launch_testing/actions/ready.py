@@ -1,4 +1,4 @@
-"""The action that says that tests may begin."""
+"""The action that marks a launch as ready for its tests."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The reaction to a process that says that it is ready."""
+"""The reaction to a process that reports that it is ready."""
 
 from __future__ import annotations
 

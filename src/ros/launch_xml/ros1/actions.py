@@ -219,7 +219,7 @@ class IncludeRos1(IncludeLaunchDescription):
             context.launch_configurations.update(arguments)
 
         def leave(context: LaunchContext) -> None:
-            # Parameters belonged to everybody, wherever they were set.
+            # Parameters were global, wherever they were set.
             parameters = context.launch_configurations.get("global_params")
             context.launch_configurations.clear()
             context.launch_configurations.update(outside)

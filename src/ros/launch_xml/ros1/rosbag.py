@@ -54,7 +54,7 @@ def ros2_command(
     Raises
     ------
     ValueError
-        When the words make no sense.
+        When the words are not valid.
     """
     words = list(words)
     pairs = [*remappings, *(_pair(word) for word in words if ":=" in word and not word.startswith("_"))]

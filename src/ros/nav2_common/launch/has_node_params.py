@@ -1,4 +1,4 @@
-"""A substitution that tells whether a parameter file is about a node."""
+"""A substitution by whether a parameter file has parameters of a node."""
 
 from __future__ import annotations
 

@@ -76,7 +76,7 @@ class ActionServer(ActionEnd):
     handle_accepted_callback
         ``callback(goal_handle)``: called with every accepted goal; carries it out at once by default.
     cancel_callback
-        ``callback(goal_handle) -> CancelResponse``: lets a goal be cancelled or not.
+        ``callback(goal_handle) -> CancelResponse``: accepts or rejects the cancellation of a goal.
     goal_service_qos_profile, result_service_qos_profile, cancel_service_qos_profile,
     feedback_pub_qos_profile, \
 status_pub_qos_profile
@@ -363,7 +363,7 @@ status_pub_qos_profile
         self._goal_callback = goal_callback or default_goal_callback
 
     def register_cancel_callback(self, cancel_callback: Callable[[Any], CancelResponse] | None) -> None:
-        """Set what lets goals be cancelled; the default where None."""
+        """Set the callback that accepts or rejects cancellation; the default where None."""
         self._cancel_callback = cancel_callback or default_cancel_callback
 
     def register_execute_callback(self, execute_callback: Callable[[ServerGoalHandle], Any]) -> None:

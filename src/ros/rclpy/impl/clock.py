@@ -58,7 +58,7 @@ class ClockTimer(Protocol):
 
 
 class ClockHandle(Destroyable):
-    """A clock. One of type ROS_TIME can be overridden: then it shows what it is told, not the system's time."""
+    """A clock. One of type ROS_TIME can be overridden: then it shows the time that was set, not the system's."""
 
     def __init__(self, clock_type: ClockType) -> None:
         super().__init__()
@@ -78,7 +78,7 @@ class ClockHandle(Destroyable):
 
     @property
     def overridden(self) -> bool:
-        """Whether the clock shows what it is told."""
+        """Whether the clock shows a time that was set."""
         return self._override is not None
 
     def get_now(self) -> Any:
@@ -131,12 +131,12 @@ class ClockHandle(Destroyable):
 
     def _jump(self, change: ClockChange, before: int, override: int | None) -> None:
         after = self._source() if override is None else override
-        told = [jump for jump in self._jumps if jump.wants(change, after - before)]
-        for jump in told:
+        affected = [jump for jump in self._jumps if jump.wants(change, after - before)]
+        for jump in affected:
             jump.owner.call_pre()
         self._override = override
         self.changed.notify_all()
-        for jump in told:
+        for jump in affected:
             jump.owner.call_post(change, after - before)
 
     def _pop_due(self, now_ns: int) -> list[ClockTimer]:

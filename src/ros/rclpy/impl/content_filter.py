@@ -41,7 +41,7 @@ _EXPECTED = {
     "$END": "the end",
     "AND": "'AND'",
 }
-"""What a fault tells that it expected: the first of these terminals that the grammar allows at that place."""
+"""What an error names as expected: the first of these terminals that the grammar allows at that place."""
 _OPERATORS: dict[str, Callable[[Any, Any], bool]] = {
     "=": operator.eq,
     "<>": operator.ne,

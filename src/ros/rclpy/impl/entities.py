@@ -357,7 +357,7 @@ class ServiceHandle(ServiceEndHandle):
             return None
         request, identity, source_ns, received_ns = taken
         if self.introspection is not None:
-            self.introspection.tell("REQUEST_RECEIVED", identity.client, identity.sequence, request=request)
+            self.introspection.publish("REQUEST_RECEIVED", identity.client, identity.sequence, request=request)
         return request, ServiceInfo(RequestHeader(identity.sequence, identity), source_ns, received_ns)
 
     def service_take_request(self, request_type: Any) -> tuple[Any, Any]:
@@ -376,7 +376,7 @@ class ServiceHandle(ServiceEndHandle):
         """Send the response to a request; `header` is what `take_request` returned, or its `request_id`."""
         identity = getattr(header, "request_id", header).identity
         if self.introspection is not None:
-            self.introspection.tell("RESPONSE_SENT", identity.client, identity.sequence, response=response)
+            self.introspection.publish("RESPONSE_SENT", identity.client, identity.sequence, response=response)
         self.impl.reply(identity, response)
 
 
@@ -393,7 +393,7 @@ class ClientHandle(ServiceEndHandle):
         """Send a request, and return its sequence number."""
         number = self.impl.send(request)
         if self.introspection is not None:
-            self.introspection.tell("REQUEST_SENT", self.endpoint.gid, number, request=request)
+            self.introspection.publish("REQUEST_SENT", self.endpoint.gid, number, request=request)
         return number
 
     def set_on_new_response_callback(self, callback: Callable[[int], None]) -> None:
@@ -411,7 +411,7 @@ class ClientHandle(ServiceEndHandle):
             return None
         response, number, source_ns, received_ns = taken
         if self.introspection is not None:
-            self.introspection.tell("RESPONSE_RECEIVED", self.endpoint.gid, number, response=response)
+            self.introspection.publish("RESPONSE_RECEIVED", self.endpoint.gid, number, response=response)
         return ServiceInfo(RequestHeader(number, None), source_ns, received_ns), response
 
     def service_server_is_available(self) -> bool:

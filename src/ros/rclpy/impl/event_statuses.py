@@ -1,4 +1,4 @@
-"""The kinds of events of publishers and subscriptions, and what is told of them, as rcl and rmw name and number it."""
+"""The kinds of events of publishers and subscriptions, and their statuses, as rcl and rmw name and number them."""
 
 from __future__ import annotations
 

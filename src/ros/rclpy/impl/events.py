@@ -1,7 +1,7 @@
 """Events of publishers and subscriptions, by what the graph and the samples show: no middleware is asked for them.
 
 When an event is counted is DDS 1.4, 2.2.4: a deadline is missed each time that long passes without a sample; a manual
-publisher is alive as long as it publishes or says so within its lease.
+publisher is alive as long as it publishes or asserts its liveliness within its lease.
 """
 
 from __future__ import annotations
@@ -179,16 +179,16 @@ class LivelinessChangedSource(GraphSource):
         assertions = self._assertions
         taken = assertions.take() if assertions is not None else None
         while assertions is not None and taken is not None:
-            self._on_sign(bytes(taken[0].data))
+            self._on_assertion(bytes(taken[0].data))
             taken = assertions.take()
 
     def _on_lapse(self) -> None:
         self._change(alive_count=-1, not_alive_count=1)
 
     def _on_sample(self, info: SampleInfo) -> None:
-        self._on_sign(info.gid)
+        self._on_assertion(info.gid)
 
-    def _on_sign(self, gid: bytes) -> None:
+    def _on_assertion(self, gid: bytes) -> None:
         lease = self._leases.get(gid)
         if lease is not None and not lease.renew():
             self._change(alive_count=1, not_alive_count=-1)
@@ -344,7 +344,7 @@ _SOURCES: dict[tuple[type[IntEnum], int], tuple[type[EventSource], type[Any]]] =
 
 
 def event_source(handle: TopicHandle, event_type: IntEnum, on_ready: Callable[[], None]) -> EventSource:
-    """Return what watches for an event.
+    """Return the source of an event.
 
     Raises
     ------

@@ -27,7 +27,7 @@ class Introspection:
             handle.node, self._event, f"{handle.name}/_service_event", qos
         )
 
-    def tell(
+    def publish(
         self, kind: str, client_gid: bytes, sequence_number: int, request: Any = None, response: Any = None
     ) -> None:
         """Publish an event; `kind` is a constant of ``service_msgs/msg/ServiceEventInfo``."""

@@ -251,7 +251,7 @@ class NodeEntities(NodeMembers, NodeParameters):
         return guard
 
     def create_rate(self, frequency: float, clock: Clock | None = None) -> Rate:
-        """Return what lets a loop run at `frequency` hertz of a clock, by default the node's.
+        """Create a rate for a loop at `frequency` hertz of a clock, by default the node's.
 
         Raises
         ------

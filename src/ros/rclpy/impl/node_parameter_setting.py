@@ -1,4 +1,4 @@
-"""Setting a node's parameters: who is asked before, and who is told afterwards."""
+"""Setting a node's parameters, with the callbacks before and afterwards."""
 
 from __future__ import annotations
 
@@ -117,7 +117,7 @@ class NodeParameterSetting:
         for callback in self._post_set_parameters_callbacks:
             callback(parameters)
 
-    def _rcl_tell_set(self, parameters: list[Parameter[Any]], new: list[Parameter[Any]]) -> None:
+    def _rcl_report_set(self, parameters: list[Parameter[Any]], new: list[Parameter[Any]]) -> None:
         self._rcl_publish_parameter_event([one for one in new if one.type_ != ParameterType.NOT_SET], [], [])
         if parameters:
             for callback in self._post_set_parameters_callbacks:

@@ -124,7 +124,7 @@ class NodeParameters(NodeParameterSetting):
             if not result.successful:
                 raise InvalidParameterValueException(parameter.name, parameter.value, result.reason)
             self._rcl_store(parameter, descriptor)
-        self._rcl_tell_set(
+        self._rcl_report_set(
             [parameter for parameter in declared if parameter.type_ != ParameterType.NOT_SET], new=declared
         )
 

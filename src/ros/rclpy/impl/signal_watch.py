@@ -2,7 +2,7 @@
 
 Python runs handlers in the main thread. A signal that comes just before that thread begins to wait, or that the system
 hands to another thread, does not wake it: the handler would run when something else does, perhaps never. So another
-thread is told of every signal (`signal.set_wakeup_fd`) and sends it to the main thread again if nothing has happened.
+thread receives every signal (`signal.set_wakeup_fd`) and sends it to the main thread again if nothing has happened.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
-"""Wait sets, and waitables that speak of them.
+"""Wait sets, and waitables written for them.
 
-An executor here waits for no set: everything that becomes ready tells it. A waitable as ROS 2's programs write them
+An executor here waits for no set: everything that becomes ready notifies it. A waitable as ROS 2's programs write them
 is asked for its entities (`Waitable.add_to_wait_set`), and made ready when one of them is.
 """
 

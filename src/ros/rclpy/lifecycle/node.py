@@ -36,7 +36,7 @@ class LifecycleNodeMixin(ManagedEntity):
     Parameters
     ----------
     enable_communication_interface
-        Whether others may ask for transitions and are told of them.
+        Whether other nodes may request transitions, and get events of them.
     callback_group
         Of the services; the node's default where None.
     """

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from rclpy.node import Node
 
 _DISCOVERY_TIMEOUT_S = 2.0
-"""How long processes of this machine that are there may take to tell of themselves."""
+"""How long the discovery of the processes of this machine may take [s]."""
 
 
 class DirectNode:
@@ -99,7 +99,7 @@ def direct_node(args: argparse.Namespace, name: str | None = None, **options: An
 
 
 def _wait_for_discovery(node: Node, spin_time: float | None) -> None:
-    """Wait until who is on this machine has told of itself, and `spin_time` seconds for who is elsewhere."""
+    """Wait for the discovery of this machine's processes, and `spin_time` seconds for that of others."""
     session = node.handle.session
     session.backend.settle(_DISCOVERY_TIMEOUT_S)
     if spin_time:

@@ -9,7 +9,7 @@ from ros2cli.node.direct import DirectNode
 
 
 class NodeStrategy(DirectNode):
-    """A node that knows the graph; it finds everybody so soon that it needs no daemon."""
+    """A node that knows the graph; its discovery is so quick that it needs no daemon."""
 
 
 def add_arguments(parser: ArgumentParser) -> None:

@@ -97,7 +97,7 @@ def get_topics(
     *,
     include_hidden_topics: bool = False,
 ) -> list[TopicInfo]:
-    """Return what a function tells of a node.
+    """Return what a function returns about a node.
 
     Parameters
     ----------

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 
 
 def matches_pid(pid: int) -> Callable[[ExecuteProcess], bool]:
-    """Return a function that tells whether an action's process has this id."""
+    """Return a function that returns whether an action's process has this id."""
 
     def matcher(action: ExecuteProcess) -> bool:
         details = action.process_details
@@ -20,7 +20,7 @@ def matches_pid(pid: int) -> Callable[[ExecuteProcess], bool]:
 
 
 def matches_name(name: str) -> Callable[[ExecuteProcess], bool]:
-    """Return a function that tells whether an action's process has this name in the launch."""
+    """Return a function that returns whether an action's process has this name in the launch."""
 
     def matcher(action: ExecuteProcess) -> bool:
         details = action.process_details
@@ -30,7 +30,7 @@ def matches_name(name: str) -> Callable[[ExecuteProcess], bool]:
 
 
 def matches_executable(executable: str) -> Callable[[ExecuteProcess], bool]:
-    """Return a function that tells whether an action's command line begins with this executable."""
+    """Return a function that returns whether an action's command line begins with this executable."""
 
     def matcher(action: ExecuteProcess) -> bool:
         details = action.process_details

@@ -10,6 +10,6 @@ if TYPE_CHECKING:
 
 
 def matches_node_name(node_name: str) -> Callable[[Node], bool]:
-    """Return a function that tells whether an action's node has this name; without a slash, in the root."""
+    """Return a function that returns whether an action's node has this name; without a slash, in the root."""
     full_name = node_name if node_name.startswith("/") else f"/{node_name}"
     return lambda action: action.node_name == full_name

@@ -13,10 +13,10 @@ async def changes(graph: Graph) -> AsyncIterator[None]:
     """Yield at once, and then whenever the graph has changed."""
     loop, changed = asyncio.get_running_loop(), asyncio.Event()
 
-    def tell(added: bool, what: NodeInfo | EndpointInfo) -> None:
+    def on_change(added: bool, what: NodeInfo | EndpointInfo) -> None:
         post(loop, changed.set)
 
-    stop = graph.listen(tell)
+    stop = graph.listen(on_change)
     try:
         while True:
             yield
