@@ -38,8 +38,8 @@ FLAGS = (
     "--remote-debugging-port=0",
     "--remote-allow-origins=*",
 )
-START_S = 30
-ANSWER_S = 30
+START_S = 60
+ANSWER_S = 60
 CTRL = 2  # among the modifiers of an event
 
 
@@ -133,7 +133,7 @@ class Chromium:
             raise PageError(details.get("exception", {}).get("description") or details["text"])
         return answer["result"].get("value")
 
-    def wait_for(self, condition: str, timeout: float = 30) -> Any:
+    def wait_for(self, condition: str, timeout: float = 60) -> Any:
         """Wait in the page until an expression is true, and return its value."""
         limit = int(1000 * timeout)
         value = self.evaluate(

@@ -16,7 +16,7 @@ UP = "Managed nodes are active"
 
 
 @pytest.mark.slow
-@pytest.mark.timeout(300)
+@pytest.mark.timeout(480)
 def test_headless_reaches_three_goals_and_touches_nothing(domain: int) -> None:
     done = finished(*DEMO, "--headless", "--seed", "1", "--json", domain=domain)
     assert done.returncode == 0, done.stderr
@@ -63,7 +63,7 @@ def test_a_used_port_gives_the_next_one(domain: int) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.timeout(240)
+@pytest.mark.timeout(480)
 def test_other_commands_see_the_running_demonstration(domain: int) -> None:
     with Command(*DEMO, "--no-browser", domain=domain) as demo:
         demo.wait_for_line("ready for scans")
@@ -90,7 +90,7 @@ def test_other_commands_see_the_running_demonstration(domain: int) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.timeout(240)
+@pytest.mark.timeout(480)
 def test_the_examples_work_on_it(domain: int) -> None:
     with Command(*DEMO, "--no-browser", domain=domain) as demo:
         demo.wait_for_line("look_around.*finished")
@@ -113,7 +113,7 @@ def test_the_examples_work_on_it(domain: int) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.timeout(240)
+@pytest.mark.timeout(480)
 @pytest.mark.parametrize(
     ("x", "y", "why"),
     [(50.0, 0.0, "outside of the map"), (-1.6, 2.2, "occupied|obstacle|blocked|no path")],

@@ -29,11 +29,11 @@ def page(domain: int) -> Iterator[Chromium]:
 
 @pytest.mark.slow
 @pytest.mark.browser
-@pytest.mark.timeout(240)
+@pytest.mark.timeout(600)
 def test_a_goal_set_with_the_mouse_is_reached(page: Chromium) -> None:
     page.wait_for("daidalos.state().connected")
-    page.wait_for("daidalos.state().scanPoints > 500", timeout=60)
-    page.wait_for("(daidalos.state().maps.Map ?? [0])[0] > 20", timeout=60)
+    page.wait_for("daidalos.state().scanPoints > 500", timeout=180)
+    page.wait_for("(daidalos.state().maps.Map ?? [0])[0] > 20", timeout=180)
     start = page.wait_for("daidalos.state().robotPose")
     assert math.hypot(start["x"] - GOAL[0], start["y"] - GOAL[1]) > 1.0
     drag_goal(page, GOAL, AHEAD)
@@ -42,7 +42,7 @@ def test_a_goal_set_with_the_mouse_is_reached(page: Chromium) -> None:
     page.wait_for(
         f"(({{x, y, yaw}}) => Math.hypot(x - {GOAL[0]}, y - {GOAL[1]}) < 0.2 && Math.abs(yaw) < 0.3)"
         "(daidalos.state().robotPose)",
-        timeout=120,
+        timeout=240,
     )
     faults = {
         name: told for name, told in page.evaluate("daidalos.state().displays").items() if told["level"] == "error"
