@@ -17,8 +17,10 @@ KINDS = {kind.name: kind for layer in LAYERS for kind in import_module(f"daidalo
 def test_built_in_classes_fulfil_the_contract_and_are_documented(kind) -> None:
     found = listing(kind)
     assert found
+    module, _, name = kind.contract.partition(":")
+    contract = getattr(import_module(module), name)
     for extension in found:
-        assert load(kind, extension).__name__
+        assert issubclass(load(kind, extension), contract)
         assert describe(extension)
 
 

@@ -16,7 +16,6 @@ import re
 from collections.abc import Callable, Iterable, Iterator
 from functools import cache
 from importlib import import_module
-from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
 
@@ -33,7 +32,7 @@ T = TypeVar("T")
 BUILT_IN = "built in"
 """Origin of the extensions that are part of this package."""
 
-_CLASS_PATH = re.compile(r"[A-Za-z_]\w*(\.[A-Za-z_]\w*)+")
+_CLASS_PATH = r"[A-Za-z_]\w*(\.[A-Za-z_]\w*)+"
 
 
 class ExtensionError(UserError):
@@ -86,10 +85,10 @@ def _same(name: str) -> str:
     return name
 
 
-class Kind(NamedTuple, Generic[T]):
+class Kind(Generic[T]):
     """Kind of extension.
 
-    Attributes
+    Parameters
     ----------
     name : str
         Such as ``planner``; words are joined by underscores.
@@ -106,12 +105,21 @@ class Kind(NamedTuple, Generic[T]):
         Brings a name into the form that the table of names has, such as ``libname.so`` into ``name``.
     """
 
-    name: str
-    group: str
-    contract: str
-    description: str
-    built_in: Callable[[], Iterable[Extension]] = _none
-    normalize: Callable[[str], str] = _same
+    def __init__(
+        self,
+        name: str,
+        group: str,
+        contract: str,
+        description: str,
+        built_in: Callable[[], Iterable[Extension]] = _none,
+        normalize: Callable[[str], str] = _same,
+    ) -> None:
+        self.name = name
+        self.group = group
+        self.contract = contract
+        self.description = description
+        self.built_in = built_in
+        self.normalize = normalize
 
     @property
     def title(self) -> str:
@@ -154,7 +162,7 @@ def locate(kind: Kind[T], name: str, *, asked_by: Location | None = None) -> Ext
 
 
 def load(kind: Kind[T], extension: Extension, *, asked_by: Location | None = None) -> type[T]:
-    """Import the class of an extension and check it against the contract; see `find`."""
+    """Import the class of an extension; see `find`. Those that are not built in are checked against the contract."""
     described = f"{kind.title} '{extension.name}'"
     if extension.origin != BUILT_IN:
         described += f" of {extension.origin}"
@@ -163,6 +171,8 @@ def load(kind: Kind[T], extension: Extension, *, asked_by: Location | None = Non
     except Exception as error:  # code of the user's may raise anything
         reason = str(error) or type(error).__name__
         raise ExtensionError(f"{described} cannot be loaded from {extension.target}: {reason}", asked_by) from error
+    if extension.origin == BUILT_IN:
+        return loaded  # type: ignore[no-any-return]
     module, _, name = kind.contract.partition(":")
     contract = getattr(import_module(module), name)
     if not (isinstance(loaded, type) and issubclass(loaded, contract)):
@@ -231,8 +241,10 @@ def _origin(point: EntryPoint) -> str:
 
 def _by_path(name: str) -> Extension | None:
     """Return the extension of a class path if its module exists."""
+    from importlib.util import find_spec
+
     path = name.strip().replace("::", ".").replace("/", ".").replace(":", ".")
-    if not _CLASS_PATH.fullmatch(path):
+    if not re.fullmatch(_CLASS_PATH, path):
         return None
     module, _, cls = path.rpartition(".")
     try:
@@ -245,6 +257,8 @@ def _by_path(name: str) -> Extension | None:
 
 
 def _exists(package: str) -> bool:
+    from importlib.util import find_spec
+
     try:
         return find_spec(package) is not None
     except (ImportError, ValueError):
@@ -269,6 +283,7 @@ def classes_in(*packages: str, attribute: str = "names") -> tuple[Extension, ...
 
 def _classes_in(package: str, attribute: str) -> Iterator[Extension]:
     import ast
+    from importlib.util import find_spec
 
     spec = find_spec(package)
     for folder in (spec.submodule_search_locations or ()) if spec else ():

@@ -62,7 +62,7 @@ def add_subparsers_on_demand(
         subparser.set_defaults(**{dest: verb})
         verb.add_arguments(subparser, name)
 
-    verbs = Extensions(Kind(group_name, group_name, "ros2cli.extensions:Subcommand", f"a verb of `{cli_name}`"))
+    verbs = Extensions(Kind(group_name, group_name, "ros2cli.subcommand:Subcommand", f"a verb of `{cli_name}`"))
     cast(Parser, parser).add_subcommands(
         "Commands", cli_name, verbs, make, hidden=hide_extensions or (), required=required
     )

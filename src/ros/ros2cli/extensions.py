@@ -4,20 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from functools import cached_property
-from typing import Any, Protocol, runtime_checkable
+from typing import Any
 
 from daidalos.common.extensions import Extension, Kind, describe, listing, load
-
-
-@runtime_checkable
-class Subcommand(Protocol):
-    """Command or verb: a class with `main`, whose docstring is its description.
-
-    It declares its arguments in ``add_arguments(parser, cli_name)``, and `main` takes them as ``args``.
-    """
-
-    def main(self, *args: Any, **keywords: Any) -> Any:
-        """Run it, and return the exit status, or a message for standard error."""
 
 
 def built_in(descriptions: Mapping[str, str], package: str, suffix: str) -> Iterable[Extension]:

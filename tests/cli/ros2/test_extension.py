@@ -139,5 +139,5 @@ def test_versions_that_do_not_fit(misfit):
 
 @pytest.mark.parametrize("nonsense", [("0.1", "0.1"), ("x", "^0.1"), ("0.1", "^")])
 def test_what_is_no_version(nonsense):
-    with pytest.raises(ValueError, match="is no "):
+    with pytest.raises(ValueError, match="is not a "):
         satisfies_version(*nonsense)

@@ -22,7 +22,7 @@ _DESCRIPTIONS = {
 VERBS: Kind[Any] = Kind(
     "daidalos_verb",
     "daidalos.verbs",
-    "ros2cli.extensions:Subcommand",
+    "ros2cli.subcommand:Subcommand",
     "a verb of the command `daidalos`",
     lambda: built_in(_DESCRIPTIONS, __name__, "Verb"),
 )

@@ -38,7 +38,7 @@ BUILT_IN = {
 KIND: Kind[Any] = Kind(
     "ros2_command",
     COMMAND_GROUP,
-    "ros2cli.extensions:Subcommand",
+    "ros2cli.subcommand:Subcommand",
     "a command of `ros2`",
     lambda: built_in(BUILT_IN, "daidalos.cli.ros2", "Command"),
 )

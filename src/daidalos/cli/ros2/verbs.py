@@ -44,7 +44,7 @@ class VerbCommand(Command):
         kind: Kind[Any] = Kind(
             f"ros2_{name}_verb",
             cls.group,
-            "ros2cli.extensions:Subcommand",
+            "ros2cli.subcommand:Subcommand",
             f"a verb of `ros2 {name}`",
             lambda: built_in(cls.verbs, modules, "Verb"),
         )
