@@ -120,6 +120,7 @@ def test_it_can_be_configured_again(executor: SingleThreadedExecutor) -> None:
     assert ended.result().status == GoalStatus.STATUS_SUCCEEDED
 
 
+@pytest.mark.usefixtures("compiled")
 def test_the_published_footprint_is_checked_for_collisions(executor: SingleThreadedExecutor) -> None:
     server, robot = executor.get_nodes()
     be_somewhere(robot, obstacle=(0.65, 0.55))  # beside the way of the circle that is assumed at first
