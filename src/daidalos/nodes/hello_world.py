@@ -91,7 +91,7 @@ class Adder(Node):
 
 
 def request_sum(name: str, a: int, b: int, report: Callable[[Node, int], object]) -> None:
-    """Call ``add_two_ints`` from a node of that name, once somebody serves it, and report the sum."""
+    """Call ``add_two_ints`` from a node of that name once it is available, and log the sum."""
     import rclpy
     from example_interfaces.srv import AddTwoInts
 

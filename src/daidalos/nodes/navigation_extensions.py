@@ -33,7 +33,7 @@ class ExtensionMaker:
         self._node.get_logger().warning(line)
 
     def make(self, kind: Kind[T], name: str, default: str) -> T:
-        """Make what the parameter ``<name>.plugin`` says.
+        """Create the extension of the parameter ``<name>.plugin``.
 
         Raises
         ------

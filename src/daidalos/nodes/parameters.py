@@ -115,7 +115,7 @@ def declare(node: Node, kind: type[T], prefix: str = "", reconfigure: Callable[[
 
 
 def declare_name(node: Node, name: str, default: str, description: str) -> str:
-    """Declare a parameter that says which class or file to use, and return its value; it is read-only.
+    """Declare a read-only parameter that names a class or file, and return its value.
 
     Raises
     ------

@@ -45,7 +45,7 @@ class Client(Node):
         self.create_timer(_PERIOD_S, self.ask)
 
     def ask(self) -> None:
-        """Send a request where somebody serves it; its answer is logged."""
+        """Send a request once the service is available, and log the response."""
         if self._client.service_is_ready():
             self._client.call_async(self._request).add_done_callback(self._notify)
         else:

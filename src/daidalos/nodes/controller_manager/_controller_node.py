@@ -75,7 +75,7 @@ class ControllerNode(Node):
         return entry is not None and entry[0].handle.has_subscribers
 
     def publish(self, sample: Sample) -> None:
-        """Publish what the controller says."""
+        """Publish the controller's samples."""
         publisher, convert = self._outgoing[sample.topic]
         publisher.publish(convert(sample))
 
@@ -136,7 +136,7 @@ class ControllerNode(Node):
     # Actions
 
     def cancel_requested(self) -> None:
-        """Cancel the goals that somebody asked to cancel; called before a cycle, with the lock held."""
+        """Cancel the goals with cancel requests; called before a cycle, with the lock held."""
         for entry in [one for one in self._goals if one[0].is_cancel_requested]:
             self._goals.remove(entry)
             _, goal, action = entry

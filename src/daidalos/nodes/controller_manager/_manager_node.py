@@ -161,7 +161,7 @@ class ControllerManagerNode(Node):
         ListingServices(self, self._running, self.lock, group)
 
     def _changing(self, work: Callable[[Any, Any], None]) -> Callable[[Any, Any], Any]:
-        """Return a service's callback for something that may fail: the answer says whether it did."""
+        """Return a service's callback that reports success or failure of a function."""
 
         def callback(request: Any, response: Any) -> Any:
             response.ok = True

@@ -64,7 +64,7 @@ class SimulatedManager:
         self._said += self._node.cycle(now_ns)
 
     def publish(self) -> None:
-        """Publish what controllers said; the clock has told the time before."""
+        """Publish the controllers' samples; called after the clock was published."""
         said, self._said = self._said, []
         self._node.publish(said)
 

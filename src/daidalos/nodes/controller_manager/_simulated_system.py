@@ -96,7 +96,7 @@ class SimulatedSystem(Hardware):
                 raise HardwareError(f"joint '{joint}' can not take {wanted[joint]} and {kind} at once")
 
     def switch(self, start: Sequence[str], stop: Sequence[str]) -> None:
-        """Set what the motors do; those that nobody commands hold or are free."""
+        """Set the motors' commands; joints without a command hold or are free."""
         state = self._plugin.state
         for name in stop:
             row = self._commands.pop(self.commands.index[name], None)

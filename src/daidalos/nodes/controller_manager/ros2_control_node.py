@@ -84,7 +84,7 @@ class _Cycles:
         self._start_ns, self._count = -1, 0
 
     def until(self, now_ns: int) -> Iterator[int]:
-        """Yield the instants up to now [ns] that were not yielded before; a clock that jumps starts anew."""
+        """Yield the new instants up to now [ns]; a time jump restarts the sequence."""
         last = self._at(self._count - 1)
         if self._start_ns < 0 or not last <= now_ns < last + _MAX_LAG_NS:
             self._start_ns, self._count = now_ns, 0

@@ -95,7 +95,7 @@ class RosGraphSource:
             observer.time_advanced(self._time)
 
     def time(self) -> int | None:
-        """Return simulated time in ns, None where nobody publishes it."""
+        """Return simulated time [ns], None if it is not published."""
         return self._time
 
     # What there is.
@@ -210,7 +210,7 @@ def _class_of(find: Callable[[str], Any], type_name: str) -> Any:
 
 @cache
 def _schema(type_name: str) -> str | None:
-    """Return the definition of a type with its dependencies, None where nobody knows it."""
+    """Return the definition of a type with its dependencies, None if unknown."""
     try:
         return message_schema(type_name, interface_library())
     except (LookupError, ValueError, KeyError):

@@ -1,4 +1,4 @@
-"""Reading worlds and entities, and what a world says about its speed and its topics."""
+"""Reader of worlds and entities, and of a world's speed and topics."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ def wanted_speed(physics: Physics) -> float:
 
 
 def state_namespaces(world: World) -> tuple[str, ...]:
-    """Return where states are told: at the root, below ``/gazebo``, and where the world's state plugin says."""
+    """Return the namespaces of states: the root, ``/gazebo``, and that of the world's state plugin."""
     found = ["", "/gazebo"]
     for plugin in world.plugins:
         if library_name(plugin.filename) == "gazebo_ros_state":

@@ -70,7 +70,7 @@ def _pattern(text: str) -> re.Pattern[str]:
 
 
 def _overlap(bounds: Any) -> Callable[[NDArray[np.float64], NDArray[np.float64]], bool]:
-    """Return what tells whether a box from its lowest to its highest corner overlaps some bounds."""
+    """Return a function that tests whether a box given by two corners overlaps some bounds."""
     if bounds.type == bounds.TYPE_EMPTY:
         return lambda low, high: True
     if bounds.type not in (bounds.TYPE_BOX, bounds.TYPE_SPHERE):

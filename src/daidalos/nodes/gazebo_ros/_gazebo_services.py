@@ -207,7 +207,7 @@ class GazeboServices:
 
 
 def _reporting(field: str, work: Callable[[Any], str | None]) -> Callable[[Any, Any], Any]:
-    """Return a callback that says whether some work succeeded, and what went wrong."""
+    """Return a service callback that reports success, or the error, of a function."""
 
     def answer(request: Any, response: Any) -> Any:
         message, success = "", True

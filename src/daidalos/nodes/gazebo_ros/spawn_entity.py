@@ -117,7 +117,7 @@ def _spawn(arguments: argparse.Namespace, node: Any) -> None:
 
 
 def _wait_for(entity: str, node: Any, base: str, timeout: float) -> None:
-    """Wait until the simulation tells of an entity."""
+    """Wait until an entity is in the simulation."""
     from gazebo_msgs.srv import GetModelList
     from rclpy.executors import ExternalShutdownException
 
@@ -168,7 +168,7 @@ def _delete_at_end(arguments: argparse.Namespace, node: Any) -> None:
 
 
 def spawn(words: Sequence[str], joints: Mapping[str, float], prog: str) -> None:
-    """Do what the command line says.
+    """Run the command line.
 
     Parameters
     ----------

@@ -90,7 +90,7 @@ class JointStatePublisher(Node):
         )
 
     def _setting(self, name: str, default: Any) -> Any:
-        """Return a parameter; it is declared when nobody has given it."""
+        """Return a parameter; declare it if it is not declared."""
         from rcl_interfaces.msg import ParameterDescriptor
 
         if not self.has_parameter(name):

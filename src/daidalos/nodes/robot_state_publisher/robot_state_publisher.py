@@ -143,7 +143,7 @@ class RobotStatePublisher(Node):
             )
 
     def _meaning(self, names: tuple[str, ...]) -> _JointUpdate:
-        """Return what a message about these joints means; it is worked out once for those that are told of together."""
+        """Return the cached indices of a message about these joints."""
         if names not in self._told:
             if len(self._told) >= _KEPT:
                 self._told.clear()

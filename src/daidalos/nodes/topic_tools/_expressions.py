@@ -85,7 +85,7 @@ def evaluate(expression: str, names: dict[str, Any]) -> Any:
 
 
 def _wait_for_input(node: Node, executor: Executor, arguments: argparse.Namespace) -> tuple[str, Any, Any]:
-    """Return the input's name, class and quality of service, once somebody publishes it."""
+    """Return the input's name, class and quality of service once it is published."""
     source = node.resolve_topic_name(arguments.input)
     found = Future()
 

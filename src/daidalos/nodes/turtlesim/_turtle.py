@@ -59,7 +59,7 @@ class Turtle:
     _commanded_s: float = -math.inf
 
     def command(self, forward: float, sideways: float, angular: float, now_s: float) -> None:
-        """Move like this until told otherwise, for a second at most."""
+        """Set the velocity until the next command, for at most a second."""
         self.forward, self.sideways, self.angular = _single(forward), _single(sideways), _single(angular)
         self._commanded_s = now_s
 
