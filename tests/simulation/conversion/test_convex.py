@@ -6,7 +6,7 @@ import trimesh
 
 from daidalos.description.geometry import Box, Polyline, Sphere
 from daidalos.description.meshes import TriangleMesh, triangles_of
-from daidalos.simulation.conversion import convex
+from daidalos.simulation.conversion import decomposition
 from daidalos.simulation.conversion.convex import connected_pieces, content_key, convex_parts
 
 L_SHAPE = Polyline((((0, 0), (3, 0), (3, 1), (1, 1), (1, 3), (0, 3)),), 1.0)
@@ -62,7 +62,7 @@ def test_concave_pieces_are_split_and_kept(own_cache, monkeypatch):
     assert len(parts) >= 2
     assert sum(volume(part) for part in parts) == pytest.approx(5, rel=0.15)
     assert len(list((own_cache / "convex").iterdir())) == 1
-    monkeypatch.setattr(convex, "_decompose", None)
+    monkeypatch.setattr(decomposition, "decompose", None)
     again, _ = parts_of(corner)
     assert [len(part.vertices) for part in again] == [len(part.vertices) for part in parts]
 

@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from daidalos.description.meshes import TriangleMesh
+from daidalos.simulation.conversion import decomposition
 
 CONVEX_ENOUGH = 0.95
 """Volume ratio to its convex hull from which a mesh counts as convex."""
@@ -34,7 +35,7 @@ def convex_parts(mesh: TriangleMesh, key: str, decompose: bool) -> tuple[list[Tr
     key : str
         `content_key` of the mesh.
     decompose : bool
-        Split pieces that are not convex by approximate decomposition (CoACD, Wei et al. 2022); otherwise
+        Split pieces that are not convex by `decomposition`; otherwise
         each piece gets its convex hull.
 
     Returns
@@ -50,13 +51,13 @@ def convex_parts(mesh: TriangleMesh, key: str, decompose: bool) -> tuple[list[Tr
     convex = [_is_convex(piece, hull) for piece, hull in zip(pieces, hulls, strict=True)]
     if all(convex) or not decompose:
         return hulls, not all(convex)
-    file = cache_folder() / "convex" / f"{key}.npz"
+    file = cache_folder() / "convex" / f"{key}-{decomposition.VERSION}.npz"
     parts = _load(file)
     if parts is None:
         _log.info("splitting a mesh of %d triangles into convex parts; the result is kept", len(mesh.faces))
         parts = []
         for piece, hull, is_convex in zip(pieces, hulls, convex, strict=True):
-            parts += [hull] if is_convex else _decompose(piece) or [hull]
+            parts += [hull] if is_convex else [_hull(points) for points in decomposition.decompose(piece)]
         _save(file, parts)
     return parts, True
 
@@ -136,29 +137,6 @@ def _hull(vertices: np.ndarray) -> TriangleMesh:
     inwards = np.einsum("ij,ij->i", normals, hull.equations[:, :3]) < 0
     faces[inwards] = faces[inwards][:, ::-1]
     return TriangleMesh(vertices[used], faces)
-
-
-def _decompose(piece: TriangleMesh) -> list[TriangleMesh]:
-    """Run CoACD with a search coarse enough to take seconds instead of minutes."""
-    import coacd
-
-    coacd.set_log_level("error")
-    found = coacd.run_coacd(
-        coacd.Mesh(piece.vertices, piece.faces),
-        threshold=0.08,
-        preprocess_resolution=40,
-        resolution=1000,
-        mcts_iterations=60,
-        mcts_nodes=12,
-        mcts_max_depth=2,
-        max_ch_vertex=64,
-        seed=0,
-    )
-    return [
-        TriangleMesh(np.asarray(vertices, dtype=np.float64), np.asarray(faces, dtype=np.int32))
-        for vertices, faces in found
-        if len(vertices) >= 4
-    ]
 
 
 def _load(file: Path) -> list[TriangleMesh] | None:
