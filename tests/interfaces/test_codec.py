@@ -153,6 +153,7 @@ def test_any_bytes_are_a_message_or_a_clear_error(package, data, body):
     attempt(class_of(name), body)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("package", PACKAGES)
 @QUICK
 @given(data=st.data())

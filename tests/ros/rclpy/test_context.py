@@ -239,6 +239,7 @@ print("ready", flush=True)
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("middle", "end"),
     [
