@@ -49,6 +49,7 @@ def test_an_exposed_server_is_reached_by_address_but_not_by_unknown_name():
     assert policy.refusal_reason("192.168.1.7:8765", "http://192.168.1.7:8765") is None
     assert policy.refusal_reason("evil.example:8765", None)
     assert policy.refusal_reason("192.168.1.7:8765", "http://evil.example")
+    assert policy.refusal_reason("192.168.1.7:8765", "http://203.0.113.66")
 
 
 def test_all_origins_can_be_admitted():

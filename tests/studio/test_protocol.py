@@ -243,3 +243,14 @@ def _without_nobody(graph):
         *({name: nodes for name, nodes in part.items() if nodes} for part in (graph.publishers, graph.subscribers)),
         services={name: nodes for name, nodes in graph.services.items() if nodes},
     )
+
+
+@pytest.mark.parametrize("value", [2**63, -(2**63) - 1, [1, "a"], [True, 1], [2**70], {"a": 1}])
+def test_values_that_no_parameter_can_hold_are_refused(value):
+    with pytest.raises(ProtocolError, match="can not hold"):
+        protocol.parse_parameter(protocol.ParameterEntry("/node.x", value))
+
+
+def test_a_lone_surrogate_is_refused():
+    with pytest.raises(ProtocolError, match="not JSON"):
+        protocol.parse_text('{"op": "getParameters", "parameterNames": ["/a.\\ud800"]}')

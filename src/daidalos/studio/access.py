@@ -2,7 +2,8 @@
 
 A web page from anywhere may send requests to a server on loopback. Two headers identify it: ``Origin`` names the page,
 and ``Host`` the name under which the server was looked up. With DNS rebinding both carry the
-attacker's name, so a name is trusted only when it is known; a bare address can not be rebound.
+attacker's name, so a name is trusted only when it is known; a bare address can not be rebound, and is a ``Host`` where
+the server is exposed. The page's own origin must be that of the server, or one that was named.
 """
 
 from __future__ import annotations
@@ -43,7 +44,7 @@ class AccessPolicy:
         if origin is None or origin.lower().rstrip("/") in self._origins or "*" in self._origins:
             return None
         asker = _host_name(origin)
-        if asker is None or not (asker == name or self._knows(asker)):
+        if asker is None or not (asker == name or asker in self._hosts):
             return f"pages of {origin!r} may not use this server; start it with this origin allowed"
         return None
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import logging
 from collections.abc import Callable, Coroutine, Iterable, Sequence
 from concurrent.futures import Future
 from typing import Any
@@ -18,8 +19,13 @@ from daidalos.studio.outbox import Outbox
 from daidalos.studio.protocol import Level, ProtocolError
 from daidalos.studio.source import Graph, GraphSource, Handle, Parameter, Publication, SourceError
 
+_LOGGER = logging.getLogger(__name__)
+
 MAX_PENDING_REQUESTS = 256
 """Service calls, parameter requests and assets of one client that have no answer yet."""
+
+MAX_ERROR_LENGTH = 500
+"""Characters of an error's text, which may repeat what a client sent."""
 
 
 class Client:
@@ -109,9 +115,12 @@ class Client:
             handle(data)
         except (ProtocolError, SourceError) as error:
             self._send_error(str(error))
+        except Exception as error:  # a fault of ours fails this request, and neither the client nor the server
+            _LOGGER.exception("a client's request failed")
+            self._send_error(f"the request failed: {type(error).__name__}")
 
     def _send_error(self, text: str) -> None:
-        self.outbox.put_reply(protocol.status(Level.ERROR, text))
+        self.outbox.put_reply(protocol.status(Level.ERROR, text[:MAX_ERROR_LENGTH]))
 
     def _receive_text(self, data: str) -> None:
         match protocol.parse_text(data):

@@ -9,6 +9,7 @@ from __future__ import annotations
 import base64
 import json
 import math
+import reprlib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from enum import IntEnum
@@ -334,6 +335,8 @@ def parse_text(frame: str) -> ClientMessage:
     """
     try:
         message = json.loads(frame)
+        if "\\u" in frame:
+            json.dumps(message, ensure_ascii=False).encode()  # a lone surrogate could not be sent back
     except (ValueError, RecursionError) as error:
         raise ProtocolError(f"not JSON: {error}") from None
     if not isinstance(message, dict) or not isinstance(message.get("op"), str):
@@ -443,15 +446,21 @@ def parse_parameter(entry: ParameterEntry) -> Parameter:
     except (TypeError, ValueError):
         raise ProtocolError(f"parameter {name}: {value!r} is not a {entry.type}") from None
     if not _is_parameter_value(value):
-        raise ProtocolError(f"parameter {name}: ROS parameters can not hold {value!r}")
+        raise ProtocolError(f"parameter {name}: ROS parameters can not hold {reprlib.repr(value)}")
     return Parameter(name, value)
+
+
+_MIN_INTEGER, _MAX_INTEGER = -(2**63), 2**63 - 1
 
 
 def _is_parameter_value(value: object) -> bool:
     if isinstance(value, list):
         kinds = {type(item) for item in value}
-        return kinds <= {bool} or kinds <= {int} or kinds <= {int, float} or kinds <= {str}
-    return value is None or isinstance(value, bool | int | float | str)
+        alike = kinds <= {bool} or kinds <= {int} or kinds <= {int, float} or kinds <= {str}
+        return alike and all(_is_parameter_value(item) for item in value)
+    if isinstance(value, int):
+        return _MIN_INTEGER <= value <= _MAX_INTEGER
+    return value is None or isinstance(value, float | str)
 
 
 def connection_graph_update(before: Graph, after: Graph) -> str | None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import sys
 import threading
 from collections.abc import Sequence
 from pathlib import Path
@@ -18,7 +20,7 @@ from visualization_msgs.msg import Marker
 from daidalos.nodes.foxglove_bridge._graph_source import RosGraphSource
 from daidalos.nodes.studio import Studio
 from daidalos.studio.assets import AssetError
-from daidalos.studio.source import Parameter
+from daidalos.studio.source import Parameter, SourceError
 from ros.graph import graph, node, spinning  # noqa: F401
 
 
@@ -99,3 +101,34 @@ def test_meshes_that_a_simulator_shows_may_be_fetched(node: Node, tmp_path: Path
         studio._source.call("/gazebo/get_shapes", serialize_message(GetShapes.Request())).result(10.0)
         assert studio._assets.read(mesh.as_uri()) == b"rock"
         studio.close()
+
+
+@pytest.mark.parametrize("topic", ["/" + "a" * 100_000, "/a b", "/\x00", "", "/a//b", "/1a"])
+def test_a_client_cannot_advertise_a_name_that_ros_refuses(node: Node, topic: str) -> None:  # noqa: F811
+    source = RosGraphSource(node)
+    with pytest.raises(SourceError):
+        source.advertise(topic, "std_msgs/msg/String")
+    assert not [name for name in names(node) if name.startswith("/a")]
+
+
+@pytest.mark.parametrize(
+    "type_name", ["antigravity/msg/X", "os/msg/path", "../../x/msg/Y", "std_msgs/msg/Nothing", "x"]
+)
+def test_a_type_name_imports_interfaces_only(node: Node, type_name: str) -> None:  # noqa: F811
+    sys.modules.pop("antigravity", None)
+    with pytest.raises(SourceError, match="not known"):
+        RosGraphSource(node).advertise("/a", type_name)
+    assert "antigravity" not in sys.modules
+
+
+@pytest.mark.parametrize(
+    "name", ["/no such node.x", "x", ".", "/tested.1 bad", "/tested.", "\x00.y", "/" + "n" * 5000 + ".p"]
+)
+def test_a_request_for_impossible_parameters_fails_alone(node: Node, name: str) -> None:  # noqa: F811
+    source = RosGraphSource(node)
+    node.declare_parameter("speed", 1.5)
+    with spinning(node):
+        for request in (source.get_parameters([name]), source.set_parameters([Parameter(name, 3)])):
+            with contextlib.suppress(SourceError):
+                request.result(5.0)
+        assert [one.value for one in source.get_parameters(["/tested.speed"]).result(5.0)] == [1.5]

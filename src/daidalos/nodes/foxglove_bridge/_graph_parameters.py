@@ -13,6 +13,9 @@ from rclpy.parameter_client import AsyncParameterClient
 
 from daidalos.studio.source import Parameter, SourceError
 
+_MAX_SHOWN = 300
+"""Number of characters of a reason that a client gets."""
+
 
 class GraphParameters:
     """Client of other nodes' parameters.
@@ -54,12 +57,21 @@ class GraphParameters:
 
         async def gather() -> None:
             found: list[Parameter] = []
-            for node, names in wanted.items():
-                client = self._client_of(node)
-                if client.services_are_ready():
-                    found += await work(client, node, names)
-            if answer.set_running_or_notify_cancel():  # the client may be gone
+            failure: SourceError | None = None
+            try:
+                present = {node.full_name for node in self._node.handle.graph.nodes()}
+                for node in (name for name in wanted if name in present):
+                    client = self._client_of(node)
+                    if client.services_are_ready():
+                        found += await work(client, node, wanted[node])
+            except Exception as error:  # what a client asks for fails this request only
+                failure = SourceError(f"parameters: {error}"[:_MAX_SHOWN])
+            if not answer.set_running_or_notify_cancel():  # the client may be gone
+                return
+            if failure is None:
                 answer.set_result(found)
+            else:
+                answer.set_exception(failure)
 
         executor.create_task(gather)
         return answer

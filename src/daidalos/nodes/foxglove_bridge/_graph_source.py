@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import re
 import threading
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future
 from functools import cache
 from typing import Any
 
+from rclpy.exceptions import InvalidTopicNameException
 from rclpy.impl.entities import PublisherHandle, SubscriptionHandle
 from rclpy.node import Node
 from rclpy.qos import QoSProfile, ReliabilityPolicy
+from rclpy.validate_full_topic_name import validate_full_topic_name
 from rosidl_runtime_py.get_interfaces import interface_library
 from rosidl_runtime_py.utilities import get_message, get_service
 
@@ -29,6 +32,9 @@ from daidalos.studio.source import (
 from daidalos.transport.graph import EndpointInfo, EndpointKind, NodeInfo
 
 _CLOCK = "/clock"
+_TYPE_NAME = re.compile(r"[A-Za-z]\w*/(msg|srv|action)/[A-Za-z]\w*")
+_MAX_SHOWN = 100
+"""Number of characters of a client's text that a message repeats."""
 
 
 class RosGraphSource:
@@ -159,6 +165,10 @@ class RosGraphSource:
 
     def advertise(self, topic: str, type_name: str) -> Publication:
         """Advertise a topic for a client."""
+        try:
+            validate_full_topic_name(topic)
+        except InvalidTopicNameException as error:
+            raise SourceError(str(error)) from None
         return Publication(
             PublisherHandle(self._handle, _class_of(get_message, type_name), topic, QoSProfile(depth=DEPTH))
         )
@@ -202,6 +212,9 @@ class RosGraphSource:
 
 
 def _class_of(find: Callable[[str], Any], type_name: str) -> Any:
+    """Return the class of an interface; a name that no interface has is never imported."""
+    if not _TYPE_NAME.fullmatch(type_name) or not (_schema(type_name) or _schema(f"{type_name}_Request")):
+        raise SourceError(f"the type {type_name[:_MAX_SHOWN]} is not known here")
     try:
         return find(type_name)
     except (ImportError, AttributeError, ValueError) as error:
