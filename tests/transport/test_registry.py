@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from daidalos.transport.environment import EnvironmentVariableError
 from daidalos.transport.registry import Peer, Registry, runtime_folder
 
 PROGRAM = """
@@ -89,3 +90,29 @@ def test_the_runtime_folder_is_the_users_own(tmp_path, monkeypatch):
     monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path / "missing"))
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
     assert runtime_folder().parent == tmp_path
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such permissions")
+def test_folders_and_files_are_the_users_alone(tmp_path):
+    registry = Registry(3, tmp_path)
+    registry.register(Peer("aa", ("unixsock/x",)))
+    with registry.locked():
+        made = list(tmp_path.rglob("*"))
+    assert {path.stat().st_mode & 0o777 for path in made if path.is_dir()} == {0o700}
+    assert {path.stat().st_mode & 0o777 for path in made if path.is_file()} == {0o600}
+    registry.unregister()
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such permissions")
+def test_a_runtime_folder_that_others_could_read_or_own_is_not_used(tmp_path, monkeypatch):
+    monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path))
+    (tmp_path / "elsewhere").mkdir()
+    (tmp_path / "daidalos").symlink_to(tmp_path / "elsewhere")
+    with pytest.raises(EnvironmentVariableError, match=r"is a link.*XDG_RUNTIME_DIR"):
+        runtime_folder()
+    (tmp_path / "daidalos").unlink()
+    (tmp_path / "daidalos").mkdir(mode=0o755)
+    assert runtime_folder().stat().st_mode & 0o777 == 0o700
+    monkeypatch.setattr("os.getuid", lambda: 12345)
+    with pytest.raises(EnvironmentVariableError, match="belongs to another user"):
+        runtime_folder()

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import json
 import os
+import stat
 import sys
 import tempfile
 from collections.abc import Iterator
@@ -16,6 +17,8 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import IO
+
+from daidalos.transport.environment import EnvironmentVariableError
 
 _SOCKET_NAME_LENGTH = 16
 
@@ -36,8 +39,36 @@ def runtime_folder() -> Path:
     else:
         user = os.getuid() if hasattr(os, "getuid") else os.environ.get("USERNAME", "user")
         folder = Path(tempfile.gettempdir()) / f"daidalos-{user}"
-    folder.mkdir(mode=0o700, parents=True, exist_ok=True)
-    return folder
+    return private_folder(folder)
+
+
+def private_folder(path: Path) -> Path:
+    """Return a folder after making sure that it is accessible only to the user; it is created if missing.
+
+    Raises
+    ------
+    EnvironmentVariableError
+        When it is a link, or belongs to another user, who could then read what nodes exchange.
+    """
+    try:
+        path.mkdir(mode=0o700, exist_ok=True)
+    except FileExistsError:
+        raise _not_private(path, "is not a folder") from None
+    found = path.lstat()
+    if not stat.S_ISDIR(found.st_mode):
+        raise _not_private(path, "is a link")
+    if hasattr(os, "getuid"):
+        if found.st_uid != os.getuid():
+            raise _not_private(path, "belongs to another user")
+        if found.st_mode & 0o077:
+            path.chmod(0o700)
+    return path
+
+
+def _not_private(path: Path, fault: str) -> EnvironmentVariableError:
+    return EnvironmentVariableError(
+        f"the runtime folder '{path}' {fault}; remove it, or set XDG_RUNTIME_DIR to a folder of your own"
+    )
 
 
 class Registry:
@@ -54,15 +85,15 @@ class Registry:
     """
 
     def __init__(self, domain: int, folder: Path | None = None, family: str = "zenoh") -> None:
-        self.folder = (folder or runtime_folder()) / family / str(domain)
-        self.folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+        of_family = private_folder((runtime_folder() if folder is None else private_folder(folder)) / family)
+        self.folder = private_folder(of_family / str(domain))
         self._entry: IO[bytes] | None = None
         self._data: Path | None = None
 
     @contextmanager
     def locked(self) -> Iterator[None]:
         """Lock the registry against other readers and writers while the context lasts."""
-        with (self.folder / "registry.lock").open("ab") as file:
+        with _open_private(self.folder / "registry.lock") as file:
             _lock(file, wait=True)
             yield
 
@@ -96,10 +127,11 @@ class Registry:
 
     def register(self, peer: Peer) -> None:
         """Register this session until this process ends or `unregister` is called."""
-        self._entry = (self.folder / f"{peer.session}.alive").open("ab")
+        self._entry = _open_private(self.folder / f"{peer.session}.alive")
         _lock(self._entry, wait=False)
         self._data = self.folder / f"{peer.session}.json"
-        self._data.write_text(json.dumps(peer.endpoints), encoding="utf-8")
+        with _open_private(self._data) as file:
+            file.write(json.dumps(peer.endpoints).encode())
 
     def unregister(self) -> None:
         """Remove the entry of this session."""
@@ -111,6 +143,11 @@ class Registry:
             entry.close()
         data.with_suffix(".alive").unlink(missing_ok=True)
         entry.close()
+
+
+def _open_private(path: Path) -> IO[bytes]:
+    """Open a file for appending; a new one is accessible only to the user."""
+    return open(path, "ab", opener=lambda name, flags: os.open(name, flags, 0o600))
 
 
 def _is_free(path: Path) -> bool:
