@@ -186,6 +186,8 @@ def descriptor_of(leaf: Leaf, read_only: bool = False) -> ParameterDescriptor:
     )
     if not constraints.is_bounded or leaf.is_array or not math.isfinite(leaf.default):
         return descriptor
+    if constraints.text == Constraints("", minimum=constraints.minimum, maximum=constraints.maximum).text:
+        descriptor.additional_constraints = ""  # the range says the same
     lows = [bound for bound in (constraints.minimum, constraints.above) if bound is not None]
     highs = [bound for bound in (constraints.maximum, constraints.below) if bound is not None]
     if leaf.type is int:
@@ -193,7 +195,7 @@ def descriptor_of(leaf: Leaf, read_only: bool = False) -> ParameterDescriptor:
             max((int(one) for one in lows), default=-_MAX_INTEGER - 1),
             min(map(int, highs), default=_MAX_INTEGER),
         )
-        descriptor.integer_range = [IntegerRange(from_value=low, to_value=high)]
+        descriptor.integer_range = [IntegerRange(from_value=low, to_value=high, step=1)]
     else:
         low_value, high_value = float(max(lows, default=-math.inf)), float(min(highs, default=math.inf))
         descriptor.floating_point_range = [FloatingPointRange(from_value=low_value, to_value=high_value)]

@@ -7,12 +7,14 @@ import signal
 import sys
 import threading
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from daidalos.common.errors import UserError as UserError
 
 if TYPE_CHECKING:
     from rclpy.node import Node
+
+    NodeT = TypeVar("NodeT", bound=Node)
 
 
 _failed = threading.Event()
@@ -71,6 +73,27 @@ def ignore_interrupts() -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
+def create(make_node: Callable[[], NodeT]) -> NodeT:
+    """Create a node, and warn of parameters given to it that it does not declare.
+
+    Raises
+    ------
+    UserError
+        When the node cannot be created, such as for a value that is not allowed.
+    """
+    from rclpy.lifecycle import LifecycleNode
+
+    from daidalos.nodes.parameters import warn_of_undeclared
+
+    try:
+        node = make_node()
+    except RuntimeError as error:
+        raise UserError(str(error)) from error
+    if not isinstance(node, LifecycleNode):  # which declares more when it is configured
+        warn_of_undeclared(node)
+    return node
+
+
 def run(make_node: Callable[[], Node], args: Sequence[str] | None = None, threads: int = 1) -> int:
     """Initialise rclpy, make a node and spin it until the process is asked to end.
 
@@ -93,10 +116,7 @@ def run(make_node: Callable[[], Node], args: Sequence[str] | None = None, thread
 
     def body() -> None:
         rclpy.init(args=list(args) if args is not None else None)
-        try:
-            node = make_node()
-        except RuntimeError as error:  # such as a parameter that is not valid
-            raise UserError(str(error)) from error
+        node = create(make_node)
         try:
             executor = SingleThreadedExecutor() if threads == 1 else MultiThreadedExecutor(threads)
             executor.add_node(node)

@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
-from daidalos.nodes.runner import UserError, ignore_interrupts, run, run_program
+from daidalos.nodes.runner import UserError, create, ignore_interrupts, run, run_program
 from daidalos.studio.arrangement import Arrangement, ArrangementError
 from daidalos.studio.ports import PortError
 
@@ -44,10 +44,7 @@ def run_with_window(make_node: Callable[[], NodeT], panel: str, details: Callabl
 
     def body() -> None:
         rclpy.init()
-        try:
-            node = make_node()
-        except RuntimeError as error:  # such as a parameter that is not valid
-            raise UserError(str(error)) from error
+        node = create(make_node)
         # Remappings and parameters on the command line are for the node, not for its window.
         hidden = Node(
             f"_{panel}_window_{os.getpid()}",

@@ -9,7 +9,7 @@ from contextlib import suppress
 from typing import TYPE_CHECKING, TypeVar
 
 from daidalos.nodes.keyboard import Keyboard
-from daidalos.nodes.runner import UserError, run_program
+from daidalos.nodes.runner import create, run_program
 
 if TYPE_CHECKING:
     from rclpy.node import Node
@@ -46,10 +46,7 @@ def run_with_keyboard(make_node: Callable[[], NodeT], steer: Callable[[NodeT, Ke
             signal.signal(number, watched(lambda *_: keyboard.wake()))
         start_watching()
         rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
-        try:
-            node = make_node()
-        except RuntimeError as error:  # such as a parameter that is not valid
-            raise UserError(str(error)) from error
+        node = create(make_node)
         executor = SingleThreadedExecutor()
         executor.add_node(node)
 

@@ -14,6 +14,7 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 from sensor_msgs.msg import Joy
 
+from daidalos.common.parameters import ParameterError
 from daidalos.nodes.joy import _node, joy_enumerate_devices
 from daidalos.nodes.joy.joy_node import JoyNode
 from daidalos.nodes.joy_linux.joy_linux_node import JoyLinuxNode
@@ -103,7 +104,7 @@ def test_a_pad_that_is_given_as_a_file(listener: Listener, pad: Pad, tmp_path: P
 @pytest.mark.usefixtures("graph")
 @pytest.mark.parametrize(("name", "value"), [("deadzone", 1.0), ("deadzone", -0.1), ("autorepeat_rate", 2000.0)])
 def test_parameters_that_make_no_sense(tmp_path: Path, name: str, value: float) -> None:
-    with pytest.raises(RuntimeError, match=f"the parameter '{name}' is {value}"):
+    with pytest.raises(ParameterError, match=f"parameter '{name}' of /joy_node must be .*, got {value:g}"):
         started(JoyNode, tmp_path, **{name: value})
 
 

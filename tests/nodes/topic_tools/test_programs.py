@@ -135,9 +135,9 @@ def test_transform(domain: int) -> None:
     ("words", "status", "error"),
     [
         (("drop", "/chatter", "2"), 1, "usage: drop <intopic> <X> <Y> [outtopic]"),
-        (("drop", "/chatter", "3", "2"), 2, "drop needs 0 <= x <= y and y > 0, not x = 3 and y = 2"),
+        (("drop", "/chatter", "3", "2"), 2, "parameter 'x' of /drop must be at most 'y', got x = 3 and y = 2"),
         (("throttle", "words", "/chatter", "2"), 1, "usage: throttle messages"),
-        (("relay",), 2, "relay needs the parameter 'input_topic'"),
+        (("relay",), 2, "parameter 'input_topic' of /relay must not be empty"),
         (("transform", "/nobody", "/out", "std_msgs/Float64"), 2, "nobody publishes /nobody"),
         (("transform", "/chatter", "/out", "std_msgs/Flat64"), 2, "the message type 'std_msgs/Flat64' is unknown"),
     ],

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 import threading
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -11,9 +12,27 @@ from rclpy.node import Node
 from rclpy.publisher import Publisher
 from sensor_msgs.msg import Joy
 
+from daidalos.common.parameters import Parameters, parameter
 from daidalos.nodes.joystick import FOLDER, Controls, Joystick, device_name, devices
+from daidalos.nodes.parameters import declare
 
 _RETRY_S = 1.0
+
+
+@dataclass(frozen=True)
+class JoystickParameters(Parameters):
+    """Common parameters of the joystick nodes."""
+
+    deadzone: float = parameter(0.05, "Share of an axis that counts as its centre.", minimum=0.0, below=1.0)
+    autorepeat_rate: float = parameter(
+        20.0, "Rate at which an unchanged state is published; 0 for never.", unit="Hz", minimum=0.0, maximum=1000.0
+    )
+    sticky_buttons: bool = parameter(False, "Whether a button changes its state at each press.")
+
+    @property
+    def coalescing_s(self) -> float:
+        """For how long axes that move together are waited for [s]."""
+        raise NotImplementedError
 
 
 class JoystickNode(Node):
@@ -25,11 +44,15 @@ class JoystickNode(Node):
     ----------
     name
         The node's.
+    parameters
+        The class of its parameters.
     folder
         Where game pads are.
     """
 
-    def __init__(self, name: str, *, folder: Path = FOLDER, **kwargs: Any) -> None:
+    def __init__(
+        self, name: str, parameters: type[JoystickParameters], *, folder: Path = FOLDER, **kwargs: Any
+    ) -> None:
         super().__init__(name, **kwargs)
         if not sys.platform.startswith("linux"):
             raise RuntimeError(
@@ -37,14 +60,8 @@ class JoystickNode(Node):
                 "anything else may publish sensor_msgs/msg/Joy on /joy in its stead"
             )
         self.folder = folder
-        self.deadzone = self._number("deadzone", 0.05)
-        if not 0.0 <= self.deadzone < 1.0:
-            raise RuntimeError(f"the parameter 'deadzone' is {self.deadzone}, but must be at least 0 and less than 1")
-        self._sticky = bool(self.declare_parameter("sticky_buttons", False).value)
-        rate = self._number("autorepeat_rate", 20.0)
-        if not 0.0 <= rate <= 1000.0:
-            raise RuntimeError(f"the parameter 'autorepeat_rate' is {rate}, but must be from 0 to 1000")
-        self._coalesce = self.declare_coalescing()
+        self.settings: Any = declare(self, parameters)
+        rate = self.settings.autorepeat_rate
         self._controls: Controls | None = None
         self._joystick: Joystick | None = None
         self._lock = threading.Lock()
@@ -52,21 +69,11 @@ class JoystickNode(Node):
         self._publisher: Publisher = self.create_publisher(Joy, "joy", 10)
         self._repeat = self.create_timer(1.0 / rate, self._publish) if rate else None
         self._reader = threading.Thread(target=self._read_devices, name="joystick", daemon=True)
-
-    def start(self) -> None:
-        """Start to read the device; the parameters must be declared before."""
         self._reader.start()
-
-    def declare_coalescing(self) -> float:
-        """Declare for how long axes are waited for, and return it [s]."""
-        raise NotImplementedError
 
     def find(self) -> Path | None:
         """Return the file of the game pad, None while it is not there."""
         raise NotImplementedError
-
-    def _number(self, name: str, default: float) -> float:
-        return float(self.declare_parameter(name, default).value)
 
     def destroy_node(self) -> None:
         """Read no more, and leave the graph."""
@@ -107,10 +114,10 @@ class JoystickNode(Node):
             with self._lock:
                 self._joystick = joystick
             self.get_logger().info(f"Opened the game pad {path}: {device_name(path) or 'it does not tell its name'}")
-            controls = Controls(self.deadzone, self._sticky)
+            controls = Controls(self.settings.deadzone, self.settings.sticky_buttons)
             try:
                 while not self._ended.is_set():
-                    events = joystick.read(self._coalesce)
+                    events = joystick.read(self.settings.coalescing_s)
                     with self._lock:
                         for event in events:
                             controls.apply(event)

@@ -3,39 +3,44 @@
 from __future__ import annotations
 
 import sys
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from daidalos.nodes.joy._node import JoystickNode, device_called
+from daidalos.common.parameters import parameter
+from daidalos.nodes.joy._node import JoystickNode, JoystickParameters, device_called
 from daidalos.nodes.joystick import devices
 from daidalos.nodes.runner import run
 
 
-class JoyNode(JoystickNode):
-    """Node that publishes ``joy``.
+@dataclass(frozen=True)
+class JoyParameters(JoystickParameters):
+    """Parameters of ``joy_node``."""
 
-    Parameters of the node: ``device_id`` (the place of the game pad among those of this machine), ``device_name``
-    (its name instead, where it is not empty), ``deadzone`` (share of an axis that is its centre), ``autorepeat_rate``
-    (how often an unchanged state is published [Hz], 0 for never), ``sticky_buttons`` (whether buttons are switches) and
-    ``coalesce_interval_ms`` (for how long axes that move together are waited for).
-    """
+    device_id: int = parameter(0, "Place of the game pad among those of this machine.")
+    device_name: str = parameter("", "Name of the game pad, instead of its place where not empty.")
+    coalesce_interval_ms: int = parameter(
+        1, "How long to wait for other axes that move together with one.", unit="ms", minimum=0
+    )
+
+    @property
+    def coalescing_s(self) -> float:
+        """For how long axes that move together are waited for [s]."""
+        return self.coalesce_interval_ms / 1000.0
+
+
+class JoyNode(JoystickNode):
+    """Node that publishes ``joy``."""
 
     def __init__(self, **kwargs: Any) -> None:
-        super().__init__("joy_node", **kwargs)
-        self._place = int(self.declare_parameter("device_id", 0).value or 0)
-        self._name = str(self.declare_parameter("device_name", "").value)
-        self.start()
-
-    def declare_coalescing(self) -> float:
-        """Declare for how long axes are waited for, and return it [s]."""
-        return float(self.declare_parameter("coalesce_interval_ms", 1).value or 0) / 1000.0
+        super().__init__("joy_node", JoyParameters, **kwargs)
 
     def find(self) -> Path | None:
         """Return the file of the game pad, None while it is not there."""
-        if self._name:
-            return device_called(self._name, self.folder)
-        found = devices(self.folder)
-        return found[self._place] if 0 <= self._place < len(found) else None
+        if self.settings.device_name:
+            return device_called(self.settings.device_name, self.folder)
+        found, place = devices(self.folder), self.settings.device_id
+        return found[place] if 0 <= place < len(found) else None
 
 
 def main() -> int:

@@ -3,35 +3,42 @@
 from __future__ import annotations
 
 import sys
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from daidalos.nodes.joy._node import JoystickNode, device_called
+from daidalos.common.parameters import parameter
+from daidalos.nodes.joy._node import JoystickNode, JoystickParameters, device_called
 from daidalos.nodes.runner import run
 
 
-class JoyLinuxNode(JoystickNode):
-    """Node that publishes ``joy``.
+@dataclass(frozen=True)
+class JoyLinuxParameters(JoystickParameters):
+    """Parameters of ``joy_linux_node``."""
 
-    Parameters of the node: ``dev`` (the game pad's file), ``dev_name`` (its name, which comes first where it is not
-    empty and there is such a game pad), ``deadzone``, ``autorepeat_rate`` [Hz] and ``sticky_buttons`` as in `JoyNode`,
-    and ``coalesce_interval`` (for how long axes that move together are waited for [s]).
-    """
+    dev: str = parameter("/dev/input/js0", "File of the game pad.")
+    dev_name: str = parameter("", "Name of the game pad, instead of its file where there is one of that name.")
+    coalesce_interval: float = parameter(
+        0.001, "How long to wait for other axes that move together with one.", unit="s", minimum=0.0
+    )
+
+    @property
+    def coalescing_s(self) -> float:
+        """For how long axes that move together are waited for [s]."""
+        return self.coalesce_interval
+
+
+class JoyLinuxNode(JoystickNode):
+    """Node that publishes ``joy``."""
 
     def __init__(self, **kwargs: Any) -> None:
-        super().__init__("joy_node", **kwargs)
-        self._path = Path(str(self.declare_parameter("dev", "/dev/input/js0").value))
-        self._name = str(self.declare_parameter("dev_name", "").value)
-        self.start()
-
-    def declare_coalescing(self) -> float:
-        """Declare for how long axes are waited for, and return it [s]."""
-        return float(self.declare_parameter("coalesce_interval", 0.001).value or 0.0)
+        super().__init__("joy_node", JoyLinuxParameters, **kwargs)
 
     def find(self) -> Path | None:
         """Return the file of the game pad, None while it is not there."""
-        named = device_called(self._name, self.folder) if self._name else None
-        return named or (self._path if self._path.exists() else None)
+        named = device_called(self.settings.dev_name, self.folder) if self.settings.dev_name else None
+        path = Path(self.settings.dev)
+        return named or (path if path.exists() else None)
 
 
 def main() -> int:

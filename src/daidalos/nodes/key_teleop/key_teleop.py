@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import sys
+from dataclasses import dataclass
 from typing import Any
 
 from rclpy.node import Node
 
+from daidalos.common.parameters import Parameters, parameter
 from daidalos.nodes.keyboard import Keyboard
+from daidalos.nodes.parameters import declare
 from daidalos.nodes.teleoperation import run_with_keyboard
 
 _HELP = "Use arrow keys to move, q to exit."
@@ -17,28 +20,33 @@ _KEY_REPEAT_S = 0.4  # a key that is held comes again within this time
 _MOVES = {"up": (1, 0), "down": (-1, 0), "left": (0, 1), "right": (0, -1)}
 
 
-class KeyTeleop(Node):
-    """Node that publishes ``key_vel`` continuously.
+@dataclass(frozen=True)
+class KeyTeleopParameters(Parameters):
+    """Parameters of ``key_teleop``."""
 
-    Parameters of the node: ``hz``, ``fwd_rate`` and ``backward_rate`` [m/s], ``rotation_rate`` [rad/s],
-    ``twist_stamped_enabled``.
-    """
+    hz: int = parameter(10, "Rate of the velocities.", unit="Hz", above=0, read_only=True)
+    fwd_rate: float = parameter(0.8, "Speed ahead.", unit="m/s")
+    backward_rate: float = parameter(0.5, "Speed backwards.", unit="m/s")
+    rotation_rate: float = parameter(1.0, "Speed of rotation.", unit="rad/s")
+    twist_stamped_enabled: bool = parameter(False, "Whether to publish TwistStamped instead of Twist.", read_only=True)
+
+
+class KeyTeleop(Node):
+    """Node that publishes ``key_vel`` continuously."""
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__("key_teleop", **kwargs)
         from geometry_msgs.msg import Twist, TwistStamped
 
-        self._forward_rate = float(self.declare_parameter("fwd_rate", 0.8).value or 0.0)
-        self._backward_rate = float(self.declare_parameter("backward_rate", 0.5).value or 0.0)
-        self._rotation_rate = float(self.declare_parameter("rotation_rate", 1.0).value or 0.0)
-        self._stamped = bool(self.declare_parameter("twist_stamped_enabled", False).value)
-        frequency = float(self.declare_parameter("hz", 10).value or 0)
-        if frequency <= 0.0:
-            raise RuntimeError("the parameter 'hz' must be above zero")
+        self._settings = declare(self, KeyTeleopParameters, reconfigure=self._reconfigure)
+        self._stamped = self._settings.twist_stamped_enabled
         self._pressed_ns: dict[str, int] = {}
         self._shown = ""
         self._commands = self.create_publisher(TwistStamped if self._stamped else Twist, "key_vel", 10)
-        self.create_timer(1.0 / frequency, self._on_timer)
+        self.create_timer(1.0 / self._settings.hz, self._on_timer)
+
+    def _reconfigure(self, parameters: KeyTeleopParameters) -> None:
+        self._settings = parameters
 
     def steer(self, keyboard: Keyboard) -> None:
         """Obey keys until Q."""
@@ -50,8 +58,8 @@ class KeyTeleop(Node):
 
     def _on_timer(self) -> None:
         forward, left = self._held()
-        linear = forward * (self._forward_rate if forward > 0 else self._backward_rate)
-        self._publish(linear, left * self._rotation_rate)
+        linear = forward * (self._settings.fwd_rate if forward > 0 else self._settings.backward_rate)
+        self._publish(linear, left * self._settings.rotation_rate)
 
     def _held(self) -> tuple[int, int]:
         """Return what the keys that are held mean together."""

@@ -11,7 +11,7 @@ from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.node import Node
 
 from daidalos.common.parameters import Parameters, parameter
-from daidalos.nodes.parameters import declare, warn_of_undeclared
+from daidalos.nodes.parameters import declare
 from daidalos.nodes.runner import run
 
 _INACTIVE, _ACTIVE = 2, 3
@@ -56,7 +56,6 @@ class LifecycleManager(Node):
         self.create_service(Trigger, "~/is_active", self._on_is_active)
         if parameters.autostart:
             self._start_timer = self.create_timer(0.0, self._autostart, callback_group=own)
-        warn_of_undeclared(self)
 
     async def _autostart(self) -> None:
         self.destroy_timer(self._start_timer)

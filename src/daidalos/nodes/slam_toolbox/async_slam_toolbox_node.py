@@ -15,7 +15,7 @@ from rclpy.task import Future
 from daidalos.common.parameters import parameter
 from daidalos.mapping.config import SlamConfig
 from daidalos.nodes.conversions import grid_message, pose2_of_transform, scan_data, transform_stamped
-from daidalos.nodes.parameters import declare, warn_of_undeclared
+from daidalos.nodes.parameters import declare
 from daidalos.nodes.runner import run
 from daidalos.nodes.warming import warm_up_in_background
 from daidalos.samples.fields import nanoseconds, time_message
@@ -83,7 +83,6 @@ class SlamToolbox(Node):
         self.create_service(SaveMap, "~/save_map", self._on_save)
         self.create_service(GetMap, "~/dynamic_map", self._on_get_map)
         self.create_service(Reset, "~/reset", self._on_reset)
-        warn_of_undeclared(self)
         warm_up_in_background("daidalos.mapping", self.get_logger()).add_done_callback(self._begin)
 
     def _begin(self, compiled: Future) -> None:

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import sys
+from dataclasses import dataclass
 from typing import Any
 
 from rclpy.node import Node
 
+from daidalos.common.parameters import Parameters, parameter
 from daidalos.nodes.keyboard import Keyboard
+from daidalos.nodes.parameters import declare
 from daidalos.nodes.teleoperation import run_with_keyboard
 
 _HELP = """
@@ -71,21 +74,26 @@ _SPEEDS = {
 }
 
 
-class TeleopTwistKeyboard(Node):
-    """Node that publishes ``cmd_vel``.
+@dataclass(frozen=True)
+class TeleopTwistKeyboardParameters(Parameters):
+    """Parameters of ``teleop_twist_keyboard``."""
 
-    Parameters of the node: ``stamped`` (whether to publish TwistStamped), ``frame_id`` (of those), ``speed`` [m/s]
-    and ``turn`` [rad/s] at the beginning.
-    """
+    stamped: bool = parameter(False, "Whether to publish TwistStamped instead of Twist.")
+    frame_id: str = parameter("", "Frame of stamped velocities.")
+    speed: float = parameter(0.5, "Linear speed at the beginning.", unit="m/s")
+    turn: float = parameter(1.0, "Angular speed at the beginning.", unit="rad/s")
+
+
+class TeleopTwistKeyboard(Node):
+    """Node that publishes ``cmd_vel``."""
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__("teleop_twist_keyboard", **kwargs)
         from geometry_msgs.msg import Twist, TwistStamped
 
-        self._stamped = bool(self.declare_parameter("stamped", False).value)
-        self._frame = str(self.declare_parameter("frame_id", "").value)
-        self._speed = float(self.declare_parameter("speed", 0.5).value or 0.0)
-        self._turn = float(self.declare_parameter("turn", 1.0).value or 0.0)
+        settings = declare(self, TeleopTwistKeyboardParameters)
+        self._stamped, self._frame = settings.stamped, settings.frame_id
+        self._speed, self._turn = settings.speed, settings.turn
         self._move: tuple[int, ...] = (0, 0, 0, 0)
         self._commands = self.create_publisher(TwistStamped if self._stamped else Twist, "cmd_vel", 10)
 

@@ -3,13 +3,30 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
 
+from daidalos.common.parameters import Parameters, parameter
+from daidalos.nodes.parameters import declare
+
 NONE = "__none"
 """Chooses no topic."""
+
+
+@dataclass(frozen=True)
+class SwitchParameters(Parameters):
+    """Common parameters of ``mux`` and ``demux``."""
+
+    initial_topic: str = parameter("", "Topic selected at first, ``__none`` for none; the first one where empty.")
+    lazy: bool = parameter(False, "Whether to subscribe only while an output has subscribers.")
+
+    @property
+    def choice(self) -> tuple[str, ...]:
+        """Topics of which one is selected."""
+        raise NotImplementedError
 
 
 class Switch(Node):
@@ -19,20 +36,21 @@ class Switch(Node):
     ----------
     name
         The node's.
-    plural
-        The parameter that names the topics.
+    parameters
+        The class of the node's parameters.
     kinds
         The classes of the services: add, delete, list, select.
     """
 
-    def __init__(self, name: str, plural: str, kinds: tuple[Any, Any, Any, Any], **kwargs: Any) -> None:
+    def __init__(
+        self, name: str, parameters: type[SwitchParameters], kinds: tuple[Any, Any, Any, Any], **kwargs: Any
+    ) -> None:
         super().__init__(name, **kwargs)
         from std_msgs.msg import String
 
-        self.topics: list[str] = list(self.declare_parameter(plural, [""]).value or [])
-        self.topics = [topic for topic in self.topics if topic]
-        first = str(self.declare_parameter("initial_topic", "").value)
-        self.chosen = first or (self.topics[0] if self.topics else NONE)
+        self.settings: Any = declare(self, parameters)
+        self.topics = [topic for topic in self.settings.choice if topic]
+        self.chosen = self.settings.initial_topic or (self.topics[0] if self.topics else NONE)
         if self.chosen != NONE and self.chosen not in self.topics:
             raise RuntimeError(f"initial_topic '{self.chosen}' is not one of {', '.join(self.topics) or 'no topics'}")
         latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)

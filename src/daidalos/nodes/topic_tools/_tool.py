@@ -4,18 +4,32 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.utilities import remove_ros_args
 
+from daidalos.common.parameters import Parameters, parameter
+from daidalos.nodes.parameters import declare, declare_name
 from daidalos.nodes.runner import run
 from daidalos.nodes.topic_tools._forwarding import TopicForwarder
 
 
+@dataclass(frozen=True)
+class ToolParameters(Parameters):
+    """Parameters of all tools with one input and one output.
+
+    The output is ``output_topic``, by default the input with the tool's name at its end, such as ``/chatter_relay``.
+    """
+
+    input_topic: str = parameter("", "Topic to subscribe to.", not_empty=True)
+    lazy: bool = parameter(False, "Whether to subscribe only while the output has subscribers.")
+
+
 class Tool(Node):
-    """Node that subscribes to ``input_topic`` and publishes ``output_topic``; both are parameters, as is ``lazy``.
+    """Node that subscribes to ``input_topic`` and publishes ``output_topic``.
 
     Parameters
     ----------
@@ -25,12 +39,10 @@ class Tool(Node):
 
     def __init__(self, name: str, **kwargs: Any) -> None:
         super().__init__(name, **kwargs)
-        source = str(self.declare_parameter("input_topic", "").value)
-        if not source:
-            raise RuntimeError(f"{name} needs the parameter 'input_topic'")
-        output = str(self.declare_parameter("output_topic", f"{source}_{name}").value)
-        lazy = bool(self.declare_parameter("lazy", False).value)
-        self.passage = TopicForwarder(self, self.receive, [output], lazy=lazy)
+        settings = declare(self, ToolParameters)
+        source = settings.input_topic
+        output = declare_name(self, "output_topic", f"{source}_{name}", "Topic to publish.")
+        self.passage = TopicForwarder(self, self.receive, [output], lazy=settings.lazy)
         self.passage.take_from(source)
 
     def receive(self, content: bytes) -> None:

@@ -5,24 +5,33 @@ from __future__ import annotations
 import sys
 from collections import deque
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 from rclpy.clock import Clock
 from rclpy.clock_type import ClockType
 
+from daidalos.common.parameters import Parameters, parameter
+from daidalos.nodes.parameters import declare
 from daidalos.nodes.topic_tools._tool import Tool, run_tool, topics
 
 
+@dataclass(frozen=True)
+class DelayParameters(Parameters):
+    """Parameters of ``delay``, beside those of all tools."""
+
+    delay: float = parameter(0.0, "How much later messages are republished.", unit="s", minimum=0.0)
+    use_wall_clock: bool = parameter(False, "Whether to wait in real time, whatever the node's clock is.")
+
+
 class DelayNode(Tool):
-    """Node that republishes messages ``delay`` seconds later (parameter, as is ``use_wall_clock``)."""
+    """Node that republishes messages after a delay."""
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__("delay", **kwargs)
-        self._delay_s = float(self.declare_parameter("delay", 0.0).value or 0.0)
-        wall = bool(self.declare_parameter("use_wall_clock", False).value)
-        if self._delay_s < 0.0:
-            raise RuntimeError("delay must not be below zero")
-        self._time = Clock(clock_type=ClockType.STEADY_TIME) if wall else self.get_clock()
+        settings = declare(self, DelayParameters)
+        self._delay_s = settings.delay
+        self._time = Clock(clock_type=ClockType.STEADY_TIME) if settings.use_wall_clock else self.get_clock()
         self._waiting: deque[bytes] = deque()
 
     def receive(self, content: bytes) -> None:

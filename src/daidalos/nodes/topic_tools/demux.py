@@ -4,11 +4,26 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
+from daidalos.common.parameters import parameter
 from daidalos.nodes.topic_tools._forwarding import TopicForwarder
-from daidalos.nodes.topic_tools._switch import NONE, Switch
+from daidalos.nodes.topic_tools._switch import NONE, Switch, SwitchParameters
 from daidalos.nodes.topic_tools._tool import run_tool
+
+
+@dataclass(frozen=True)
+class DemuxParameters(SwitchParameters):
+    """Parameters of ``demux``."""
+
+    output_topics: tuple[str, ...] = parameter(("",), "Topics of which one is published.")
+    input_topic: str = parameter("~/input", "Topic to subscribe to.", not_empty=True)
+
+    @property
+    def choice(self) -> tuple[str, ...]:
+        """Topics of which one is selected."""
+        return self.output_topics
 
 
 class DemuxNode(Switch):
@@ -17,11 +32,9 @@ class DemuxNode(Switch):
     def __init__(self, **kwargs: Any) -> None:
         from topic_tools_interfaces.srv import DemuxAdd, DemuxDelete, DemuxList, DemuxSelect
 
-        super().__init__("demux", "output_topics", (DemuxAdd, DemuxDelete, DemuxList, DemuxSelect), **kwargs)
-        source = str(self.declare_parameter("input_topic", "~/input").value)
-        lazy = bool(self.declare_parameter("lazy", False).value)
-        self._passage = TopicForwarder(self, self._forward_message, self.topics, lazy=lazy)
-        self._passage.take_from(source)
+        super().__init__("demux", DemuxParameters, (DemuxAdd, DemuxDelete, DemuxList, DemuxSelect), **kwargs)
+        self._passage = TopicForwarder(self, self._forward_message, self.topics, lazy=self.settings.lazy)
+        self._passage.take_from(self.settings.input_topic)
         self.choose(self.chosen)
 
     def added(self, topic: str) -> None:

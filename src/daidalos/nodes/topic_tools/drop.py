@@ -4,27 +4,40 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
+from daidalos.common.parameters import ParameterError, Parameters, parameter
+from daidalos.nodes.parameters import declare
 from daidalos.nodes.topic_tools._tool import Tool, run_tool, topics
 
 
+@dataclass(frozen=True)
+class DropParameters(Parameters):
+    """Parameters of ``drop``, beside those of all tools."""
+
+    x: int = parameter(0, "How many messages to drop.", minimum=0)
+    y: int = parameter(0, "Of how many messages.", above=0)
+
+    def check(self) -> None:
+        """Refuse to drop more messages than there are."""
+        if self.x > self.y:
+            raise ParameterError("x", f"must be at most 'y', got x = {self.x} and y = {self.y}")
+
+
 class DropNode(Tool):
-    """Node that drops the first ``x`` of every ``y`` messages (parameters of the node)."""
+    """Node that drops the first ``x`` of every ``y`` messages."""
 
     def __init__(self, **kwargs: Any) -> None:
         self._count = 0
         super().__init__("drop", **kwargs)
-        self._x = int(self.declare_parameter("x", 0).value or 0)
-        self._y = int(self.declare_parameter("y", 0).value or 0)
-        if not 0 <= self._x <= self._y or self._y == 0:
-            raise RuntimeError(f"drop needs 0 <= x <= y and y > 0, not x = {self._x} and y = {self._y}")
+        self._settings = declare(self, DropParameters)
 
     def receive(self, content: bytes) -> None:
         """Forward a message or drop it, by its number."""
-        if self._count >= self._x:
+        if self._count >= self._settings.x:
             self.passage.publish(content)
-        self._count = (self._count + 1) % self._y
+        self._count = (self._count + 1) % self._settings.y
 
 
 def _read(words: Sequence[str]) -> dict[str, Any]:

@@ -4,25 +4,36 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
+from daidalos.common.parameters import parameter
 from daidalos.nodes.topic_tools._forwarding import TopicForwarder
-from daidalos.nodes.topic_tools._switch import NONE, Switch
+from daidalos.nodes.topic_tools._switch import NONE, Switch, SwitchParameters
 from daidalos.nodes.topic_tools._tool import run_tool
 
 
-class MuxNode(Switch):
-    """Node that republishes the selected one of ``input_topics`` on ``output_topic``.
+@dataclass(frozen=True)
+class MuxParameters(SwitchParameters):
+    """Parameters of ``mux``."""
 
-    Parameters of the node besides: ``initial_topic`` (the first of them unless given, ``__none`` for none), ``lazy``.
-    """
+    input_topics: tuple[str, ...] = parameter(("",), "Topics of which one is republished.")
+    output_topic: str = parameter("~/selected_topic", "Topic to publish.", not_empty=True)
+
+    @property
+    def choice(self) -> tuple[str, ...]:
+        """Topics of which one is selected."""
+        return self.input_topics
+
+
+class MuxNode(Switch):
+    """Node that republishes the selected one of ``input_topics`` on ``output_topic``."""
 
     def __init__(self, **kwargs: Any) -> None:
         from topic_tools_interfaces.srv import MuxAdd, MuxDelete, MuxList, MuxSelect
 
-        super().__init__("mux", "input_topics", (MuxAdd, MuxDelete, MuxList, MuxSelect), **kwargs)
-        output = str(self.declare_parameter("output_topic", "~/selected_topic").value)
-        lazy = bool(self.declare_parameter("lazy", False).value)
+        super().__init__("mux", MuxParameters, (MuxAdd, MuxDelete, MuxList, MuxSelect), **kwargs)
+        output, lazy = self.settings.output_topic, self.settings.lazy
         self._passage = TopicForwarder(self, lambda content: self._passage.publish(content), [output], lazy=lazy)
         self.choose(self.chosen)
 

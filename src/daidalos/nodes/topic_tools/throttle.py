@@ -5,38 +5,46 @@ from __future__ import annotations
 import sys
 from collections import deque
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 from rclpy.clock import Clock
 from rclpy.clock_type import ClockType
 
+from daidalos.common.parameters import ParameterError, Parameters, parameter
+from daidalos.nodes.parameters import declare
 from daidalos.nodes.topic_tools._tool import Tool, run_tool, topics
 
 
-class ThrottleNode(Tool):
-    """Limits a topic.
+@dataclass(frozen=True)
+class ThrottleParameters(Parameters):
+    """Parameters of ``throttle``, beside those of all tools."""
 
-    Parameters of the node: ``throttle_type`` (``messages`` or ``bytes``), ``msgs_per_sec``, ``bytes_per_sec``,
-    ``window`` [s], ``use_wall_clock``.
-    """
+    throttle_type: str = parameter("messages", "What is limited.", choices=("messages", "bytes"))
+    msgs_per_sec: float = parameter(1.0, "Highest rate of messages.", unit="1/s", above=0.0)
+    bytes_per_sec: int = parameter(0, "Highest rate of bytes; above 0 where they are limited.", unit="B/s", minimum=0)
+    window: float = parameter(1.0, "Time over which bytes are counted.", unit="s", above=0.0)
+    use_wall_clock: bool = parameter(False, "Whether to count in real time, whatever the node's clock is.")
+
+    def check(self) -> None:
+        """Refuse a limit of no bytes."""
+        if self.throttle_type == "bytes" and self.bytes_per_sec == 0:
+            raise ParameterError("bytes_per_sec", "must be above 0, got 0")
+
+
+class ThrottleNode(Tool):
+    """Node that limits the rate of a topic."""
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__("throttle", **kwargs)
-        kind = str(self.declare_parameter("throttle_type", "messages").value)
-        self._rate = float(self.declare_parameter("msgs_per_sec", 1.0).value or 0.0)
-        self._max_bytes_per_s = int(self.declare_parameter("bytes_per_sec", 0).value or 0)
-        self._window_s = float(self.declare_parameter("window", 1.0).value or 0.0)
-        wall = bool(self.declare_parameter("use_wall_clock", False).value)
-        self._time = Clock(clock_type=ClockType.STEADY_TIME) if wall else self.get_clock()
+        settings = declare(self, ThrottleParameters)
+        self._rate = settings.msgs_per_sec
+        self._max_bytes_per_s = settings.bytes_per_sec
+        self._window_s = settings.window
+        self._time = Clock(clock_type=ClockType.STEADY_TIME) if settings.use_wall_clock else self.get_clock()
         self._last_ns = 0
         self._sent: deque[tuple[int, int]] = deque()
-        if kind not in ("messages", "bytes"):
-            raise RuntimeError(f"throttle_type must be 'messages' or 'bytes', not '{kind}'")
-        if kind == "messages" and self._rate <= 0.0:
-            raise RuntimeError("msgs_per_sec must be above zero")
-        if kind == "bytes" and (self._max_bytes_per_s <= 0 or self._window_s <= 0.0):
-            raise RuntimeError("bytes_per_sec and window must be above zero")
-        self._lets_through = self._is_due if kind == "messages" else self._is_within
+        self._lets_through = self._is_due if settings.throttle_type == "messages" else self._is_within
 
     def receive(self, content: bytes) -> None:
         """Forward a message unless the limit is reached."""

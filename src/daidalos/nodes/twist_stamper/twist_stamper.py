@@ -3,20 +3,30 @@
 from __future__ import annotations
 
 import sys
+from dataclasses import dataclass
 from typing import Any
 
 from geometry_msgs.msg import Twist, TwistStamped
 from rclpy.node import Node
 
+from daidalos.common.parameters import Parameters, parameter
+from daidalos.nodes.parameters import declare
 from daidalos.nodes.runner import run
 
 
+@dataclass(frozen=True)
+class TwistStamperParameters(Parameters):
+    """Parameters of ``twist_stamper``."""
+
+    frame_id: str = parameter("", "Frame of the stamped velocities.")
+
+
 class TwistStamper(Node):
-    """Node that publishes ``cmd_vel_out`` from ``cmd_vel_in``; parameter: ``frame_id``."""
+    """Node that publishes ``cmd_vel_out`` from ``cmd_vel_in``."""
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__("twist_stamper", **kwargs)
-        self._frame = str(self.declare_parameter("frame_id", "").value)
+        self._frame = declare(self, TwistStamperParameters).frame_id
         self._commands = self.create_publisher(TwistStamped, "cmd_vel_out", 10)
         self.create_subscription(Twist, "cmd_vel_in", self._stamp, 10)
 
