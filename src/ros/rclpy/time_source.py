@@ -122,8 +122,14 @@ class TimeSource:
         self._associated_clocks.append(clock)
 
     def clock_callback(self, msg: Any) -> None:
-        """Set the clocks to the time in a ``rosgraph_msgs/msg/Clock``."""
-        time = Time(nanoseconds=msg.clock.sec * 1_000_000_000 + msg.clock.nanosec, clock_type=ClockType.ROS_TIME)
+        """Set the clocks to the time in a ``rosgraph_msgs/msg/Clock``; a negative time is logged and ignored."""
+        nanoseconds = msg.clock.sec * 1_000_000_000 + msg.clock.nanosec
+        if nanoseconds < 0:
+            node = self._node_weak_ref() if self._node_weak_ref is not None else None
+            if node is not None:
+                node.get_logger().warning(f"ignored the negative time {nanoseconds} ns on {CLOCK_TOPIC}", once=True)
+            return
+        time = Time(nanoseconds=nanoseconds, clock_type=ClockType.ROS_TIME)
         self._last_time_set = time
         for clock in self._associated_clocks:
             clock.set_ros_time_override(time)

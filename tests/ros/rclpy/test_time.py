@@ -358,3 +358,13 @@ def test_times_and_durations_are_numbers_with_meaning() -> None:
 
 def test_a_single_threaded_executor_is_what_spin_uses(graph: Context) -> None:
     assert isinstance(rclpy.get_global_executor(), SingleThreadedExecutor)
+
+
+def test_a_negative_time_is_ignored(simulator: Simulator, simulated: Node, node: Node) -> None:
+    simulator.advance(5 * MS)
+    negative = ClockMessage()
+    negative.clock.sec = -3
+    node.create_publisher(ClockMessage, "/clock", 1).publish(negative)
+    assert simulated.get_clock().now().nanoseconds == 5 * MS
+    simulator.advance(1 * MS)
+    assert simulated.get_clock().now().nanoseconds == 6 * MS
