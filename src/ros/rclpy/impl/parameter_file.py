@@ -22,8 +22,16 @@ class ParameterFileError(ValueError):
 class _Loader(yaml.SafeLoader):
     """YAML as rcl_yaml_param_parser reads it: 1e3 is a float, `on` and `yes` are booleans, dates are text.
 
-    A name that stands there twice adds to what it held.
+    A name that stands there twice adds to what it held. Aliases are refused, as ROS 2 does: a few lines of them can
+    stand for gigabytes.
     """
+
+    def compose_node(self, parent: Any, index: Any) -> Any:
+        """Return the next node of the document; refuse an alias."""
+        if self.check_event(yaml.AliasEvent):
+            event: Any = self.peek_event()  # type: ignore[no-untyped-call]  # PyYAML's stubs lack it
+            raise yaml.MarkedYAMLError(problem="aliases are not supported", problem_mark=event.start_mark)
+        return super().compose_node(parent, index)
 
     def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
         """Return the names, which know their lines, and values of a mapping."""
@@ -31,6 +39,8 @@ class _Loader(yaml.SafeLoader):
         lines: dict[Any, int] = {}
         for key, value in node.value:
             name = self.construct_object(key, deep=True)
+            if isinstance(name, (list, dict, set)):
+                raise yaml.MarkedYAMLError(problem="a name must be plain text", problem_mark=key.start_mark)
             values.setdefault(name, []).append(self.construct_object(value, deep=True))
             lines[name] = key.start_mark.line + 1
         return {_Name(name, lines[name]): _merged(found) for name, found in values.items()}
@@ -149,6 +159,8 @@ def read_file(path: str | Path) -> list[tuple[str, str, Any, Location]]:
         document = yaml.load(text, _Loader)
     except OSError as error:
         raise ParameterFileError(f"{error.strerror or error}") from None
+    except UnicodeDecodeError as error:
+        raise ParameterFileError(f"byte {error.start + 1} is not valid UTF-8") from None
     except yaml.YAMLError as error:
         raise ParameterFileError(_where(error)) from None
     if document is None:
