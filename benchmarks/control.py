@@ -14,8 +14,7 @@ import numpy as np
 
 from daidalos.common.parameters import parameters_from
 from daidalos.common.pose3 import Pose
-from daidalos.control.controllers.base import ControllerContext
-from daidalos.control.hardware.base import Hardware
+from daidalos.control.contracts import ControllerContext, Hardware
 from daidalos.control.hardware.generic import GenericSystem
 from daidalos.control.manager import ControllerManager
 from daidalos.description import sdf, urdf

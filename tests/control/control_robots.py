@@ -5,7 +5,7 @@ from typing import Any
 
 from daidalos.common.extensions import find
 from daidalos.common.parameters import parameters_from
-from daidalos.control.controllers.base import Controller, ControllerContext
+from daidalos.control.contracts import Controller, ControllerContext
 from daidalos.control.extensions import CONTROLLERS, hardware_class
 from daidalos.control.interfaces import Interfaces, LoanedInterfaces
 from daidalos.control.manager import ControllerManager

@@ -12,7 +12,7 @@ from daidalos.description import urdf
 from daidalos.description.ros2_control import read_hardware
 
 OWN = """
-from daidalos.control.controllers.base import Controller
+from daidalos.control.contracts import Controller
 class Mine(Controller): ...
 class Other: ...
 """

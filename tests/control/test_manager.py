@@ -10,9 +10,8 @@ from control_robots import arm, from_values, manager
 
 from daidalos.common.extensions import UnknownExtension
 from daidalos.common.parameters import ParameterError, Parameters, parameter
-from daidalos.control.controllers.base import Controller, ControllerContext
+from daidalos.control.contracts import Controller, ControllerContext, Hardware
 from daidalos.control.errors import HardwareError, StateError, SwitchError, UnknownError
-from daidalos.control.hardware.base import Hardware
 from daidalos.control.interfaces import Interfaces
 from daidalos.control.manager import ControllerManager
 from daidalos.control.switching import Strictness

@@ -9,11 +9,10 @@ from daidalos.description.link import Plugin as Description
 from daidalos.description.markup import Element
 from daidalos.samples.sensors import TransformSample
 from daidalos.simulation import Simulation
+from daidalos.simulation.contracts import Plugin, Sensor
 from daidalos.simulation.extensions import PLUGINS, SENSORS
 from daidalos.simulation.libraries import is_built_in, library_name, library_of
-from daidalos.simulation.plugins.base import Plugin
 from daidalos.simulation.plugins.diff_drive import DiffDrive
-from daidalos.simulation.sensors.base import Sensor
 from daidalos.simulation.sensors.lidar import Lidar
 from places import REPOSITORY
 from simulation.models import box, world

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from daidalos.common.parameters import Parameters, parameter
-from daidalos.control.controllers.base import Controller, Subscription
+from daidalos.control.contracts import Controller, Subscription
 from daidalos.samples.controllers import ValuesCommand
 
 

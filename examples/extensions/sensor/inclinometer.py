@@ -4,7 +4,7 @@ import math
 
 from daidalos.common.pose3 import rotate
 from daidalos.samples.sensors import NumberSample
-from daidalos.simulation.sensors.base import Sensor
+from daidalos.simulation.contracts import Sensor
 
 
 class Inclinometer(Sensor):

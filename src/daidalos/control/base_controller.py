@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from daidalos.control.base_odometry import BaseOdometry
-from daidalos.control.controllers.base import Controller, ControllerContext, Subscription
+from daidalos.control.contracts import Controller, ControllerContext, Subscription
 from daidalos.control.velocity_input import VelocityInput
 from daidalos.samples.sensors import OdometrySample, Sample, TransformSample
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from daidalos.common.rate_gate import RateGate
+from daidalos.control.contracts import Hardware
 from daidalos.control.errors import HardwareError, StateError
-from daidalos.control.hardware.base import Hardware
 from daidalos.control.interfaces import Interfaces
 from daidalos.control.limits import CommandLimiter
 

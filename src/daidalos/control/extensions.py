@@ -9,21 +9,20 @@ from daidalos.common.errors import Location
 from daidalos.common.extensions import Kind, classes_in, find
 
 if TYPE_CHECKING:
-    from daidalos.control.controllers.base import Controller
-    from daidalos.control.hardware.base import Hardware
+    from daidalos.control.contracts import Controller, Hardware
     from daidalos.description.ros2_control import HardwareInfo
 
 CONTROLLERS: Kind[Controller] = Kind(
     "controller",
     "daidalos.controllers",
-    "daidalos.control.controllers.base:Controller",
+    "daidalos.control.contracts:Controller",
     "turns states of hardware into commands; named by the type of a controller of the controller manager",
     partial(classes_in, "daidalos.control.controllers"),
 )
 HARDWARE: Kind[Hardware] = Kind(
     "hardware",
     "daidalos.hardware",
-    "daidalos.control.hardware.base:Hardware",
+    "daidalos.control.contracts:Hardware",
     "stands between controllers and motors; named by the <plugin> of a <ros2_control> element",
     partial(classes_in, "daidalos.control.hardware", "daidalos.nodes.controller_manager"),
 )

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from daidalos.common.rate_gate import RateGate
 from daidalos.control.component import UNCONFIGURED
-from daidalos.control.controllers.base import Controller, ControllerContext
+from daidalos.control.contracts import Controller, ControllerContext
 from daidalos.control.errors import StateError
 from daidalos.control.interfaces import Interfaces
 from daidalos.control.switching import Candidate

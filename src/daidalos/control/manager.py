@@ -11,10 +11,9 @@ from typing import TypeVar
 from daidalos.common.extensions import find
 from daidalos.common.rate_gate import RateGate
 from daidalos.control.component import ACTIVE, FINALIZED, INACTIVE, UNCONFIGURED, Component
-from daidalos.control.controllers.base import ControllerContext
+from daidalos.control.contracts import ControllerContext, Hardware
 from daidalos.control.errors import ControlError, HardwareError, StateError, SwitchError, UnknownError
 from daidalos.control.extensions import CONTROLLERS
-from daidalos.control.hardware.base import Hardware
 from daidalos.control.interfaces import Interfaces
 from daidalos.control.loaded_controller import LoadedController, Reader, prefixed
 from daidalos.control.switcher import Switcher

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from daidalos.control.controllers.base import Controller, Subscription
+from daidalos.control.contracts import Controller, Subscription
 from daidalos.samples.commands import TwistCommand
 from daidalos.samples.controllers import VelocityCommand
 

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from daidalos.description.actors import actor_pose
 from daidalos.description.world import Actor
 from daidalos.samples.sensors import Sample
-from daidalos.simulation.component import Component, ComponentContext
+from daidalos.simulation.contracts import Component, ComponentContext
 from daidalos.simulation.instance import Instance
 
 

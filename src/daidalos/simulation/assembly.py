@@ -11,20 +11,12 @@ from daidalos.common.extensions import ExtensionError, find
 from daidalos.description.link import Plugin as PluginDescription
 from daidalos.description.link import Sensor as SensorDescription
 from daidalos.description.world import Model, World
-from daidalos.simulation.component import Component, ComponentContext
+from daidalos.simulation.contracts import Component, ComponentContext, LibraryPlugin, Plugin, Sensor, SensorPlugin
 from daidalos.simulation.directional_friction import DirectionalFriction, directed_surfaces
 from daidalos.simulation.extensions import PLUGINS, SENSORS
 from daidalos.simulation.libraries import is_built_in, library_of
 from daidalos.simulation.persistent_forces import PersistentForces, check_persistent_forces, persistent_forces
-from daidalos.simulation.plugins.base import (
-    COMMON_PARAMETERS,
-    LibraryPlugin,
-    Parameters,
-    Plugin,
-    ReadElement,
-    SensorPlugin,
-)
-from daidalos.simulation.sensors.base import Sensor
+from daidalos.simulation.plugin_parameters import COMMON_PARAMETERS, ReadElement
 from daidalos.simulation.wind import LIBRARIES as WIND_LIBRARIES
 from daidalos.simulation.wind import Wind, windy_links
 
@@ -123,7 +115,7 @@ def _spoken_for(make: Callable[[], Sensor], plugin: PluginDescription, context: 
     if issubclass(cls, SensorPlugin):
         element = ReadElement(plugin.element)
         sensor = make()
-        cls().configure(sensor, Parameters(replace(plugin, element=element), context))
+        cls(replace(plugin, element=element), context).configure(sensor)
         _warn_of_unread(plugin, element, cls, context)
         yield sensor
     else:

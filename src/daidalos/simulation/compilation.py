@@ -11,7 +11,7 @@ import numpy as np
 from daidalos.common.pose3 import Pose
 from daidalos.description.joint import Joint
 from daidalos.description.world import Model, World
-from daidalos.simulation.component import Component
+from daidalos.simulation.contracts import Component
 from daidalos.simulation.conversion.assets import Assets
 from daidalos.simulation.conversion.build import add_model
 from daidalos.simulation.conversion.couplings import close_loop

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from daidalos.description.link import Surface
 from daidalos.description.world import Model
 from daidalos.samples.sensors import Sample
-from daidalos.simulation.component import Component, ComponentContext
+from daidalos.simulation.contracts import Component, ComponentContext
 from daidalos.simulation.conversion.contact import MAX_FRICTION, friction_of, set_friction
 from daidalos.simulation.conversion.model_build import ModelBuild
 from daidalos.simulation.instance import Instance

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import hashlib
 import logging
 from collections.abc import Callable, Iterable
 from dataclasses import replace
@@ -10,6 +11,7 @@ from functools import partial
 from typing import Any
 
 import mujoco
+import numpy as np
 
 from daidalos.common.pose3 import Pose, Vector
 from daidalos.description.actors import actor_pose
@@ -19,13 +21,8 @@ from daidalos.simulation.actors import ActorMotion
 from daidalos.simulation.applied_forces import apply_forces
 from daidalos.simulation.assembly import check_world_plugins, make_components
 from daidalos.simulation.compilation import Compilation
-from daidalos.simulation.component import (
-    Component,
-    ComponentContext,
-    Switch,
-    random_stream,
-)
 from daidalos.simulation.contacts import ContactMonitor, read_contacts
+from daidalos.simulation.contracts import Component, ComponentContext, Switch
 from daidalos.simulation.conversion.options import physics_step
 from daidalos.simulation.errors import NameTakenError, SimulationError, UnknownNameError
 from daidalos.simulation.forces import Forces
@@ -334,9 +331,16 @@ class Engine:
         return self.has_subscribers is None or self.has_subscribers(topic)
 
     def _setting(self, model: Model, namespace: str, name: str) -> ComponentContext:
-        stream = partial(random_stream, self.seed, f"{model.name}::{name}")
+        stream = partial(_random_stream, self.seed, f"{model.name}::{name}")
         return ComponentContext(model, model.name, namespace, self.world, stream, self._warn)
 
     def _warn(self, line: str) -> None:
         self.warnings.append(line)
         self._warn_user(line)
+
+
+def _random_stream(seed: int, name: str) -> np.random.Generator:
+    """Return a random generator that depends only on a seed and a name."""
+    digest = hashlib.sha256(name.encode()).digest()
+    key = [int.from_bytes(digest[i : i + 4], "little") for i in range(0, 16, 4)]
+    return np.random.default_rng(np.random.SeedSequence(seed, spawn_key=key))

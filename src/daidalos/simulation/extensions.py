@@ -9,20 +9,19 @@ from daidalos.common.extensions import Kind, classes_in
 from daidalos.simulation.libraries import library_name
 
 if TYPE_CHECKING:
-    from daidalos.simulation.plugins.base import LibraryPlugin
-    from daidalos.simulation.sensors.base import Sensor
+    from daidalos.simulation.contracts import LibraryPlugin, Sensor
 
 SENSORS: Kind[Sensor] = Kind(
     "sensor",
     "daidalos.sensors",
-    "daidalos.simulation.sensors.base:Sensor",
+    "daidalos.simulation.contracts:Sensor",
     "measures something on a simulated robot; named by the type of a <sensor>",
     partial(classes_in, "daidalos.simulation.sensors"),
 )
 PLUGINS: Kind[LibraryPlugin] = Kind(
     "simulator_plugin",
     "daidalos.plugins",
-    "daidalos.simulation.plugins.base:LibraryPlugin",
+    "daidalos.simulation.contracts:LibraryPlugin",
     "runs beside a simulated model or inside a <sensor>; named by the file of a <plugin>",
     partial(classes_in, "daidalos.simulation.plugins"),
     library_name,

@@ -16,7 +16,7 @@ from daidalos.simulation.errors import SimulationError, UnknownNameError
 from daidalos.simulation.physics import Physics
 
 if TYPE_CHECKING:
-    from daidalos.simulation.component import Component
+    from daidalos.simulation.contracts import Component
 
 Array = NDArray[np.float64]
 

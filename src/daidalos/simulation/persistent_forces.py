@@ -8,7 +8,7 @@ from daidalos.common.pose3 import Vector
 from daidalos.description.markup import Element
 from daidalos.description.world import Model, World
 from daidalos.samples.sensors import Sample
-from daidalos.simulation.component import Component, ComponentContext
+from daidalos.simulation.contracts import Component, ComponentContext
 from daidalos.simulation.forces import Push
 from daidalos.simulation.instance import Instance
 from daidalos.simulation.libraries import library_of

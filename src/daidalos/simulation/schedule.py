@@ -6,7 +6,7 @@ import heapq
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from daidalos.simulation.component import Component
+from daidalos.simulation.contracts import Component
 
 
 @dataclass(order=True)

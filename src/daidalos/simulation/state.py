@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from daidalos.simulation.component import Component
+from daidalos.simulation.contracts import Component
 from daidalos.simulation.forces import JointPush, Push
 
 

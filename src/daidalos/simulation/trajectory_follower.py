@@ -9,7 +9,7 @@ import numpy as np
 
 from daidalos.samples.commands import PositionTrajectoryCommand
 from daidalos.samples.sensors import Sample
-from daidalos.simulation.component import Component, ComponentContext
+from daidalos.simulation.contracts import Component, ComponentContext
 from daidalos.simulation.instance import Instance
 
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from daidalos.description.markup import Element
 from daidalos.description.world import Model, World
 from daidalos.samples.sensors import Sample
-from daidalos.simulation.component import Component, ComponentContext
+from daidalos.simulation.contracts import Component, ComponentContext
 from daidalos.simulation.conversion.model_build import ModelBuild
 from daidalos.simulation.instance import Instance
 from daidalos.simulation.last_step import velocities

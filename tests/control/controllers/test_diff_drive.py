@@ -8,7 +8,7 @@ import pytest
 from control_robots import PERIOD_NS, alone, cycle
 
 from daidalos.common.parameters import ParameterError
-from daidalos.control.controllers.base import Controller
+from daidalos.control.contracts import Controller
 from daidalos.control.interfaces import Interfaces
 from daidalos.samples.commands import TwistCommand
 from daidalos.samples.controllers import VelocityCommand, VelocitySample

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from control_robots import PERIOD_NS, alone, cycle
 
-from daidalos.control.controllers.base import Goal
+from daidalos.control.contracts import Goal
 from daidalos.samples.controllers import GripperRequest, ParallelGripperRequest
 
 PERIOD = PERIOD_NS * 1e-9

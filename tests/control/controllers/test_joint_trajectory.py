@@ -9,7 +9,7 @@ from control_robots import PERIOD_NS, alone, arm, cycle
 from scipy.interpolate import CubicHermiteSpline
 
 from daidalos.common.parameters import ParameterError
-from daidalos.control.controllers.base import Goal
+from daidalos.control.contracts import Goal
 from daidalos.control.controllers.joint_trajectory import JointTrajectoryController
 from daidalos.control.errors import StateError
 from daidalos.control.interfaces import Interfaces

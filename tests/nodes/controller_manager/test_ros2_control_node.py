@@ -143,7 +143,7 @@ def test_hardware_of_the_users_own_is_found(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     (tmp_path / "my_own_robot.py").write_text(
-        "from daidalos.control.hardware.base import Hardware\n"
+        "from daidalos.control.contracts import Hardware\n"
         "class Robot(Hardware):\n"
         "    def read(self, now_ns, period):\n"
         "        self.states['j/position'] = 0.25\n",

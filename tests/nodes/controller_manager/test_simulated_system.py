@@ -9,9 +9,8 @@ import numpy as np
 import pytest
 
 from control.control_robots import from_values
-from daidalos.control.controllers.base import ControllerContext
+from daidalos.control.contracts import ControllerContext, HardwareContext
 from daidalos.control.errors import HardwareError, SwitchError
-from daidalos.control.hardware.base import HardwareContext
 from daidalos.control.manager import ControllerManager
 from daidalos.description import sdf, urdf
 from daidalos.description.errors import DescriptionError

@@ -11,7 +11,7 @@ from daidalos.common.parameters import ParameterError, Parameters, group, parame
 from daidalos.common.pose3 import quaternion_from_matrix
 from daidalos.control.admittance import AdmittanceLaw, AdmittanceState, advance, without_weight
 from daidalos.control.chain import Chain
-from daidalos.control.controllers.base import Controller, Subscription
+from daidalos.control.contracts import Controller, Subscription
 from daidalos.control.errors import ControlError
 from daidalos.control.interfaces import Interfaces, interface_names
 from daidalos.samples.controllers import AdmittanceSample, TrajectoryPoint

@@ -10,7 +10,7 @@ import numpy as np
 from daidalos.common.parameters import ParameterError, Parameters, group, parameter
 from daidalos.common.rate_gate import RateGate
 from daidalos.control.base_odometry import BaseOdometry, prefixed_frame
-from daidalos.control.controllers.base import Controller, Subscription
+from daidalos.control.contracts import Controller, Subscription
 from daidalos.control.interfaces import Interfaces
 from daidalos.control.speed_limiter import SpeedLimiter, SpeedLimits
 from daidalos.control.velocity_input import VelocityInput

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from daidalos.common.parameters import Parameters, parameter
-from daidalos.control.controllers.base import Controller, Subscription
+from daidalos.control.contracts import Controller, Subscription
 from daidalos.control.interfaces import Interfaces
 from daidalos.samples.controllers import ValuesCommand
 from daidalos.samples.sensors import Sample

@@ -11,7 +11,7 @@ import numpy as np
 
 from daidalos.common.parameters import Parameters, parameter, per_name
 from daidalos.common.rate_gate import RateGate
-from daidalos.control.controllers.base import Action, Controller, Goal
+from daidalos.control.contracts import Action, Controller, Goal
 from daidalos.control.pid import Gains, Pid
 from daidalos.samples.controllers import GripperRequest, GripperState, ParallelGripperRequest
 from daidalos.samples.sensors import Sample

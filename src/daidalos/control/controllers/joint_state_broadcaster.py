@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from daidalos.common.parameters import Parameters, group, parameter
-from daidalos.control.controllers.base import Controller
+from daidalos.control.contracts import Controller
 from daidalos.description.joint import JointType
 from daidalos.samples.controllers import DynamicJointSample
 from daidalos.samples.sensors import JointStateSample, Sample

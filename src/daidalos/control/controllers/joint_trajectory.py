@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daidalos.common.rate_gate import RateGate
-from daidalos.control.controllers.base import Action, Controller, Goal, Service, Subscription
+from daidalos.control.contracts import Action, Controller, Goal, Service, Subscription
 from daidalos.control.controllers.joint_trajectory_parameters import JointTrajectoryParameters
 from daidalos.control.errors import StateError
 from daidalos.control.interfaces import interface_names

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from daidalos.common.parameters import ParameterError, Parameters, parameter, per_name
-from daidalos.control.controllers.base import Controller, Service, Subscription
+from daidalos.control.contracts import Controller, Service, Subscription
 from daidalos.control.interfaces import Interfaces, interface_names
 from daidalos.control.pid import Gains, Pid
 from daidalos.samples.controllers import (

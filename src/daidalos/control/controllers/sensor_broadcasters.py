@@ -10,7 +10,7 @@ import numpy as np
 from daidalos.common.parameters import ParameterError, Parameters, group, parameter
 from daidalos.common.pose3 import Pose, multiply
 from daidalos.common.rate_gate import RateGate
-from daidalos.control.controllers.base import Controller
+from daidalos.control.contracts import Controller
 from daidalos.control.interfaces import Interfaces
 from daidalos.samples.controllers import PoseSample, VariedRangeSample
 from daidalos.samples.sensors import (

@@ -11,7 +11,7 @@ import numpy as np
 from daidalos.common.parameters import ParameterError, Parameters, group, parameter
 from daidalos.common.pose3 import quaternion_from_yaw
 from daidalos.control.base_odometry import BaseOdometry
-from daidalos.control.controllers.base import Controller, Service, Subscription
+from daidalos.control.contracts import Controller, Service, Subscription
 from daidalos.control.speed_limiter import SpeedLimiter, SpeedLimits
 from daidalos.control.steering import speed_share
 from daidalos.control.velocity_input import VelocityInput

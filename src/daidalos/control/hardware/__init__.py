@@ -1,1 +1,1 @@
-"""Hardware that controllers read and command: the contract, and mock hardware."""
+"""Mock hardware; `daidalos.control.contracts` has the contract of hardware."""

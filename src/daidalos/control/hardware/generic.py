@@ -9,9 +9,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.control.contracts import Hardware, HardwareContext
 from daidalos.control.errors import HardwareError
-from daidalos.control.hardware.base import Hardware, HardwareContext
-from daidalos.description.ros2_control import ComponentInfo, HardwareInfo
+from daidalos.description.ros2_control import ComponentInfo, HardwareInfo, InterfaceInfo
 
 Array = NDArray[np.float64]
 Places = NDArray[np.intp]
@@ -53,8 +53,20 @@ class GenericSystem(Hardware):
             for interface in joint.states:
                 if interface.name in _AT_REST:
                     self.states[f"{joint.name}/{interface.name}"] = 0.0
-        self.set_initial()
+        self._set_initial()
         self._follow_leaders()
+
+    def _set_initial(self) -> None:
+        """Set the states and commands to the initial values that the description gives."""
+        for component in self.info.components:
+            for interfaces, values, kind in (
+                (component.commands, self.commands, "command"),
+                (component.states, self.states, "state"),
+            ):
+                for interface in interfaces:
+                    value = _initial_value(component, interface, kind)
+                    if not np.isnan(value):
+                        values[f"{component.name}/{interface.name}"] = value
 
     def switch(self, start: Sequence[str], stop: Sequence[str]) -> None:
         """Set each joint's mode to the interface that was claimed last."""
@@ -166,3 +178,13 @@ def _number(info: HardwareInfo, *names: str) -> float:
         except ValueError:
             raise HardwareError(f"{info.where}: parameter '{name}' should be a number, got '{text}'") from None
     return 0.0
+
+
+def _initial_value(component: ComponentInfo, interface: InterfaceInfo, kind: str) -> float:
+    """Return the initial value of an interface, NaN where none is given.
+
+    A state without a value of its own starts where the command of its name does.
+    """
+    if not np.isnan(interface.initial_value) or kind == "command":
+        return interface.initial_value
+    return next((one.initial_value for one in component.commands if one.name == interface.name), float("nan"))

@@ -11,7 +11,7 @@ from rclpy.node import Node
 from rclpy.qos import QoSProfile
 from rclpy.task import Future
 
-from daidalos.control.controllers.base import Action, Controller, Goal
+from daidalos.control.contracts import Action, Controller, Goal
 from daidalos.nodes.controller_manager._entries import ActionEntry
 from daidalos.nodes.controller_manager._messages import ACTIONS, SERVICES
 from daidalos.nodes.parameters import declare, warn_of_undeclared

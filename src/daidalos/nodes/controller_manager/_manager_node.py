@@ -16,9 +16,8 @@ from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
 from daidalos.common.errors import UserError
 from daidalos.control.component import INACTIVE, UNCONFIGURED
-from daidalos.control.controllers.base import ControllerContext
+from daidalos.control.contracts import ControllerContext, Hardware
 from daidalos.control.errors import ControlError
-from daidalos.control.hardware.base import Hardware
 from daidalos.control.manager import ControllerManager
 from daidalos.control.switching import Strictness
 from daidalos.description.robot import Robot

@@ -5,8 +5,8 @@ from __future__ import annotations
 from rclpy.context import Context
 from rclpy.parameter import Parameter
 
+from daidalos.control.contracts import Hardware, HardwareContext
 from daidalos.control.extensions import hardware_class
-from daidalos.control.hardware.base import Hardware, HardwareContext
 from daidalos.description.ros2_control import HardwareInfo
 from daidalos.nodes.controller_manager._manager_node import ControllerManagerNode
 from daidalos.nodes.controller_manager._simulated_system import SimulatedSystem

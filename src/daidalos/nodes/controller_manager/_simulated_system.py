@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from daidalos.control.contracts import Hardware, HardwareContext
 from daidalos.control.errors import HardwareError
-from daidalos.control.hardware.base import Hardware, HardwareContext
 from daidalos.description.ros2_control import HardwareInfo
 from daidalos.simulation.joint_drives import Mode
 

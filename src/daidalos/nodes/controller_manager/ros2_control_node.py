@@ -10,9 +10,9 @@ from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.qos import DurabilityPolicy, QoSProfile
 
 from daidalos.common.extensions import ExtensionError
+from daidalos.control.contracts import Hardware, HardwareContext
 from daidalos.control.errors import ControlError
 from daidalos.control.extensions import hardware_class
-from daidalos.control.hardware.base import Hardware, HardwareContext
 from daidalos.description import urdf
 from daidalos.description.errors import DescriptionError
 from daidalos.description.ros2_control import read_hardware

@@ -11,7 +11,7 @@ from daidalos.simulation.plugins.ros2_control import Ros2Control
 
 if TYPE_CHECKING:
     from daidalos.simulation import Simulation
-    from daidalos.simulation.component import Component
+    from daidalos.simulation.contracts import Component
 
 
 class Companion(Protocol):

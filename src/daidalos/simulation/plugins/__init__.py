@@ -1,1 +1,1 @@
-"""Plugins of the simulator, one file each; `base` defines their contract."""
+"""Plugins of the simulator, one file each; `daidalos.simulation.contracts` has their contract."""

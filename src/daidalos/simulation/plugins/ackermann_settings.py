@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 
-from daidalos.simulation.component import ComponentContext
-from daidalos.simulation.plugins.base import Parameters
+from daidalos.simulation.contracts import ComponentContext
+from daidalos.simulation.plugin_parameters import PluginParameters
 from daidalos.simulation.plugins.diff_drive_settings import Limits
 from daidalos.simulation.topics import absolute_topic, frame
 
@@ -64,7 +64,7 @@ class Settings:
     distance_topic: str = ""
 
 
-def read_settings(parameters: Parameters, context: ComponentContext) -> Settings:
+def read_settings(parameters: PluginParameters, context: ComponentContext) -> Settings:
     """Read the parameters of an Ackermann drive.
 
     Raises
@@ -82,7 +82,7 @@ def read_settings(parameters: Parameters, context: ComponentContext) -> Settings
     return settings
 
 
-def _read_classic(parameters: Parameters, context: ComponentContext) -> Settings:
+def _read_classic(parameters: PluginParameters, context: ComponentContext) -> Settings:
     element = parameters.element
 
     def joint(tag: str) -> str:
@@ -117,7 +117,7 @@ def _read_classic(parameters: Parameters, context: ComponentContext) -> Settings
     )
 
 
-def _read_gz(parameters: Parameters, context: ComponentContext) -> Settings:
+def _read_gz(parameters: PluginParameters, context: ComponentContext) -> Settings:
     element, name = parameters.element, context.model_name
 
     def joints(tag: str) -> tuple[str, ...]:

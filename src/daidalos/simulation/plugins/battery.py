@@ -11,8 +11,7 @@ from daidalos.description.link import Plugin as Description
 from daidalos.samples.commands import SignalCommand
 from daidalos.samples.endpoint import Subscription
 from daidalos.samples.sensors import BatterySample, Sample
-from daidalos.simulation.component import ComponentContext, Switch
-from daidalos.simulation.plugins.base import Plugin
+from daidalos.simulation.contracts import ComponentContext, Plugin, Switch
 from daidalos.simulation.topics import absolute_topic
 
 _HOUR = 3600.0

@@ -7,8 +7,8 @@ from dataclasses import replace
 
 from daidalos.description.markup import Element
 from daidalos.samples.commands import SignalCommand
-from daidalos.simulation.plugins.base import Parameters, SensorPlugin
-from daidalos.simulation.sensors.base import Sensor
+from daidalos.simulation.contracts import Sensor, SensorPlugin
+from daidalos.simulation.plugin_parameters import PluginParameters
 from daidalos.simulation.sensors.camera import Camera, CameraOutput
 from daidalos.simulation.topics import frame
 
@@ -26,9 +26,9 @@ class CameraOfSensor(SensorPlugin):
         "pollServiceName",
     )
 
-    def configure(self, sensor: Sensor, parameters: Parameters) -> None:
+    def configure(self, sensor: Sensor) -> None:
         """Set topics, frame, distortion, baseline and depth limits."""
-        element = parameters.element
+        parameters, element = self.parameters, self.parameters.element
         if not isinstance(sensor, Camera):
             sensor.context.warn(f"{element.where}: plugin {parameters.library} needs a camera, left out")
             return
@@ -54,7 +54,7 @@ class CameraOfSensor(SensorPlugin):
 _ROS1 = ("imageTopicName", "cameraInfoTopicName", "cameraName", "frameName", "depthImageTopicName")
 
 
-def _set_topics(output: CameraOutput, prefixes: Sequence[str], parameters: Parameters, deep: bool) -> None:
+def _set_topics(output: CameraOutput, prefixes: Sequence[str], parameters: PluginParameters, deep: bool) -> None:
     element = parameters.element
 
     def topic(default: str, *tags: str) -> str:
@@ -70,7 +70,7 @@ def _set_topics(output: CameraOutput, prefixes: Sequence[str], parameters: Param
     output.infos = tuple(dict.fromkeys(infos))
 
 
-def _remapped(parameters: Parameters, prefixes: Sequence[str], name: str) -> str:
+def _remapped(parameters: PluginParameters, prefixes: Sequence[str], name: str) -> str:
     """Return the name below the camera's, unless a remapping refers to the bare name."""
     full = name if name.startswith("/") else "/".join([*filter(None, prefixes), name])
     return full if parameters.is_remapped(full) or not parameters.is_remapped(name) else name

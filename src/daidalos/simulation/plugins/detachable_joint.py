@@ -12,9 +12,8 @@ from daidalos.description.link import Plugin as Description
 from daidalos.samples.commands import SignalCommand
 from daidalos.samples.endpoint import Subscription
 from daidalos.samples.sensors import Sample, TextSample
-from daidalos.simulation.component import ComponentContext
+from daidalos.simulation.contracts import ComponentContext, Plugin
 from daidalos.simulation.instance import Instance, LinkView
-from daidalos.simulation.plugins.base import Plugin
 from daidalos.simulation.plugins.holding import let_go, pull
 from daidalos.simulation.topics import absolute_topic
 

@@ -19,10 +19,9 @@ from daidalos.samples.sensors import (
     Sample,
     TransformSample,
 )
-from daidalos.simulation.component import ComponentContext
+from daidalos.simulation.contracts import ComponentContext, Plugin
 from daidalos.simulation.conversion.model_build import ModelBuild
 from daidalos.simulation.instance import Instance, JointView, LinkView
-from daidalos.simulation.plugins.base import Plugin
 from daidalos.simulation.plugins.diff_drive_settings import read_settings
 from daidalos.simulation.plugins.truth import link_transforms, true_odometry
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 
-from daidalos.simulation.component import ComponentContext
+from daidalos.simulation.contracts import ComponentContext
 from daidalos.simulation.encoder_error import EncoderError
-from daidalos.simulation.plugins.base import Parameters
+from daidalos.simulation.plugin_parameters import PluginParameters
 from daidalos.simulation.topics import absolute_topic, frame
 
 
@@ -79,7 +79,7 @@ class Settings:
     covariance: tuple[float, float, float] = (1e-5, 1e-5, 1e-3)
 
 
-def read_settings(parameters: Parameters, context: ComponentContext) -> Settings:
+def read_settings(parameters: PluginParameters, context: ComponentContext) -> Settings:
     """Read the parameters of a differential drive.
 
     Raises
@@ -94,7 +94,7 @@ def read_settings(parameters: Parameters, context: ComponentContext) -> Settings
     return _read_classic(parameters, context)
 
 
-def _read_classic(parameters: Parameters, context: ComponentContext) -> Settings:
+def _read_classic(parameters: PluginParameters, context: ComponentContext) -> Settings:
     """Read the parameters of Gazebo classic's plugin, in ROS 1's or ROS 2's names."""
     element = parameters.element
     left = [e.text.strip() for e in element.all("leftJoint", "left_joint")]
@@ -139,7 +139,7 @@ def _read_classic(parameters: Parameters, context: ComponentContext) -> Settings
     )
 
 
-def _read_skid_steer(parameters: Parameters) -> Settings:
+def _read_skid_steer(parameters: PluginParameters) -> Settings:
     """Read the parameters of ROS 1's skid steer drive, whose odometry is the true pose because its wheels slip."""
     element = parameters.element
     joints = {
@@ -173,7 +173,7 @@ def _read_skid_steer(parameters: Parameters) -> Settings:
     )
 
 
-def _read_gz(parameters: Parameters, context: ComponentContext) -> Settings:
+def _read_gz(parameters: PluginParameters, context: ComponentContext) -> Settings:
     """Read the parameters of gz's system."""
     element, name = parameters.element, context.model_name
     left = [parameters.scoped(e.text.strip()) for e in element.all("left_joint")]
@@ -206,7 +206,7 @@ def _read_gz(parameters: Parameters, context: ComponentContext) -> Settings:
     )
 
 
-def _limits(parameters: Parameters, kind: str) -> Limits:
+def _limits(parameters: PluginParameters, kind: str) -> Limits:
     """Read limits; those without ``linear`` or ``angular`` in their name apply to both."""
     element = parameters.element
 
@@ -221,7 +221,7 @@ def _limits(parameters: Parameters, kind: str) -> Limits:
     )
 
 
-def _encoder(parameters: Parameters) -> EncoderError:
+def _encoder(parameters: PluginParameters) -> EncoderError:
     element = parameters.element
     noise = element.number_of("encoderNoise", "encoder_noise", default=0.0)
     if noise < 0:
@@ -229,7 +229,7 @@ def _encoder(parameters: Parameters) -> EncoderError:
     return EncoderError(noise, element.number_of("encoderSlip", "encoder_slip", default=0.0))
 
 
-def _diameters(parameters: Parameters, default: float, *wheels: int) -> tuple[float, ...]:
+def _diameters(parameters: PluginParameters, default: float, *wheels: int) -> tuple[float, ...]:
     """Read the diameter of all wheels, or one for each pair, as in ROS 2's plugin."""
     first = _positive(parameters, default, "wheelDiameter", "wheel_diameter")
     diameters = tuple(child.number() for child in parameters.element.all("wheelDiameter", "wheel_diameter"))
@@ -240,7 +240,7 @@ def _diameters(parameters: Parameters, default: float, *wheels: int) -> tuple[fl
     return diameters
 
 
-def _positive(parameters: Parameters, default: float, *tags: str) -> float:
+def _positive(parameters: PluginParameters, default: float, *tags: str) -> float:
     value = parameters.element.number_of(*tags, default=default)
     if value <= 0:
         raise parameters.element.error(f"<{tags[-1]}> should be positive, got {value:g}")

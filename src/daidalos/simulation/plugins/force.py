@@ -11,9 +11,8 @@ from daidalos.description.link import Plugin as Description
 from daidalos.samples.commands import WrenchCommand
 from daidalos.samples.endpoint import Subscription
 from daidalos.samples.sensors import Sample
-from daidalos.simulation.component import ComponentContext
+from daidalos.simulation.contracts import ComponentContext, Plugin
 from daidalos.simulation.instance import Instance
-from daidalos.simulation.plugins.base import Plugin
 
 
 class Force(Plugin):

@@ -8,9 +8,9 @@ from dataclasses import replace
 from daidalos.description.link import Plugin as PluginDescription
 from daidalos.description.link import Sensor as SensorDescription
 from daidalos.description.markup import Element
-from daidalos.simulation.component import Component, ComponentContext
+from daidalos.simulation.contracts import Component, ComponentContext, Plugin
 from daidalos.simulation.noise import Noise
-from daidalos.simulation.plugins.base import Parameters, Plugin
+from daidalos.simulation.plugin_parameters import PluginParameters
 from daidalos.simulation.sensors.force_torque import ForceTorque
 from daidalos.simulation.topics import frame
 
@@ -23,7 +23,7 @@ class ForceTorqueOfJoint(Plugin):
     @classmethod
     def make(cls, description: PluginDescription, context: ComponentContext) -> Iterable[Component]:
         """Yield the sensor."""
-        parameters = Parameters(description, context)
+        parameters = PluginParameters(description, context)
         element = description.element
         joint = _joint(parameters, context)
         child = context.model.joints[joint].child
@@ -42,7 +42,7 @@ class ForceTorqueOfJoint(Plugin):
         return (sensor,)
 
 
-def _joint(parameters: Parameters, context: ComponentContext) -> str:
+def _joint(parameters: PluginParameters, context: ComponentContext) -> str:
     """Return the named joint, or the parent joint of the named link."""
     element, joints = parameters.element, context.model.joints
     named = parameters.scoped(element.text_of("jointName", "joint_name"))

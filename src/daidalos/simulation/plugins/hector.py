@@ -10,10 +10,9 @@ from daidalos.description.link import Plugin as PluginDescription
 from daidalos.description.link import Sensor as SensorDescription
 from daidalos.description.markup import Element
 from daidalos.description.world import SphericalCoordinates
-from daidalos.simulation.component import Component, ComponentContext
+from daidalos.simulation.contracts import Component, ComponentContext, Plugin, Sensor
 from daidalos.simulation.noise import Noise
-from daidalos.simulation.plugins.base import Parameters, Plugin
-from daidalos.simulation.sensors.base import Sensor
+from daidalos.simulation.plugin_parameters import PluginParameters
 from daidalos.simulation.sensors.imu import Imu
 from daidalos.simulation.sensors.magnetometer import Magnetometer
 from daidalos.simulation.sensors.navsat import NavSat
@@ -34,7 +33,7 @@ class GpsOfModel(Plugin):
         """Yield the sensor."""
         element = description.element
         sensor = NavSat(*_carrier(description, context, "navsat", rate=4.0))
-        _name(sensor, Parameters(description, context), "fix", "world")
+        _name(sensor, PluginParameters(description, context), "fix", "world")
         sensor.origin = SphericalCoordinates(
             latitude=element.number_of("referenceLatitude", default=49.9),
             longitude=element.number_of("referenceLongitude", default=8.9),
@@ -59,7 +58,7 @@ class HectorImu(Plugin):
         xyz = element.vector_of("xyzOffset", size=3, default=(0.0, 0.0, 0.0))
         rpy = element.vector_of("rpyOffset", size=3, default=(0.0, 0.0, 0.0))
         sensor = Imu(*_carrier(description, context, "imu", pose=Pose.from_xyz_rpy(xyz, rpy)))
-        _name(sensor, Parameters(description, context), "imu")
+        _name(sensor, PluginParameters(description, context), "imu")
         sensor.rate_noise = axis_noises(element, "rate")
         sensor.acceleration_noise = axis_noises(element, "accel")
         return (sensor,)
@@ -74,7 +73,7 @@ class HectorMagnetometer(Plugin):
     def make(cls, description: PluginDescription, context: ComponentContext) -> Iterable[Component]:
         """Yield the sensor."""
         sensor = Magnetometer(*_carrier(description, context, "magnetometer"))
-        _name(sensor, Parameters(description, context), "magnetic")
+        _name(sensor, PluginParameters(description, context), "magnetic")
         sensor.field_noise = axis_noises(description.element)
         return (sensor,)
 
@@ -108,7 +107,7 @@ def _carrier(
 ) -> tuple[SensorDescription, ComponentContext]:
     """Return the description and the context of a sensor on the link ``bodyName``, by default the first link."""
     element, links = description.element, context.model.links
-    scoped = Parameters(description, context).scoped
+    scoped = PluginParameters(description, context).scoped
     link = scoped(element.text_of("bodyName", "body_name", default=next(iter(links), "")))
     if link not in links:
         raise element.error(f"<bodyName> is {link!r}, expected one of the links {', '.join(links)}")
@@ -117,7 +116,7 @@ def _carrier(
     return sensor, replace(context, link=link)
 
 
-def _name(sensor: Sensor, parameters: Parameters, topic: str, frame_id: str = "") -> None:
+def _name(sensor: Sensor, parameters: PluginParameters, topic: str, frame_id: str = "") -> None:
     element = parameters.element
     sensor.topic = parameters.topic(element.text_of("topicName", "topic_name", default=topic))
     default = frame_id or sensor.frame_id

@@ -9,10 +9,9 @@ from daidalos.common.pose3 import Pose
 from daidalos.description.link import Plugin as PluginDescription
 from daidalos.description.link import Sensor as SensorDescription
 from daidalos.description.markup import Element
-from daidalos.simulation.component import Component, ComponentContext
+from daidalos.simulation.contracts import Component, ComponentContext, Plugin, Sensor, SensorPlugin
 from daidalos.simulation.noise import Noise
-from daidalos.simulation.plugins.base import Parameters, Plugin, SensorPlugin
-from daidalos.simulation.sensors.base import Sensor
+from daidalos.simulation.plugin_parameters import PluginParameters
 from daidalos.simulation.sensors.imu import Imu
 from daidalos.simulation.topics import frame
 
@@ -26,7 +25,7 @@ class ImuOfModel(Plugin):
     @classmethod
     def make(cls, description: PluginDescription, context: ComponentContext) -> Iterable[Component]:
         """Yield the sensor."""
-        parameters = Parameters(description, context)
+        parameters = PluginParameters(description, context)
         element = description.element
         link = parameters.scoped(element.text_of("bodyName", "body_name", "link_name"))
         if link not in context.model.links:
@@ -54,9 +53,9 @@ class ImuOfSensor(SensorPlugin):
     names = ("gazebo_ros_imu_sensor",)
     unused = ("bodyName", "serviceName")
 
-    def configure(self, sensor: Sensor, parameters: Parameters) -> None:
+    def configure(self, sensor: Sensor) -> None:
         """Set topic and frame, and ROS 1's further settings: rate, pose and noise."""
-        element = parameters.element
+        parameters, element = self.parameters, self.parameters.element
         sensor.topic = parameters.topic(element.text_of("topicName", "topic_name", default="~/out"))
         sensor.frame_id = frame(element.text_of("frameName", "frame_name", default=sensor.frame_id))
         rate = element.number_of("updateRateHZ", default=0.0)

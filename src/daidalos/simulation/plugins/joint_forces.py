@@ -11,10 +11,9 @@ from daidalos.description.link import Plugin as Description
 from daidalos.samples.commands import NumberCommand
 from daidalos.samples.endpoint import Subscription
 from daidalos.samples.sensors import Sample
-from daidalos.simulation.component import ComponentContext
+from daidalos.simulation.contracts import ComponentContext, Plugin
 from daidalos.simulation.conversion.model_build import ModelBuild
 from daidalos.simulation.instance import Instance
-from daidalos.simulation.plugins.base import Plugin
 from daidalos.simulation.topics import absolute_topic
 
 

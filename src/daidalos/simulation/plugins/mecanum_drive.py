@@ -15,10 +15,9 @@ from daidalos.samples.commands import TwistCommand
 from daidalos.samples.endpoint import Subscription
 from daidalos.samples.odometry import transform_of, wheel_odometry
 from daidalos.samples.sensors import OdometrySample, Sample, TransformSample
-from daidalos.simulation.component import ComponentContext
+from daidalos.simulation.contracts import ComponentContext, Plugin
 from daidalos.simulation.conversion.model_build import ModelBuild
 from daidalos.simulation.instance import Instance
-from daidalos.simulation.plugins.base import Plugin
 from daidalos.simulation.plugins.diff_drive import SERVO_TIME
 from daidalos.simulation.plugins.diff_drive_settings import Limits
 from daidalos.simulation.plugins.joint_forces import joint_of

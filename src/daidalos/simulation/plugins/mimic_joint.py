@@ -6,10 +6,9 @@ from collections.abc import Iterable
 
 from daidalos.description.link import Plugin as Description
 from daidalos.samples.sensors import Sample
-from daidalos.simulation.component import ComponentContext
+from daidalos.simulation.contracts import ComponentContext, Plugin
 from daidalos.simulation.conversion.couplings import couple
 from daidalos.simulation.conversion.model_build import ModelBuild
-from daidalos.simulation.plugins.base import Plugin
 from daidalos.simulation.plugins.joint_forces import joint_of
 
 

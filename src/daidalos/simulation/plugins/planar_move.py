@@ -14,9 +14,8 @@ from daidalos.samples.commands import TwistCommand
 from daidalos.samples.endpoint import Subscription
 from daidalos.samples.odometry import transform_of
 from daidalos.samples.sensors import OdometrySample, Sample, TransformSample
-from daidalos.simulation.component import ComponentContext
+from daidalos.simulation.contracts import ComponentContext, Plugin
 from daidalos.simulation.instance import Instance
-from daidalos.simulation.plugins.base import Plugin
 from daidalos.simulation.plugins.truth import true_odometry
 from daidalos.simulation.topics import absolute_topic, frame
 

@@ -11,9 +11,8 @@ from daidalos.common.rate_gate import RateGate
 from daidalos.description.joint import JointType
 from daidalos.description.link import Plugin as Description
 from daidalos.samples.sensors import Sample, TransformSample
-from daidalos.simulation.component import ComponentContext
+from daidalos.simulation.contracts import ComponentContext, Plugin
 from daidalos.simulation.instance import Instance
-from daidalos.simulation.plugins.base import Plugin
 from daidalos.simulation.topics import absolute_topic
 
 

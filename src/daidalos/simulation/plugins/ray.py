@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import ClassVar
 
-from daidalos.simulation.plugins.base import Parameters, SensorPlugin
-from daidalos.simulation.sensors.base import Sensor
+from daidalos.simulation.contracts import Sensor, SensorPlugin
 from daidalos.simulation.sensors.lidar import Lidar
 from daidalos.simulation.topics import frame
 
@@ -13,15 +13,14 @@ _UNUSED = ("hokuyoMinIntensity", "min_intensity", "organize_cloud", "updateRate"
 """Parameters of lidars that mean nothing here."""
 
 
-class Laser(SensorPlugin):
-    """ROS 1's ``libgazebo_ros_laser.so``: scans on ``topicName``."""
+class ScanPlugin(SensorPlugin):
+    """Plugin of ROS 1 that sets topic, frame and noise of scans."""
 
-    names = ("gazebo_ros_laser", "gazebo_ros_gpu_laser")
-    unused = _UNUSED
+    unused: ClassVar[tuple[str, ...]] = _UNUSED
 
-    def configure(self, sensor: Sensor, parameters: Parameters) -> None:
+    def configure(self, sensor: Sensor) -> None:
         """Set topic, frame and noise."""
-        element = parameters.element
+        parameters, element = self.parameters, self.parameters.element
         sensor.topic = parameters.topic(element.text_of("topicName", "topic_name", default="scan"))
         sensor.frame_id = frame(element.text_of("frameName", "frame_name", default=sensor.frame_id))
         if isinstance(sensor, Lidar):
@@ -31,19 +30,24 @@ class Laser(SensorPlugin):
                 sensor.noise = replace(sensor.noise, stddev=stddev)
 
 
-class BlockLaser(SensorPlugin):
+class Laser(ScanPlugin):
+    """ROS 1's ``libgazebo_ros_laser.so``: scans on ``topicName``."""
+
+    names = ("gazebo_ros_laser", "gazebo_ros_gpu_laser")
+
+
+class BlockLaser(ScanPlugin):
     """ROS 1's ``libgazebo_ros_block_laser.so`` and the Velodyne plugins: points on ``topicName``."""
 
     names = ("gazebo_ros_block_laser", "gazebo_ros_velodyne_laser", "gazebo_ros_velodyne_gpu_laser")
-    unused = _UNUSED
 
-    def configure(self, sensor: Sensor, parameters: Parameters) -> None:
+    def configure(self, sensor: Sensor) -> None:
         """Set topic, frame and noise, with points as message."""
-        Laser().configure(sensor, parameters)
+        super().configure(sensor)
         if isinstance(sensor, Lidar):
             sensor.as_points = True
-            sensor.range_min = parameters.element.number_of("min_range", default=sensor.range_min)
-            sensor.range_max = parameters.element.number_of("max_range", default=sensor.range_max)
+            sensor.range_min = self.parameters.element.number_of("min_range", default=sensor.range_min)
+            sensor.range_max = self.parameters.element.number_of("max_range", default=sensor.range_max)
 
 
 class RaySensor(SensorPlugin):
@@ -52,9 +56,9 @@ class RaySensor(SensorPlugin):
     names = ("gazebo_ros_ray_sensor",)
     unused = _UNUSED
 
-    def configure(self, sensor: Sensor, parameters: Parameters) -> None:
+    def configure(self, sensor: Sensor) -> None:
         """Set topic, frame and message type."""
-        element = parameters.element
+        parameters, element = self.parameters, self.parameters.element
         sensor.topic = parameters.topic("~/out")
         sensor.frame_id = frame(element.text_of("frame_name", default=sensor.frame_id))
         if isinstance(sensor, Lidar):
@@ -67,16 +71,16 @@ class RaySensor(SensorPlugin):
                 sensor.context.warn(f"{element.where}: <output_type> is {kind}; it is published as PointCloud2")
 
 
-class RangeSensor(SensorPlugin):
+class RangeSensor(ScanPlugin):
     """``libgazebo_ros_range.so``: the shortest ray, as an infrared or ultrasound sensor."""
 
     names = ("gazebo_ros_range",)
     unused = (*_UNUSED, "fov")
 
-    def configure(self, sensor: Sensor, parameters: Parameters) -> None:
+    def configure(self, sensor: Sensor) -> None:
         """Set topic, frame and noise."""
-        Laser().configure(sensor, parameters)
-        element = parameters.element
+        super().configure(sensor)
+        parameters, element = self.parameters, self.parameters.element
         sensor.topic = parameters.topic(element.text_of("topicName", "topic_name", default="range"))
         if isinstance(sensor, Lidar):
             sensor.as_range = True

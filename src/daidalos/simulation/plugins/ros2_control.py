@@ -20,11 +20,10 @@ from daidalos.samples.sensors import (
     Sample,
     WrenchSample,
 )
-from daidalos.simulation.component import Component, ComponentContext
+from daidalos.simulation.contracts import Component, ComponentContext, Plugin
 from daidalos.simulation.conversion.model_build import ModelBuild
 from daidalos.simulation.instance import Instance
 from daidalos.simulation.joint_drives import DriveState, JointDrives
-from daidalos.simulation.plugins.base import Plugin
 
 DEFAULT_RATE = 100.0
 _KINEMATIC = "gazebo_ros2_control/GazeboSystem"

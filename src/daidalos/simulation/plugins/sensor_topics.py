@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from daidalos.simulation.plugins.base import Parameters, SensorPlugin
-from daidalos.simulation.sensors.base import Sensor
+from daidalos.simulation.contracts import Sensor, SensorPlugin
 from daidalos.simulation.sensors.contact import ContactSensor
 from daidalos.simulation.sensors.navsat import NavSat
 from daidalos.simulation.topics import frame
@@ -22,9 +21,9 @@ class NamesTopic(SensorPlugin):
     # Gazebo classic takes x for west and y for south where the heading is 0; worlds for it say 180 to mean none.
     _CLASSIC_NORTH = 180.0
 
-    def configure(self, sensor: Sensor, parameters: Parameters) -> None:
+    def configure(self, sensor: Sensor) -> None:
         """Set topic and frame."""
-        element = parameters.element
+        parameters, element = self.parameters, self.parameters.element
         sensor.topic = parameters.topic(element.text_of("topicName", "topic_name", default="~/out"))
         sensor.frame_id = frame(element.text_of("frameName", "frame_name", "frameId", default=sensor.frame_id))
         if isinstance(sensor, NavSat) and sensor.origin.heading == self._CLASSIC_NORTH:
@@ -36,9 +35,9 @@ class Bumper(SensorPlugin):
 
     names = ("gazebo_ros_bumper",)
 
-    def configure(self, sensor: Sensor, parameters: Parameters) -> None:
+    def configure(self, sensor: Sensor) -> None:
         """Set topic and frame."""
-        element = parameters.element
+        parameters, element = self.parameters, self.parameters.element
         sensor.topic = parameters.topic(element.text_of("bumperTopicName", "topicName", default="bumper_states"))
         sensor.frame_id = frame(element.text_of("frameName", "frame_name", default=sensor.frame_id))
         if isinstance(sensor, ContactSensor):

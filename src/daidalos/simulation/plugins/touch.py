@@ -9,9 +9,8 @@ import numpy as np
 
 from daidalos.description.link import Plugin as Description
 from daidalos.samples.sensors import FlagSample, Sample
-from daidalos.simulation.component import ComponentContext, Switch
+from daidalos.simulation.contracts import ComponentContext, Plugin, Switch
 from daidalos.simulation.instance import Instance
-from daidalos.simulation.plugins.base import Plugin
 from daidalos.simulation.topics import absolute_topic
 
 

@@ -12,9 +12,8 @@ from numpy.typing import NDArray
 from daidalos.common.pose3 import Pose
 from daidalos.description.link import Plugin as Description
 from daidalos.samples.sensors import FlagSample, Sample
-from daidalos.simulation.component import ComponentContext, Switch
+from daidalos.simulation.contracts import ComponentContext, Plugin, Switch
 from daidalos.simulation.instance import Instance, LinkView
-from daidalos.simulation.plugins.base import Plugin
 from daidalos.simulation.plugins.holding import let_go, pull
 
 Array = NDArray[np.float64]

@@ -14,12 +14,11 @@ from daidalos.description.link import Link, Surface
 from daidalos.description.link import Plugin as Description
 from daidalos.description.markup import Element
 from daidalos.samples.sensors import Sample, WheelSlipSample
-from daidalos.simulation.component import ComponentContext
+from daidalos.simulation.contracts import ComponentContext, Plugin
 from daidalos.simulation.conversion.contact import DEFAULT_FRICTION, set_friction
 from daidalos.simulation.conversion.model_build import ModelBuild
 from daidalos.simulation.instance import Instance
 from daidalos.simulation.last_step import cross, velocities
-from daidalos.simulation.plugins.base import Plugin
 
 Array = NDArray[np.float64]
 

@@ -1,1 +1,1 @@
-"""Sensors of the simulator, one file each; `base` defines their contract."""
+"""Sensors of the simulator, one file each; `daidalos.simulation.contracts` has their contract."""

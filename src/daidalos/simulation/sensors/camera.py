@@ -19,9 +19,8 @@ from daidalos.samples.sensors import (
     PointCloudSample,
     Sample,
 )
-from daidalos.simulation.component import ComponentContext
+from daidalos.simulation.contracts import ComponentContext, Sensor
 from daidalos.simulation.rendering.pool import Pool
-from daidalos.simulation.sensors.base import Sensor
 from daidalos.simulation.sensors.camera_settings import CameraSettings, read_camera
 from daidalos.simulation.topics import absolute_topic
 
@@ -132,10 +131,14 @@ class Camera(Sensor):
         return Trigger()
 
     def update(self, now_ns: int) -> Iterable[Sample]:
-        """Render the outputs that have subscribers."""
+        """Return the images unless a trigger is awaited."""
         if self.trigger and not self.state.due:
-            return
+            return ()
         self.state.due = False
+        return self.measure(now_ns)
+
+    def measure(self, now_ns: int) -> Iterable[Sample]:
+        """Render the outputs that have subscribers."""
         has_subscribers = self.instance.has_subscribers
         for number, output in enumerate(self.outputs):
             wanted = {topic for topic in output.topics() if has_subscribers(topic)}

@@ -9,8 +9,8 @@ import numpy as np
 from daidalos.description.markup import Element
 from daidalos.samples.sensors import BumperSample, ContactsSample, Sample
 from daidalos.simulation.contacts import read_contacts
+from daidalos.simulation.contracts import Sensor
 from daidalos.simulation.instance import Instance
-from daidalos.simulation.sensors.base import Sensor
 
 
 class ContactSensor(Sensor):

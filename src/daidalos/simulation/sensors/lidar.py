@@ -19,11 +19,10 @@ from daidalos.samples.sensors import (
     RangeSample,
     Sample,
 )
-from daidalos.simulation.component import ComponentContext
+from daidalos.simulation.contracts import ComponentContext, Sensor
 from daidalos.simulation.conversion.geometry import RAY_GROUPS
 from daidalos.simulation.instance import Instance
 from daidalos.simulation.noise import read_noise
-from daidalos.simulation.sensors.base import Sensor
 
 Array = NDArray[np.float64]
 

@@ -10,8 +10,8 @@ import numpy as np
 from daidalos.common.pose3 import Pose, rotation_matrix
 from daidalos.description.markup import Element
 from daidalos.samples.sensors import LogicalImageSample, Sample
+from daidalos.simulation.contracts import Sensor
 from daidalos.simulation.instance import LinkView
-from daidalos.simulation.sensors.base import Sensor
 
 
 class LogicalCamera(Sensor):

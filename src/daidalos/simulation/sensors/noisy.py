@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daidalos.description.markup import Element
+from daidalos.simulation.contracts import Sensor
 from daidalos.simulation.noise import SILENT, Noise, NoiseVector, read_noise
-from daidalos.simulation.sensors.base import Sensor
 
 Array = NDArray[np.float64]
 

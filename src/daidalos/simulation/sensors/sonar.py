@@ -11,9 +11,9 @@ import numpy as np
 from daidalos.common.pose3 import rotation_matrix
 from daidalos.description.markup import Element
 from daidalos.samples.sensors import RangeSample, Sample
+from daidalos.simulation.contracts import Sensor
 from daidalos.simulation.conversion.geometry import RAY_GROUPS
 from daidalos.simulation.noise import read_noise
-from daidalos.simulation.sensors.base import Sensor
 
 _RINGS = 6
 

@@ -1,18 +1,18 @@
-"""Contracts of model and world plugins, and of plugins inside sensors."""
+"""Parameters of plugins in files, and which of them were read."""
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
 from collections.abc import Iterable
-from typing import ClassVar
+from typing import TYPE_CHECKING
 
 from daidalos.common.suggestions import near
 from daidalos.description.link import Plugin as Description
 from daidalos.description.markup import Element
-from daidalos.simulation.component import Component, ComponentContext
 from daidalos.simulation.libraries import library_of
-from daidalos.simulation.sensors.base import Sensor
 from daidalos.simulation.topics import absolute_topic, join_namespaces
+
+if TYPE_CHECKING:
+    from daidalos.simulation.contracts import ComponentContext
 
 COMMON_PARAMETERS = ("alwaysOn", "always_on", "rosDebugLevel", "debug", "robotParam", "latch")
 """Parameters of many libraries that mean nothing here."""
@@ -51,54 +51,7 @@ class ReadElement(Element):
         ]
 
 
-class LibraryPlugin:
-    """Replacement of a Gazebo library: a `Plugin` or a `SensorPlugin`.
-
-    Attributes
-    ----------
-    names : tuple of str
-        The libraries, without ``lib`` in front and ``.so`` behind.
-    unused : tuple of str
-        Parameters of those libraries that mean nothing here; any other that is not read is named in a warning.
-    """
-
-    names: ClassVar[tuple[str, ...]] = ()
-    unused: ClassVar[tuple[str, ...]] = ()
-
-
-class Plugin(LibraryPlugin, Component):
-    """Plugin of a model.
-
-    A subclass names the libraries that it stands in for.
-    Adding a file with such a class to this folder adds the plugin; a package of the user's does the
-    same through the entry point group ``daidalos.plugins``.
-
-    Parameters
-    ----------
-    description : daidalos.description.link.Plugin
-    context : ComponentContext
-    """
-
-    def __init__(self, description: Description, context: ComponentContext) -> None:
-        super().__init__(context)
-        self.description = description
-        self.parameters = Parameters(description, context)
-
-    @classmethod
-    def make(cls, description: Description, context: ComponentContext) -> Iterable[Component]:
-        """Return the components of this plugin: itself, unless a subclass overrides this."""
-        return (cls(description, context),)
-
-
-class SensorPlugin(LibraryPlugin, ABC):
-    """Plugin that sets a sensor's ROS topic, frame and message."""
-
-    @abstractmethod
-    def configure(self, sensor: Sensor, parameters: Parameters) -> None:
-        """Configure the sensor before it is used."""
-
-
-class Parameters:
+class PluginParameters:
     """Parameters of a plugin, in ROS 1's camelCase or ROS 2's snake_case.
 
     Parameters

@@ -1,13 +1,25 @@
-"""Contract of controllers: state interfaces in, command interfaces out, and topics, services and actions."""
+"""Contracts of controllers and hardware, as ros2_control has them.
+
+An extension is one class. Controllers are made with ``(parameters, context)``: an instance of the frozen dataclass in
+their class attribute `parameters`, and a `ControllerContext`; they turn state interfaces into command interfaces, and
+have topics, services and actions. Hardware is made with ``(info, context)``: what its ``<ros2_control>`` element says,
+and a `HardwareContext`. Built-in classes give their names in files in `names`; those of other packages are named by
+entry points, or by their class path. Values of interfaces are SI (m, rad, m/s, rad/s, N, Nm) and scalar, each of a
+joint's or sensor's own axis; times are nanoseconds, periods seconds.
+"""
+
+# ruff: noqa: B027 (most hooks of a contract do nothing unless they are overridden)
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
 from daidalos.control.interfaces import Interfaces, LoanedInterfaces
 from daidalos.description.robot import Robot
+from daidalos.description.ros2_control import HardwareInfo
 from daidalos.description.world import Model
 from daidalos.samples.endpoint import Endpoint
 from daidalos.samples.endpoint import Subscription as Subscription
@@ -39,7 +51,7 @@ class ControllerContext:
     state_names : tuple of str
         All state interfaces that the hardware has.
     has_subscribers : callable
-        Tells whether anyone listens to one of its topics.
+        Returns whether one of its topics has subscribers.
     warn : callable
         Takes a line for the user.
     """
@@ -110,13 +122,13 @@ class Action:
     cancel: Callable[[Goal], None]
 
 
-class Controller(Endpoint):
+class Controller(Endpoint, ABC):
     """Controller that computes commands from states once per period.
 
     Names of topics, services and actions that begin with ``~/`` go below its own.
 
-    Adding a file with a subclass to this folder adds its names; a package of the user's does the same through
-    the entry point group ``daidalos.controllers``, or is named by its place.
+    A file with a subclass in `daidalos.control.controllers` adds its names, as the entry point group
+    ``daidalos.controllers`` does for other packages.
 
     Parameters
     ----------
@@ -137,7 +149,7 @@ class Controller(Endpoint):
     references : Interfaces
         What other controllers may command, without the controller's name in front.
     exported : Interfaces
-        What it tells other controllers.
+        State interfaces that other controllers may read.
     chained : bool
         Whether another controller commands it now.
     now_ns : int
@@ -186,6 +198,7 @@ class Controller(Endpoint):
     def take_references(self, now_ns: int, period: float) -> None:
         """Set the references from what was received; only called while no controller commands them."""
 
+    @abstractmethod
     def update(self, now_ns: int, period: float) -> Iterable[Sample]:
         """Write commands and return the samples to publish.
 
@@ -196,7 +209,6 @@ class Controller(Endpoint):
         period : float
             Since the last update [s].
         """
-        raise NotImplementedError
 
     @property
     def services(self) -> Mapping[str, Service]:
@@ -207,3 +219,81 @@ class Controller(Endpoint):
     def actions(self) -> Mapping[str, Action]:
         """Actions of the controller, by name."""
         return {}
+
+
+@dataclass(frozen=True)
+class HardwareContext:
+    """Context of hardware.
+
+    Parameters
+    ----------
+    update_rate : float
+        Of the manager [Hz].
+    warn : callable
+        Takes a line for the user.
+    """
+
+    update_rate: float = 100.0
+    warn: Callable[[str], None] = _ignore
+
+
+class Hardware(ABC):
+    """Hardware of a robot or of a part of it.
+
+    A subclass reads sensors into `states` in `read` and sends `commands` in `write`; it raises `HardwareError` where
+    something fails. ``<plugin>`` names it by its class path, or by an entry point of the group ``daidalos.hardware``.
+
+    Parameters
+    ----------
+    info : HardwareInfo
+        What the robot's ``<ros2_control>`` element says.
+    context : HardwareContext
+
+    Attributes
+    ----------
+    names : tuple of str
+        Class attribute: the plugins that it stands for.
+    commands, states : Interfaces
+        Named values, SI. Commands are NaN as long as nobody commands them.
+    """
+
+    names: ClassVar[tuple[str, ...]] = ()
+
+    def __init__(self, info: HardwareInfo, context: HardwareContext | None = None) -> None:
+        self.info = info
+        self.context = context or HardwareContext()
+        self.commands = Interfaces(info.command_names)
+        self.states = Interfaces(info.state_names)
+
+    def configure(self) -> None:
+        """Connect with the robot; called from ``unconfigured``."""
+
+    def cleanup(self) -> None:
+        """Disconnect; called on the way back to ``unconfigured``, and at the end."""
+
+    def activate(self) -> None:
+        """Power up; commands count from now on."""
+
+    def deactivate(self) -> None:
+        """Stop motion."""
+
+    @abstractmethod
+    def read(self, now_ns: int, period: float) -> None:
+        """Update `states` from the hardware.
+
+        Parameters
+        ----------
+        now_ns : int
+            [ns].
+        period : float
+            Since the last reading [s].
+        """
+
+    def write(self, now_ns: int, period: float) -> None:
+        """Send `commands`; see `read`."""
+
+    def prepare_switch(self, start: Sequence[str], stop: Sequence[str]) -> None:
+        """Refuse, with a `HardwareError`, command interfaces that cannot be claimed or released together."""
+
+    def switch(self, start: Sequence[str], stop: Sequence[str]) -> None:
+        """Switch command interfaces; those in `stop` that are not in `start` are no longer used."""
