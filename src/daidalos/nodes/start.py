@@ -31,15 +31,16 @@ MISTAKES = {
 
 
 def main() -> None:
-    """Run a module of a package as the main program."""
-    import runpy
+    """Run the function `main` of a module of a package; it returns the exit status."""
     import site
+    from importlib import import_module
 
     site.main()
     sys.excepthook = _show
     package, module, *arguments = sys.argv[1:]
-    sys.argv = [sys.argv[0], *arguments]
-    runpy.run_module(f"daidalos.nodes.{package}.{module}", run_name="__main__", alter_sys=True)
+    program = import_module(f"daidalos.nodes.{package}.{module}")
+    sys.argv = [str(program.__file__), *arguments]
+    sys.exit(program.main())
 
 
 def _show(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:

@@ -1,11 +1,11 @@
 """The command that expands descriptions."""
 
 import subprocess
-import sys
 
 import pytest
 
 from daidalos.nodes.xacro import xacro
+from daidalos.workspaces.executables import built_in_command
 
 ROBOT = """<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">
   <xacro:arg name="side" default="left"/>
@@ -62,7 +62,7 @@ def test_a_missing_file_is_one_line(run):
 
 def test_without_a_file_the_usage_is_said():
     # In a process of its own: xacro keeps the stream that it was imported with.
-    done = subprocess.run([sys.executable, "-m", "daidalos.nodes.xacro.xacro"], capture_output=True, text=True)
+    done = subprocess.run(built_in_command("xacro", "xacro"), capture_output=True, text=True)
     assert (done.returncode, done.stdout) == (2, "")
     assert done.stderr.startswith("Usage: xacro [options] <input>")
     assert "error: expected exactly one input file" in done.stderr

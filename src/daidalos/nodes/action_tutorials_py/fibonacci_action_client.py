@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable
 from typing import Any
 
@@ -29,7 +28,3 @@ class FibonacciActionClient(FibonacciClient):
 def main() -> int:
     """Request ten numbers."""
     return run_program(lambda: run_client(FibonacciActionClient, _ORDER, talkative=False))
-
-
-if __name__ == "__main__":
-    sys.exit(main())

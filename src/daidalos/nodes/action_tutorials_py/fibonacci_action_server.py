@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from typing import Any
 
 from daidalos.nodes.fibonacci import FibonacciServer
@@ -21,7 +20,3 @@ class FibonacciActionServer(FibonacciServer):
 def main() -> int:
     """Run the node."""
     return run(FibonacciActionServer)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

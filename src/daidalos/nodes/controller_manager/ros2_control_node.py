@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterator
 from typing import Any
 
@@ -106,7 +105,3 @@ def main() -> int:
             raise UserError(str(error)) from None
 
     return run(make, threads=2)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

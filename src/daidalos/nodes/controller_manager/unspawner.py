@@ -55,7 +55,3 @@ def main() -> int:
         node.destroy_node()
 
     return run_program(body, interrupted=130)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

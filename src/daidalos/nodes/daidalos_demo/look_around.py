@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import sys
-
 from daidalos.nodes.runner import run_program
 
 
@@ -30,7 +28,3 @@ def main() -> int:
         node.destroy_node()
 
     return run_program(body)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

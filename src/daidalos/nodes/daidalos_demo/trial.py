@@ -231,7 +231,3 @@ def main() -> int:
         node.destroy_node()
 
     return run_program(body, interrupted=130) or int(not passed)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -1,7 +1,5 @@
 """`add_two_ints_client`: requests the sum of 2 and 3."""
 
-import sys
-
 from daidalos.nodes.hello_world import request_sum
 from daidalos.nodes.runner import run_program
 
@@ -13,7 +11,3 @@ def main() -> int:
             "add_two_ints_client", 2, 3, lambda node, total: node.get_logger().info(f"Result of add_two_ints: {total}")
         )
     )
-
-
-if __name__ == "__main__":
-    sys.exit(main())

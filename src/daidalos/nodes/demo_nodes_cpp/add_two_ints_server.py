@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from typing import Any
 
 from daidalos.nodes.hello_world import Adder
@@ -19,7 +18,3 @@ class AddTwoIntsServer(Adder):
 def main() -> int:
     """Run the node."""
     return run(AddTwoIntsServer)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from typing import Any
 
 from daidalos.nodes.hello_world import HelloListener
@@ -19,7 +18,3 @@ class Listener(HelloListener):
 def main() -> int:
     """Run the node."""
     return run(Listener)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

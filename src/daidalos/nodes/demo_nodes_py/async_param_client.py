@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Sequence
 from typing import Any
 
@@ -58,7 +57,3 @@ def main() -> int:
             node.destroy_node()
 
     return run_program(body)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

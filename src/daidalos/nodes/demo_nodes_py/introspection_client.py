@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from typing import Any
 
 from rclpy.node import Node
@@ -43,7 +42,3 @@ class IntrospectionClient(Node):
 def main() -> int:
     """Run the node."""
     return run(IntrospectionClient)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

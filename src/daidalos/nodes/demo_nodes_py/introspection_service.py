@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from typing import Any
 
 from daidalos.nodes.demo_nodes_py._introspection import follow_parameter
@@ -27,7 +26,3 @@ class IntrospectionService(Adder):
 def main() -> int:
     """Run the node."""
     return run(IntrospectionService)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from typing import Any
 
 from rclpy.node import Node
@@ -50,7 +49,3 @@ class SetParametersCallback(Node):
 def main() -> int:
     """Run the node."""
     return run(SetParametersCallback)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

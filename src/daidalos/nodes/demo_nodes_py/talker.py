@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from typing import Any
 
 from daidalos.nodes.hello_world import HelloTalker
@@ -19,7 +18,3 @@ class Talker(HelloTalker):
 def main() -> int:
     """Run the node."""
     return run(Talker)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

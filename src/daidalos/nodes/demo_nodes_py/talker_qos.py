@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from typing import Any
 
 from daidalos.nodes.demo_nodes_py._quality import parse, profile
@@ -34,7 +33,3 @@ def main() -> int:
             node.destroy_node()
 
     return run_program(body)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from typing import Any
 
 import numpy as np
@@ -78,7 +77,3 @@ class DepthImageToLaserScan(Node):
 def main() -> int:
     """Run the node."""
     return run(DepthImageToLaserScan)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable
 from typing import Any
 
@@ -24,7 +23,3 @@ class MinimalActionClient(FibonacciClient):
 def main() -> int:
     """Request ten numbers."""
     return run_program(lambda: run_client(MinimalActionClient, ORDER, talkative=True))
-
-
-if __name__ == "__main__":
-    sys.exit(main())

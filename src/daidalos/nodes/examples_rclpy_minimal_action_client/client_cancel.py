@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from typing import Any
 
 from daidalos.nodes.examples_rclpy_minimal_action_client.client import ORDER, MinimalActionClient
@@ -34,7 +33,3 @@ class CancellingActionClient(MinimalActionClient):
 def main() -> int:
     """Request ten numbers and cancel the goal."""
     return run_program(lambda: run_client(CancellingActionClient, ORDER, talkative=True))
-
-
-if __name__ == "__main__":
-    sys.exit(main())

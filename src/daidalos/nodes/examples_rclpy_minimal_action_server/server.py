@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from typing import Any
 
 from daidalos.nodes.fibonacci import FibonacciServer
@@ -36,7 +35,3 @@ class MinimalActionServer(FibonacciServer):
 def main() -> int:
     """Run the node."""
     return run(MinimalActionServer)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

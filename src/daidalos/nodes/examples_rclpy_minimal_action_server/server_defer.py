@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from typing import Any
 
 from daidalos.nodes.examples_rclpy_minimal_action_server.server import MinimalActionServer
@@ -28,7 +27,3 @@ class DeferringActionServer(MinimalActionServer):
 def main() -> int:
     """Run the node."""
     return run(DeferringActionServer)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections import deque
 from typing import Any
 
@@ -41,7 +40,3 @@ class QueueingActionServer(MinimalActionServer):
 def main() -> int:
     """Run the node."""
     return run(QueueingActionServer)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -1,7 +1,5 @@
 """Client that requests the sum of 41 and 1."""
 
-import sys
-
 from daidalos.nodes.hello_world import request_sum
 from daidalos.nodes.runner import run_program
 
@@ -18,7 +16,3 @@ def main() -> int:
             lambda node, total: node.get_logger().info(f"Result of add_two_ints: for {_A} + {_B} = {total}"),
         )
     )
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -235,7 +235,3 @@ def main() -> int:
         print(f"error: {error}", file=sys.stderr)
         return 2
     return serve(Start(world, arguments.pause, steps=arguments.iters), arguments.seed, arguments.verbose)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -199,7 +199,3 @@ def spawn(words: Sequence[str], joints: Mapping[str, float], prog: str) -> None:
 def main() -> int:
     """Run the program."""
     return run_program(lambda: spawn(remove_ros_args(sys.argv)[1:], {}, "spawn_entity.py"), interrupted=130)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

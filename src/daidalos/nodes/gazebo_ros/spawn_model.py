@@ -44,7 +44,3 @@ def main() -> int:
         spawn(arguments, joints, prog="spawn_model")
 
     return run_program(body, interrupted=130)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

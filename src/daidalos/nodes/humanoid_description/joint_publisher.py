@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import sys
 from typing import Any
 
 from rclpy.node import Node
@@ -46,7 +45,3 @@ class JointPublisher(Node):
 def main() -> int:
     """Run the node."""
     return run(JointPublisher)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -156,7 +156,3 @@ def description_from_arguments() -> dict[str, str]:
 def main() -> int:
     """Run the node."""
     return run(lambda: JointStatePublisher(**description_from_arguments()))
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import random
-import sys
 from typing import Any
 
 from daidalos.nodes.joint_state_publisher.joint_state_publisher import JointStatePublisher, description_from_arguments
@@ -69,7 +68,3 @@ def main() -> int:
         "joints",
         lambda node: {"node": node.get_fully_qualified_name()},
     )
-
-
-if __name__ == "__main__":
-    sys.exit(main())

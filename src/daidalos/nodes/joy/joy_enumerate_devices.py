@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import sys
-
 from daidalos.nodes.joystick import FOLDER, device_name, devices
 
 
@@ -17,7 +15,3 @@ def main() -> int:
     for place, path in enumerate(found):
         print(f"{place:2d} : {path} : {device_name(path)}")
     return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())

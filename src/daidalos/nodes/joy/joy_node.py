@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -46,7 +45,3 @@ class JoyNode(JoystickNode):
 def main() -> int:
     """Run the node."""
     return run(JoyNode)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

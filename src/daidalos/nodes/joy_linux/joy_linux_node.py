@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -44,7 +43,3 @@ class JoyLinuxNode(JoystickNode):
 def main() -> int:
     """Run the node."""
     return run(JoyLinuxNode)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

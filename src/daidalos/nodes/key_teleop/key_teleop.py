@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from dataclasses import dataclass
 from typing import Any
 
@@ -85,7 +84,3 @@ class KeyTeleop(Node):
 def main() -> int:
     """Run the node."""
     return run_with_keyboard(KeyTeleop, KeyTeleop.steer)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

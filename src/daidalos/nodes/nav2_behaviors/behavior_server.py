@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 from types import SimpleNamespace
@@ -225,7 +224,3 @@ def _feedback(action: Any, field: str, value: float) -> Any:
 def main() -> int:
     """Run the node."""
     return run(BehaviorServer)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

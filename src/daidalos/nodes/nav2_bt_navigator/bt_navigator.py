@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -185,7 +184,3 @@ def _remaining(path: Any, pose: Any) -> float:
 def main() -> int:
     """Run the node."""
     return run(BtNavigator)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -233,7 +232,3 @@ class ControllerServer(ManagedNode):
 def main() -> int:
     """Run the node."""
     return run(ControllerServer)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

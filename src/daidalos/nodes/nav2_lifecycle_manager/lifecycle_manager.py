@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from dataclasses import dataclass
 from enum import IntEnum
 from typing import Any
@@ -171,7 +170,3 @@ class LifecycleManager(Node):
 def main() -> int:
     """Run the node."""
     return run(LifecycleManager)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -50,7 +50,3 @@ def main() -> int:
     saved: list[bool] = []
     status = run_program(lambda: saved.append(_save(arguments)), interrupted=1)
     return status or int(saved != [True])
-
-
-if __name__ == "__main__":
-    sys.exit(main())

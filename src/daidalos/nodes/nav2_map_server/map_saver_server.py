@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from typing import Any
 
 from daidalos.nodes.managed import ManagedNode
@@ -46,7 +45,3 @@ class MapSaver(ManagedNode):
 def main() -> int:
     """Run the node."""
     return run(MapSaver)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -140,7 +139,3 @@ def _path_of(url: str) -> Path:
 def main() -> int:
     """Run the node."""
     return run(MapServer)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

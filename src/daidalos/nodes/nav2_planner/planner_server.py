@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 import time
 from dataclasses import dataclass
 from typing import Any
@@ -131,7 +130,3 @@ class PlannerServer(ManagedNode):
 def main() -> int:
     """Run the node."""
     return run(PlannerServer)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -1,7 +1,5 @@
 """`plotjuggler`: opens the studio at its plots."""
 
-import sys
-
 from daidalos.nodes.studio_window import parse, read_arrangement, run_studio, studio_parser
 from daidalos.studio.arrangement import Arrangement
 from daidalos.studio.plotjuggler_layout import read_plotjuggler
@@ -19,7 +17,3 @@ def main() -> int:
     if arguments.layout:
         arrangement, details = read_arrangement(arguments.layout, read_plotjuggler, parser)
     return run_studio("plotjuggler", "plot", arguments, arrangement, **details)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from typing import Any
 
 from laser_geometry import LaserProjection
@@ -38,7 +37,3 @@ class LaserScanToPointCloud(Node):
 def main() -> int:
     """Run the node."""
     return run(LaserScanToPointCloud)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

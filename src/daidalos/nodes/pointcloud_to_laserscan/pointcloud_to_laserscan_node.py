@@ -81,7 +81,3 @@ class PointCloudToLaserScan(Node):
 def main() -> int:
     """Run the node."""
     return run(PointCloudToLaserScan)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from typing import Any
 
 from rclpy.node import Node
@@ -92,7 +91,3 @@ def _arguments(request: Any, context: Any) -> dict[str, Any]:
 def main() -> int:
     """Run the node."""
     return run(ComponentContainer)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

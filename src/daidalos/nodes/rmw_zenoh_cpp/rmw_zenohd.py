@@ -32,7 +32,3 @@ def main() -> int:
     ended.wait()
     router.close()
     return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())

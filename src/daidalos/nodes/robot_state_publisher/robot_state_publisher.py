@@ -204,7 +204,3 @@ def main() -> int:
     """Run the node."""
     files = remove_ros_args(sys.argv)[1:]
     return run(lambda: _from_file(files[0]) if files else RobotStatePublisher())
-
-
-if __name__ == "__main__":
-    sys.exit(main())

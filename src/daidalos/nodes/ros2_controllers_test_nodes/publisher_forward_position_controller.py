@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from typing import Any
 
 from daidalos.nodes.ros2_controllers_test_nodes._goals import GoalPublisher
@@ -36,7 +35,3 @@ class ForwardPositionPublisher(GoalPublisher):
 def main() -> int:
     """Run the node."""
     return run(ForwardPositionPublisher)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import sys
 from typing import Any
 
 from daidalos.nodes.ros2_controllers_test_nodes._goals import GoalPublisher
@@ -98,7 +97,3 @@ class JointTrajectoryPublisher(GoalPublisher):
 def main() -> int:
     """Run the node."""
     return run(JointTrajectoryPublisher)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -160,7 +160,3 @@ def _forwarding_callback(publisher: Any, own: set[bytes], convert: Converter | N
 def main() -> int:
     """Run the node."""
     return run(lambda: ParameterBridge(remove_ros_args(sys.argv)[1:]))
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -19,7 +19,3 @@ def _bridge(topics: list[str]) -> ParameterBridge:
 def main() -> int:
     """Run the node."""
     return run(lambda: _bridge(remove_ros_args(sys.argv)[1:]))
-
-
-if __name__ == "__main__":
-    sys.exit(main())

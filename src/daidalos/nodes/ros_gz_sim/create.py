@@ -144,7 +144,3 @@ def main() -> int:
     """Run the program."""
     arguments = parse(remove_ros_args(sys.argv)[1:])
     return run_program(lambda: _create(arguments), interrupted=130)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -57,7 +57,3 @@ def main() -> int:
         return 2
     start = Start(world, not arguments.run, arguments.rate, arguments.iterations)
     return serve(start, arguments.seed, arguments.verbose >= _DEBUG)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

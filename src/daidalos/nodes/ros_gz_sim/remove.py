@@ -38,7 +38,3 @@ def main() -> int:
     parser.add_argument("-name", "--name", default="", help="of the entity")
     arguments = parser.parse_args(remove_ros_args(sys.argv)[1:])
     return run_program(lambda: _remove(arguments.world, arguments.name), interrupted=130)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -1,7 +1,5 @@
 """`rqt_graph`: opens the studio at its graph panel."""
 
-import sys
-
 from daidalos.nodes.studio_window import parse, rqt_node_name, run_studio, studio_parser
 
 
@@ -12,7 +10,3 @@ def main() -> int:
         "graph",
         parse(studio_parser("rqt_graph", "Nodes and topics, and who talks to whom, in the studio.")),
     )
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -1,7 +1,5 @@
 """`rqt_gui`, which the command ``rqt`` starts: the whole studio, or one of its panels."""
 
-import sys
-
 from daidalos.nodes.studio_window import parse, rqt_node_name, run_studio, studio_parser
 
 _PANELS = {
@@ -34,7 +32,3 @@ def main() -> int:
             parser.error(f"there is no plugin '{arguments.standalone}'; there are: {', '.join(_PANELS)}")
         panel = _PANELS[name]
     return run_studio(rqt_node_name(), panel, arguments)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -1,7 +1,5 @@
 """`rqt_publisher`: the studio, opened at its panel."""
 
-import sys
-
 from daidalos.nodes.studio_window import parse, rqt_node_name, run_studio, studio_parser
 
 
@@ -10,7 +8,3 @@ def main() -> int:
     return run_studio(
         rqt_node_name(), "publish", parse(studio_parser("rqt_publisher", "Publishing messages by hand, in the studio."))
     )
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -1,7 +1,5 @@
 """`rqt_reconfigure`: the studio, opened at its panel."""
 
-import sys
-
 from daidalos.nodes.studio_window import parse, rqt_node_name, run_studio, studio_parser
 
 
@@ -9,7 +7,3 @@ def main() -> int:
     """Serve the studio and open it."""
     description = "Parameters of nodes, in the studio."
     return run_studio(rqt_node_name(), "parameters", parse(studio_parser("rqt_reconfigure", description)))
-
-
-if __name__ == "__main__":
-    sys.exit(main())

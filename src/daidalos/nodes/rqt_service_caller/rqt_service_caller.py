@@ -1,7 +1,5 @@
 """`rqt_service_caller`: the studio, opened at its panel."""
 
-import sys
-
 from daidalos.nodes.studio_window import parse, rqt_node_name, run_studio, studio_parser
 
 
@@ -12,7 +10,3 @@ def main() -> int:
         "service",
         parse(studio_parser("rqt_service_caller", "Calling services by hand, in the studio.")),
     )
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -1,7 +1,5 @@
 """`rqt_topic`: the studio, opened at its panel."""
 
-import sys
-
 from daidalos.nodes.studio_window import parse, rqt_node_name, run_studio, studio_parser
 
 
@@ -10,7 +8,3 @@ def main() -> int:
     return run_studio(
         rqt_node_name(), "topics", parse(studio_parser("rqt_topic", "Topics and their messages, in the studio."))
     )
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -1,7 +1,5 @@
 """`rviz2`: the studio, opened at its 3-D view."""
 
-import sys
-
 from daidalos.nodes.studio_window import parse, read_arrangement, run_studio, studio_parser
 from daidalos.studio.rviz_config import read_rviz
 
@@ -21,7 +19,3 @@ def main() -> int:
         arrangement, named = read_arrangement(arguments.display_config, read_rviz, parser)
         details |= named
     return run_studio("rviz", "scene", arguments, arrangement, **details)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

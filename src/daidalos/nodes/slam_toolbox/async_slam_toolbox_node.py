@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 import threading
 from dataclasses import dataclass
 from typing import Any
@@ -185,7 +184,3 @@ class SlamToolbox(Node):
 def main() -> int:
     """Run the node."""
     return run(SlamToolbox)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

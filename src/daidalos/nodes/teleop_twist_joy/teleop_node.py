@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from typing import Any
 
 from geometry_msgs.msg import Twist, TwistStamped
@@ -95,7 +94,3 @@ class TeleopTwistJoy(Node):
 def main() -> int:
     """Run the node."""
     return run(TeleopTwistJoy)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from dataclasses import dataclass
 from typing import Any
 
@@ -137,7 +136,3 @@ class TeleopTwistKeyboard(Node):
 def main() -> int:
     """Run the node."""
     return run_with_keyboard(TeleopTwistKeyboard, TeleopTwistKeyboard.steer)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from typing import Any
 
 from rclpy.duration import Duration
@@ -28,7 +27,3 @@ class BufferServerNode(Node):
 def main() -> int:
     """Run the node."""
     return run(BufferServerNode)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

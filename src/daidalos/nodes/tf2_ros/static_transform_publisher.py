@@ -147,7 +147,3 @@ def main() -> int:
         return StaticTransformBroadcasterNode(f"static_transform_publisher_{ending}", parameter_overrides=overrides)
 
     return run_program(read) or run(make)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

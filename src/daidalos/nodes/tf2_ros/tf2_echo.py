@@ -96,7 +96,3 @@ def main() -> int:
         return 0 if set(words) & {"-h", "--help"} else 255
     rates: list[float] = []
     return run_program(lambda: rates.append(_rate(words))) or run(lambda: TransformEcho(words[0], words[1], *rates))
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -159,7 +159,3 @@ def main() -> int:
             raise UserError(_USAGE)
 
     return run_program(check) or run(lambda: TransformMonitor((words[0], words[1]) if words else None))
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -102,7 +102,3 @@ def main() -> int:
     """Listen, then write ``frames_DATE.pdf``, ``.svg`` and ``.gv``."""
     arguments = _parse()
     return run_program(lambda: _view(arguments))
-
-
-if __name__ == "__main__":
-    sys.exit(main())

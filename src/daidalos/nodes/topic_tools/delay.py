@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections import deque
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -55,7 +54,3 @@ def _read(words: Sequence[str]) -> dict[str, Any]:
 def main() -> int:
     """Run the node."""
     return run_tool(DelayNode, "delay <intopic> <delay> [outtopic]", _read)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

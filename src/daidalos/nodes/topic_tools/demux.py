@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -62,7 +61,3 @@ def _read(words: Sequence[str]) -> dict[str, Any]:
 def main() -> int:
     """Run the node."""
     return run_tool(DemuxNode, "demux <intopic> <outtopic1> [outtopic2 ...]", _read)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

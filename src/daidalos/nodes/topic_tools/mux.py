@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -55,7 +54,3 @@ def _read(words: Sequence[str]) -> dict[str, Any]:
 def main() -> int:
     """Run the node."""
     return run_tool(MuxNode, "mux <outtopic> <intopic1> [intopic2 ...]", _read)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

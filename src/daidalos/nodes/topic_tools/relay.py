@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from typing import Any
 
 from daidalos.nodes.topic_tools._tool import Tool, run_tool, topics
@@ -18,7 +17,3 @@ class RelayNode(Tool):
 def main() -> int:
     """Run the node."""
     return run_tool(RelayNode, "relay <intopic> [outtopic]", lambda words: topics(*words))
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from typing import Any
 
 import yaml
@@ -46,7 +45,3 @@ def main() -> int:
         return output
 
     return run_expression("relay_field", arguments, apply)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections import deque
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -88,7 +87,3 @@ def main() -> int:
         "       throttle bytes <intopic> <bytes_per_sec> <window> [outtopic]"
     )
     return run_tool(ThrottleNode, usage, _read)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

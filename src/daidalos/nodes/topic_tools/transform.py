@@ -60,7 +60,3 @@ def main() -> int:
         return output
 
     return run_expression("transform", arguments, apply)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

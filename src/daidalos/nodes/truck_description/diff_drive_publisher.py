@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from typing import Any
 
 from rclpy.node import Node
@@ -38,7 +37,3 @@ class DiffDrivePublisher(Node):
 def main() -> int:
     """Run the node."""
     return run(DiffDrivePublisher)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

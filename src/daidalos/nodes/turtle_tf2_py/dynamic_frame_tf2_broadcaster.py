@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import sys
 from typing import Any
 
 from rclpy.node import Node
@@ -34,7 +33,3 @@ class DynamicFrameTf2Broadcaster(Node):
 def main() -> int:
     """Run the node."""
     return run(DynamicFrameTf2Broadcaster)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

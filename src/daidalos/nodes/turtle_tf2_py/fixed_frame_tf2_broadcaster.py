@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from typing import Any
 
 from rclpy.node import Node
@@ -29,7 +28,3 @@ class FixedFrameTf2Broadcaster(Node):
 def main() -> int:
     """Run the node."""
     return run(FixedFrameTf2Broadcaster)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -41,7 +41,3 @@ def main() -> int:
         print('Your static turtle name cannot be "world"', file=sys.stderr)
         return 2
     return run(lambda: StaticTurtleTf2Broadcaster(name, numbers))
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from typing import Any
 
 from rclpy.node import Node
@@ -33,7 +32,3 @@ class TurtleTf2Broadcaster(Node):
 def main() -> int:
     """Run the node."""
     return run(TurtleTf2Broadcaster)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import sys
 from typing import Any
 
 from rclpy.node import Node
@@ -70,7 +69,3 @@ class TurtleTf2Listener(Node):
 def main() -> int:
     """Run the node."""
     return run(TurtleTf2Listener)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

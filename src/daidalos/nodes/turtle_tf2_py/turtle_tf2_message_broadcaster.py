@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from typing import Any
 
 from rclpy.node import Node
@@ -53,7 +52,3 @@ class TurtleTf2MessageBroadcaster(Node):
 def main() -> int:
     """Run the node."""
     return run(TurtleTf2MessageBroadcaster)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import sys
 from typing import Any
 
 from rclpy.node import Node
@@ -97,7 +96,3 @@ def _ahead(pose: Any) -> tuple[float, float, float]:
 def main() -> int:
     """Run the node."""
     return run(DrawSquare)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from typing import Any
 
 from rclpy.node import Node
@@ -30,7 +29,3 @@ class Mimic(Node):
 def main() -> int:
     """Run the node."""
     return run(Mimic)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import sys
 from typing import Any
 
 from rclpy.node import Node
@@ -92,7 +91,3 @@ def _cancel_goal(answer: Any) -> None:
 def main() -> int:
     """Run the node."""
     return run_with_keyboard(TeleopTurtle, TeleopTurtle.steer)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -211,7 +211,3 @@ def main() -> int:
     if arguments.headless:
         return run(TurtleSim)
     return run_with_window(TurtleSim, "turtlesim", lambda node: {"window": node.window_topic})
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from functools import partial
 from typing import Any, TypeVar
 
@@ -99,7 +98,3 @@ def _words(source: Source, state: str) -> str:
 def main() -> int:
     """Run the node."""
     return run(TwistMux)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from dataclasses import dataclass
 from typing import Any
 
@@ -40,7 +39,3 @@ class TwistStamper(Node):
 def main() -> int:
     """Run the node."""
     return run(TwistStamper)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

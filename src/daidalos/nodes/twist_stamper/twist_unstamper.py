@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from typing import Any
 
 from geometry_msgs.msg import Twist, TwistStamped
@@ -23,7 +22,3 @@ class TwistUnstamper(Node):
 def main() -> int:
     """Run the node."""
     return run(TwistUnstamper)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

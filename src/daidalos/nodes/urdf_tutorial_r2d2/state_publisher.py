@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import sys
 from typing import Any
 
 from rclpy.node import Node
@@ -73,7 +72,3 @@ class StatePublisher(Node):
 def main() -> int:
     """Run the node."""
     return run(StatePublisher)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

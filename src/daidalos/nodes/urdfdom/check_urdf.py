@@ -24,7 +24,3 @@ def main() -> int:
         return 2
     print(tree_text(robot), end="")
     return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())

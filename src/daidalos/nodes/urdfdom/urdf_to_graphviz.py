@@ -31,7 +31,3 @@ def main() -> int:
         print(f"error: cannot write '{error.filename}': {error.strerror}", file=sys.stderr)
         return 2
     return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -49,7 +49,3 @@ def _located(said: str) -> str:
         more = [f"... and {len(way) - _SHOWN} more"] if len(way) > _SHOWN else []
         return "\n".join([f"error: {error}", *way[:_SHOWN], *more]) + "\n"
     return said  # such as an undefined M_PI, which other tools define
-
-
-if __name__ == "__main__":
-    sys.exit(main())
