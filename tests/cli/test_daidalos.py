@@ -1,5 +1,6 @@
 """`daidalos` itself, and `daidalos extensions`."""
 
+import io
 import json
 
 import pytest
@@ -47,6 +48,22 @@ def test_extensions_are_listed_with_where_they_come_from(capsys: pytest.CaptureF
     line = next(line for line in shown.splitlines() if "gpu_lidar" in line or "lidar:Lidar" in line)
     assert "daidalos.simulation.sensors.lidar:Lidar" in line
     assert "built in" in line
+
+
+def test_long_classes_are_folded_and_not_truncated(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Terminal(io.StringIO):
+        def isatty(self) -> bool:
+            return True
+
+    monkeypatch.setenv("TERM", "dumb")
+    monkeypatch.setenv("COLUMNS", "100")
+    monkeypatch.setattr("sys.stdout", shown := Terminal())
+    assert main(["extensions", "behavior"]) == 0
+    *table, _ = shown.getvalue().splitlines()
+    assert max(len(line) for line in table) <= 100
+    rows = [line.split() for line in table]
+    after = next(i for i, row in enumerate(rows) if row and row[0] == "nav2_behaviors::DriveOnHeading")
+    assert rows[after][1] + rows[after + 1][0] == "daidalos.navigation.behaviors.drive_on_heading:DriveOnHeading"
 
 
 def test_extensions_are_printed_as_json(capsys: pytest.CaptureFixture[str]) -> None:

@@ -102,7 +102,9 @@ def _print_table(title: str, headings: tuple[str, ...], rows: Sequence[tuple[str
     from rich.console import Console
     from rich.table import Table
 
-    table = Table(*headings, title=title, box=SIMPLE_HEAD, title_justify="left")
+    table = Table(title=title, box=SIMPLE_HEAD, title_justify="left")
+    for heading in headings:
+        table.add_column(heading, overflow="fold")
     for row in rows:
         table.add_row(*row)
     console = Console()
