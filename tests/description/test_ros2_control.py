@@ -52,6 +52,7 @@ def test_hardware_with_joints_sensors_gpios_and_transmissions() -> None:
         <actuator name="motor" role="actuator1"/></transmission>""")
     assert (info.name, info.type, info.plugin) == ("arm_system", "system", "mock_components/GenericSystem")
     assert info.parameters == {"mock_sensor_commands": "true"}
+    assert info.location.line == 1 + ROBOT.partition("{}")[0].count("\n")
     assert (info.rw_rate, info.is_async) == (50.0, True)
     assert info.command_names == ("elbow/position", "elbow/velocity", "valve/open")
     assert info.state_names == ("elbow/position", "elbow/velocity", "wrist/force.x", "valve/open")

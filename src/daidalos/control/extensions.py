@@ -5,7 +5,6 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING
 
-from daidalos.common.errors import Location
 from daidalos.common.extensions import Kind, classes_in, find
 
 if TYPE_CHECKING:
@@ -31,4 +30,4 @@ KINDS = (CONTROLLERS, HARDWARE)
 
 def hardware_class(info: HardwareInfo) -> type[Hardware]:
     """Return the class that a ``<ros2_control>`` element names; raises `ExtensionError` where there is none."""
-    return find(HARDWARE, info.plugin, asked_by=Location(info.where or None, name=info.name))
+    return find(HARDWARE, info.plugin, asked_by=info.location._replace(name=info.name))

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
 
+from daidalos.common.errors import Location
 from daidalos.description.joint import Joint, Mimic
 from daidalos.description.markup import Element
 from daidalos.description.robot import Robot
@@ -112,8 +113,8 @@ class HardwareInfo:
         How often it is read and written [Hz]; 0 is as often as the controllers run.
     is_async : bool
         Whether it asks for a thread of its own.
-    where : str
-        Its place in the description, for errors.
+    location : Location
+        File and line of the element, for errors.
     """
 
     name: str
@@ -124,7 +125,7 @@ class HardwareInfo:
     transmissions: tuple[TransmissionInfo, ...] = ()
     rw_rate: float = 0.0
     is_async: bool = False
-    where: str = field(default="", compare=False)
+    location: Location = field(default=Location(), compare=False)
 
     @property
     def joints(self) -> tuple[ComponentInfo, ...]:
@@ -201,7 +202,7 @@ def _read_one(element: Element, joints: Mapping[str, Joint]) -> HardwareInfo:
         transmissions=tuple(_read_transmission(child) for child in element.all("transmission")),
         rw_rate=element.number_attribute("rw_rate", 0.0),
         is_async=_flag(element, "is_async", default=False),
-        where=element.where,
+        location=element.location,
     )
     if kind == "sensor" and info.command_names:
         raise element.error(f"hardware of type sensor takes no commands, got {info.command_names[0]!r}")

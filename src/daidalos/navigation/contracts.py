@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from daidalos.common.errors import Location
 from daidalos.common.extensions import Kind, find
-from daidalos.navigation.costmap.costmap import Bounds, Costmap, Window
+from daidalos.navigation.costmap.costmap import FREE_SPACE, Bounds, Costmap, Window
 from daidalos.navigation.costmap.footprint import Footprint
 
 if TYPE_CHECKING:
@@ -399,6 +399,10 @@ class Layer(NavigationExtension):
     @abstractmethod
     def update_costs(self, costmap: Costmap, window: Window) -> None:
         """Write this layer's costs into a window of the costmap, on top of the layers below."""
+
+    def cost_at_distance(self, distance: float) -> int:
+        """Return the cost that this layer gives a cell at a distance [m] from an obstacle."""
+        return FREE_SPACE
 
     def clear(self, keep: Window, *, inside: bool) -> None:
         """Clear the inside of a window of cells, or its outside."""

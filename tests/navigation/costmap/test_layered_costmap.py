@@ -147,6 +147,16 @@ def test_the_circumscribed_cost_comes_from_inflation():
     assert LayeredCostmap(CostmapParameters(), []).circumscribed_cost(box) == 1
 
 
+def test_the_circumscribed_cost_is_the_highest_of_any_layer():
+    class Halo(StaticLayer):
+        def cost_at_distance(self, distance):
+            return round(100 - 10 * distance)
+
+    box = Footprint.of_corners(np.array([[0.4, 0.3], [0.4, -0.3], [-0.4, -0.3], [-0.4, 0.3]]))
+    layers = [StaticLayer(), Halo(), InflationLayer(InflationLayerParameters(0.1, 3.0))]
+    assert LayeredCostmap(CostmapParameters(resolution=0.1), layers).circumscribed_cost(box) == 94
+
+
 def test_sizes_must_be_positive():
     with pytest.raises(ParameterError, match="must be above 0"):
         CostmapParameters(width=0.0)

@@ -165,7 +165,7 @@ def _with_mock_commands(info: HardwareInfo) -> HardwareInfo:
 def _flag(info: HardwareInfo, name: str) -> bool:
     word = info.parameters.get(name, "false").strip().lower()
     if word not in ("true", "false", "1", "0", ""):
-        raise HardwareError(f"{info.where}: parameter '{name}' should be true or false, got '{word}'")
+        raise HardwareError(f"parameter '{name}' should be true or false, got '{word}'", info.location)
     return word in ("true", "1")
 
 
@@ -176,7 +176,7 @@ def _number(info: HardwareInfo, *names: str) -> float:
             if text:
                 return float(text)
         except ValueError:
-            raise HardwareError(f"{info.where}: parameter '{name}' should be a number, got '{text}'") from None
+            raise HardwareError(f"parameter '{name}' should be a number, got '{text}'", info.location) from None
     return 0.0
 
 

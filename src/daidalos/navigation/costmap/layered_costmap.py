@@ -17,7 +17,6 @@ from daidalos.navigation.costmap.costmap import (
     Window,
 )
 from daidalos.navigation.costmap.footprint import Footprint
-from daidalos.navigation.costmap.layers.inflation_layer import InflationLayer
 
 Array = NDArray[np.float64]
 
@@ -94,12 +93,8 @@ class LayeredCostmap:
 
     def circumscribed_cost(self, footprint: Footprint) -> int:
         """Return the minimum cost at the robot's centre at which some part may touch an obstacle, at least 1."""
-        costs = [
-            layer.cost_at(footprint.circumscribed_radius + self.costmap.resolution)
-            for layer in self.layers
-            if isinstance(layer, InflationLayer)
-        ]
-        return max([1, *costs])
+        distance = footprint.circumscribed_radius + self.costmap.resolution
+        return max([1, *(layer.cost_at_distance(distance) for layer in self.layers)])
 
     def clear_entirely(self) -> None:
         """Clear all observations (`ClearEntireCostmap`)."""

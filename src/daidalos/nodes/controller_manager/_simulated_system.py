@@ -49,8 +49,9 @@ class SimulatedSystem(Hardware):
         super().__init__(info, context)
         if plugin is None:
             raise HardwareError(
-                f"{info.where}: '{info.plugin}' is the simulator's; it runs where the robot's <gazebo> element "
-                "has the plugin gazebo_ros2_control or gz_ros2_control"
+                f"'{info.plugin}' is the simulator's; it runs where the robot's <gazebo> element "
+                "has the plugin gazebo_ros2_control or gz_ros2_control",
+                info.location,
             )
         self._plugin = plugin
         drives = plugin.drives
@@ -75,7 +76,7 @@ class SimulatedSystem(Hardware):
                 if command.name not in _MODES:
                     known = ", ".join(_MODES)
                     self.context.warn(
-                        f"{self.info.where}: command interface '{joint.name}/{command.name}' moves nothing; "
+                        f"{self.info.location.prefix()}command interface '{joint.name}/{command.name}' moves nothing; "
                         f"the simulation has {known}"
                     )
 

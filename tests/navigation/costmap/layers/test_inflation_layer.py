@@ -95,7 +95,7 @@ def test_around_unknown():
 
 def test_cost_at_a_distance():
     layer = InflationLayer(InflationLayerParameters(0.5, 3.0), NavigationContext(footprint=Footprint.circle(0.2)))
-    assert [layer.cost_at(d) for d in (0.0, 0.2, 0.3, 0.6)] == [253, 253, 186, 0]
+    assert [layer.cost_at_distance(d) for d in (0.0, 0.2, 0.3, 0.6)] == [253, 253, 186, 0]
 
 
 def test_negative_parameters_are_refused():

@@ -62,8 +62,8 @@ class InflationLayer(Layer):
         super().reconfigure(parameters)
         self._table, self._is_outdated = None, True
 
-    def cost_at(self, distance: float) -> int:
-        """Return the cost at a distance [m] from an obstacle."""
+    def cost_at_distance(self, distance: float) -> int:
+        """Implement `Layer.cost_at_distance`."""
         if distance > self.parameters.inflation_radius:
             return FREE_SPACE
         if distance <= self.inscribed_radius:
