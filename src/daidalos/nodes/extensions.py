@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from daidalos.common.extensions import Extension, Kind, find, listing
+from daidalos.common.names import camel_case
 from daidalos.workspaces.executables import BUILT_IN
 
 if TYPE_CHECKING:
@@ -33,7 +34,7 @@ def _components_of(folder: Path) -> Iterator[Extension]:
     if "COMPONENTS" in (folder / "__init__.py").read_text("utf-8"):
         named = import_module(f"daidalos.nodes.{package}").COMPONENTS
     for path in sorted(folder.glob("*.py")):
-        name = "".join(word.capitalize() for word in path.stem.split("_"))
+        name = camel_case(path.stem)
         text = "" if path.stem.startswith("_") else path.read_text("utf-8")
         if name not in named and re.search(rf"^class {name}\b", text, re.M):
             named = {**named, name: f"{path.stem}:{name}"}

@@ -13,7 +13,7 @@ import sys
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from types import TracebackType
+    from types import ModuleType, TracebackType
 
 _signal.signal(_signal.SIGINT, _signal.SIG_DFL)
 if hasattr(_signal, "pthread_sigmask"):
@@ -31,7 +31,7 @@ MISTAKES = {
 
 
 def main() -> None:
-    """Run the function `main` of a module of a package; it returns the exit status."""
+    """Run a module of a package: its function `main`, which returns the exit status, or else the node of its name."""
     import site
     from importlib import import_module
 
@@ -40,7 +40,15 @@ def main() -> None:
     package, module, *arguments = sys.argv[1:]
     program = import_module(f"daidalos.nodes.{package}.{module}")
     sys.argv = [str(program.__file__), *arguments]
-    sys.exit(program.main())
+    sys.exit(program.main() if hasattr(program, "main") else _run_node(program, module))
+
+
+def _run_node(program: ModuleType, module: str) -> int:
+    """Run the node of a module that has no `main`: ``MapServer`` of ``map_server``."""
+    from daidalos.common.names import camel_case
+    from daidalos.nodes.runner import run
+
+    return run(getattr(program, camel_case(module)))
 
 
 def _show(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:

@@ -7,6 +7,7 @@ from functools import cached_property
 from typing import Any
 
 from daidalos.common.extensions import Extension, Kind, describe, listing, load
+from daidalos.common.names import camel_case
 
 
 def built_in(descriptions: Mapping[str, str], package: str, suffix: str) -> Iterable[Extension]:
@@ -22,7 +23,7 @@ def built_in(descriptions: Mapping[str, str], package: str, suffix: str) -> Iter
         The end of the classes' names, such as ``Verb``.
     """
     for name, description in descriptions.items():
-        class_name = "".join(part.capitalize() for part in name.split("_")) + suffix
+        class_name = camel_case(name) + suffix
         yield Extension((name,), f"{package}.{name}:{class_name}", description)
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any
 
 from daidalos.nodes.fibonacci import FibonacciServer
-from daidalos.nodes.runner import run
 
 
 class FibonacciActionServer(FibonacciServer):
@@ -15,8 +14,3 @@ class FibonacciActionServer(FibonacciServer):
         from action_tutorials_interfaces.action import Fibonacci
 
         super().__init__("fibonacci_action_server", Fibonacci, "partial_sequence", "Feedback: {}", **kwargs)
-
-
-def main() -> int:
-    """Run the node."""
-    return run(FibonacciActionServer)

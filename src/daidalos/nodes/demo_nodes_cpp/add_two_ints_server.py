@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any
 
 from daidalos.nodes.hello_world import Adder
-from daidalos.nodes.runner import run
 
 
 class AddTwoIntsServer(Adder):
@@ -13,8 +12,3 @@ class AddTwoIntsServer(Adder):
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__("add_two_ints_server", **kwargs)
-
-
-def main() -> int:
-    """Run the node."""
-    return run(AddTwoIntsServer)

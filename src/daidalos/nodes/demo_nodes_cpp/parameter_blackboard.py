@@ -6,8 +6,6 @@ from typing import Any
 
 from rclpy.node import Node
 
-from daidalos.nodes.runner import run
-
 
 class ParameterBlackboard(Node):
     """Node that accepts every parameter, declared or not."""
@@ -24,8 +22,3 @@ class ParameterBlackboard(Node):
             f"Parameter blackboard node named '{self.get_fully_qualified_name()}' ready, and serving "
             f"'{count}' parameters already!"
         )
-
-
-def main() -> int:
-    """Run the node."""
-    return run(ParameterBlackboard)

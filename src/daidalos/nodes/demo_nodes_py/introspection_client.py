@@ -7,7 +7,6 @@ from typing import Any
 from rclpy.node import Node
 
 from daidalos.nodes.demo_nodes_py._introspection import follow_parameter
-from daidalos.nodes.runner import run
 
 
 class IntrospectionClient(Node):
@@ -37,8 +36,3 @@ class IntrospectionClient(Node):
             self._answer.add_done_callback(
                 lambda answer: self.get_logger().info(f"Result of add_two_ints: {answer.result().sum}")
             )
-
-
-def main() -> int:
-    """Run the node."""
-    return run(IntrospectionClient)

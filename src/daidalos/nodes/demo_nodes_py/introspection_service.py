@@ -6,7 +6,6 @@ from typing import Any
 
 from daidalos.nodes.demo_nodes_py._introspection import follow_parameter
 from daidalos.nodes.hello_world import Adder
-from daidalos.nodes.runner import run
 
 
 class IntrospectionService(Adder):
@@ -21,8 +20,3 @@ class IntrospectionService(Adder):
             "service_configure_introspection",
             lambda state: self.adding.configure_introspection(self.get_clock(), qos_profile_system_default, state),
         )
-
-
-def main() -> int:
-    """Run the node."""
-    return run(IntrospectionService)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any
 
 from daidalos.nodes.hello_world import HelloListener
-from daidalos.nodes.runner import run
 
 
 class Listener(HelloListener):
@@ -13,8 +12,3 @@ class Listener(HelloListener):
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__("listener", "chatter", "I heard: [{}]", **kwargs)
-
-
-def main() -> int:
-    """Run the node."""
-    return run(Listener)

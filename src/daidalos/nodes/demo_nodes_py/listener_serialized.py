@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any
 
 from daidalos.nodes.hello_world import HelloListener
-from daidalos.nodes.runner import run
 
 
 class ListenerSerialized(HelloListener):
@@ -13,8 +12,3 @@ class ListenerSerialized(HelloListener):
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__("serialized_subscriber", "chatter", 'I heard: "{}"', raw=True, **kwargs)
-
-
-def main() -> int:
-    """Run the node."""
-    return run(ListenerSerialized)

@@ -7,8 +7,6 @@ from typing import Any
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 
-from daidalos.nodes.runner import run
-
 _LEADER, _FOLLOWER = "param1", "param2"
 _FOLLOWING = 4.0
 
@@ -44,8 +42,3 @@ class SetParametersCallback(Node):
             if parameter.name in self.tracked:
                 self.tracked[parameter.name] = parameter.value
                 self.get_logger().info(f"{parameter.name} is now {parameter.value}")
-
-
-def main() -> int:
-    """Run the node."""
-    return run(SetParametersCallback)

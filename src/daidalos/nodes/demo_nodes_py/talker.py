@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any
 
 from daidalos.nodes.hello_world import HelloTalker
-from daidalos.nodes.runner import run
 
 
 class Talker(HelloTalker):
@@ -13,8 +12,3 @@ class Talker(HelloTalker):
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__("talker", "chatter", 1.0, 'Publishing: "{}"', first=0, **kwargs)
-
-
-def main() -> int:
-    """Run the node."""
-    return run(Talker)

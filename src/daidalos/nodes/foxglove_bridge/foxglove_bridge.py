@@ -6,7 +6,7 @@ from typing import Any
 
 from rclpy.node import Node
 
-from daidalos.nodes.runner import UserError, run
+from daidalos.nodes.runner import UserError
 from daidalos.nodes.studio import Studio, open_in_browser
 from daidalos.studio.ports import PortError
 from daidalos.studio.server import DEFAULT_PORT, LOOPBACK
@@ -44,8 +44,3 @@ class FoxgloveBridge(Node):
         """Close the page's connections and leave the graph."""
         self._studio.close()
         super().destroy_node()
-
-
-def main() -> int:
-    """Run the node."""
-    return run(FoxgloveBridge)

@@ -7,8 +7,6 @@ from typing import Any
 
 from rclpy.node import Node
 
-from daidalos.nodes.runner import run
-
 _JOINTS = ["left_upper_to_lower_arm", "right_upper_to_lower_arm"]
 _PERIOD = 0.1
 _CURL = 4.0
@@ -40,8 +38,3 @@ class JointPublisher(Node):
             positions=raised, time_from_start=Duration(sec=0, nanosec=round(2 * _PERIOD * 1e9))
         )
         self._publisher.publish(JointTrajectory(joint_names=_JOINTS, points=[point]))
-
-
-def main() -> int:
-    """Run the node."""
-    return run(JointPublisher)

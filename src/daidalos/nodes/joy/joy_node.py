@@ -9,7 +9,6 @@ from typing import Any
 from daidalos.common.parameters import parameter
 from daidalos.nodes.joy._node import JoystickNode, JoystickParameters, device_called
 from daidalos.nodes.joystick import devices
-from daidalos.nodes.runner import run
 
 
 @dataclass(frozen=True)
@@ -40,8 +39,3 @@ class JoyNode(JoystickNode):
             return device_called(self.settings.device_name, self.folder)
         found, place = devices(self.folder), self.settings.device_id
         return found[place] if 0 <= place < len(found) else None
-
-
-def main() -> int:
-    """Run the node."""
-    return run(JoyNode)

@@ -8,7 +8,6 @@ from typing import Any
 
 from daidalos.common.parameters import parameter
 from daidalos.nodes.joy._node import JoystickNode, JoystickParameters, device_called
-from daidalos.nodes.runner import run
 
 
 @dataclass(frozen=True)
@@ -38,8 +37,3 @@ class JoyLinuxNode(JoystickNode):
         named = device_called(self.settings.dev_name, self.folder) if self.settings.dev_name else None
         path = Path(self.settings.dev)
         return named or (path if path.exists() else None)
-
-
-def main() -> int:
-    """Run the node."""
-    return run(JoyLinuxNode)

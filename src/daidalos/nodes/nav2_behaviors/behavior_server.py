@@ -27,7 +27,6 @@ from daidalos.nodes.managed import ManagedNode
 from daidalos.nodes.nav2_costmap_2d._costmap_messages import costmap_of
 from daidalos.nodes.navigation_extensions import ExtensionMaker
 from daidalos.nodes.parameters import declare
-from daidalos.nodes.runner import run
 from daidalos.samples.fields import duration_message, seconds
 
 _LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
@@ -219,8 +218,3 @@ def _feedback(action: Any, field: str, value: float) -> Any:
     is_duration = hasattr(getattr(feedback, field), "nanosec")
     setattr(feedback, field, duration_message(value) if is_duration else float(value))
     return feedback
-
-
-def main() -> int:
-    """Run the node."""
-    return run(BehaviorServer)

@@ -24,7 +24,6 @@ from daidalos.nodes.managed import ManagedNode
 from daidalos.nodes.nav2_bt_navigator._navigation import Navigation
 from daidalos.nodes.nav2_bt_navigator._tasks import GraphServices
 from daidalos.nodes.parameters import declare
-from daidalos.nodes.runner import run
 
 
 @dataclass(frozen=True)
@@ -179,8 +178,3 @@ def _remaining(path: Any, pose: Any) -> float:
     """Return the length [m] of a path (n, 3) from where the robot is."""
     nearest = int(np.argmin(np.hypot(*(path[:, :2] - pose[:2]).T)))
     return float(path_length(path[nearest:]))
-
-
-def main() -> int:
-    """Run the node."""
-    return run(BtNavigator)

@@ -22,7 +22,6 @@ from daidalos.nodes.managed import ContainedNode, ManagedNode
 from daidalos.nodes.nav2_costmap_2d._costmap_node import CostmapNode
 from daidalos.nodes.navigation_extensions import ExtensionMaker
 from daidalos.nodes.parameters import declare
-from daidalos.nodes.runner import run
 
 
 class UnknownController(NavigationError):
@@ -227,8 +226,3 @@ class ControllerServer(ManagedNode):
             self._stop()
         self._contained.destroy()
         super().destroy_node()
-
-
-def main() -> int:
-    """Run the node."""
-    return run(ControllerServer)

@@ -11,7 +11,6 @@ from rclpy.node import Node
 
 from daidalos.common.parameters import Parameters, parameter
 from daidalos.nodes.parameters import declare
-from daidalos.nodes.runner import run
 
 _INACTIVE, _ACTIVE = 2, 3
 
@@ -165,8 +164,3 @@ class LifecycleManager(Node):
     def _on_is_active(self, request: Any, response: Any) -> Any:
         response.success = self._active
         return response
-
-
-def main() -> int:
-    """Run the node."""
-    return run(LifecycleManager)

@@ -16,7 +16,6 @@ from daidalos.nodes.conversions import grid_message, pose_message
 from daidalos.nodes.managed import ManagedNode
 from daidalos.nodes.packages import package_share
 from daidalos.nodes.parameters import declare
-from daidalos.nodes.runner import run
 
 _LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
@@ -134,8 +133,3 @@ def _path_of(url: str) -> Path:
             raise MapFileError(Path(url), None, f"there is no package '{package}'")
         return Path(share) / rest
     return Path(url.removeprefix("file://"))
-
-
-def main() -> int:
-    """Run the node."""
-    return run(MapServer)

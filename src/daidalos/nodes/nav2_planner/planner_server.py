@@ -20,7 +20,6 @@ from daidalos.nodes.managed import ContainedNode, ManagedNode
 from daidalos.nodes.nav2_costmap_2d._costmap_node import CostmapNode
 from daidalos.nodes.navigation_extensions import ExtensionMaker
 from daidalos.nodes.parameters import declare
-from daidalos.nodes.runner import run
 from daidalos.samples.fields import time_message
 
 
@@ -125,8 +124,3 @@ class PlannerServer(ManagedNode):
         """Destroy the node with its costmap."""
         self._contained.destroy()
         super().destroy_node()
-
-
-def main() -> int:
-    """Run the node."""
-    return run(PlannerServer)

@@ -6,8 +6,6 @@ from typing import Any
 
 from rclpy.node import Node
 
-from daidalos.nodes.runner import run
-
 _PERIOD = 0.1
 
 
@@ -32,8 +30,3 @@ class DiffDrivePublisher(Node):
         message.twist.linear.x = float(self.get_parameter("linear").value)
         message.twist.angular.z = float(self.get_parameter("angular").value)
         self._publisher.publish(message)
-
-
-def main() -> int:
-    """Run the node."""
-    return run(DiffDrivePublisher)

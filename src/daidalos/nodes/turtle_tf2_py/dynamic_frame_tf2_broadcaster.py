@@ -7,7 +7,6 @@ from typing import Any
 
 from rclpy.node import Node
 
-from daidalos.nodes.runner import run
 from daidalos.nodes.turtle_tf2_py._transforms import transform
 
 _RADIUS = 10.0
@@ -28,8 +27,3 @@ class DynamicFrameTf2Broadcaster(Node):
         angle = math.pi * (now.nanoseconds % 2_000_000_000) * 1e-9
         place = (_RADIUS * math.sin(angle), _RADIUS * math.cos(angle), 0.0)
         self._broadcaster.sendTransform(transform(now.to_msg(), "turtle1", "carrot1", place))
-
-
-def main() -> int:
-    """Run the node."""
-    return run(DynamicFrameTf2Broadcaster)

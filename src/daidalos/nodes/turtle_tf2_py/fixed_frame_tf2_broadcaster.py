@@ -6,7 +6,6 @@ from typing import Any
 
 from rclpy.node import Node
 
-from daidalos.nodes.runner import run
 from daidalos.nodes.turtle_tf2_py._transforms import transform
 
 
@@ -23,8 +22,3 @@ class FixedFrameTf2Broadcaster(Node):
     def _on_timer(self) -> None:
         stamp = self.get_clock().now().to_msg()
         self._broadcaster.sendTransform(transform(stamp, "turtle1", "carrot1", (0.0, 2.0, 0.0)))
-
-
-def main() -> int:
-    """Run the node."""
-    return run(FixedFrameTf2Broadcaster)

@@ -6,7 +6,6 @@ from typing import Any
 
 from rclpy.node import Node
 
-from daidalos.nodes.runner import run
 from daidalos.nodes.turtle_tf2_py._transforms import transform
 
 
@@ -27,8 +26,3 @@ class TurtleTf2Broadcaster(Node):
         self._broadcaster.sendTransform(
             transform(stamp, "world", self._name, (pose.x, pose.y, 0.0), (0.0, 0.0, pose.theta))
         )
-
-
-def main() -> int:
-    """Run the node."""
-    return run(TurtleTf2Broadcaster)

@@ -8,8 +8,6 @@ from typing import Any
 from rclpy.node import Node
 from rclpy.time import Time
 
-from daidalos.nodes.runner import run
-
 _NAME = "turtle2"
 _TURNING, _DRIVING = 1.0, 0.5  # speeds for an angle of 1 rad and a distance of 1 unit
 
@@ -64,8 +62,3 @@ class TurtleTf2Listener(Node):
         self._commands.publish(
             Twist(linear=Vector3(x=_DRIVING * math.hypot(x, y)), angular=Vector3(z=_TURNING * math.atan2(y, x)))
         )
-
-
-def main() -> int:
-    """Run the node."""
-    return run(TurtleTf2Listener)

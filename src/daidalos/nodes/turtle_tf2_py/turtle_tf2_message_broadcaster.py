@@ -6,8 +6,6 @@ from typing import Any
 
 from rclpy.node import Node
 
-from daidalos.nodes.runner import run
-
 _NAME = "turtle3"
 
 
@@ -47,8 +45,3 @@ class TurtleTf2MessageBroadcaster(Node):
         self._commands.publish(Twist(linear=Vector3(x=1.0), angular=Vector3(z=1.0)))
         header = Header(stamp=self.get_clock().now().to_msg(), frame_id="world")
         self._points.publish(PointStamped(header=header, point=Point(x=pose.x, y=pose.y)))
-
-
-def main() -> int:
-    """Run the node."""
-    return run(TurtleTf2MessageBroadcaster)

@@ -7,7 +7,6 @@ from typing import Any
 
 from rclpy.node import Node
 
-from daidalos.nodes.runner import run
 from daidalos.nodes.turtlesim._turtle import UPDATE_S, normalized
 
 _SIDE = 2.0
@@ -91,8 +90,3 @@ class DrawSquare(Node):
 def _ahead(pose: Any) -> tuple[float, float, float]:
     """Return the pose a side ahead."""
     return pose.x + _SIDE * math.cos(pose.theta), pose.y + _SIDE * math.sin(pose.theta), pose.theta
-
-
-def main() -> int:
-    """Run the node."""
-    return run(DrawSquare)

@@ -6,8 +6,6 @@ from typing import Any
 
 from rclpy.node import Node
 
-from daidalos.nodes.runner import run
-
 
 class Mimic(Node):
     """Node that publishes the velocity of ``input/pose`` as ``output/cmd_vel``."""
@@ -24,8 +22,3 @@ class Mimic(Node):
         from geometry_msgs.msg import Twist, Vector3
 
         self._commands.publish(Twist(linear=Vector3(x=pose.linear_velocity), angular=Vector3(z=pose.angular_velocity)))
-
-
-def main() -> int:
-    """Run the node."""
-    return run(Mimic)

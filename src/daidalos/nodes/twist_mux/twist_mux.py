@@ -12,7 +12,6 @@ from rclpy.node import Node
 from rclpy.publisher import Publisher
 from std_msgs.msg import Bool
 
-from daidalos.nodes.runner import run
 from daidalos.nodes.twist_mux._priorities import Lock, Source, active, lock_priority
 
 S = TypeVar("S", bound=Source)
@@ -93,8 +92,3 @@ class TwistMux(Node):
 
 def _words(source: Source, state: str) -> str:
     return f"{state} (listening to {source.topic} @ {source.timeout:g} s with priority #{source.priority})"
-
-
-def main() -> int:
-    """Run the node."""
-    return run(TwistMux)

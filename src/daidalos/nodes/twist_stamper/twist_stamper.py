@@ -10,7 +10,6 @@ from rclpy.node import Node
 
 from daidalos.common.parameters import Parameters, parameter
 from daidalos.nodes.parameters import declare
-from daidalos.nodes.runner import run
 
 
 @dataclass(frozen=True)
@@ -34,8 +33,3 @@ class TwistStamper(Node):
         message.header.stamp = self.get_clock().now().to_msg()
         message.header.frame_id = self._frame
         self._commands.publish(message)
-
-
-def main() -> int:
-    """Run the node."""
-    return run(TwistStamper)

@@ -7,8 +7,6 @@ from typing import Any
 from geometry_msgs.msg import Twist, TwistStamped
 from rclpy.node import Node
 
-from daidalos.nodes.runner import run
-
 
 class TwistUnstamper(Node):
     """Node that publishes ``cmd_vel_out`` from ``cmd_vel_in``."""
@@ -17,8 +15,3 @@ class TwistUnstamper(Node):
         super().__init__("twist_unstamper", **kwargs)
         commands = self.create_publisher(Twist, "cmd_vel_out", 10)
         self.create_subscription(TwistStamped, "cmd_vel_in", lambda message: commands.publish(message.twist), 10)
-
-
-def main() -> int:
-    """Run the node."""
-    return run(TwistUnstamper)

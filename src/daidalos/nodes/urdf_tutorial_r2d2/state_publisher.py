@@ -7,8 +7,6 @@ from typing import Any
 
 from rclpy.node import Node
 
-from daidalos.nodes.runner import run
-
 _PERIOD = 1 / 30
 _DEGREE = math.pi / 180
 
@@ -67,8 +65,3 @@ class StatePublisher(Node):
             self._height = min(max(self._height, -0.15), 0.0)
         self._swivel += _DEGREE
         self._angle += _DEGREE / 4
-
-
-def main() -> int:
-    """Run the node."""
-    return run(StatePublisher)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from daidalos.cli.ros2.new_package.package import Entry, NewPackage
+from daidalos.common.names import camel_case
 
 
 def files(package: NewPackage) -> Iterator[Entry]:
@@ -161,7 +162,7 @@ def _node(package: NewPackage) -> str:
 
 
 def _class_name(package: NewPackage) -> str:
-    return "".join(part.capitalize() for part in (package.library_name or "").split("_"))
+    return camel_case(package.library_name or "")
 
 
 def _header(package: NewPackage) -> str:
