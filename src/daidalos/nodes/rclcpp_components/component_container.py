@@ -10,6 +10,7 @@ from rclpy.parameter import Parameter
 from daidalos.common.extensions import ExtensionError
 from daidalos.nodes.extensions import find_component
 from daidalos.nodes.node_thread import NodeThread
+from daidalos.nodes.runner import run
 
 
 class ComponentContainer(Node):
@@ -85,3 +86,8 @@ def _arguments(request: Any, context: Any) -> dict[str, Any]:
         "parameter_overrides": [Parameter.from_parameter_msg(message) for message in request.parameters],
         "use_global_arguments": False,
     }
+
+
+def main() -> int:
+    """Run the node."""
+    return run(ComponentContainer)
