@@ -24,6 +24,7 @@ from daidalos.common.suggestions import near
 if TYPE_CHECKING:
     from rcl_interfaces.msg import ParameterDescriptor, SetParametersResult
 
+S = TypeVar("S", bool, int, float, str)
 T = TypeVar("T", bound=Parameters)
 
 _SCALARS = {
@@ -114,21 +115,60 @@ def declare(node: Node, kind: type[T], prefix: str = "", reconfigure: Callable[[
     return values
 
 
-def declare_name(node: Node, name: str, default: str, description: str) -> str:
-    """Declare a read-only parameter that names a class or file, and return its value.
+def declare_one(node: Node, name: str, default: S, description: str, **constraints: Any) -> S:
+    """Declare a read-only parameter whose name depends on others, and return its value.
+
+    Parameters
+    ----------
+    node : Node
+        Whose parameter it is.
+    name : str
+    default : bool, int, float or str
+    description : str
+    **constraints
+        Of `Constraints`.
 
     Raises
     ------
     ParameterError
-        When the given value is not a string, or empty.
+        When the given value is of the wrong type or not allowed.
     """
-    leaf = Leaf(name, default, str, False, Constraints(description, not_empty=True, read_only=True))
+    leaf = Leaf(name, default, type(default), False, Constraints(description, read_only=True, **constraints))
     try:
-        value: str = _value(node, leaf, "", read_only=True)
+        value: S = _value(node, leaf, "", read_only=True)
         leaf.check(value)
     except ParameterError as error:
         raise _located(node, name, error.problem) from None
     return value
+
+
+def declare_name(node: Node, name: str, default: str, description: str) -> str:
+    """Declare a read-only parameter that names a class or file, and return its value; see `declare_one`."""
+    return declare_one(node, name, default, description, not_empty=True)
+
+
+def given_below(node: Node, group: str) -> list[str]:
+    """Return the names of given parameters below a group, without its name."""
+    return [name.removeprefix(f"{group}.") for name in node._parameter_overrides if name.startswith(f"{group}.")]
+
+
+def typed_value(node: Node, name: str, default: Any) -> Any:
+    """Return the value of a parameter of any name, which has the type of a default; the default where it is not set.
+
+    Raises
+    ------
+    ParameterError
+        When it is of another type.
+    """
+    value = node.get_parameter(name).value if node.has_parameter(name) else None
+    if value is None:
+        return default
+    is_array = isinstance(default, tuple)
+    leaf = Leaf(name, default, str if is_array else type(default), is_array, Constraints(""))
+    try:
+        return leaf.typed([value] if is_array and isinstance(value, str) else value)
+    except ParameterError as error:
+        raise _located(node, name, error.problem) from None
 
 
 def location_of(node: Node, name: str) -> Location:

@@ -15,6 +15,7 @@ from rclpy.qos import qos_profile_sensor_data
 from sensor_msgs.msg import CameraInfo, Image, LaserScan
 from std_msgs.msg import Header
 
+from daidalos.common.errors import UserError
 from daidalos.nodes.depthimage_to_laserscan._scan import scan
 from daidalos.nodes.depthimage_to_laserscan.depthimage_to_laserscan_node import DepthImageToLaserScan
 
@@ -69,7 +70,7 @@ def test_the_node(node: Node, kind: type[Any], metres: float) -> None:
 
 @pytest.mark.usefixtures("graph")
 def test_what_cannot_be_a_scan() -> None:
-    with pytest.raises(RuntimeError, match="'scan_height' is 0"):
+    with pytest.raises(UserError, match=r"'scan_height' of .* must be at least 1, got 0"):
         DepthImageToLaserScan(parameter_overrides=[Parameter("scan_height", value=0)])
     tested = DepthImageToLaserScan(parameter_overrides=[Parameter("scan_height", value=9)])
     assert "encoded as 'rgb8'" in tested._fault(Image(encoding="rgb8"), CameraInfo())

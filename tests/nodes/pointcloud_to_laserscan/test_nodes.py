@@ -20,6 +20,7 @@ from sensor_msgs_py.point_cloud2 import create_cloud_xyz32, read_points_numpy
 from std_msgs.msg import Header
 from tf2_ros import StaticTransformBroadcaster
 
+from daidalos.common.errors import UserError
 from daidalos.nodes.pointcloud_to_laserscan._scan import Slice
 from daidalos.nodes.pointcloud_to_laserscan.laserscan_to_pointcloud_node import LaserScanToPointCloud
 from daidalos.nodes.pointcloud_to_laserscan.pointcloud_to_laserscan_node import PointCloudToLaserScan
@@ -93,5 +94,5 @@ def test_a_scan_becomes_a_cloud(node: Node) -> None:
 
 @pytest.mark.usefixtures("graph")
 def test_rays_that_make_no_sense() -> None:
-    with pytest.raises(RuntimeError, match="give no rays"):
+    with pytest.raises(UserError, match=r"'angle_increment' of .* must be above 0, got 0"):
         PointCloudToLaserScan(parameter_overrides=overrides(angle_increment=0.0))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 from rclpy.duration import Duration
 from rclpy.node import Node
 from rclpy.time import Time
@@ -9,9 +11,20 @@ from sensor_msgs.msg import PointCloud2
 from tf2_ros import Buffer, TransformException, TransformListener
 from tf2_sensor_msgs.tf2_sensor_msgs import do_transform_cloud
 
+from daidalos.common.parameters import Parameters, parameter
+from daidalos.nodes.parameters import declare
+
+
+@dataclass(frozen=True)
+class FramesParameters(Parameters):
+    """Common parameters of the nodes that transform clouds."""
+
+    target_frame: str = parameter("", "Frame of the output; that of the input where empty.")
+    transform_tolerance: float = parameter(0.01, "How long to wait for a transform.", unit="s", minimum=0.0)
+
 
 class Frames:
-    """Brings clouds into a frame; parameters of the node: ``target_frame`` and ``transform_tolerance`` [s].
+    """Brings clouds into a frame.
 
     Parameters
     ----------
@@ -21,9 +34,9 @@ class Frames:
 
     def __init__(self, node: Node) -> None:
         self._node = node
-        self.target = str(node.declare_parameter("target_frame", "").value)
-        tolerance = float(node.declare_parameter("transform_tolerance", 0.01).value or 0.0)
-        self._tolerance = Duration(seconds=tolerance)
+        settings = declare(node, FramesParameters)
+        self.target = settings.target_frame
+        self._tolerance = Duration(seconds=settings.transform_tolerance)
         if self.target:
             self._buffer = Buffer(node=node)
             self._listener = TransformListener(self._buffer, node, spin_thread=True)

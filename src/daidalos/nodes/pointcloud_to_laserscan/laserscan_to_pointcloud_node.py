@@ -14,10 +14,7 @@ from daidalos.nodes.runner import run
 
 
 class LaserScanToPointCloud(Node):
-    """Node that publishes ``cloud`` from ``scan_in`` while it has subscribers.
-
-    Parameters of the node: ``target_frame`` (of the cloud; that of the scan if empty) and ``transform_tolerance`` [s].
-    """
+    """Node that publishes ``cloud`` from ``scan_in`` while it has subscribers."""
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__("laserscan_to_pointcloud", **kwargs)

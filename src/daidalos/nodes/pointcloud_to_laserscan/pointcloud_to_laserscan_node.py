@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import sys
+from dataclasses import dataclass
 from typing import Any
 
 from rclpy.node import Node
@@ -11,6 +12,8 @@ from rclpy.qos import qos_profile_sensor_data
 from sensor_msgs.msg import LaserScan, PointCloud2
 from sensor_msgs_py.point_cloud2 import read_points_numpy
 
+from daidalos.common.parameters import ParameterError, Parameters, parameter
+from daidalos.nodes.parameters import declare
 from daidalos.nodes.pointcloud_to_laserscan._frames import Frames
 from daidalos.nodes.pointcloud_to_laserscan._scan import Slice
 from daidalos.nodes.runner import run
@@ -19,42 +22,49 @@ _LARGEST = 3.4028234663852886e38
 """Largest number of a 32-bit float."""
 
 
-class PointCloudToLaserScan(Node):
-    """Node that publishes ``scan`` from ``cloud_in`` while it has subscribers.
+@dataclass(frozen=True)
+class PointCloudToLaserScanParameters(Parameters):
+    """Parameters of ``pointcloud_to_laserscan_node``, beside those of all nodes that transform clouds."""
 
-    Parameters of the node: ``target_frame`` (of the scan; that of the cloud if empty), ``transform_tolerance`` [s],
-    ``min_height``, ``max_height`` [m], ``angle_min``, ``angle_max``, ``angle_increment`` [rad], ``range_min``,
-    ``range_max`` [m], ``scan_time`` [s], ``use_inf`` (whether rays without a point are infinite) and ``inf_epsilon``
-    (how far beyond the maximum they are else [m]).
-    """
+    min_height: float = parameter(sys.float_info.min, "Least height of points.", unit="m")
+    max_height: float = parameter(sys.float_info.max, "Greatest height of points.", unit="m")
+    angle_min: float = parameter(-math.pi, "Direction of the first ray.", unit="rad")
+    angle_max: float = parameter(math.pi, "Direction of the last ray.", unit="rad")
+    angle_increment: float = parameter(math.pi / 180, "Angle between rays.", unit="rad", above=0.0)
+    range_min: float = parameter(0.0, "Least distance of points.", unit="m", minimum=0.0)
+    range_max: float = parameter(sys.float_info.max, "Greatest distance of points.", unit="m", minimum=0.0)
+    scan_time: float = parameter(1.0 / 30.0, "Time between scans, as the messages say it.", unit="s", minimum=0.0)
+    use_inf: bool = parameter(True, "Whether the range of rays without a point is infinite.")
+    inf_epsilon: float = parameter(
+        1.0, "How far the range of other rays without a point exceeds 'range_max'.", unit="m"
+    )
+
+    def check(self) -> None:
+        """Refuse angles without rays."""
+        if self.angle_max <= self.angle_min:
+            raise ParameterError("angle_max", f"must be above 'angle_min', {self.angle_min:g}, got {self.angle_max:g}")
+
+
+class PointCloudToLaserScan(Node):
+    """Node that publishes ``scan`` from ``cloud_in`` while it has subscribers."""
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__("pointcloud_to_laserscan", **kwargs)
         self._frames = Frames(self)
-        range_max = self._number("range_max", sys.float_info.max)
-        use_inf = bool(self.declare_parameter("use_inf", True).value)
-        inf_epsilon = self._number("inf_epsilon", 1.0)
+        p = declare(self, PointCloudToLaserScanParameters)
         self._slice = Slice(
-            min_height=self._number("min_height", sys.float_info.min),
-            max_height=self._number("max_height", sys.float_info.max),
-            angle_min=self._number("angle_min", -math.pi),
-            angle_max=self._number("angle_max", math.pi),
-            angle_increment=self._number("angle_increment", math.pi / 180),
-            range_min=self._number("range_min", 0.0),
-            range_max=range_max,
-            empty=math.inf if use_inf else range_max + inf_epsilon,
+            p.min_height,
+            p.max_height,
+            p.angle_min,
+            p.angle_max,
+            p.angle_increment,
+            p.range_min,
+            p.range_max,
+            math.inf if p.use_inf else p.range_max + p.inf_epsilon,
         )
-        if self._slice.angle_increment <= 0 or self._slice.angle_max <= self._slice.angle_min:
-            raise RuntimeError(
-                "the parameters 'angle_min', 'angle_max' and 'angle_increment' give no rays: "
-                f"{self._slice.angle_min}, {self._slice.angle_max}, {self._slice.angle_increment}"
-            )
-        self._scan_time = self._number("scan_time", 1.0 / 30.0)
+        self._scan_time = p.scan_time
         self._scans = self.create_publisher(LaserScan, "scan", qos_profile_sensor_data)
         self.create_subscription(PointCloud2, "cloud_in", self._publish_scan, qos_profile_sensor_data)
-
-    def _number(self, name: str, default: float) -> float:
-        return float(self.declare_parameter(name, default).value)
 
     def _publish_scan(self, cloud: PointCloud2) -> None:
         if self._scans.get_subscription_count() == 0:

@@ -14,10 +14,12 @@ from rclpy.parameter import Parameter
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.utilities import remove_ros_args
 
+from daidalos.common.parameters import Parameters, parameter
 from daidalos.description.kinematics import KinematicTree
 from daidalos.nodes.description_files import parse_description, read_description
+from daidalos.nodes.parameters import declare
 from daidalos.nodes.robot_state_publisher._transform_bytes import TransformBytes
-from daidalos.nodes.runner import UserError, run
+from daidalos.nodes.runner import run
 from daidalos.samples.fields import nanoseconds
 
 _KEPT = 100
@@ -49,12 +51,22 @@ class _JointUpdate:
     bytes: TransformBytes
 
 
+@dataclass(frozen=True)
+class RobotStatePublisherParameters(Parameters):
+    """Parameters of ``robot_state_publisher``."""
+
+    robot_description: str = parameter("", "Description of the robot, as URDF or SDF.", not_empty=True)
+    publish_frequency: float = parameter(
+        20.0, "Highest rate of transforms; 0 for every joint state.", unit="Hz", minimum=0.0, maximum=1000.0
+    )
+    ignore_timestamp: bool = parameter(False, "Whether to publish every joint state, whatever its stamp.")
+    frame_prefix: str = parameter("", "Put before the names of all frames.")
+
+
 class RobotStatePublisher(Node):
     """Node that publishes ``/tf``, ``/tf_static`` and ``/robot_description``.
 
-    Parameters of the node are those of ROS 2's: ``robot_description``, ``publish_frequency`` [Hz],
-    ``ignore_timestamp``, ``frame_prefix``. Also as there, a joint has a transform only once its state is told, and
-    what a floating joint holds is left to others.
+    As in ROS 2, a joint has a transform only once its state is told, and what a floating joint holds is left to others.
 
     Parameters
     ----------
@@ -76,32 +88,26 @@ class RobotStatePublisher(Node):
         from tf2_msgs.msg import TFMessage
         from tf2_ros import StaticTransformBroadcaster
 
-        self.declare_parameter("robot_description", "")
-        self.declare_parameter("publish_frequency", 20.0)
-        self.declare_parameter("ignore_timestamp", False)
-        self.declare_parameter("frame_prefix", "")
+        self._settings = declare(self, RobotStatePublisherParameters, reconfigure=self._reconfigure)
         self._description_publisher = self.create_publisher(String, "robot_description", _LATCHED)
         self._tf_publisher = self.create_publisher(TFMessage, "/tf", 100)
         self._static_broadcaster = StaticTransformBroadcaster(self)
-        self._read(self.get_parameter("robot_description").value, source)
+        self._read(self._settings, source)
         self.create_subscription(JointState, "joint_states", self._on_joint_states, 10)
-        self.add_on_set_parameters_callback(self._on_set_parameters)
 
-    def _read(self, text: str, source: str = "robot_description") -> None:
+    def _read(self, settings: RobotStatePublisherParameters, source: str = "robot_description") -> None:
         """Read a description and publish its static transforms."""
         from std_msgs.msg import String
 
-        if not text:
-            raise UserError("the parameter 'robot_description' must hold a URDF document, it is empty")
-        self._tree = KinematicTree(parse_description(text, source))
+        self._tree = KinematicTree(parse_description(settings.robot_description, source))
         self._positions = np.zeros(len(self._tree.joint_names))
         self._last_ns = np.zeros(len(self._tree.joint_names), dtype=np.int64)
         self._told: dict[tuple[str, ...], _JointUpdate] = {}
-        self._prefix = self.get_parameter("frame_prefix").value
+        self._prefix = settings.frame_prefix
         self._static_broadcaster.sendTransform(
             self._transforms(np.flatnonzero(~self._tree.moving & ~self._tree.floating), self.get_clock().now().to_msg())
         )
-        self._description_publisher.publish(String(data=text))
+        self._description_publisher.publish(String(data=settings.robot_description))
         self.get_logger().info("Robot initialized")
 
     def _transforms(self, rows: Any, stamp: Any) -> list[Any]:
@@ -136,7 +142,7 @@ class RobotStatePublisher(Node):
             return
         self._positions[told.rows] = np.asarray(message.position, dtype=np.float64)[told.columns]
         stamp = message.header.stamp
-        if self.get_parameter("ignore_timestamp").value or self._is_due(nanoseconds(stamp), told.rows):
+        if self._settings.ignore_timestamp or self._is_due(nanoseconds(stamp), told.rows):
             translations, rotations = self._tree.joint_transforms(self._positions)
             self._tf_publisher.publish(
                 told.bytes.write(stamp.sec, stamp.nanosec, translations[told.moved], rotations[told.moved])
@@ -172,7 +178,7 @@ class RobotStatePublisher(Node):
                 "joint states without a time are not published; set header.stamp", throttle_duration_sec=10.0
             )
             return False
-        frequency = self.get_parameter("publish_frequency").value
+        frequency = self._settings.publish_frequency
         period = 0 if frequency <= 0.0 else round(1e9 / frequency)
         last = int(self._last_ns[rows].min())
         if stamp_ns < last - _SET_BACK_NS:
@@ -182,16 +188,12 @@ class RobotStatePublisher(Node):
         self._last_ns[rows] = max(last + period, stamp_ns - period)
         return True
 
-    def _on_set_parameters(self, parameters: list[Parameter[Any]]) -> Any:
-        from rcl_interfaces.msg import SetParametersResult
-
-        for parameter in parameters:
-            if parameter.name == "robot_description":
-                try:
-                    self._read(parameter.value)
-                except UserError as error:
-                    return SetParametersResult(successful=False, reason=str(error))
-        return SetParametersResult(successful=True)
+    def _reconfigure(self, parameters: RobotStatePublisherParameters) -> None:
+        before = self._settings
+        changed = (parameters.robot_description, parameters.frame_prefix)
+        if changed != (before.robot_description, before.frame_prefix):
+            self._read(parameters)
+        self._settings = parameters
 
 
 def _from_file(path: str) -> RobotStatePublisher:

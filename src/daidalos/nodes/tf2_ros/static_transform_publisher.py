@@ -7,11 +7,14 @@ import random
 import string
 import sys
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 from rclpy.node import Node
 from rclpy.utilities import remove_ros_args
 
+from daidalos.common.parameters import Parameters, group, parameter
+from daidalos.nodes.parameters import declare
 from daidalos.nodes.runner import UserError, run, run_program
 
 _DESCRIPTION = """A command line utility for manually sending a static transform. If no translation or orientation is
@@ -27,11 +30,37 @@ _OLD_ORDERS = {
 }
 
 
+@dataclass(frozen=True)
+class TranslationParameters(Parameters):
+    """Translation of a transform."""
+
+    x: float = parameter(0.0, "Translation along x.", unit="m")
+    y: float = parameter(0.0, "Translation along y.", unit="m")
+    z: float = parameter(0.0, "Translation along z.", unit="m")
+
+
+@dataclass(frozen=True)
+class RotationParameters(Parameters):
+    """Rotation of a transform."""
+
+    x: float = parameter(0.0, "Component x of the rotation's quaternion.")
+    y: float = parameter(0.0, "Component y of the rotation's quaternion.")
+    z: float = parameter(0.0, "Component z of the rotation's quaternion.")
+    w: float = parameter(1.0, "Component w of the rotation's quaternion.")
+
+
+@dataclass(frozen=True)
+class StaticTransformParameters(Parameters):
+    """Parameters of ``static_transform_publisher``."""
+
+    translation: TranslationParameters = group(TranslationParameters)
+    rotation: RotationParameters = group(RotationParameters)
+    frame_id: str = parameter("/frame", "Parent frame.")
+    child_frame_id: str = parameter("/child", "Child frame.")
+
+
 class StaticTransformBroadcasterNode(Node):
     """Node that publishes the static transform of its parameters on ``/tf_static``.
-
-    Parameters of the node: ``translation.x`` and so on [m], ``rotation.x`` and so on (a quaternion), ``frame_id``,
-    ``child_frame_id``.
 
     Raises
     ------
@@ -42,16 +71,12 @@ class StaticTransformBroadcasterNode(Node):
     def __init__(self, node_name: str = "static_transform_publisher", **kwargs: Any) -> None:
         super().__init__(node_name, **kwargs)
         from geometry_msgs.msg import Quaternion, Transform, TransformStamped, Vector3
-        from rcl_interfaces.msg import ParameterDescriptor
         from std_msgs.msg import Header
         from tf2_ros import StaticTransformBroadcaster
 
-        def parameter(name: str, default: Any) -> Any:
-            return self.declare_parameter(name, default, ParameterDescriptor(read_only=True)).value
-
-        x, y, z = (float(parameter(f"translation.{axis}", 0.0)) for axis in "xyz")
-        qx, qy, qz, qw = (float(parameter(f"rotation.{axis}", 1.0 if axis == "w" else 0.0)) for axis in "xyzw")
-        frame, child = parameter("frame_id", "/frame"), parameter("child_frame_id", "/child")
+        settings = declare(self, StaticTransformParameters)
+        translation, rotation = settings.translation, settings.rotation
+        frame, child = settings.frame_id, settings.child_frame_id
         if frame == child:
             raise UserError(f"cannot publish static transform from '{frame}' to '{child}', exiting")
         self._broadcaster = StaticTransformBroadcaster(self)
@@ -59,13 +84,13 @@ class StaticTransformBroadcasterNode(Node):
             TransformStamped(
                 header=Header(stamp=self.get_clock().now().to_msg(), frame_id=frame),
                 child_frame_id=child,
-                transform=Transform(translation=Vector3(x=x, y=y, z=z), rotation=Quaternion(x=qx, y=qy, z=qz, w=qw)),
+                transform=Transform(translation=Vector3(**vars(translation)), rotation=Quaternion(**vars(rotation))),
             )
         )
         self.get_logger().info(
             "Spinning until stopped - publishing transform\n"
-            f"translation: ('{x:f}', '{y:f}', '{z:f}')\n"
-            f"rotation: ('{qx:f}', '{qy:f}', '{qz:f}', '{qw:f}')\n"
+            f"translation: ('{translation.x:f}', '{translation.y:f}', '{translation.z:f}')\n"
+            f"rotation: ('{rotation.x:f}', '{rotation.y:f}', '{rotation.z:f}', '{rotation.w:f}')\n"
             f"from '{frame}' to '{child}'"
         )
 
