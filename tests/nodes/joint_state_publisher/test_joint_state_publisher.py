@@ -84,7 +84,7 @@ def test_with_delta_joints_wander_between_their_limits(graph):  # noqa: F811
 def test_faulty_input_is_named(graph):  # noqa: F811
     with pytest.raises(UserError, match="<robot"):
         JointStatePublisher("<robot/>")
-    with pytest.raises(UserError, match="'rate' should be positive"):
+    with pytest.raises(UserError, match=r"'rate' of .* must be above 0, got 0"):
         JointStatePublisher(TEXT, **parameters(rate=0.0))
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -10,21 +11,47 @@ from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.utilities import remove_ros_args
 
+from daidalos.common.parameters import Parameters, parameter
 from daidalos.description.joint import Mimic
 from daidalos.description.joint_values import JointValues
 from daidalos.nodes.description_files import parse_description, read_description
+from daidalos.nodes.parameters import declare, declare_one, given_below
 from daidalos.nodes.runner import UserError, run
 
 _LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
+@dataclass(frozen=True)
+class DependentJointParameters(Parameters):
+    """Parameters of a joint that follows another one, below ``dependent_joints.<joint>``."""
+
+    parent: str = parameter("", "Joint to follow; none where empty.")
+    factor: float = parameter(1.0, "Factor of its position.", takes_integer=True)
+    offset: float = parameter(0.0, "Added to its position.", unit="rad or m", takes_integer=True)
+
+
+@dataclass(frozen=True)
+class JointStatePublisherParameters(Parameters):
+    """Parameters of ``joint_state_publisher`` and ``joint_state_publisher_gui``.
+
+    ``zeros.<joint>`` is where a joint begins [rad or m].
+    """
+
+    rate: float = parameter(10.0, "Rate of joint states.", unit="Hz", above=0.0, read_only=True, takes_integer=True)
+    publish_default_positions: bool = parameter(True, "Whether to publish positions that nobody gives.")
+    publish_default_velocities: bool = parameter(False, "Whether to publish velocities that nobody gives.")
+    publish_default_efforts: bool = parameter(False, "Whether to publish efforts that nobody gives.")
+    use_mimic_tags: bool = parameter(True, "Whether joints with <mimic> follow others.", read_only=True)
+    use_smallest_joint_limits: bool = parameter(True, "Whether joints stay in their soft limits.", read_only=True)
+    source_list: tuple[str, ...] = parameter((), "Topics with states of joints.", read_only=True)
+    delta: float = parameter(
+        0.0, "How far all joints move at each state.", unit="rad or m", read_only=True, takes_integer=True
+    )
+    robot_description: str = parameter("", "Description of the robot; from the topic where empty.", read_only=True)
+
+
 class JointStatePublisher(Node):
     """Node that publishes ``joint_states`` at ``rate`` once it has the robot description.
-
-    Parameters of the node are those of ROS 2's: ``rate`` [Hz], ``publish_default_positions``,
-    ``publish_default_velocities``, ``publish_default_efforts``, ``use_mimic_tags``,
-    ``use_smallest_joint_limits``, ``source_list``, ``delta``, ``zeros.<joint>``,
-    ``dependent_joints.<joint>.parent`` (``factor``, ``offset``), ``robot_description``.
 
     Parameters
     ----------
@@ -44,28 +71,28 @@ class JointStatePublisher(Node):
         name: str = "joint_state_publisher",
         **kwargs: Any,
     ) -> None:
-        super().__init__(
-            name, allow_undeclared_parameters=True, automatically_declare_parameters_from_overrides=True, **kwargs
-        )
+        super().__init__(name, allow_undeclared_parameters=True, **kwargs)
         from sensor_msgs.msg import JointState
         from std_msgs.msg import String
 
         self._values: JointValues | None = None
         self._publisher = self.create_publisher(JointState, "joint_states", 10)
-        for source in self._setting("source_list", []):
-            self.create_subscription(JointState, source, self._on_source, 10)
-        text = description or self._setting("robot_description", "")
+        self._settings = declare(self, JointStatePublisherParameters, reconfigure=self._reconfigure)
+        self._zeros = {
+            joint: declare_one(self, f"zeros.{joint}", 0.0, "Where it begins.", unit="rad or m", takes_integer=True)
+            for joint in given_below(self, "zeros")
+        }
+        self._dependents = self._read_dependents()
+        for topic in self._settings.source_list:
+            self.create_subscription(JointState, topic, self._on_source, 10)
+        text = description or self._settings.robot_description
         if text:
             self.read(text, source if description else "robot_description")
         else:
             self.get_logger().info("Waiting for robot_description to be published on the robot_description topic...")
         self.create_subscription(String, "robot_description", self._on_description, _LATCHED)
-        rate = float(self._setting("rate", 10.0))
-        if rate <= 0:
-            raise UserError(f"the parameter 'rate' should be positive, got {rate:g}")
-        self._step = float(self._setting("delta", 0.0))
         self._direction: dict[str, float] = {}
-        self.create_timer(1.0 / rate, self._publish)
+        self.create_timer(1.0 / self._settings.rate, self._publish)
 
     @property
     def values(self) -> JointValues | None:
@@ -80,33 +107,21 @@ class JointStatePublisher(Node):
         UserError
         """
         robot = parse_description(text, source)
-        zeros = {name: float(p.value) for name, p in self.get_parameters_by_prefix("zeros").items()}
         self._values = JointValues(
             robot,
-            zeros,
-            mimics=self._setting("use_mimic_tags", True),
-            dependents=self._dependents(),
-            soft=self._setting("use_smallest_joint_limits", True),
+            self._zeros,
+            mimics=self._settings.use_mimic_tags,
+            dependents=self._dependents,
+            soft=self._settings.use_smallest_joint_limits,
         )
 
-    def _setting(self, name: str, default: Any) -> Any:
-        """Return a parameter; declare it if it is not declared."""
-        from rcl_interfaces.msg import ParameterDescriptor
+    def _reconfigure(self, parameters: JointStatePublisherParameters) -> None:
+        self._settings = parameters
 
-        if not self.has_parameter(name):
-            self.declare_parameter(name, default, ParameterDescriptor(dynamic_typing=True))
-        return self.get_parameter(name).value
-
-    def _dependents(self) -> dict[str, Mimic]:
-        given: dict[str, dict[str, Any]] = {}
-        for key, parameter in self.get_parameters_by_prefix("dependent_joints").items():
-            joint, _, word = key.rpartition(".")
-            given.setdefault(joint, {})[word] = parameter.value
-        return {
-            joint: Mimic(str(words["parent"]), float(words.get("factor", 1.0)), float(words.get("offset", 0.0)))
-            for joint, words in given.items()
-            if "parent" in words
-        }
+    def _read_dependents(self) -> dict[str, Mimic]:
+        joints = dict.fromkeys(name.rpartition(".")[0] for name in given_below(self, "dependent_joints"))
+        given = {joint: declare(self, DependentJointParameters, f"dependent_joints.{joint}") for joint in joints}
+        return {joint: Mimic(one.parent, one.factor, one.offset) for joint, one in given.items() if one.parent}
 
     def _on_description(self, message: Any) -> None:
         try:
@@ -124,15 +139,15 @@ class JointStatePublisher(Node):
         values = self._values
         if values is None or not values.names:
             return
-        if self._step:
+        if self._settings.delta:
             self._wander(values)
         message = JointState(name=list(values.names))
         message.header.stamp = self.get_clock().now().to_msg()
-        if self._setting("publish_default_positions", True):
+        if self._settings.publish_default_positions:
             message.position = values.all_positions()
-        if values.velocities or self._setting("publish_default_velocities", False):
+        if values.velocities or self._settings.publish_default_velocities:
             message.velocity = values.all_velocities()
-        if values.efforts or self._setting("publish_default_efforts", False):
+        if values.efforts or self._settings.publish_default_efforts:
             message.effort = values.all_efforts()
         self._publisher.publish(message)
 
@@ -140,7 +155,7 @@ class JointStatePublisher(Node):
         """Move every joint by ``delta`` between its limits, to and fro."""
         for each in values.ranges:
             ahead = self._direction.setdefault(each.name, 1.0)
-            position = values.positions[each.name] + ahead * self._step
+            position = values.positions[each.name] + ahead * self._settings.delta
             if not each.lower <= position <= each.upper:
                 self._direction[each.name] = -ahead
                 position = min(max(position, each.lower), each.upper)

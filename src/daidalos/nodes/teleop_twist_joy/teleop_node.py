@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 from geometry_msgs.msg import Twist, TwistStamped
@@ -9,48 +10,72 @@ from rclpy.node import Node
 from rclpy.publisher import Publisher
 from sensor_msgs.msg import Joy
 
+from daidalos.common.parameters import Parameters, parameter
+from daidalos.nodes.parameters import declare
 from daidalos.nodes.runner import run
 
-# The axis of the game pad, the scale, and the scale of high speed, by direction.
-_LINEAR = {"x": (5, 0.5, 1.0), "y": (-1, 0.0, 0.0), "z": (-1, 0.0, 0.0)}
-_ANGULAR = {"yaw": (2, 0.5, 1.0), "pitch": (-1, 0.0, 0.0), "roll": (-1, 0.0, 0.0)}
 _COMPONENTS = {"yaw": "z", "pitch": "y", "roll": "x"}
 
 
+def _axis(default: int, name: str) -> Any:
+    return parameter(default, "Axis of the game pad; -1 for none.", name=f"axis_{name}")
+
+
+def _scale(default: float, name: str) -> Any:
+    what, unit = ("Velocity", "m/s") if name.startswith("linear") else ("Angular velocity", "rad/s")
+    held = " while the turbo button is held" if "turbo" in name else ""
+    return parameter(default, f"{what} at the end of the axis{held}.", unit=unit, name=f"scale_{name}")
+
+
+@dataclass(frozen=True)
+class TeleopTwistJoyParameters(Parameters):
+    """Parameters of ``teleop_node``."""
+
+    require_enable_button: bool = parameter(True, "Whether a button must be held to drive.")
+    enable_button: int = parameter(0, "Button to be held.")
+    enable_turbo_button: int = parameter(-1, "Button to be held for high speed; -1 for none.")
+    inverted_reverse: bool = parameter(False, "Whether turning is inverted while the robot drives backwards.")
+    axis_linear_x: int = _axis(5, "linear.x")
+    axis_linear_y: int = _axis(-1, "linear.y")
+    axis_linear_z: int = _axis(-1, "linear.z")
+    axis_angular_yaw: int = _axis(2, "angular.yaw")
+    axis_angular_pitch: int = _axis(-1, "angular.pitch")
+    axis_angular_roll: int = _axis(-1, "angular.roll")
+    scale_linear_x: float = _scale(0.5, "linear.x")
+    scale_linear_y: float = _scale(0.0, "linear.y")
+    scale_linear_z: float = _scale(0.0, "linear.z")
+    scale_angular_yaw: float = _scale(0.5, "angular.yaw")
+    scale_angular_pitch: float = _scale(0.0, "angular.pitch")
+    scale_angular_roll: float = _scale(0.0, "angular.roll")
+    scale_linear_turbo_x: float = _scale(1.0, "linear_turbo.x")
+    scale_linear_turbo_y: float = _scale(0.0, "linear_turbo.y")
+    scale_linear_turbo_z: float = _scale(0.0, "linear_turbo.z")
+    scale_angular_turbo_yaw: float = _scale(1.0, "angular_turbo.yaw")
+    scale_angular_turbo_pitch: float = _scale(0.0, "angular_turbo.pitch")
+    scale_angular_turbo_roll: float = _scale(0.0, "angular_turbo.roll")
+    publish_stamped_twist: bool = parameter(False, "Whether to publish TwistStamped instead of Twist.", read_only=True)
+    frame: str = parameter("teleop_twist_joy", "Frame of stamped velocities.")
+
+
 class TeleopTwistJoy(Node):
-    """Node that publishes ``cmd_vel`` from ``joy``.
-
-    Parameters of the node, which may change while it runs except for the last two:
-
-    ``require_enable_button`` (whether a button must be held), ``enable_button``, ``enable_turbo_button`` (for high
-    speed; -1 for none), ``inverted_reverse`` (whether turning is inverted while the robot drives backwards);
-    for each direction, ``axis_linear.x``, ``scale_linear.x`` [m/s] and ``scale_linear_turbo.x`` (also ``y`` and ``z``),
-    ``axis_angular.yaw``, ``scale_angular.yaw`` [rad/s] and ``scale_angular_turbo.yaw`` (also ``pitch`` and ``roll``);
-    ``publish_stamped_twist`` (whether to publish TwistStamped) and ``frame`` (of those).
-    """
+    """Node that publishes ``cmd_vel`` from ``joy``."""
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__("teleop_twist_joy_node", **kwargs)
-        self.declare_parameter("require_enable_button", True)
-        self.declare_parameter("enable_button", 0)
-        self.declare_parameter("enable_turbo_button", -1)
-        self.declare_parameter("inverted_reverse", False)
-        for kind, directions in (("linear", _LINEAR), ("angular", _ANGULAR)):
-            for direction, (axis, scale, turbo) in directions.items():
-                self.declare_parameter(f"axis_{kind}.{direction}", axis)
-                self.declare_parameter(f"scale_{kind}.{direction}", scale)
-                self.declare_parameter(f"scale_{kind}_turbo.{direction}", turbo)
-        self._stamped = bool(self.declare_parameter("publish_stamped_twist", False).value)
-        self._frame = str(self.declare_parameter("frame", "teleop_twist_joy").value)
+        self._settings = declare(self, TeleopTwistJoyParameters, reconfigure=self._reconfigure)
+        self._stamped = self._settings.publish_stamped_twist
         self._stands_still = True
         self._commands: Publisher = self.create_publisher(TwistStamped if self._stamped else Twist, "cmd_vel", 10)
         self.create_subscription(Joy, "joy", self._steer, 10)
 
+    def _reconfigure(self, parameters: TeleopTwistJoyParameters) -> None:
+        self._settings = parameters
+
     def _steer(self, joy: Joy) -> None:
-        if self._is_held(joy, "enable_turbo_button"):
+        if _is_held(joy, self._settings.enable_turbo_button):
             self._publish(self._velocity(joy, "_turbo"))
             self._stands_still = False
-        elif not self._value("require_enable_button") or self._is_held(joy, "enable_button"):
+        elif not self._settings.require_enable_button or _is_held(joy, self._settings.enable_button):
             self._publish(self._velocity(joy, ""))
             self._stands_still = False
         elif not self._stands_still:
@@ -58,28 +83,21 @@ class TeleopTwistJoy(Node):
             self._publish(Twist())
             self._stands_still = True
 
-    def _is_held(self, joy: Joy, name: str) -> bool:
-        button = int(self._value(name))
-        return 0 <= button < len(joy.buttons) and bool(joy.buttons[button])
-
     def _velocity(self, joy: Joy, speed: str) -> Twist:
         twist = Twist()
-        for direction in _LINEAR:
+        for direction in ("x", "y", "z"):
             setattr(twist.linear, direction, self._share(joy, "linear", direction, speed))
-        for direction in _ANGULAR:
-            setattr(twist.angular, _COMPONENTS[direction], self._share(joy, "angular", direction, speed))
-        if twist.linear.x < 0 and self._value("inverted_reverse"):
+        for direction, component in _COMPONENTS.items():
+            setattr(twist.angular, component, self._share(joy, "angular", direction, speed))
+        if twist.linear.x < 0 and self._settings.inverted_reverse:
             twist.angular.z = -twist.angular.z
         return twist
 
     def _share(self, joy: Joy, kind: str, direction: str, speed: str) -> float:
-        axis = int(self._value(f"axis_{kind}.{direction}"))
+        axis = getattr(self._settings, f"axis_{kind}_{direction}")
         if not 0 <= axis < len(joy.axes):
             return 0.0
-        return float(joy.axes[axis]) * float(self._value(f"scale_{kind}{speed}.{direction}"))
-
-    def _value(self, name: str) -> Any:
-        return self.get_parameter(name).value
+        return float(joy.axes[axis]) * float(getattr(self._settings, f"scale_{kind}{speed}_{direction}"))
 
     def _publish(self, twist: Twist) -> None:
         if not self._stamped:
@@ -87,8 +105,12 @@ class TeleopTwistJoy(Node):
             return
         message = TwistStamped(twist=twist)
         message.header.stamp = self.get_clock().now().to_msg()
-        message.header.frame_id = self._frame
+        message.header.frame_id = self._settings.frame
         self._commands.publish(message)
+
+
+def _is_held(joy: Joy, button: int) -> bool:
+    return 0 <= button < len(joy.buttons) and bool(joy.buttons[button])
 
 
 def main() -> int:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, fields
 from functools import partial
 from typing import Any, TypeVar
 
@@ -12,29 +13,45 @@ from rclpy.node import Node
 from rclpy.publisher import Publisher
 from std_msgs.msg import Bool
 
+from daidalos.common.parameters import Parameters, parameter
+from daidalos.nodes.parameters import declare, given_below
+from daidalos.nodes.runner import UserError
 from daidalos.nodes.twist_mux._priorities import Lock, Source, active, lock_priority
 
 S = TypeVar("S", bound=Source)
 
 
-class TwistMux(Node):
-    """Node that publishes ``cmd_vel_out``.
+@dataclass(frozen=True)
+class SourceParameters(Parameters):
+    """Parameters of a source of velocities below ``topics.<name>``, and of a lock below ``locks.<name>``.
 
-    Parameters of the node: for each source NAME ``topics.NAME.topic``, ``topics.NAME.timeout`` (for how long its last
-    velocity counts [s]) and ``topics.NAME.priority`` (from 0 to 255); the same below ``locks`` for topics of
-    std_msgs/Bool that lock all sources up to their priority, when they say so or are silent; ``use_stamped`` (whether
-    the velocities are TwistStamped).
+    A lock is a topic of std_msgs/Bool; it locks all sources up to its priority while it is true or silent.
     """
 
+    topic: str = parameter("", "Topic to subscribe to.", not_empty=True)
+    timeout: float = parameter(
+        0.0, "How long the last message counts; 0 for ever.", unit="s", minimum=0.0, takes_integer=True
+    )
+    priority: int = parameter(0, "The higher, the sooner the source counts.", minimum=0, maximum=255)
+
+
+@dataclass(frozen=True)
+class TwistMuxParameters(Parameters):
+    """Parameters of ``twist_mux``, beside those of its sources and locks."""
+
+    use_stamped: bool = parameter(False, "Whether the velocities are TwistStamped instead of Twist.")
+
+
+class TwistMux(Node):
+    """Node that publishes ``cmd_vel_out``."""
+
     def __init__(self, **kwargs: Any) -> None:
-        super().__init__("twist_mux", automatically_declare_parameters_from_overrides=True, **kwargs)
-        if not self.has_parameter("use_stamped"):
-            self.declare_parameter("use_stamped", False)
-        kind = TwistStamped if self.get_parameter("use_stamped").value else Twist
+        super().__init__("twist_mux", **kwargs)
+        kind = TwistStamped if declare(self, TwistMuxParameters).use_stamped else Twist
         self._sources = self._read("topics", Source)
         self._locks = self._read("locks", Lock)
         if not self._sources:
-            raise RuntimeError("twist_mux needs sources: parameters such as 'topics.navigation.topic'")
+            raise UserError("twist_mux needs sources: parameters such as 'topics.navigation.topic'")
         self._commands: Publisher = self.create_publisher(kind, "cmd_vel_out", 10)
         for source in self._sources:
             self.create_subscription(kind, source.topic, partial(self._forward_message, source), 10)
@@ -45,25 +62,15 @@ class TwistMux(Node):
         self._diagnostics.add("Twist mux status", self._notify)
 
     def _read(self, group: str, kind: type[S]) -> list[S]:
-        given = {name: parameter.value for name, parameter in self.get_parameters_by_prefix(group).items()}
-        names = dict.fromkeys(name.rpartition(".")[0] for name in given)
-        return [self._read_one(group, name, given, kind) for name in names]
-
-    def _read_one(self, group: str, name: str, given: dict[str, Any], kind: type[S]) -> S:
-        for field in ("topic", "timeout", "priority"):
-            if f"{name}.{field}" not in given:
-                raise RuntimeError(f"the parameter '{group}.{name}.{field}' is missing")
-        topic, timeout, priority = (given[f"{name}.{field}"] for field in ("topic", "timeout", "priority"))
-        try:
-            source = kind(name, str(topic), float(timeout), int(priority))
-        except (TypeError, ValueError):
-            raise RuntimeError(f"the timeout and the priority of '{group}.{name}' must be numbers") from None
-        if source.timeout < 0 or not 0 <= source.priority <= 255:
-            raise RuntimeError(
-                f"'{group}.{name}' has timeout {source.timeout} and priority {source.priority}, "
-                "but a timeout is at least 0 and a priority from 0 to 255"
-            )
-        return source
+        given = given_below(self, group)
+        sources = []
+        for name in dict.fromkeys(one.rpartition(".")[0] for one in given):
+            for one in fields(SourceParameters):
+                if f"{name}.{one.name}" not in given:
+                    raise UserError(f"the parameter '{group}.{name}.{one.name}' is missing")
+            settings = declare(self, SourceParameters, f"{group}.{name}")
+            sources.append(kind(name, settings.topic, settings.timeout, settings.priority))
+        return sources
 
     def _now(self) -> float:
         return self.get_clock().now().nanoseconds * 1e-9
