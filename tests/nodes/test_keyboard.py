@@ -99,7 +99,7 @@ def test_no_more_keys(screen: int) -> None:
 
 def test_what_is_no_terminal_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "stdin", io.StringIO("abc"))
-    with pytest.raises(UserError, match="no terminal"):
+    with pytest.raises(UserError, match="not a terminal"):
         Keyboard()
 
 

@@ -24,7 +24,7 @@ def test_a_field_of_unknown_type(workspace, terminal):
     status, printed = build(terminal, "bad_message")
     assert status == 1
     path = workspace / "src" / "bad_message" / "msg" / "Sphere.msg"
-    problem = "there is no message 'geometry_msgs/Pont'; did you mean 'geometry_msgs/Point'?"
+    problem = "there is no message 'geometry_msgs/Pont'; did you mean 'geometry_msgs/Point' or 'geometry_msgs/Point32'?"
     assert f"{path}:2: {problem}" in printed.splitlines()
     assert "Traceback" not in printed
 

@@ -139,7 +139,8 @@ def _points_inside(surface: Points, spacing: float) -> Points:
     shape = np.floor(size / spacing).astype(int) + 3
     cells = np.zeros(shape, dtype=bool)
     cells[tuple((np.floor((surface - low) / spacing).astype(int) + 1).T)] = True
-    return low + (np.argwhere(binary_fill_holes(cells) & ~cells) - 0.5) * spacing
+    inside: Points = low + (np.argwhere(binary_fill_holes(cells) & ~cells) - 0.5) * spacing
+    return inside
 
 
 def _entry(points: Points, tolerance: float, order: Any) -> tuple[float, int, _Part]:
