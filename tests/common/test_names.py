@@ -2,7 +2,7 @@
 
 import pytest
 
-from daidalos.common.names import camel_case
+from daidalos.common.names import camel_case, snake_case
 
 
 @pytest.mark.parametrize(
@@ -10,3 +10,8 @@ from daidalos.common.names import camel_case
 )
 def test_camel_case(name, expected):
     assert camel_case(name) == expected
+
+
+@pytest.mark.parametrize(("name", "expected"), [("Talker", "talker"), ("SendGoal", "send_goal"), ("", "")])
+def test_snake_case(name, expected):
+    assert snake_case(name) == expected

@@ -11,6 +11,8 @@ from controller_manager_msgs import srv
 from lifecycle_msgs.msg import State
 from rclpy.node import Node
 
+from daidalos.common.names import snake_case
+
 
 class ServiceNotFoundError(Exception):
     """The service is not there."""
@@ -70,50 +72,38 @@ def service_caller(
     raise RuntimeError(f"{service_name} did not answer within {call_timeout:g} s, {max_attempts} times")
 
 
-def _ask(node: Node, manager: str, kind: Any, service: str, timeouts: tuple[float, float], **request: Any) -> Any:
-    return service_caller(node, f"{manager}/{service}", kind, kind.Request(**request), *timeouts)
+def _ask(node: Node, manager: str, kind: Any, service_timeout: float, call_timeout: float, /, **request: Any) -> Any:
+    """Return the answer of the service that has the name of its type, such as ``list_controllers``."""
+    service = f"{manager}/{snake_case(kind.__name__)}"
+    return service_caller(node, service, kind, kind.Request(**request), service_timeout, call_timeout)
 
 
 def list_controllers(
     node: Node, controller_manager_name: str, service_timeout: float = 0.0, call_timeout: float = 10.0
 ) -> Any:
     """Return the loaded controllers."""
-    return _ask(node, controller_manager_name, srv.ListControllers, "list_controllers", (service_timeout, call_timeout))
+    return _ask(node, controller_manager_name, srv.ListControllers, service_timeout, call_timeout)
 
 
 def list_controller_types(
     node: Node, controller_manager_name: str, service_timeout: float = 0.0, call_timeout: float = 10.0
 ) -> Any:
     """Return the types of controllers that there are."""
-    return _ask(
-        node, controller_manager_name, srv.ListControllerTypes, "list_controller_types", (service_timeout, call_timeout)
-    )
+    return _ask(node, controller_manager_name, srv.ListControllerTypes, service_timeout, call_timeout)
 
 
 def list_hardware_components(
     node: Node, controller_manager_name: str, service_timeout: float = 0.0, call_timeout: float = 10.0
 ) -> Any:
     """Return the hardware."""
-    return _ask(
-        node,
-        controller_manager_name,
-        srv.ListHardwareComponents,
-        "list_hardware_components",
-        (service_timeout, call_timeout),
-    )
+    return _ask(node, controller_manager_name, srv.ListHardwareComponents, service_timeout, call_timeout)
 
 
 def list_hardware_interfaces(
     node: Node, controller_manager_name: str, service_timeout: float = 0.0, call_timeout: float = 10.0
 ) -> Any:
     """Return the hardware's interfaces."""
-    return _ask(
-        node,
-        controller_manager_name,
-        srv.ListHardwareInterfaces,
-        "list_hardware_interfaces",
-        (service_timeout, call_timeout),
-    )
+    return _ask(node, controller_manager_name, srv.ListHardwareInterfaces, service_timeout, call_timeout)
 
 
 def load_controller(
@@ -124,8 +114,7 @@ def load_controller(
     call_timeout: float = 10.0,
 ) -> Any:
     """Load a controller, whose type its manager's parameters say."""
-    timeouts = service_timeout, call_timeout
-    return _ask(node, controller_manager_name, srv.LoadController, "load_controller", timeouts, name=controller_name)
+    return _ask(node, controller_manager_name, srv.LoadController, service_timeout, call_timeout, name=controller_name)
 
 
 def configure_controller(
@@ -136,9 +125,8 @@ def configure_controller(
     call_timeout: float = 10.0,
 ) -> Any:
     """Configure a controller that is loaded."""
-    timeouts = service_timeout, call_timeout
     return _ask(
-        node, controller_manager_name, srv.ConfigureController, "configure_controller", timeouts, name=controller_name
+        node, controller_manager_name, srv.ConfigureController, service_timeout, call_timeout, name=controller_name
     )
 
 
@@ -150,9 +138,8 @@ def cleanup_controller(
     call_timeout: float = 10.0,
 ) -> Any:
     """Change a controller back to unconfigured."""
-    timeouts = service_timeout, call_timeout
     return _ask(
-        node, controller_manager_name, srv.CleanupController, "cleanup_controller", timeouts, name=controller_name
+        node, controller_manager_name, srv.CleanupController, service_timeout, call_timeout, name=controller_name
     )
 
 
@@ -164,9 +151,8 @@ def unload_controller(
     call_timeout: float = 10.0,
 ) -> Any:
     """Unload a controller that is not active."""
-    timeouts = service_timeout, call_timeout
     return _ask(
-        node, controller_manager_name, srv.UnloadController, "unload_controller", timeouts, name=controller_name
+        node, controller_manager_name, srv.UnloadController, service_timeout, call_timeout, name=controller_name
     )
 
 
@@ -178,8 +164,14 @@ def reload_controller_libraries(
     call_timeout: float = 10.0,
 ) -> Any:
     """Unload all controllers; active ones only where they are to be stopped."""
-    kind, timeouts = srv.ReloadControllerLibraries, (service_timeout, call_timeout)
-    return _ask(node, controller_manager_name, kind, "reload_controller_libraries", timeouts, force_kill=force_kill)
+    return _ask(
+        node,
+        controller_manager_name,
+        srv.ReloadControllerLibraries,
+        service_timeout,
+        call_timeout,
+        force_kill=force_kill,
+    )
 
 
 def set_hardware_component_state(
@@ -191,9 +183,8 @@ def set_hardware_component_state(
     call_timeout: float = 10.0,
 ) -> Any:
     """Set the state of a hardware component."""
-    kind, timeouts = srv.SetHardwareComponentState, (service_timeout, call_timeout)
     request = {"name": component_name, "target_state": lifecyle_state}
-    return _ask(node, controller_manager_name, kind, "set_hardware_component_state", timeouts, **request)
+    return _ask(node, controller_manager_name, srv.SetHardwareComponentState, service_timeout, call_timeout, **request)
 
 
 def switch_controllers(
@@ -213,8 +204,8 @@ def switch_controllers(
         node,
         controller_manager_name,
         kind,
-        "switch_controller",
-        (service_timeout, call_timeout),
+        service_timeout,
+        call_timeout,
         deactivate_controllers=list(deactivate_controllers),
         activate_controllers=list(activate_controllers),
         strictness=kind.Request.STRICT if strict else kind.Request.BEST_EFFORT,

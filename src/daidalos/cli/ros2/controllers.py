@@ -5,11 +5,14 @@ from __future__ import annotations
 from argparse import ArgumentParser, Namespace
 from typing import TYPE_CHECKING, Any
 
+from ros2cli.node.direct import add_arguments as add_direct_arguments
 from ros2cli.node.direct import direct_node
 from ros2cli.services import call
 
 from daidalos.cli.ros2.completion import complete
 from daidalos.cli.ros2.errors import CliError
+from daidalos.cli.ros2.extension import Verb
+from daidalos.common.names import snake_case
 from daidalos.common.suggestions import did_you_mean
 from daidalos.transport.graph import EndpointKind
 
@@ -22,8 +25,20 @@ _READY_S = 10.0
 _ANSWER_S = 30.0
 
 
-def add_manager_arguments(parser: ArgumentParser) -> None:
-    """Declare the arguments of the controller manager."""
+class ControlVerb(Verb):
+    """Verb that calls services of a controller manager."""
+
+    def add_arguments(self, parser: ArgumentParser, cli_name: str) -> None:
+        """Declare the arguments of the node, the verb and the controller manager."""
+        add_direct_arguments(parser)
+        self.add_own_arguments(parser)
+        _add_manager_arguments(parser)
+
+    def add_own_arguments(self, parser: ArgumentParser) -> None:
+        """Declare the arguments that only this verb has."""
+
+
+def _add_manager_arguments(parser: ArgumentParser) -> None:
     parser.add_argument(
         "-c",
         "--controller-manager",
@@ -33,15 +48,15 @@ def add_manager_arguments(parser: ArgumentParser) -> None:
     parser.add_argument("--include-hidden-nodes", action="store_true", help="Consider hidden nodes as well")
 
 
-def ask(node: Node, args: Namespace, service: str, service_type: Any, **request: Any) -> Any:
-    """Return the response of one of the manager's services, such as ``list_controllers``.
+def ask(node: Node, args: Namespace, service_type: Any, **request: Any) -> Any:
+    """Return the response of one of the manager's services, such as ``list_controllers`` of type ``ListControllers``.
 
     Raises
     ------
     CliError
         When there is no such manager or it does not answer.
     """
-    manager = args.controller_manager
+    manager, service = args.controller_manager, snake_case(service_type.__name__)
     name = node.resolve_service_name(f"{manager}/{service}")
     graph = node.handle.graph
     if not graph.wait_for(lambda: bool(graph.endpoints(EndpointKind.SERVICE, name=name)), _READY_S):
@@ -55,14 +70,14 @@ def list_controllers(node: Node, args: Namespace) -> list[Any]:
     """Return the controllers: `controller_manager_msgs/msg/ControllerState`."""
     from controller_manager_msgs.srv import ListControllers
 
-    return list(ask(node, args, "list_controllers", ListControllers).controller)
+    return list(ask(node, args, ListControllers).controller)
 
 
 def list_components(node: Node, args: Namespace) -> list[Any]:
     """Return the hardware components: `controller_manager_msgs/msg/HardwareComponentState`."""
     from controller_manager_msgs.srv import ListHardwareComponents
 
-    return list(ask(node, args, "list_hardware_components", ListHardwareComponents).component)
+    return list(ask(node, args, ListHardwareComponents).component)
 
 
 def find_controller(node: Node, args: Namespace, name: str) -> Any:
@@ -77,7 +92,7 @@ def configure(node: Node, args: Namespace, name: str) -> None:
     """Configure a controller."""
     from controller_manager_msgs.srv import ConfigureController
 
-    if not ask(node, args, "configure_controller", ConfigureController, name=name).ok:
+    if not ask(node, args, ConfigureController, name=name).ok:
         raise CliError("Error configuring controller, check controller_manager logs")
 
 
@@ -85,7 +100,7 @@ def load(node: Node, args: Namespace, name: str) -> None:
     """Load a controller."""
     from controller_manager_msgs.srv import LoadController
 
-    if not ask(node, args, "load_controller", LoadController, name=name).ok:
+    if not ask(node, args, LoadController, name=name).ok:
         raise CliError(f"Error loading controller {name}, check controller_manager logs")
 
 
@@ -108,7 +123,6 @@ def switch(
     response = ask(
         node,
         args,
-        "switch_controller",
         SwitchController,
         activate_controllers=activate or [],
         deactivate_controllers=deactivate or [],

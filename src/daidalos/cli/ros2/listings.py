@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from argparse import SUPPRESS, ArgumentParser
 from collections.abc import Collection
 
 from ros2cli.graph import NamesAndTypes
@@ -10,6 +11,23 @@ from ros2cli.graph import NamesAndTypes
 from daidalos.cli.ros2.extension import Status
 from daidalos.cli.ros2.graph import types_of
 from daidalos.common.suggestions import hint_line
+
+
+def add_count_argument(parser: ArgumentParser, kind: str) -> None:
+    """Declare the option to print a number only; `kind` is such as ``topics``."""
+    parser.add_argument(
+        "-c", f"--count-{kind}", action="store_true", help=f"Only display the number of {kind} discovered"
+    )
+
+
+def add_hidden_argument(parser: ArgumentParser, kind: str) -> None:
+    """Declare the option to include what is hidden; `kind` is such as ``topics``.
+
+    The command has the same option before the verb; a default of the verb's would undo it.
+    """
+    parser.add_argument(
+        f"--include-hidden-{kind}", action="store_true", default=SUPPRESS, help=f"Consider hidden {kind} as well"
+    )
 
 
 def print_names(names: Collection[str], *, count: bool) -> None:

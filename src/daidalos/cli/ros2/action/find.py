@@ -10,7 +10,7 @@ from daidalos.cli.ros2.completion import complete_types
 from daidalos.cli.ros2.extension import Status, Verb
 from daidalos.cli.ros2.graph import all_actions
 from daidalos.cli.ros2.graph_view import graph_view
-from daidalos.cli.ros2.listings import print_names
+from daidalos.cli.ros2.listings import add_count_argument, print_names
 
 
 class FindVerb(Verb):
@@ -26,9 +26,7 @@ class FindVerb(Verb):
             ),
             "action",
         )
-        parser.add_argument(
-            "-c", "--count-actions", action="store_true", help="Only display the number of actions discovered"
-        )
+        add_count_argument(parser, "actions")
 
     def main(self, *, args: Namespace) -> Status:
         """Print the names of the actions of the type, or their number."""

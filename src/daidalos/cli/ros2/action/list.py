@@ -9,7 +9,7 @@ from ros2cli.node.strategy import add_arguments as add_graph_arguments
 from daidalos.cli.ros2.extension import Status, Verb
 from daidalos.cli.ros2.graph import all_actions
 from daidalos.cli.ros2.graph_view import graph_view
-from daidalos.cli.ros2.listings import print_found
+from daidalos.cli.ros2.listings import add_count_argument, print_found
 
 
 class ListVerb(Verb):
@@ -19,9 +19,7 @@ class ListVerb(Verb):
         """Declare the arguments."""
         add_graph_arguments(parser)
         parser.add_argument("-t", "--show-types", action="store_true", help="Additionally show the action type")
-        parser.add_argument(
-            "-c", "--count-actions", action="store_true", help="Only display the number of actions discovered"
-        )
+        add_count_argument(parser, "actions")
 
     def main(self, *, args: Namespace) -> Status:
         """Print the names, with types or as a number on request."""

@@ -6,22 +6,20 @@ import sys
 from argparse import ArgumentParser, Namespace
 from typing import Any
 
-from ros2cli.node.direct import add_arguments as add_direct_arguments
 from ros2cli.node.direct import direct_node
 
-from daidalos.cli.ros2.controllers import add_manager_arguments, columns, list_controllers
-from daidalos.cli.ros2.extension import Status, Verb
+from daidalos.cli.ros2.controllers import ControlVerb, columns, list_controllers
+from daidalos.cli.ros2.extension import Status
 
 _COLORS = {"active": "\x1b[92m", "inactive": "\x1b[96m", "unconfigured": "\x1b[93m", "finalized": "\x1b[91m"}
 _PLAIN = "\x1b[0m"
 
 
-class ListControllersVerb(Verb):
+class ListControllersVerb(ControlVerb):
     """Output the list of loaded controllers, their type and status."""
 
-    def add_arguments(self, parser: ArgumentParser, cli_name: str) -> None:
+    def add_own_arguments(self, parser: ArgumentParser) -> None:
         """Declare the arguments."""
-        add_direct_arguments(parser)
         for flag, text in (
             ("--claimed-interfaces", "List controller's claimed interfaces"),
             ("--required-state-interfaces", "List controller's required state interfaces"),
@@ -36,7 +34,6 @@ class ListControllersVerb(Verb):
             action="store_true",
             help="List controller's claimed interfaces, required state interfaces and required command interfaces",
         )
-        add_manager_arguments(parser)
 
     def main(self, *, args: Namespace) -> Status:
         """Print the controllers."""

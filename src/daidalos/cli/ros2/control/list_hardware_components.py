@@ -6,26 +6,23 @@ from argparse import ArgumentParser, Namespace
 from collections.abc import Iterable, Iterator
 from typing import Any
 
-from ros2cli.node.direct import add_arguments as add_direct_arguments
 from ros2cli.node.direct import direct_node
 
-from daidalos.cli.ros2.controllers import add_manager_arguments, list_components
-from daidalos.cli.ros2.extension import Status, Verb
+from daidalos.cli.ros2.controllers import ControlVerb, list_components
+from daidalos.cli.ros2.extension import Status
 
 
-class ListHardwareComponentsVerb(Verb):
+class ListHardwareComponentsVerb(ControlVerb):
     """Output the list of available hardware components."""
 
-    def add_arguments(self, parser: ArgumentParser, cli_name: str) -> None:
+    def add_own_arguments(self, parser: ArgumentParser) -> None:
         """Declare the arguments."""
-        add_direct_arguments(parser)
         parser.add_argument(
             "--verbose",
             "-v",
             action="store_true",
             help="List hardware components with command and state interfaces",
         )
-        add_manager_arguments(parser)
 
     def main(self, *, args: Namespace) -> Status:
         """Print the hardware components."""

@@ -2,29 +2,23 @@
 
 from __future__ import annotations
 
-from argparse import ArgumentParser, Namespace
+from argparse import Namespace
 
-from ros2cli.node.direct import add_arguments as add_direct_arguments
 from ros2cli.node.direct import direct_node
 
-from daidalos.cli.ros2.controllers import add_manager_arguments, ask
-from daidalos.cli.ros2.extension import Status, Verb
+from daidalos.cli.ros2.controllers import ControlVerb, ask
+from daidalos.cli.ros2.extension import Status
 
 
-class ListHardwareInterfacesVerb(Verb):
+class ListHardwareInterfacesVerb(ControlVerb):
     """Output the list of available command and state interfaces."""
-
-    def add_arguments(self, parser: ArgumentParser, cli_name: str) -> None:
-        """Declare the arguments."""
-        add_direct_arguments(parser)
-        add_manager_arguments(parser)
 
     def main(self, *, args: Namespace) -> Status:
         """Print the interfaces."""
         from controller_manager_msgs.srv import ListHardwareInterfaces
 
         with direct_node(args) as node:
-            response = ask(node, args, "list_hardware_interfaces", ListHardwareInterfaces)
+            response = ask(node, args, ListHardwareInterfaces)
         print("command interfaces")
         for one in sorted(response.command_interfaces, key=lambda one: one.name):
             available = "available" if one.is_available else "unavailable"

@@ -5,12 +5,11 @@ from __future__ import annotations
 from argparse import ArgumentParser, Namespace
 from typing import TYPE_CHECKING
 
-from ros2cli.node.direct import add_arguments as add_direct_arguments
 from ros2cli.node.direct import direct_node
 
-from daidalos.cli.ros2.controllers import add_manager_arguments, configure, load, switch
+from daidalos.cli.ros2.controllers import ControlVerb, configure, load, switch
 from daidalos.cli.ros2.errors import CliError
-from daidalos.cli.ros2.extension import Status, Verb
+from daidalos.cli.ros2.extension import Status
 from daidalos.cli.ros2.graph import absolute
 from daidalos.cli.ros2.parameters import set_parameters
 
@@ -26,12 +25,11 @@ def _state(word: str) -> str:
     return _UNTIL_GALACTIC.get(word, word)
 
 
-class LoadControllerVerb(Verb):
+class LoadControllerVerb(ControlVerb):
     """Load a controller in a controller manager."""
 
-    def add_arguments(self, parser: ArgumentParser, cli_name: str) -> None:
+    def add_own_arguments(self, parser: ArgumentParser) -> None:
         """Declare the arguments."""
-        add_direct_arguments(parser)
         parser.add_argument("controller_name", help="Name of the controller")
         parser.add_argument("param_file", nargs="?", help="The YAML file with the controller parameters")
         parser.add_argument(
@@ -40,7 +38,6 @@ class LoadControllerVerb(Verb):
             choices=("inactive", "active"),
             help="Set the state of the loaded controller",
         )
-        add_manager_arguments(parser)
 
     def main(self, *, args: Namespace) -> Status:
         """Load the controller, and bring it to the requested state."""

@@ -4,31 +4,28 @@ from __future__ import annotations
 
 from argparse import ArgumentParser, Namespace
 
-from ros2cli.node.direct import add_arguments as add_direct_arguments
 from ros2cli.node.direct import direct_node
 
 from daidalos.cli.ros2.controllers import (
+    ControlVerb,
     add_controller_argument,
-    add_manager_arguments,
     configure,
     find_controller,
     switch,
 )
 from daidalos.cli.ros2.errors import CliError
-from daidalos.cli.ros2.extension import Status, Verb
+from daidalos.cli.ros2.extension import Status
 
 
-class SetControllerStateVerb(Verb):
+class SetControllerStateVerb(ControlVerb):
     """Adjust the state of the controller."""
 
-    def add_arguments(self, parser: ArgumentParser, cli_name: str) -> None:
+    def add_own_arguments(self, parser: ArgumentParser) -> None:
         """Declare the arguments."""
-        add_direct_arguments(parser)
         add_controller_argument(parser, "Name of the controller to be changed")
         parser.add_argument(
             "state", choices=("inactive", "active"), help="State in which the controller should be changed to"
         )
-        add_manager_arguments(parser)
 
     def main(self, *, args: Namespace) -> Status:
         """Configure, activate or deactivate it."""

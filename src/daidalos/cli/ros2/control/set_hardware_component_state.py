@@ -4,26 +4,23 @@ from __future__ import annotations
 
 from argparse import ArgumentParser, Namespace
 
-from ros2cli.node.direct import add_arguments as add_direct_arguments
 from ros2cli.node.direct import direct_node
 
-from daidalos.cli.ros2.controllers import add_component_argument, add_manager_arguments, ask
-from daidalos.cli.ros2.extension import Status, Verb
+from daidalos.cli.ros2.controllers import ControlVerb, add_component_argument, ask
+from daidalos.cli.ros2.extension import Status
 
 
-class SetHardwareComponentStateVerb(Verb):
+class SetHardwareComponentStateVerb(ControlVerb):
     """Adjust the state of the hardware component."""
 
-    def add_arguments(self, parser: ArgumentParser, cli_name: str) -> None:
+    def add_own_arguments(self, parser: ArgumentParser) -> None:
         """Declare the arguments."""
-        add_direct_arguments(parser)
         add_component_argument(parser, "Name of the hardware_component to be changed")
         parser.add_argument(
             "state",
             choices=("unconfigured", "inactive", "active"),
             help="State in which the hardware component should be changed to",
         )
-        add_manager_arguments(parser)
 
     def main(self, *, args: Namespace) -> Status:
         """Set the state, and print the resulting one."""
@@ -39,7 +36,7 @@ class SetHardwareComponentStateVerb(Verb):
         target = State(id=numbers[args.state], label=args.state)
         with direct_node(args) as node:
             request = {"name": name, "target_state": target}
-            response = ask(node, args, "set_hardware_component_state", SetHardwareComponentState, **request)
+            response = ask(node, args, SetHardwareComponentState, **request)
         if not response.ok:
             return f"Error setting hardware component to {args.state} state, check controller_manager logs"
         print(f"Successfully set {name} to state {response.state.label or args.state}")

@@ -4,20 +4,18 @@ from __future__ import annotations
 
 from argparse import ArgumentParser, Namespace
 
-from ros2cli.node.direct import add_arguments as add_direct_arguments
 from ros2cli.node.direct import direct_node
 
-from daidalos.cli.ros2.controllers import add_controller_argument, add_manager_arguments, switch
-from daidalos.cli.ros2.extension import Status, Verb
+from daidalos.cli.ros2.controllers import ControlVerb, add_controller_argument, switch
+from daidalos.cli.ros2.extension import Status
 from daidalos.cli.ros2.topic.echo import positive_float
 
 
-class SwitchControllersVerb(Verb):
+class SwitchControllersVerb(ControlVerb):
     """Switch controllers in a controller manager."""
 
-    def add_arguments(self, parser: ArgumentParser, cli_name: str) -> None:
+    def add_own_arguments(self, parser: ArgumentParser) -> None:
         """Declare the arguments."""
-        add_direct_arguments(parser)
         for flag, done in (("--deactivate", "deactivated"), ("--activate", "activated")):
             text = f"Name of the controllers to be {done}"
             add_controller_argument(parser, text, flag, nargs="*", default=[])
@@ -28,7 +26,6 @@ class SwitchControllersVerb(Verb):
         parser.add_argument(
             "--switch-timeout", type=positive_float, default=5.0, help="Timeout for switching controllers"
         )
-        add_manager_arguments(parser)
 
     def main(self, *, args: Namespace) -> Status:
         """Switch the controllers."""

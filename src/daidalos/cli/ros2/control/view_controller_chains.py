@@ -5,26 +5,20 @@ from __future__ import annotations
 import shutil
 import subprocess
 import tempfile
-from argparse import ArgumentParser, Namespace
+from argparse import Namespace
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
-from ros2cli.node.direct import add_arguments as add_direct_arguments
 from ros2cli.node.direct import direct_node
 
-from daidalos.cli.ros2.controllers import add_manager_arguments, ask, list_controllers
+from daidalos.cli.ros2.controllers import ControlVerb, ask, list_controllers
 from daidalos.cli.ros2.errors import CliError
-from daidalos.cli.ros2.extension import Status, Verb
+from daidalos.cli.ros2.extension import Status
 
 
-class ViewControllerChainsVerb(Verb):
+class ViewControllerChainsVerb(ControlVerb):
     """Generates a diagram of the loaded chained controllers into /tmp/controller_diagram.gv.pdf."""
-
-    def add_arguments(self, parser: ArgumentParser, cli_name: str) -> None:
-        """Declare the arguments."""
-        add_direct_arguments(parser)
-        add_manager_arguments(parser)
 
     def main(self, *, args: Namespace) -> Status:
         """Write the diagram, as a PDF if Graphviz is installed, and print its path."""
@@ -32,7 +26,7 @@ class ViewControllerChainsVerb(Verb):
 
         with direct_node(args) as node:
             controllers = list_controllers(node, args)
-            hardware = ask(node, args, "list_hardware_interfaces", ListHardwareInterfaces)
+            hardware = ask(node, args, ListHardwareInterfaces)
         path = Path(tempfile.gettempdir()) / "controller_diagram.gv"
         path.write_text(diagram(controllers, hardware), encoding="utf-8")
         program = shutil.which("dot")

@@ -6,27 +6,24 @@ import functools
 from argparse import ArgumentParser, Namespace
 from typing import Any
 
-from ros2cli.node.direct import add_arguments as add_direct_arguments
 from ros2cli.node.direct import direct_node
 
-from daidalos.cli.ros2.controllers import add_manager_arguments
+from daidalos.cli.ros2.controllers import ControlVerb
 from daidalos.cli.ros2.errors import CliError
-from daidalos.cli.ros2.extension import Status, Verb
+from daidalos.cli.ros2.extension import Status
 from daidalos.cli.ros2.graph import topics
 from daidalos.cli.ros2.topics import spin, topic_class
 
 _TYPE = "control_msgs/msg/HardwareStatus"
 
 
-class ViewHardwareStatusVerb(Verb):
+class ViewHardwareStatusVerb(ControlVerb):
     """Echo hardware status messages with filtering capabilities."""
 
-    def add_arguments(self, parser: ArgumentParser, cli_name: str) -> None:
+    def add_own_arguments(self, parser: ArgumentParser) -> None:
         """Declare the arguments."""
-        add_direct_arguments(parser)
         parser.add_argument("-i", "--hardware-id", help="Show only the status of this hardware component")
         parser.add_argument("-d", "--device-id", help="Show only the status of this device")
-        add_manager_arguments(parser)
 
     def main(self, *, args: Namespace) -> Status:
         """Print every status until Ctrl-C."""

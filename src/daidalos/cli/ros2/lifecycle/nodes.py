@@ -9,7 +9,7 @@ from ros2cli.node.strategy import add_arguments as add_graph_arguments
 from daidalos.cli.ros2.extension import Status, Verb
 from daidalos.cli.ros2.graph_view import graph_view
 from daidalos.cli.ros2.lifecycles import managed_nodes
-from daidalos.cli.ros2.listings import print_names
+from daidalos.cli.ros2.listings import add_count_argument, print_names
 
 
 class NodesVerb(Verb):
@@ -19,9 +19,7 @@ class NodesVerb(Verb):
         """Declare the arguments."""
         add_graph_arguments(parser)
         parser.add_argument("-a", "--all", action="store_true", help="Display all nodes even hidden ones")
-        parser.add_argument(
-            "-c", "--count-nodes", action="store_true", help="Only display the number of nodes discovered"
-        )
+        add_count_argument(parser, "nodes")
 
     def main(self, *, args: Namespace) -> Status:
         """Print the full names, or their number."""

@@ -10,6 +10,7 @@ from ros2cli.node.strategy import add_arguments as add_graph_arguments
 from daidalos.cli.ros2.extension import Status, Verb
 from daidalos.cli.ros2.graph import duplicate_names, nodes
 from daidalos.cli.ros2.graph_view import graph_view
+from daidalos.cli.ros2.listings import add_count_argument
 
 
 class ListVerb(Verb):
@@ -19,9 +20,7 @@ class ListVerb(Verb):
         """Declare the arguments."""
         add_graph_arguments(parser)
         parser.add_argument("-a", "--all", action="store_true", help="Display all nodes even hidden ones")
-        parser.add_argument(
-            "-c", "--count-nodes", action="store_true", help="Only display the number of nodes discovered"
-        )
+        add_count_argument(parser, "nodes")
 
     def main(self, *, args: Namespace) -> Status:
         """Print the full names, or their number."""

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from argparse import SUPPRESS, ArgumentParser, Namespace
+from argparse import ArgumentParser, Namespace
 
 from daidalos.cli.ros2.completion import complete_types
 from daidalos.cli.ros2.extension import Status, Verb
 from daidalos.cli.ros2.graph import services
 from daidalos.cli.ros2.graph_view import graph_view
-from daidalos.cli.ros2.listings import print_names
+from daidalos.cli.ros2.listings import add_count_argument, add_hidden_argument, print_names
 
 
 class FindVerb(Verb):
@@ -23,12 +23,8 @@ class FindVerb(Verb):
             ),
             "srv",
         )
-        parser.add_argument(
-            "-c", "--count-services", action="store_true", help="Only display the number of services discovered"
-        )
-        parser.add_argument(
-            "--include-hidden-services", action="store_true", default=SUPPRESS, help="Consider hidden services as well"
-        )
+        add_count_argument(parser, "services")
+        add_hidden_argument(parser, "services")
 
     def main(self, *, args: Namespace) -> Status:
         """Print the names of the services of the type, or their number."""

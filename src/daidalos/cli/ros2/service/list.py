@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from argparse import SUPPRESS, ArgumentParser, Namespace
+from argparse import ArgumentParser, Namespace
 
 from ros2cli.node.strategy import add_arguments as add_graph_arguments
 
 from daidalos.cli.ros2.extension import Status, Verb
 from daidalos.cli.ros2.graph import services
 from daidalos.cli.ros2.graph_view import graph_view
-from daidalos.cli.ros2.listings import print_found
+from daidalos.cli.ros2.listings import add_count_argument, add_hidden_argument, print_found
 
 
 class ListVerb(Verb):
@@ -19,12 +19,8 @@ class ListVerb(Verb):
         """Declare the arguments."""
         add_graph_arguments(parser)
         parser.add_argument("-t", "--show-types", action="store_true", help="Additionally show the service type")
-        parser.add_argument(
-            "-c", "--count-services", action="store_true", help="Only display the number of services discovered"
-        )
-        parser.add_argument(
-            "--include-hidden-services", action="store_true", default=SUPPRESS, help="Consider hidden services as well"
-        )
+        add_count_argument(parser, "services")
+        add_hidden_argument(parser, "services")
 
     def main(self, *, args: Namespace) -> Status:
         """Print the names, with types or as a number on request."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from argparse import SUPPRESS, ArgumentParser, Namespace
+from argparse import ArgumentParser, Namespace
 
 from ros2cli.node.strategy import add_arguments as add_graph_arguments
 
@@ -10,7 +10,7 @@ from daidalos.cli.ros2.completion import complete_types
 from daidalos.cli.ros2.extension import Status, Verb
 from daidalos.cli.ros2.graph import topics
 from daidalos.cli.ros2.graph_view import graph_view
-from daidalos.cli.ros2.listings import print_names
+from daidalos.cli.ros2.listings import add_count_argument, add_hidden_argument, print_names
 
 
 class FindVerb(Verb):
@@ -25,12 +25,8 @@ class FindVerb(Verb):
             ),
             "msg",
         )
-        parser.add_argument(
-            "-c", "--count-topics", action="store_true", help="Only display the number of topics discovered"
-        )
-        parser.add_argument(
-            "--include-hidden-topics", action="store_true", default=SUPPRESS, help="Consider hidden topics as well"
-        )
+        add_count_argument(parser, "topics")
+        add_hidden_argument(parser, "topics")
 
     def main(self, *, args: Namespace) -> Status:
         """Print the names of the topics of the type, or their number."""

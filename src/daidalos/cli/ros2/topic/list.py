@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from argparse import SUPPRESS, ArgumentParser, Namespace
+from argparse import ArgumentParser, Namespace
 
 from ros2cli.node.strategy import add_arguments as add_graph_arguments
 
 from daidalos.cli.ros2.extension import Status, Verb
 from daidalos.cli.ros2.graph import topics
 from daidalos.cli.ros2.graph_view import graph_view
-from daidalos.cli.ros2.listings import print_found
+from daidalos.cli.ros2.listings import add_count_argument, add_hidden_argument, print_found
 from daidalos.transport.graph import EndpointKind, Graph
 
 
@@ -20,13 +20,8 @@ class ListVerb(Verb):
         """Declare the arguments."""
         add_graph_arguments(parser)
         parser.add_argument("-t", "--show-types", action="store_true", help="Additionally show the topic type")
-        parser.add_argument(
-            "-c", "--count-topics", action="store_true", help="Only display the number of topics discovered"
-        )
-        # The command has the same option before the verb; a default of the verb's would undo it.
-        parser.add_argument(
-            "--include-hidden-topics", action="store_true", default=SUPPRESS, help="Consider hidden topics as well"
-        )
+        add_count_argument(parser, "topics")
+        add_hidden_argument(parser, "topics")
         parser.add_argument(
             "-v",
             "--verbose",
