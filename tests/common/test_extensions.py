@@ -130,7 +130,10 @@ def test_a_class_that_does_not_fulfil_the_contract_is_refused(name: str) -> None
 
 
 def test_a_class_path_that_cannot_be_imported_says_why() -> None:
-    with pytest.raises(ExtensionError, match=r"cannot be loaded from my_shapes\.broken:It: No module named 'nothing"):
+    with pytest.raises(
+        ExtensionError,
+        match=r"'my_shapes\.broken[.:]It' cannot be loaded from my_shapes\.broken:It: No module named 'nothing",
+    ):
         find(SHAPES, "my_shapes.broken.It")
 
 

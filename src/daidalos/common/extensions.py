@@ -164,7 +164,7 @@ def locate(kind: Kind[T], name: str, *, asked_by: Location | None = None) -> Ext
 def load(kind: Kind[T], extension: Extension, *, asked_by: Location | None = None) -> type[T]:
     """Import the class of an extension; see `find`. Those that are not built in are checked against the contract."""
     described = f"{kind.title} '{extension.name}'"
-    if extension.origin != BUILT_IN:
+    if extension.origin not in (BUILT_IN, extension.target.partition(":")[0]):
         described += f" of {extension.origin}"
     try:
         loaded = extension.load()

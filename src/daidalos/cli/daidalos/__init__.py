@@ -10,6 +10,7 @@ from typing import Any
 from ros2cli.extensions import Extensions, built_in
 from ros2cli.parser import Parser
 
+from daidalos.common.errors import UserError
 from daidalos.common.extensions import ExtensionError, Kind
 
 _DESCRIPTIONS = {
@@ -35,15 +36,17 @@ def main(argv: Sequence[str] | None = None) -> int:
     )
     parser.add_argument("--version", action=_Version, nargs=0, help="print the version")
     parser.add_subcommands("verbs", "daidalos", Extensions(VERBS), _complete)
+    name = "daidalos"
     try:
         args = parser.parse_args(sys.argv[1:] if argv is None else list(argv))
         if not hasattr(args, "_main"):
             parser.print_help()
             return 0
+        name = args._name
         return int(args._main(args) or 0)
-    except ExtensionError as error:
-        print(f"daidalos: {error}", file=sys.stderr)
-        return 1
+    except UserError as error:
+        print(f"{name}: {error}", file=sys.stderr)
+        return 1 if isinstance(error, ExtensionError) else 2
     except KeyboardInterrupt:
         return 130
     except BrokenPipeError:
@@ -53,7 +56,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 def _complete(verb: Any, parser: Parser, name: str) -> None:
     """Complete the parser of a verb."""
-    parser.set_defaults(_main=lambda args: verb.main(args=args))
+    parser.set_defaults(_main=lambda args: verb.main(args=args), _name=parser.prog)
     verb.add_arguments(parser, name)
 
 

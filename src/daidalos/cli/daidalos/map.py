@@ -68,13 +68,7 @@ class MapVerb:
 
     def main(self, *, args: argparse.Namespace) -> int:
         """Map a log; return the exit status."""
-        try:
-            report = _run(args)
-        except UserError as error:
-            print(f"daidalos map: {error}", file=sys.stderr)
-            return 2
-        except KeyboardInterrupt:
-            return 130
+        report = _run(args)
         print(json.dumps(report) if args.json else _as_text(report))
         return 0
 
