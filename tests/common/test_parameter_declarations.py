@@ -84,7 +84,8 @@ def test_every_parameter_is_read() -> None:
 def test_every_parameter_is_described(kind: type[Parameters]) -> None:
     for leaf in leaves(kind):
         described = leaf.constraints.description
-        assert described.endswith("."), (leaf.name, described)
+        # Courses show the output of `ros2 param describe` for turtlesim, with ROS 2's own descriptions.
+        assert described.endswith(".") or kind.__module__.startswith("daidalos.nodes.turtlesim"), (leaf.name, described)
         assert described[0].isupper(), (leaf.name, described)
         assert leaf.is_array == isinstance(leaf.default, tuple), leaf.name
         if leaf.type is float and not leaf.is_array and math.isfinite(leaf.default):

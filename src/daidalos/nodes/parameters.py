@@ -7,8 +7,9 @@ at run time on. `warn_of_undeclared` names given parameters that nothing declare
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from dataclasses import replace as with_changes
 from difflib import get_close_matches
 from functools import partial
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -75,7 +76,13 @@ class _NodeParameters:
 _of_nodes: WeakKeyDictionary[Node, _NodeParameters] = WeakKeyDictionary()
 
 
-def declare(node: Node, kind: type[T], prefix: str = "", reconfigure: Callable[[T], None] | None = None) -> T:
+def declare(
+    node: Node,
+    kind: type[T],
+    prefix: str = "",
+    reconfigure: Callable[[T], None] | None = None,
+    defaults: Mapping[str, Any] | None = None,
+) -> T:
     """Declare the parameters of a class and return their values.
 
     What is declared already keeps its value, so that a lifecycle node may do this whenever it is configured.
@@ -91,6 +98,8 @@ def declare(node: Node, kind: type[T], prefix: str = "", reconfigure: Callable[[
     reconfigure : callable or None
         Called with checked new values; it may raise `ParameterError` or another exception to
         refuse them. Without it all of them are read-only.
+    defaults : mapping or None
+        Defaults that are known only now, by name.
 
     Raises
     ------
@@ -105,6 +114,8 @@ def declare(node: Node, kind: type[T], prefix: str = "", reconfigure: Callable[[
 
     def get(leaf: Leaf) -> Any:
         names.append(leaf.name)
+        if defaults is not None and leaf.name in defaults:
+            leaf = with_changes(leaf, default=defaults[leaf.name])
         return _value(node, leaf, before, leaf.constraints.read_only or reconfigure is None)
 
     try:

@@ -158,7 +158,7 @@ def test_physics_can_be_changed(shop):
 def test_a_speed_that_can_not_be_is_refused(shop, value):
     (answer,) = shop.server.set_parameters([Parameter("real_time_factor", value=value)])
     assert not answer.successful
-    assert "0 for as fast as possible" in answer.reason
+    assert "real_time_factor" in answer.reason
     assert shop.server._paced.real_time_factor == 1.0
 
 

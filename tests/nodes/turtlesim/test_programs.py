@@ -208,4 +208,4 @@ def test_wrong_arguments(domain: int) -> None:
     words = ("--headless", "--ros-args", "-p", "background_r:=300")
     with Terminal("run", "turtlesim", "turtlesim_node", *words, domain=domain) as program:
         assert program.wait(30) != 0
-        assert "background_r out of range. Min: 0, Max: 255, value: 300" in program.text
+        assert "background_r:=300: parameter 'background_r' of /turtlesim must be at most 255, got 300" in program.text

@@ -15,6 +15,7 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 from tf2_ros import Buffer, TransformListener
 
+from daidalos.common.parameters import Parameters, parameter
 from daidalos.common.pose2 import wrap
 from daidalos.description.footprint import Footprint, footprint
 from daidalos.mapping.grid import OccupancyGrid
@@ -22,6 +23,7 @@ from daidalos.nodes.conversions import grid_array, pose2_of
 from daidalos.nodes.daidalos_demo._measuring import TruthRecorder
 from daidalos.nodes.daidalos_demo._robot import Robot
 from daidalos.nodes.packages import package_share
+from daidalos.nodes.parameters import declare
 from daidalos.nodes.runner import run_program
 
 _CLEARANCE_M = 0.45
@@ -74,11 +76,18 @@ class TrialReport:
         return bool(self.goals) and all(goal.reached for goal in self.goals) and not self.contacts
 
 
+@dataclass(frozen=True)
+class TrialParameters(Parameters):
+    """Parameters of ``trial``."""
+
+    seed: int = parameter(0, "Seed of the choice of goals.")
+    goals: int = parameter(3, "Number of goals.", minimum=0)
+    world: str = parameter("", "SDF file that is simulated; by default the arena of turtlebot3_gazebo.")
+    robot: str = parameter("waffle", "Name of the robot in the world.")
+
+
 class Trial(Node):
     """Test drive to a sequence of goals.
-
-    Parameters of the node: ``seed`` chooses the goals, ``goals`` is how many, ``world`` the SDF file that is
-    simulated, ``robot`` the robot's name in it.
 
     Parameters
     ----------
@@ -94,14 +103,11 @@ class Trial(Node):
         from gazebo_msgs.msg import PerformanceMetrics
 
         self._say = say
-        self._seed = self.declare_parameter("seed", 0).value
-        self._count = self.declare_parameter("goals", 3).value
-        default = f"{package_share('turtlebot3_gazebo')}/worlds/arena.world"
-        self._world = self.declare_parameter("world", default).value
-        robot = self.declare_parameter("robot", "waffle").value
+        by_default = {"world": f"{package_share('turtlebot3_gazebo')}/worlds/arena.world"}
+        self._settings = declare(self, TrialParameters, defaults=by_default)
         self._buffer = Buffer()
         self._listener = TransformListener(self._buffer, self)
-        self._truth = TruthRecorder(self, self._buffer, robot, "map", "base_footprint")
+        self._truth = TruthRecorder(self, self._buffer, self._settings.robot, "map", "base_footprint")
         self._robot = Robot(self)
         self._factors: list[float] = []
         self.create_subscription(PerformanceMetrics, "/performance_metrics", self._on_metrics, 10)
@@ -112,15 +118,15 @@ class Trial(Node):
 
     async def run(self) -> TrialReport:
         """Carry the trial out; to be run as a task of the node's executor."""
-        plan = _plan_of(self._world)
+        plan = _plan_of(self._settings.world)
         self._say("waiting for the robot, its map and the navigator")
         await self._robot.until_ready(lambda: self._truth.pose is not None)
         self._say("looking around")
         await self._robot.look_around()
         self._factors.clear()
         reports = []
-        for number, goal in enumerate(choose_goals(plan, self._count, self._seed), 1):
-            self._say(f"goal {number} of {self._count}: ({goal[0]:.2f}, {goal[1]:.2f}, {goal[2]:.2f} rad)")
+        for number, goal in enumerate(choose_goals(plan, self._settings.goals, self._settings.seed), 1):
+            self._say(f"goal {number} of {self._settings.goals}: ({goal[0]:.2f}, {goal[1]:.2f}, {goal[2]:.2f} rad)")
             reports.append(await self._drive(goal))
         contacts = self._truth.contacts
         return TrialReport(

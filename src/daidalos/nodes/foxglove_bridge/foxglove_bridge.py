@@ -2,21 +2,31 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 from rclpy.node import Node
 
+from daidalos.common.parameters import Parameters, parameter
+from daidalos.nodes.parameters import declare
 from daidalos.nodes.runner import UserError
 from daidalos.nodes.studio import Studio, open_in_browser
 from daidalos.studio.ports import PortError
 from daidalos.studio.server import DEFAULT_PORT, LOOPBACK
 
 
+@dataclass(frozen=True)
+class FoxgloveBridgeParameters(Parameters):
+    """Parameters of ``foxglove_bridge``."""
+
+    port: int = parameter(DEFAULT_PORT, "TCP port; the next free one where it is used.", minimum=0, maximum=65535)
+    address: str = parameter("", "Address to listen on; loopback where empty.")
+    open_browser: bool = parameter(False, "Whether to open the page in the browser.")
+    front: str = parameter("", "Panel that the page opens with.")
+
+
 class FoxgloveBridge(Node):
     """Node that serves the studio on ``http://localhost:<port>/``.
-
-    Parameters of the node: ``port`` (the next free one is taken where it is used), ``address`` (loopback unless
-    told otherwise), ``open_browser``, ``front`` (the panel that the page opens with).
 
     Raises
     ------
@@ -26,18 +36,15 @@ class FoxgloveBridge(Node):
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__("foxglove_bridge", **kwargs)
-        port = self.declare_parameter("port", DEFAULT_PORT).value
-        address = self.declare_parameter("address", "").value
-        open_browser = self.declare_parameter("open_browser", False).value
-        front = self.declare_parameter("front", "").value
+        settings = declare(self, FoxgloveBridgeParameters)
         try:
-            self._studio = Studio(self, port, (address,) if address else LOOPBACK)
+            self._studio = Studio(self, settings.port, (settings.address,) if settings.address else LOOPBACK)
         except PortError as error:
             super().destroy_node()
             raise UserError(str(error)) from None
-        url = self._studio.url(front=front)
+        url = self._studio.url(front=settings.front)
         self.get_logger().info(f"studio: {url}")
-        if open_browser:
+        if settings.open_browser:
             open_in_browser(url)
 
     def destroy_node(self) -> None:

@@ -16,10 +16,12 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.utilities import remove_ros_args
 
+from daidalos.common.parameters import Parameters, parameter
 from daidalos.common.rate_gate import RateGate
 from daidalos.description.errors import DescriptionError
 from daidalos.nodes.gazebo_ros._command_line import parse
 from daidalos.nodes.gazebo_ros._worlds import find_world
+from daidalos.nodes.parameters import declare
 from daidalos.nodes.runner import UserError, run
 from daidalos.samples.fields import time_message
 
@@ -52,6 +54,23 @@ class Start:
     paused: bool = False
     update_rate: float | None = None
     steps: int | None = None
+
+
+@dataclass(frozen=True)
+class GzServerParameters(Parameters):
+    """Parameters of ``gzserver``."""
+
+    seed: int = parameter(0, "Seed of all noise.", read_only=True)
+    publish_rate: float = parameter(
+        _CLOCK_RATE, "Rate of ``/clock``.", unit="Hz", above=0.0, below=math.inf, read_only=True
+    )
+    real_time_factor: float = parameter(
+        1.0,
+        "Simulated seconds in a second, 0 for as many as can be; by default the world's.",
+        minimum=0.0,
+        below=math.inf,
+    )
+    contact_monitor: str = parameter("", "Model whose contacts are published.", read_only=True)
 
 
 class GzServer(Node):
@@ -90,15 +109,16 @@ class GzServer(Node):
         from daidalos.simulation import Simulation
 
         start = start or Start()
-        seed = self.declare_parameter("seed", 0).value
-        clock_rate = _positive(self.declare_parameter("publish_rate", _CLOCK_RATE))
         described = read_world(start.world)
-        factor = self.declare_parameter("real_time_factor", wanted_speed(described.physics)).value
-        watched = self.declare_parameter("contact_monitor", "").value
+        by_default = {"real_time_factor": wanted_speed(described.physics)}
+        settings = declare(self, GzServerParameters, reconfigure=self._reconfigure, defaults=by_default)
+        clock_rate, factor = settings.publish_rate, settings.real_time_factor
         self._connections = connections = Connections(self)
 
         def make(description: World) -> Simulation:
-            return Simulation(description, seed=seed, has_subscribers=connections.has_subscribers, warn=self._warn)
+            return Simulation(
+                description, seed=settings.seed, has_subscribers=connections.has_subscribers, warn=self._warn
+            )
 
         simulation = make(described)
         if start.update_rate is not None:
@@ -116,10 +136,9 @@ class GzServer(Node):
         self._host.world_path = start.world
         self._clock_publisher = self.create_publisher(Clock, "/clock", 10)
         self._metrics = self.create_publisher(PerformanceMetrics, "/performance_metrics", 10)
-        self._states = StateTopics(self, described, watched)
+        self._states = StateTopics(self, described, settings.contact_monitor)
         self._topics_changed(simulation)
         self._create_services()
-        self.add_on_set_parameters_callback(self._on_set_parameters)
         self._performance = self.create_timer(1.0, self._publish_performance, clock=_steady_clock())
         self._paced.start(paused=start.paused)
         name = start.world.name if start.world else "an empty world"
@@ -166,18 +185,8 @@ class GzServer(Node):
         self._companions.follow(simulation)
         self._states.follow(simulation)
 
-    def _on_set_parameters(self, parameters: list[Any]) -> Any:
-        from rcl_interfaces.msg import SetParametersResult
-
-        for parameter in parameters:
-            if parameter.name == "real_time_factor":
-                if not 0.0 <= parameter.value < math.inf:
-                    reason = (
-                        f"a speed of {parameter.value:g} can not be; expected a factor, or 0 for as fast as possible"
-                    )
-                    return SetParametersResult(successful=False, reason=reason)
-                self._paced.real_time_factor = float(parameter.value)
-        return SetParametersResult(successful=True)
+    def _reconfigure(self, parameters: GzServerParameters) -> None:
+        self._paced.real_time_factor = parameters.real_time_factor
 
     def _publish_performance(self) -> None:
         from gazebo_msgs.msg import PerformanceMetrics
@@ -200,13 +209,6 @@ def _steady_clock() -> Any:
     from rclpy.clock_type import ClockType
 
     return Clock(clock_type=ClockType.STEADY_TIME)
-
-
-def _positive(parameter: Any) -> float:
-    """Return a parameter's value, which must be more than nothing."""
-    if not 0.0 < parameter.value < math.inf:
-        raise UserError(f"the parameter {parameter.name} is {parameter.value:g}; expected a positive number")
-    return float(parameter.value)
 
 
 def serve(start: Start, seed: int | None = None, verbose: bool = False) -> int:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from collections import deque
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +15,9 @@ from rclpy.qos import QoSPolicyKind
 from rclpy.qos_overriding_options import QoSOverridingOptions
 from rclpy.utilities import remove_ros_args
 
+from daidalos.common.parameters import Parameters, parameter
 from daidalos.nodes.node_thread import NodeThread
+from daidalos.nodes.parameters import declare
 from daidalos.nodes.ros_gz_bridge._conversions import Converter, find_converter, message_class
 from daidalos.nodes.ros_gz_bridge._mapping import (
     Bridge,
@@ -27,6 +30,13 @@ from daidalos.nodes.runner import UserError, run
 from daidalos.transport.graph import EndpointInfo, EndpointKind
 
 _OVERRIDABLE = (QoSPolicyKind.DEPTH, QoSPolicyKind.DURABILITY, QoSPolicyKind.HISTORY, QoSPolicyKind.RELIABILITY)
+
+
+@dataclass(frozen=True)
+class ParameterBridgeParameters(Parameters):
+    """Parameters of ``parameter_bridge``."""
+
+    config_file: str = parameter("", "YAML file that names topics to bridge; none where empty.")
 
 
 class ParameterBridge(Node):
@@ -49,7 +59,7 @@ class ParameterBridge(Node):
 
     def __init__(self, words: list[str], **kwargs: Any) -> None:
         super().__init__("ros_gz_bridge", **kwargs)
-        path = str(self.declare_parameter("config_file", "").value)
+        path = declare(self, ParameterBridgeParameters).config_file
         try:
             bridges, services = parse_arguments(words)
             if path:

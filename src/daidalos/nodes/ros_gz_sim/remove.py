@@ -4,11 +4,22 @@ from __future__ import annotations
 
 import argparse
 import sys
+from dataclasses import dataclass
 
 from rclpy.utilities import remove_ros_args
 
+from daidalos.common.parameters import Parameters, parameter
+from daidalos.nodes.parameters import declare
 from daidalos.nodes.ros_gz_sim.create import find_service
 from daidalos.nodes.runner import UserError, run_program
+
+
+@dataclass(frozen=True)
+class RemoveParameters(Parameters):
+    """Parameters of ``remove``, for what its options leave out."""
+
+    entity_name: str = parameter("", "Entity to remove.")
+    world: str = parameter("", "World with the entity; the only one where empty.")
 
 
 def _remove(world: str, name: str) -> None:
@@ -18,8 +29,8 @@ def _remove(world: str, name: str) -> None:
 
     rclpy.init()
     node = rclpy.create_node("entity_remover")
-    name = name or str(node.declare_parameter("entity_name", "").value)
-    world = world or str(node.declare_parameter("world", "").value)
+    settings = declare(node, RemoveParameters)
+    name, world = name or settings.entity_name, world or settings.world
     if not name:
         raise UserError("say what to remove: -name, or the parameter entity_name")
     service = find_service(node, world, "remove", "ros_gz_interfaces/srv/DeleteEntity")

@@ -12,7 +12,7 @@ from rclpy.task import Future
 from daidalos.nodes.turtlesim._turtle import Pen, Turtle
 
 if TYPE_CHECKING:
-    from rclpy.node import Node
+    from daidalos.nodes.turtlesim.turtlesim_node import TurtleSim
 
 _MAX_MAGNITUDE = 1e30  # of units; what is more, or no number, is a mistake
 
@@ -41,7 +41,7 @@ class TurtleInterface:
 
     def __init__(
         self,
-        node: Node,
+        node: TurtleSim,
         turtle: Turtle,
         moved: Callable[[Turtle, tuple[float, float]], None],
     ) -> None:
@@ -102,7 +102,7 @@ class TurtleInterface:
     # Topic and services.
 
     def _on_command(self, twist: Any) -> None:
-        sideways = twist.linear.y if self._node.get_parameter("holonomic").value else 0.0
+        sideways = twist.linear.y if self._node.settings.holonomic else 0.0
         if self._can_be(twist.linear.x, sideways, twist.angular.z):
             self.turtle.command(twist.linear.x, sideways, twist.angular.z, self._now_s())
 

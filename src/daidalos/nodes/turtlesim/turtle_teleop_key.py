@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import Any
 
 from rclpy.node import Node
 
+from daidalos.common.parameters import Parameters, parameter
 from daidalos.nodes.keyboard import Keyboard
+from daidalos.nodes.parameters import declare
 from daidalos.nodes.teleoperation import run_with_keyboard
 
 _HELP = """Reading from keyboard
@@ -32,11 +35,16 @@ _HEADINGS = {
 }
 
 
-class TeleopTurtle(Node):
-    """Node that publishes ``turtle1/cmd_vel`` and sends goals to ``turtle1/rotate_absolute``.
+@dataclass(frozen=True)
+class TeleopTurtleParameters(Parameters):
+    """Parameters of ``turtle_teleop_key``."""
 
-    Parameters of the node: ``scale_linear`` [units/s], ``scale_angular`` [rad/s].
-    """
+    scale_angular: float = parameter(2.0, "Angular velocity of a key.", unit="rad/s")
+    scale_linear: float = parameter(2.0, "Velocity of a key.", unit="1/s")
+
+
+class TeleopTurtle(Node):
+    """Node that publishes ``turtle1/cmd_vel`` and sends goals to ``turtle1/rotate_absolute``."""
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__("teleop_turtle", **kwargs)
@@ -44,11 +52,13 @@ class TeleopTurtle(Node):
         from rclpy.action import ActionClient
         from turtlesim.action import RotateAbsolute
 
-        self.declare_parameter("scale_angular", 2.0)
-        self.declare_parameter("scale_linear", 2.0)
+        self._settings = declare(self, TeleopTurtleParameters, reconfigure=self._reconfigure)
         self._commands = self.create_publisher(Twist, "turtle1/cmd_vel", 1)
         self._rotations = ActionClient(self, RotateAbsolute, "turtle1/rotate_absolute")
         self._rotation: Any = None
+
+    def _reconfigure(self, parameters: TeleopTurtleParameters) -> None:
+        self._settings = parameters
 
     def steer(self, keyboard: Keyboard) -> None:
         """Obey keys until Q."""
@@ -66,8 +76,8 @@ class TeleopTurtle(Node):
 
         self._commands.publish(
             Twist(
-                linear=Vector3(x=forward * self.get_parameter("scale_linear").value),
-                angular=Vector3(z=left * self.get_parameter("scale_angular").value),
+                linear=Vector3(x=forward * self._settings.scale_linear),
+                angular=Vector3(z=left * self._settings.scale_angular),
             )
         )
 

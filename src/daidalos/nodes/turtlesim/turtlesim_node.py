@@ -6,12 +6,15 @@ import argparse
 import math
 import random
 import sys
+from dataclasses import dataclass
 from typing import Any
 
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
 from rclpy.utilities import remove_ros_args
 
+from daidalos.common.parameters import Parameters, parameter
+from daidalos.nodes.parameters import declare
 from daidalos.nodes.runner import run
 from daidalos.nodes.studio_window import run_with_window
 from daidalos.nodes.turtlesim._drawing import Drawing
@@ -19,15 +22,27 @@ from daidalos.nodes.turtlesim._turtle import SIZE, UPDATE_S, Turtle
 from daidalos.nodes.turtlesim._turtle_interface import TurtleInterface
 
 _KINDS = 8  # drawings of turtles that the window has
-_BACKGROUND = {"r": (69, "Red"), "g": (86, "Green"), "b": (255, "Blue")}
 _STILL_UPDATES = 12  # a window in which nothing moves is told so this seldom
 
 
-class TurtleSim(Node):
-    """Simulates turtles.
+def _channel(default: int, name: str) -> Any:
+    return parameter(default, f"{name} channel of the background color", minimum=0, maximum=255)
 
-    Parameters of the node: ``background_r``, ``background_g``, ``background_b`` (0 to 255), ``holonomic`` (turtles
-    obey sideways commands). Services: ``clear``, ``reset``, ``spawn``, ``kill``; for those of each turtle see
+
+@dataclass(frozen=True)
+class TurtleSimParameters(Parameters):
+    """Parameters of ``turtlesim_node``, with the descriptions that ROS 2 shows."""
+
+    background_r: int = _channel(69, "Red")
+    background_g: int = _channel(86, "Green")
+    background_b: int = _channel(255, "Blue")
+    holonomic: bool = parameter(False, "If true, then turtle will be a holonomic robot")
+
+
+class TurtleSim(Node):
+    """Simulator of turtles.
+
+    Services: ``clear``, ``reset``, ``spawn``, ``kill``; for those of each turtle see
     `TurtleInterface`. The hidden topic ``~/_window`` and the hidden service ``~/_drawing`` are for the page.
     """
 
@@ -35,17 +50,10 @@ class TurtleSim(Node):
         super().__init__("turtlesim", **kwargs)
         from daidalos_msgs.msg import TurtleWindow
         from daidalos_msgs.srv import GetTurtleDrawing
-        from rcl_interfaces.msg import ParameterDescriptor, ParameterEvent
         from std_srvs.srv import Empty
         from turtlesim.srv import Kill, Spawn
 
-        self.declare_parameter(
-            "holonomic", False, ParameterDescriptor(description="If true, then turtle will be a holonomic robot")
-        )
-        for channel, (value, name) in _BACKGROUND.items():
-            self.declare_parameter(f"background_{channel}", value, _channel_descriptor(name))
-        self._read_background()
-        self.create_subscription(ParameterEvent, "/parameter_events", self._on_parameters, 10)
+        self.settings = declare(self, TurtleSimParameters, reconfigure=self._reconfigure)
         self._turtles: dict[str, TurtleInterface] = {}
         self._drawing = Drawing()
         self._named = 0
@@ -84,13 +92,12 @@ class TurtleSim(Node):
         if turtle.pen.is_down and (turtle.x, turtle.y) != before:
             self._drawing.draw(before, (turtle.x, turtle.y), turtle.pen)
 
-    def _on_parameters(self, event: Any) -> None:
-        if event.node == self.get_fully_qualified_name():
-            self._read_background()
+    def _reconfigure(self, parameters: TurtleSimParameters) -> None:
+        self.settings = parameters
 
-    def _read_background(self) -> None:
-        r, g, b = (int(self.get_parameter(f"background_{channel}").value) for channel in _BACKGROUND)
-        self._background = (r, g, b)
+    @property
+    def _background(self) -> tuple[int, int, int]:
+        return self.settings.background_r, self.settings.background_g, self.settings.background_b
 
     # Services.
 
@@ -190,15 +197,6 @@ class TurtleSim(Node):
         response.lines, response.pens = self._drawing.all_lines()
         response.picture = self._drawing.picture()
         return response
-
-
-def _channel_descriptor(name: str) -> Any:
-    from rcl_interfaces.msg import IntegerRange, ParameterDescriptor
-
-    return ParameterDescriptor(
-        description=f"{name} channel of the background color",
-        integer_range=[IntegerRange(from_value=0, to_value=255, step=1)],
-    )
 
 
 def main() -> int:
