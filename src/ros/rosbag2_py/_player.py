@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Callable, Sequence
 from typing import Any, ClassVar
 
@@ -12,7 +11,7 @@ from rosbag2_py._options import PlayOptions, severity
 from rosbag2_py._player_node import NODE_NAME, PlayerNode
 from rosbag2_py._player_services import create_services
 from rosbag2_py._progress import StatusLine
-from rosbag2_py._running import RunningNode
+from rosbag2_py._running import Runner, RunningNode
 from rosbag2_py._storage import StorageOptions
 
 _THREADS = 2
@@ -38,7 +37,7 @@ _KEYS: dict[str, Callable[[PlayerNode], Any]] = {
 }
 
 
-class Player:
+class Player(Runner[PlayerNode]):
     """Player of bags.
 
     Made without options, only `play` and `burst` with options can be called, as ROS 2 Jazzy's programs do.
@@ -69,10 +68,9 @@ class Player:
         log_level: str = "info",
         node_name: str = NODE_NAME,
     ) -> None:
+        super().__init__()
         self._severity = severity(storage_options if isinstance(storage_options, str) else log_level)
-        self._running_node: RunningNode[PlayerNode] | None = None
         self._status: StatusLine | None = None
-        self._cancelled = threading.Event()
         if storage_options is not None and not isinstance(storage_options, str) and play_options is not None:
             self._prepare(_listed(storage_options), play_options, node_name)
 
@@ -87,12 +85,6 @@ class Player:
         self._status = StatusLine(self._progress, options.progress_bar_update_rate)
 
     @property
-    def _configured(self) -> RunningNode[PlayerNode]:
-        if self._running_node is None:
-            raise RuntimeError("Player is not configured: it was made without options")
-        return self._running_node
-
-    @property
     def _node(self) -> PlayerNode:
         return self._configured.node
 
@@ -105,15 +97,6 @@ class Player:
         return f"[{stamp}] Duration {done:.2f}/{max(total, 0.0):.2f} [{node.state}]"
 
     # Step by step.
-
-    def start_spin(self) -> None:
-        """Run the node's callbacks in a thread."""
-        self._configured.start()
-
-    def stop_spin(self) -> None:
-        """Run no more callbacks, and leave the graph."""
-        self._configured.close()
-        self._running_node = None
 
     def play(
         self,

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-import threading
 from typing import ClassVar
 
 from rosbag2_py._keyboard import SPACE
 from rosbag2_py._options import RecordOptions, severity
 from rosbag2_py._recorder_node import NODE_NAME, RecorderNode
 from rosbag2_py._recorder_services import create_services
-from rosbag2_py._running import RunningNode
+from rosbag2_py._running import Runner, RunningNode
 from rosbag2_py._storage import StorageOptions
 
 
-class Recorder:
+class Recorder(Runner[RecorderNode]):
     """Recorder of topics into a bag.
 
     Made without options, only `record` with options can be called, as ROS 2 Jazzy's programs do.
@@ -44,10 +43,9 @@ class Recorder:
         log_level: str = "info",
         node_name: str = NODE_NAME,
     ) -> None:
+        super().__init__()
         self._severity = severity(storage_options if isinstance(storage_options, str) else log_level)
         self._failed = False
-        self._running_node: RunningNode[RecorderNode] | None = None
-        self._cancelled = threading.Event()
         if storage_options is not None and not isinstance(storage_options, str) and record_options is not None:
             self._prepare(storage_options, record_options, node_name)
 
@@ -59,12 +57,6 @@ class Recorder:
             on_crash=self._fail,
         )
         create_services(self._running_node.node)
-
-    @property
-    def _configured(self) -> RunningNode[RecorderNode]:
-        if self._running_node is None:
-            raise RuntimeError("Recorder is not configured: it was made without options")
-        return self._running_node
 
     @property
     def node(self) -> RecorderNode:
@@ -81,15 +73,6 @@ class Recorder:
         return self._failed
 
     # Step by step.
-
-    def start_spin(self) -> None:
-        """Run the node's callbacks in a thread."""
-        self._configured.start()
-
-    def stop_spin(self) -> None:
-        """Run no more callbacks, and leave the graph."""
-        self._configured.close()
-        self._running_node = None
 
     def record(
         self,

@@ -105,3 +105,26 @@ class RunningNode(Generic[NodeT]):
             self._thread.join()
         self.node.destroy_node()
         self._context.destroy()
+
+
+class Runner(Generic[NodeT]):
+    """Base of the player and the recorder: owner of a `RunningNode`, once there are options to make it with."""
+
+    def __init__(self) -> None:
+        self._running_node: RunningNode[NodeT] | None = None
+        self._cancelled = threading.Event()
+
+    @property
+    def _configured(self) -> RunningNode[NodeT]:
+        if self._running_node is None:
+            raise RuntimeError(f"{type(self).__name__} is not configured: it was made without options")
+        return self._running_node
+
+    def start_spin(self) -> None:
+        """Run the node's callbacks in a thread."""
+        self._configured.start()
+
+    def stop_spin(self) -> None:
+        """Run no more callbacks, and leave the graph."""
+        self._configured.close()
+        self._running_node = None

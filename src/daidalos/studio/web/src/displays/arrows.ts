@@ -9,6 +9,7 @@ import {
   type BufferGeometry,
 } from "three";
 import type { Pose, PoseArray, PoseStamped, PoseWithCovarianceStamped } from "../generated/geometry_msgs";
+import type { Odometry } from "../generated/nav_msgs";
 import { arrowGeometry } from "../scene/shapes";
 import type { Property, Settings } from "../contract";
 import type { DisplayContext } from "./display";
@@ -32,7 +33,7 @@ export function poseArrow(length: number): BufferGeometry {
 }
 
 /** Arrows at many poses in one draw call. */
-export class Arrows extends InstancedMesh<BufferGeometry, MeshStandardMaterial> {
+class Arrows extends InstancedMesh<BufferGeometry, MeshStandardMaterial> {
   constructor(capacity: number, length: number) {
     super(poseArrow(length), new MeshStandardMaterial({ roughness: 0.7 }), capacity);
     this.instanceMatrix.setUsage(DynamicDrawUsage);
@@ -64,7 +65,7 @@ const ONE = new Vector3(1, 1, 1);
 const MATRIX = new Matrix4();
 
 export abstract class ArrowsDisplay<
-  M extends PoseStamped | PoseWithCovarianceStamped | PoseArray,
+  M extends PoseStamped | PoseWithCovarianceStamped | PoseArray | Odometry,
 > extends StampedDisplay<M> {
   private arrows = new Arrows(1, 1);
   private length = 0;

@@ -2,41 +2,22 @@
 import { Quaternion, Vector3 } from "three";
 import type { Pose } from "../../generated/geometry_msgs";
 import type { Odometry } from "../../generated/nav_msgs";
-import type { Settings } from "../../contract";
-import type { DisplayContext, BuiltInDisplay } from "../display";
-import { Arrows, ARROW_PROPERTIES } from "../arrows";
-import { number, text } from "../settings";
-import { StampedDisplay } from "../topic_display";
+import { ARROW_PROPERTIES, ArrowsDisplay } from "../arrows";
+import type { BuiltInDisplay } from "../display";
+import { number } from "../settings";
 
 const MAX_ARROWS = 2000;
 
-class OdometryDisplay extends StampedDisplay<Odometry> {
-  private arrows: Arrows;
-  private length: number;
+class OdometryDisplay extends ArrowsDisplay<Odometry> {
   private trail: Pose[] = [];
 
-  constructor(context: DisplayContext, settings: Settings) {
-    super(context, settings, "latest");
-    this.length = number(settings, "length");
-    this.arrows = new Arrows(MAX_ARROWS, this.length);
-    this.object.add(this.arrows);
-  }
-
-  protected override show({ pose: { pose } }: Odometry): void {
+  protected override posesOf({ pose: { pose } }: Odometry): readonly Pose[] {
     const last = this.trail.at(-1);
     if (!last || isFar(last, pose, number(this.settings, "distance"), number(this.settings, "angle"))) {
       this.trail.push(pose);
     }
     this.trail = this.trail.slice(-Math.min(MAX_ARROWS, number(this.settings, "keep")));
-    if (this.length !== number(this.settings, "length")) {
-      this.length = number(this.settings, "length");
-      this.arrows.geometry.dispose();
-      this.arrows.removeFromParent();
-      this.arrows = new Arrows(MAX_ARROWS, this.length);
-      this.object.add(this.arrows);
-    }
-    this.arrows.paint(text(this.settings, "color"), number(this.settings, "alpha"));
-    this.arrows.setPoses(this.trail);
+    return this.trail;
   }
 }
 
