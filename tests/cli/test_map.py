@@ -1,22 +1,18 @@
-"""`daidalos map`, called as the dispatcher calls it."""
+"""The command `daidalos map`."""
 
-import argparse
 import json
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from daidalos.cli.daidalos.map import MapVerb
+from daidalos.cli.daidalos import main
 from daidalos.mapping.map_file import load_map
 from mapping.bags import write_bag
 
 
 def call(*words: object) -> int:
-    parser = argparse.ArgumentParser(prog="daidalos map")
-    verb = MapVerb()
-    verb.add_arguments(parser, parser.prog)
-    return verb.main(args=parser.parse_args([str(word) for word in words]))
+    return main(["map", *map(str, words)])
 
 
 @pytest.fixture(scope="module")
