@@ -11,7 +11,16 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 
 from daidalos.common.parameters import ParameterError, Parameters, group, parameter
-from daidalos.nodes.parameters import declare, location_of, warn_of_undeclared
+from daidalos.nodes.parameters import (
+    declare,
+    declare_given,
+    declare_one,
+    given_below,
+    location_of,
+    typed_value,
+    warn_of_undeclared,
+)
+from daidalos.nodes.runner import create
 
 DOUBLE, STRING, INTEGER_ARRAY = 3, 4, 7
 
@@ -167,3 +176,54 @@ def test_undeclared_names_are_warned_of_once(make: Make, tmp_path: Path, capfd: 
         f"{file}:9: parameter 'limits.sped' of /settings is not declared; did you mean 'limits.speed'?",
         f"{file}: parameters of /settings that are not declared and have no effect: nothing.like.it (line 10)",
     ]
+
+
+def test_what_a_range_says_is_said_once(make: Make) -> None:
+    @dataclass(frozen=True)
+    class Colour(Parameters):
+        red: int = parameter(69, "Red.", minimum=0, maximum=255)
+
+    node = make()
+    declare(node, Colour)
+    red = node.describe_parameter("red")
+    (limits,) = red.integer_range
+    assert (limits.from_value, limits.to_value, limits.step) == (0, 255, 1)
+    assert red.additional_constraints == ""
+
+
+def test_defaults_may_be_known_only_at_run_time(make: Make) -> None:
+    node = make("settings:\n  ros__parameters: {frame: odom}\n")
+    values = declare(node, Settings, defaults={"rule": "fancy", "frame": "earth"})
+    assert (values.rule, values.frame) == ("fancy", "odom")
+    assert node.get_parameter("rule").value == "fancy"
+
+
+def test_parameters_whose_names_depend_on_others(make: Make, tmp_path: Path) -> None:
+    node = make("settings:\n  ros__parameters:\n    zeros: {a: 1, b.c: 2.0}\n    zeros.d: far\n")
+    assert given_below(node, "zeros") == ["a", "b.c", "d"]
+    assert declare_one(node, "zeros.a", 0.0, "Zero.", takes_integer=True) == 1.0
+    assert declare_one(node, "other", 7, "Other.") == 7
+    with pytest.raises(ParameterError, match=r"params.yaml:4: parameter 'zeros.d' of /settings must be a float"):
+        declare_one(node, "zeros.d", 0.0, "Zero.")
+
+
+def test_values_of_any_name_have_the_type_of_their_default(make: Make) -> None:
+    node = make("settings:\n  ros__parameters:\n    arm.type: 3\n    arm.files: one.yaml\n    leg.files: [a, b]\n")
+    declare_given(node)
+    assert typed_value(node, "arm.files", ()) == ("one.yaml",)
+    assert typed_value(node, "leg.files", ()) == ("a", "b")
+    assert typed_value(node, "leg.type", "Leg") == "Leg"
+    with pytest.raises(
+        ParameterError, match=r"params.yaml:3: parameter 'arm.type' of /settings must be a string, got 3"
+    ):
+        typed_value(node, "arm.type", "")
+
+
+def test_a_program_warns_of_what_its_node_does_not_declare(make: Make, capfd: pytest.CaptureFixture[str]) -> None:
+    def make_node() -> Node:
+        node = make("settings:\n  ros__parameters: {rules: fancy}\n")
+        declare(node, Settings)
+        return node
+
+    create(make_node)
+    assert "parameter 'rules' of /settings is not declared; did you mean 'rule'?" in capfd.readouterr().err

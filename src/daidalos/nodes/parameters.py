@@ -163,6 +163,12 @@ def given_below(node: Node, group: str) -> list[str]:
     return [name.removeprefix(f"{group}.") for name in node._parameter_overrides if name.startswith(f"{group}.")]
 
 
+def declare_given(node: Node) -> None:
+    """Declare all parameters that are given to a node and not declared, with the types of their values."""
+    given = [(name, one.value) for name, one in node._parameter_overrides.items() if not node.has_parameter(name)]
+    node.declare_parameters("", given, ignore_override=True)
+
+
 def typed_value(node: Node, name: str, default: Any) -> Any:
     """Return the value of a parameter of any name, which has the type of a default; the default where it is not set.
 

@@ -110,7 +110,10 @@ def test_companions_come_and_go_with_models(rig: Rig) -> None:
     ("content", "message"),
     [
         ("a: [", "the controllers of 'r' can not be started: "),
-        ("controller_manager:\n  ros__parameters:\n    update_rate: fast\n", "update_rate"),
+        (
+            "controller_manager:\n  ros__parameters:\n    update_rate: fast\n",
+            "parameters.yaml:3: parameter 'update_rate'",
+        ),
     ],
 )
 def test_a_file_that_can_not_be_used_is_said_and_the_model_stays(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 import traceback
 from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +16,7 @@ from rclpy.parameter import Parameter
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
 from daidalos.common.errors import UserError
+from daidalos.common.parameters import ParameterError, Parameters, group, parameter
 from daidalos.control.component import INACTIVE, UNCONFIGURED
 from daidalos.control.contracts import ControllerContext, Hardware
 from daidalos.control.errors import ControlError
@@ -29,16 +31,37 @@ from daidalos.nodes.controller_manager._reports import (
     activity_message,
     component_message,
 )
+from daidalos.nodes.parameters import declare, declare_given, declare_one, typed_value
 from daidalos.samples.sensors import Sample
 
 _LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL, reliability=ReliabilityPolicy.RELIABLE)
 
 
-class ControllerManagerNode(Node):
-    """Offers a manager's services, under ROS's names.
+@dataclass(frozen=True)
+class InitialStateParameters(Parameters):
+    """Hardware components that are not active at first."""
 
-    Parameters of the node are ROS's: ``update_rate``, ``<controller>.type``, ``<controller>.params_file``,
-    ``<controller>.fallback_controllers``, ``hardware_components_initial_state``, ``enforce_command_limits``.
+    unconfigured: tuple[str, ...] = parameter((), "Hardware components that begin unconfigured.")
+    inactive: tuple[str, ...] = parameter((), "Hardware components that begin inactive.")
+
+
+@dataclass(frozen=True)
+class ControllerManagerParameters(Parameters):
+    """Parameters of the controller manager.
+
+    Those of each controller are ``<controller>.type``, its class; ``<controller>.params_file``, files with its
+    parameters; ``<controller>.fallback_controllers``, started when it fails; ``<controller>.node_options_args``,
+    arguments of its node. They may be set until it is loaded.
+    """
+
+    update_rate: int = parameter(100, "Rate of the control cycle.", unit="Hz", above=0)
+    enforce_command_limits: bool = parameter(True, "Whether commands are kept within the limits of the joints.")
+    hardware_components_initial_state: InitialStateParameters = group(InitialStateParameters)
+    robot_description: str = parameter("", "Description of the robot; from the topic where empty.")
+
+
+class ControllerManagerNode(Node):
+    """Node that offers a manager's services, under ROS's names.
 
     Parameters
     ----------
@@ -52,19 +75,16 @@ class ControllerManagerNode(Node):
     def __init__(
         self, node_name: str = "controller_manager", controller_arguments: list[str] | None = None, **kwargs: Any
     ) -> None:
-        super().__init__(
-            node_name,
-            allow_undeclared_parameters=True,
-            automatically_declare_parameters_from_overrides=True,
-            **kwargs,
-        )
+        super().__init__(node_name, allow_undeclared_parameters=True, **kwargs)
         self._controller_arguments = controller_arguments or []
         self._use_global_arguments = bool(kwargs.get("use_global_arguments", True))
-        rate = self._parameter("update_rate", 100)
-        if not isinstance(rate, int | float) or rate <= 0:
+        try:
+            self.settings = declare(self, ControllerManagerParameters)
+        except ParameterError:
             super().destroy_node()
-            raise ControlError(f"parameter 'update_rate' must be a number above 0, got {rate!r}")
-        self.update_rate = float(rate)
+            raise
+        declare_given(self)
+        self.update_rate = float(self.settings.update_rate)
         self.lock = threading.RLock()
         self.manager: ControllerManager | None = None
         self._nodes: dict[str, ControllerNode] = {}
@@ -80,7 +100,7 @@ class ControllerManagerNode(Node):
             hardware,
             self.update_rate,
             self._initial_states(),
-            bool(self._parameter("enforce_command_limits", True)),
+            self.settings.enforce_command_limits,
             self.warn,
         )
         for component in self.manager.components.values():
@@ -94,15 +114,9 @@ class ControllerManagerNode(Node):
         """Log a line for the user."""
         self.get_logger().warning(line)
 
-    def _parameter(self, name: str, default: Any) -> Any:
-        if not self.has_parameter(name):
-            return default
-        value = self.get_parameter(name).value
-        return default if value is None else value
-
     def _initial_states(self) -> dict[str, str]:
-        prefix = "hardware_components_initial_state"
-        return {name: state for state in (UNCONFIGURED, INACTIVE) for name in self._parameter(f"{prefix}.{state}", [])}
+        first = self.settings.hardware_components_initial_state
+        return dict.fromkeys(first.unconfigured, UNCONFIGURED) | dict.fromkeys(first.inactive, INACTIVE)
 
     # Control loop, called by the owner of the clock.
 
@@ -193,14 +207,13 @@ class ControllerManagerNode(Node):
 
     def _load(self, request: Any, response: Any) -> None:
         name = request.name
-        type_name = self._parameter(f"{name}.type", "")
-        files = self._parameter(f"{name}.params_file", [])
-        files = [files] if isinstance(files, str) else list(files)
+        type_name = typed_value(self, f"{name}.type", "")
+        files = typed_value(self, f"{name}.params_file", ())
         if name in self._running.controllers:
             raise ControlError(f"a controller '{name}' is loaded already")
         node = self._make_node(name, files)
         try:
-            type_name = type_name or self._type_from(node)
+            type_name = type_name or declare_one(node, "type", "", "Class of the controller.")
             if not type_name:
                 raise ControlError(
                     f"the type of controller '{name}' is not known: "
@@ -208,13 +221,13 @@ class ControllerManagerNode(Node):
                 )
             context = ControllerContext(
                 name,
-                update_rate=self._rate_of(node, name),
+                update_rate=declare_one(node, "update_rate", 0, "Rate; the manager's where 0.", unit="Hz", minimum=0),
                 robot=self._robot,
                 namespace=self.get_namespace(),
                 has_subscribers=node.has_subscribers,
                 warn=node.warn,
             )
-            fallbacks = self._parameter(f"{name}.fallback_controllers", [])
+            fallbacks = typed_value(self, f"{name}.fallback_controllers", ())
             self._running.load(name, type_name, node.read_parameters, context, fallbacks)
         except UserError:
             node.destroy_node()
@@ -223,15 +236,15 @@ class ControllerManagerNode(Node):
         self._spinning.add_node(node)
         self.get_logger().info(f"loaded controller '{name}' ({type_name})")
 
-    def _make_node(self, name: str, files: list[str]) -> ControllerNode:
+    def _make_node(self, name: str, files: Iterable[str]) -> ControllerNode:
         for file in files:
             if not Path(file).is_file():
                 raise ControlError(f"there is no parameter file '{file}' for controller '{name}'")
         arguments = [*self._controller_arguments]
         for file in files:
             arguments += ["--params-file", file]
-        arguments += self._parameter(f"{name}.node_options_args", [])
-        sim_time: Parameter[bool] = Parameter("use_sim_time", value=bool(self._parameter("use_sim_time", False)))
+        arguments += typed_value(self, f"{name}.node_options_args", ())
+        sim_time: Parameter[bool] = Parameter("use_sim_time", value=bool(self.get_parameter("use_sim_time").value))
         try:
             return ControllerNode(
                 name,
@@ -244,16 +257,6 @@ class ControllerManagerNode(Node):
             )
         except (ValueError, RuntimeError) as error:  # the name, or something in a file, breaks the rules
             raise ControlError(f"controller '{name}' can not be loaded: {error}") from error
-
-    def _type_from(self, node: ControllerNode) -> str:
-        """Return a type that the controller's own parameters give."""
-        return str(node.declare_parameter("type", "").value)
-
-    def _rate_of(self, node: ControllerNode, name: str) -> float:
-        try:
-            return float(node.declare_parameter("update_rate", 0).value)
-        except RuntimeError as error:
-            raise ControlError(f"controller '{name}': {error}") from error
 
     def _configure(self, request: Any, response: Any) -> None:
         name = request.name

@@ -29,9 +29,8 @@ class Ros2ControlNode(ControllerManagerNode):
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__("controller_manager", **kwargs)
-        text = self._parameter("robot_description", "")
-        if text:
-            self._begin(text)
+        if self.settings.robot_description:
+            self._begin(self.settings.robot_description)
         else:
             from std_msgs.msg import String
 

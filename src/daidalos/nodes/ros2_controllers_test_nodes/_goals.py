@@ -3,22 +3,42 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from itertools import cycle
 from typing import Any
 
 from rcl_interfaces.msg import ParameterDescriptor
 from rclpy.node import Node
 
+from daidalos.common.parameters import Parameters, parameter
+from daidalos.nodes.parameters import declare
+
+
+@dataclass(frozen=True)
+class GoalParameters(Parameters):
+    """Common parameters of the goal publishers."""
+
+    wait_sec_between_publish: float = parameter(5.0, "Time between goals.", unit="s", above=0.0, takes_integer=True)
+    goal_names: tuple[str, ...] = parameter(("pos1", "pos2"), "Names of the goals, which are parameters themselves.")
+
 
 class GoalPublisher(Node):
-    """Node that sends its goals in turn, one every ``wait_sec_between_publish`` seconds."""
+    """Node that sends its goals in turn.
 
-    def __init__(self, name: str, wait_s: int, **kwargs: Any) -> None:
+    Parameters
+    ----------
+    name
+        The node's.
+    parameters
+        The class of its parameters.
+    """
+
+    def __init__(self, name: str, parameters: type[GoalParameters], **kwargs: Any) -> None:
         super().__init__(name, **kwargs)
         self._goals: Iterator[Any] = iter(())
-        anything = ParameterDescriptor(dynamic_typing=True)
-        self.wait_s = float(self.declare_parameter("wait_sec_between_publish", wait_s, anything).value)
-        self.goal_names = list(self.declare_parameter("goal_names", ["pos1", "pos2"]).value)
+        self.settings: Any = declare(self, parameters)
+        self.wait_s = self.settings.wait_sec_between_publish
+        self.goal_names = self.settings.goal_names
 
     def numbers(self, parameter: str) -> list[float]:
         """Declare a parameter and return its numbers; none where it is not set or holds something else."""

@@ -2,20 +2,32 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
-from daidalos.nodes.ros2_controllers_test_nodes._goals import GoalPublisher
+from daidalos.common.parameters import parameter
+from daidalos.nodes.ros2_controllers_test_nodes._goals import GoalParameters, GoalPublisher
 from daidalos.nodes.runner import UserError, run
 
 
+@dataclass(frozen=True)
+class ForwardPositionPublisherParameters(GoalParameters):
+    """Parameters of ``publisher_forward_position_controller``.
+
+    ``<goal>`` is the array of a goal's positions.
+    """
+
+    publish_topic: str = parameter("/position_commands", "Topic of the positions.")
+
+
 class ForwardPositionPublisher(GoalPublisher):
-    """Parameters: ``publish_topic``, ``wait_sec_between_publish``, ``goal_names`` and one array for every goal."""
+    """Node that sends positions in turn."""
 
     def __init__(self, **kwargs: Any) -> None:
-        super().__init__("publisher_forward_position_controller", 5, **kwargs)
+        super().__init__("publisher_forward_position_controller", ForwardPositionPublisherParameters, **kwargs)
         from std_msgs.msg import Float64MultiArray
 
-        topic = self.declare_parameter("publish_topic", "/position_commands").value
+        topic = self.settings.publish_topic
         goals = [self.numbers(name) for name in self.goal_names]
         for name, goal in zip(self.goal_names, goals, strict=True):
             if not goal:

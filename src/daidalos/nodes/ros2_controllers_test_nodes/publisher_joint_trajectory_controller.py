@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import Any
 
-from daidalos.nodes.ros2_controllers_test_nodes._goals import GoalPublisher
+from daidalos.common.parameters import parameter
+from daidalos.nodes.ros2_controllers_test_nodes._goals import GoalParameters, GoalPublisher
 from daidalos.nodes.runner import UserError, run
 
 _QUANTITIES = ("positions", "velocities", "accelerations", "effort")
@@ -13,25 +15,36 @@ _REACHED_AFTER_S = 4
 _ANY_START = [-2 * math.pi, 2 * math.pi]
 
 
-class JointTrajectoryPublisher(GoalPublisher):
-    """Node that sends trajectories of one point, to be reached after 4 s.
+@dataclass(frozen=True)
+class JointTrajectoryPublisherParameters(GoalParameters):
+    """Parameters of ``publisher_joint_trajectory_controller``.
 
-    Parameters: ``controller_name``, ``wait_sec_between_publish``, ``joints``, ``goal_names`` and for every goal
-    ``positions``, ``velocities``, ``accelerations`` and ``effort`` below its name, of which one is enough. With
-    ``check_starting_point`` nothing is sent unless the joints' first state lies within ``starting_point_limits``.
+    ``<goal>.positions``, ``<goal>.velocities``, ``<goal>.accelerations`` and ``<goal>.effort`` are arrays with an
+    element for each joint; one of them is enough. ``starting_point_limits.<joint>`` are a lower and an upper limit.
     """
 
+    wait_sec_between_publish: float = parameter(6.0, "Time between goals.", unit="s", above=0.0, takes_integer=True)
+    controller_name: str = parameter("position_trajectory_controller", "Controller to send goals to.")
+    joints: tuple[str, ...] = parameter(("",), "Joints of the controller.")
+    check_starting_point: bool = parameter(
+        False, "Whether to send nothing unless the first state of the joints is within their limits."
+    )
+
+
+class JointTrajectoryPublisher(GoalPublisher):
+    """Node that sends trajectories of one point, to be reached after 4 s."""
+
     def __init__(self, **kwargs: Any) -> None:
-        super().__init__("publisher_position_trajectory_controller", 6, **kwargs)
+        super().__init__("publisher_position_trajectory_controller", JointTrajectoryPublisherParameters, **kwargs)
         from trajectory_msgs.msg import JointTrajectory
 
-        controller = self.declare_parameter("controller_name", "position_trajectory_controller").value
-        self._joints = [name for name in self.declare_parameter("joints", [""]).value if name]
+        controller = self.settings.controller_name
+        self._joints = [name for name in self.settings.joints if name]
         if not self._joints:
             raise UserError("the parameter 'joints' must name the controller's joints")
         self._is_at_start: bool | None = None
         self._limits: dict[str, list[float]] = {}
-        if self.declare_parameter("check_starting_point", False).value:
+        if self.settings.check_starting_point:
             self._check_start()
         else:
             self._is_at_start = True
