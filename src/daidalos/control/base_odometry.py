@@ -4,16 +4,36 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.common.parameters import Parameters, parameter
 from daidalos.common.pose2 import move_along_arc
 from daidalos.common.pose3 import quaternion_from_yaw
 from daidalos.samples.odometry import transform_of
 from daidalos.samples.sensors import OdometrySample, TransformSample
 
 Array = NDArray[np.float64]
+_ZEROS = (0.0,) * 6
+
+
+@dataclass(frozen=True)
+class OdometryParameters(Parameters):
+    """Parameters of the odometry of a controller, as ROS names them."""
+
+    odom_frame_id: str = parameter("odom", "Frame of the odometry.", read_only=True)
+    base_frame_id: str = parameter("base_link", "Frame of the base.", read_only=True)
+    pose_covariance_diagonal: tuple[float, ...] = parameter(
+        _ZEROS, "Variances of the odometry's pose.", length=6, read_only=True
+    )
+    twist_covariance_diagonal: tuple[float, ...] = parameter(
+        _ZEROS, "Variances of the odometry's twist.", length=6, read_only=True
+    )
+    enable_odom_tf: bool = parameter(
+        True, "Whether to publish the transform from odom_frame_id to base_frame_id.", read_only=True
+    )
 
 
 class BaseOdometry:

@@ -13,12 +13,12 @@ from typing import Any
 from urllib.parse import urlencode
 
 from rclpy.node import Node
-from rclpy.qos import DurabilityPolicy, QoSProfile
 
 from daidalos.description.resolve import default_model_path
 from daidalos.distribution import DISTRIBUTION
 from daidalos.nodes.foxglove_bridge._graph_source import RosGraphSource
 from daidalos.nodes.packages import package_share
+from daidalos.nodes.qos import LATCHED
 from daidalos.studio.arrangement import Arrangement
 from daidalos.studio.assets import AssetResolver
 from daidalos.studio.server import DEFAULT_PORT, LOOPBACK, StudioServer
@@ -100,11 +100,10 @@ class Studio:
         """Allow the page the meshes of every robot that is described in the graph."""
         from std_msgs.msg import String
 
-        latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
         published = {endpoint.name for endpoint in self._graph.endpoints(EndpointKind.PUBLISHER)}
         for topic in {name for name in published if name.endswith("/robot_description")} - self._seen:
             self._seen.add(topic)
-            self._node.create_subscription(String, topic, lambda text: self._assets.allow_meshes_of(text.data), latched)
+            self._node.create_subscription(String, topic, lambda text: self._assets.allow_meshes_of(text.data), LATCHED)
 
     def _read_shapes(self, response: Any) -> None:
         """Allow the page the meshes and textures of the shapes that a simulator returns."""

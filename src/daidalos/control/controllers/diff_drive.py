@@ -9,7 +9,7 @@ import numpy as np
 
 from daidalos.common.parameters import ParameterError, Parameters, group, parameter
 from daidalos.common.rate_gate import RateGate
-from daidalos.control.base_odometry import BaseOdometry, prefixed_frame
+from daidalos.control.base_odometry import BaseOdometry, OdometryParameters, prefixed_frame
 from daidalos.control.contracts import Controller, Subscription
 from daidalos.control.interfaces import Interfaces
 from daidalos.control.speed_limiter import SpeedLimiter, SpeedLimits
@@ -17,7 +17,6 @@ from daidalos.control.velocity_input import VelocityInput
 from daidalos.samples.controllers import VelocitySample
 from daidalos.samples.sensors import OdometrySample, Sample, TransformSample
 
-_ZEROS = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 _REFERENCES = ("linear/velocity", "angular/velocity")
 
 
@@ -36,7 +35,7 @@ class AngularLimits(Parameters):
 
 
 @dataclass(frozen=True)
-class DiffDriveParameters(Parameters):
+class DiffDriveParameters(OdometryParameters):
     """Parameters of the differential drive, as ROS names them; those of both Humble and Jazzy."""
 
     left_wheel_names: tuple[str, ...] = parameter(
@@ -52,19 +51,8 @@ class DiffDriveParameters(Parameters):
     right_wheel_radius_multiplier: float = parameter(1.0, "Correction factor of the right wheels' radius.", above=0.0)
     tf_frame_prefix_enable: bool = parameter(True, "Whether frames get a prefix.", read_only=True)
     tf_frame_prefix: str = parameter("", "Prefix of frames; empty for the namespace.", read_only=True)
-    odom_frame_id: str = parameter("odom", "Frame of the odometry.", read_only=True)
-    base_frame_id: str = parameter("base_link", "Frame of the base.", read_only=True)
-    pose_covariance_diagonal: tuple[float, ...] = parameter(
-        _ZEROS, "Variances of the odometry's pose.", length=6, read_only=True
-    )
-    twist_covariance_diagonal: tuple[float, ...] = parameter(
-        _ZEROS, "Variances of the odometry's twist.", length=6, read_only=True
-    )
     open_loop: bool = parameter(False, "Whether odometry comes from commands instead of wheels.", read_only=True)
     position_feedback: bool = parameter(True, "Whether wheels measure angles instead of speeds.", read_only=True)
-    enable_odom_tf: bool = parameter(
-        True, "Whether to publish the transform from odom_frame_id to base_frame_id.", read_only=True
-    )
     cmd_vel_timeout: float = parameter(0.5, "Age at which a command is ignored; 0 for never.", unit="s")
     publish_limited_velocity: bool = parameter(False, "Whether to publish ~/cmd_vel_out.", read_only=True)
     velocity_rolling_window_size: int = parameter(

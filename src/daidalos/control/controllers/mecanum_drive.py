@@ -10,12 +10,11 @@ import numpy as np
 
 from daidalos.common.parameters import Parameters, group, parameter
 from daidalos.control.base_controller import BaseController
-from daidalos.control.base_odometry import BaseOdometry, prefixed_frame
+from daidalos.control.base_odometry import BaseOdometry, OdometryParameters, prefixed_frame
 from daidalos.control.interfaces import Interfaces
 from daidalos.samples.controllers import MecanumSample
 from daidalos.samples.sensors import Sample
 
-_ZEROS = (0.0,) * 6
 _WHEELS = ("front_left", "rear_left", "rear_right", "front_right")
 _SIDE = np.array([-1.0, 1.0, -1.0, 1.0])
 """How much of the speed to the left each wheel has."""
@@ -44,7 +43,7 @@ class MecanumKinematics(Parameters):
 
 
 @dataclass(frozen=True)
-class MecanumParameters(Parameters):
+class MecanumParameters(OdometryParameters):
     """Parameters of the mecanum drive, as ROS names them."""
 
     reference_timeout: float = parameter(0.0, "Age at which a command is ignored; 0 for never.", unit="s")
@@ -73,21 +72,10 @@ class MecanumParameters(Parameters):
         "", "Joint that measures the rear left wheel; empty for the commanded one.", read_only=True
     )
     kinematics: MecanumKinematics = group(MecanumKinematics)
-    base_frame_id: str = parameter("base_link", "Frame of the base.", read_only=True)
-    odom_frame_id: str = parameter("odom", "Frame of the odometry.", read_only=True)
     tf_frame_prefix_enable: bool = parameter(False, "Whether frames get a prefix.", read_only=True)
     tf_frame_prefix: str = parameter("", "Prefix of frames; empty for the namespace.", read_only=True)
-    enable_odom_tf: bool = parameter(
-        True, "Whether to publish the transform from odom_frame_id to base_frame_id.", read_only=True
-    )
     use_stamped_vel: bool = parameter(
         True, "Whether commands are stamped (~/reference) or not (~/reference_unstamped).", read_only=True
-    )
-    twist_covariance_diagonal: tuple[float, ...] = parameter(
-        _ZEROS, "Variances of the odometry's twist.", length=6, read_only=True
-    )
-    pose_covariance_diagonal: tuple[float, ...] = parameter(
-        _ZEROS, "Variances of the odometry's pose.", length=6, read_only=True
     )
 
 

@@ -9,19 +9,17 @@ from typing import ClassVar
 
 import numpy as np
 
-from daidalos.common.parameters import ParameterError, Parameters, parameter
+from daidalos.common.parameters import ParameterError, parameter
 from daidalos.control.base_controller import BaseController
-from daidalos.control.base_odometry import BaseOdometry
+from daidalos.control.base_odometry import BaseOdometry, OdometryParameters
 from daidalos.control.interfaces import Interfaces
 from daidalos.control.steering import SteeredBase, speed_share
 from daidalos.samples.controllers import SteeringSample
 from daidalos.samples.sensors import Sample
 
-_ZEROS = (0.0,) * 6
-
 
 @dataclass(frozen=True)
-class SteeringParameters(Parameters):
+class SteeringParameters(OdometryParameters):
     """Parameters that all steering controllers share, as ROS names them in Humble, Jazzy and later."""
 
     reference_timeout: float = parameter(1.0, "Age at which a command is ignored; 0 for never.", unit="s", minimum=0.0)
@@ -58,17 +56,6 @@ class SteeringParameters(Parameters):
     )
     velocity_rolling_window_size: int = parameter(
         10, "Number of cycles that the velocity of the odometry is averaged over.", above=0, read_only=True
-    )
-    base_frame_id: str = parameter("base_link", "Frame of the base.", read_only=True)
-    odom_frame_id: str = parameter("odom", "Frame of the odometry.", read_only=True)
-    enable_odom_tf: bool = parameter(
-        True, "Whether to publish the transform from odom_frame_id to base_frame_id.", read_only=True
-    )
-    twist_covariance_diagonal: tuple[float, ...] = parameter(
-        _ZEROS, "Variances of the odometry's twist.", length=6, read_only=True
-    )
-    pose_covariance_diagonal: tuple[float, ...] = parameter(
-        _ZEROS, "Variances of the odometry's pose.", length=6, read_only=True
     )
     position_feedback: bool = parameter(
         False, "Whether driven wheels measure angles instead of speeds.", read_only=True

@@ -10,7 +10,7 @@ import numpy as np
 
 from daidalos.common.parameters import ParameterError, Parameters, group, parameter
 from daidalos.common.pose3 import quaternion_from_yaw
-from daidalos.control.base_odometry import BaseOdometry
+from daidalos.control.base_odometry import BaseOdometry, OdometryParameters
 from daidalos.control.contracts import Controller, Service, Subscription
 from daidalos.control.speed_limiter import SpeedLimiter, SpeedLimits
 from daidalos.control.steering import speed_share
@@ -20,7 +20,6 @@ from daidalos.samples.controllers import Answer, Asked, VelocityCommand
 from daidalos.samples.sensors import OdometrySample, Sample, TransformSample
 
 _NAN = math.nan
-_ZEROS = (0.0,) * 6
 
 
 @dataclass(frozen=True)
@@ -43,25 +42,14 @@ class SteeringLimits(Parameters):
 
 
 @dataclass(frozen=True)
-class TricycleDriveParameters(Parameters):
+class TricycleDriveParameters(OdometryParameters):
     """Parameters of the tricycle drive, as ROS names them."""
 
     traction_joint_name: str = parameter("", "Joint of the driven wheel.", not_empty=True, read_only=True)
     steering_joint_name: str = parameter("", "Joint that steers it.", not_empty=True, read_only=True)
     wheelbase: float = parameter(0.0, "Distance from the wheel to the rear axle.", unit="m", above=0.0, read_only=True)
     wheel_radius: float = parameter(0.0, "Radius of the wheel.", unit="m", above=0.0, read_only=True)
-    odom_frame_id: str = parameter("odom", "Frame of the odometry.", read_only=True)
-    base_frame_id: str = parameter("base_link", "Frame of the base.", read_only=True)
-    pose_covariance_diagonal: tuple[float, ...] = parameter(
-        _ZEROS, "Variances of the odometry's pose.", length=6, read_only=True
-    )
-    twist_covariance_diagonal: tuple[float, ...] = parameter(
-        _ZEROS, "Variances of the odometry's twist.", length=6, read_only=True
-    )
     open_loop: bool = parameter(False, "Whether odometry comes from commands.", read_only=True)
-    enable_odom_tf: bool = parameter(
-        True, "Whether to publish the transform from odom_frame_id to base_frame_id.", read_only=True
-    )
     odom_only_twist: bool = parameter(False, "Whether the odometry's pose stays at zero.", read_only=True)
     cmd_vel_timeout: int = parameter(500, "Age at which a command is ignored; 0 for never.", unit="ms")
     velocity_rolling_window_size: int = parameter(

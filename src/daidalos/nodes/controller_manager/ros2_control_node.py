@@ -6,7 +6,6 @@ from collections.abc import Iterator
 from typing import Any
 
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
-from rclpy.qos import DurabilityPolicy, QoSProfile
 
 from daidalos.common.extensions import ExtensionError
 from daidalos.control.contracts import Hardware, HardwareContext
@@ -17,9 +16,9 @@ from daidalos.description.errors import DescriptionError
 from daidalos.description.ros2_control import read_hardware
 from daidalos.nodes.controller_manager._manager_node import ControllerManagerNode
 from daidalos.nodes.packages import package_share
+from daidalos.nodes.qos import LATCHED
 from daidalos.nodes.runner import UserError, run
 
-_LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 _MAX_LAG_NS = 1_000_000_000
 """Delay after which cycles that were missed are left out."""
 
@@ -34,7 +33,7 @@ class Ros2ControlNode(ControllerManagerNode):
         else:
             from std_msgs.msg import String
 
-            self.create_subscription(String, "robot_description", self._on_description, _LATCHED)
+            self.create_subscription(String, "robot_description", self._on_description, LATCHED)
             self.get_logger().info("waiting for the topic 'robot_description'")
 
     def _on_description(self, message: Any) -> None:

@@ -11,15 +11,13 @@ from typing import Any
 import numpy as np
 import psutil
 from rclpy.node import Node
-from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.time import Time
 from tf2_ros import Buffer, TransformException
 
 from daidalos.common.pose2 import between
 from daidalos.nodes.conversions import pose2_of, pose2_of_transform
+from daidalos.nodes.qos import LATCHED
 from daidalos.samples.fields import nanoseconds
-
-LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
 class TruthRecorder:

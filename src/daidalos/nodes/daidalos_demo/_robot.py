@@ -10,7 +10,7 @@ from rclpy.node import Node
 from rclpy.task import Future
 
 from daidalos.nodes.conversions import pose_stamped
-from daidalos.nodes.daidalos_demo._measuring import LATCHED
+from daidalos.nodes.qos import LATCHED
 from daidalos.samples.fields import duration_message
 
 _TURN_LIMIT_S = 30.0

@@ -6,18 +6,17 @@ from typing import TYPE_CHECKING, Any
 
 from rclpy.node import Node
 from rclpy.publisher import Publisher
-from rclpy.qos import DurabilityPolicy, QoSProfile
 
 from daidalos.common.rate_gate import RateGate
 from daidalos.nodes.gazebo_ros._descriptions import state_namespaces
 from daidalos.nodes.gazebo_ros._states import contacts_message, pose_message, twist_message
+from daidalos.nodes.qos import LATCHED
 
 if TYPE_CHECKING:
     from daidalos.description.world import World
     from daidalos.simulation import Simulation
 
 _STATES_RATE = 50.0
-_LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
 class StateTopics:
@@ -43,7 +42,7 @@ class StateTopics:
         self._published_touches = 0
         self._states = [node.create_publisher(ModelStates, f"{place}/model_states", 10) for place in places]
         self._link_states = [node.create_publisher(LinkStates, f"{place}/link_states", 10) for place in places]
-        self._contacts_publisher = node.create_publisher(ContactsState, "/gazebo/contacts", _LATCHED)
+        self._contacts_publisher = node.create_publisher(ContactsState, "/gazebo/contacts", LATCHED)
 
     def follow(self, simulation: Simulation) -> None:
         """Watch the model to be watched if it came, and no longer if it went."""

@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any
 
 from rclpy.node import Node
-from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.utilities import remove_ros_args
 
 from daidalos.common.parameters import Parameters, parameter
@@ -16,9 +15,8 @@ from daidalos.description.joint import Mimic
 from daidalos.description.joint_values import JointValues
 from daidalos.nodes.description_files import parse_description, read_description
 from daidalos.nodes.parameters import declare, declare_one, given_below
+from daidalos.nodes.qos import LATCHED
 from daidalos.nodes.runner import UserError, run
-
-_LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
 @dataclass(frozen=True)
@@ -90,7 +88,7 @@ class JointStatePublisher(Node):
             self.read(text, source if description else "robot_description")
         else:
             self.get_logger().info("Waiting for robot_description to be published on the robot_description topic...")
-        self.create_subscription(String, "robot_description", self._on_description, _LATCHED)
+        self.create_subscription(String, "robot_description", self._on_description, LATCHED)
         self._direction: dict[str, float] = {}
         self.create_timer(1.0 / self._settings.rate, self._publish)
 

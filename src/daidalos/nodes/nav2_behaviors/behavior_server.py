@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 from rclpy.lifecycle import LifecycleState, TransitionCallbackReturn
-from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.time import Time
 from tf2_ros import Buffer, TransformException, TransformListener
 
@@ -27,9 +26,9 @@ from daidalos.nodes.managed import ManagedNode
 from daidalos.nodes.nav2_costmap_2d._costmap_messages import costmap_of
 from daidalos.nodes.navigation_extensions import ExtensionMaker
 from daidalos.nodes.parameters import declare
+from daidalos.nodes.qos import LATCHED
 from daidalos.samples.fields import duration_message, seconds
 
-_LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 _TIMEOUT_S = 10.0
 """Timeout of a goal for the robot pose and the costmap, which arrive soon after a normal start."""
 
@@ -92,7 +91,7 @@ class BehaviorServer(ManagedNode):
             TwistStamped if self._settings.enable_stamped_cmd_vel else Twist, "cmd_vel", 1
         )
         p = self._settings
-        self.create_subscription(CostmapMessage, p.local_costmap_topic, self._on_costmap, _LATCHED)
+        self.create_subscription(CostmapMessage, p.local_costmap_topic, self._on_costmap, LATCHED)
         self.create_subscription(PolygonStamped, p.local_footprint_topic, self._on_footprint, 1)
         self.create_subscription(Odometry, "odom", self._on_odometry, 10)
         context = NavigationContext(

@@ -4,16 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from rclpy.qos import DurabilityPolicy, QoSProfile
-
 from daidalos.navigation.costmap.occupancy import to_occupancy
 from daidalos.nodes.conversions import grid_message
 from daidalos.nodes.nav2_costmap_2d._costmap_messages import costmap_message, footprint_message
+from daidalos.nodes.qos import LATCHED
 
 if TYPE_CHECKING:
     from daidalos.nodes.nav2_costmap_2d._costmap_node import CostmapNode
-
-_LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
 class CostmapInterface:
@@ -30,8 +27,8 @@ class CostmapInterface:
         from nav_msgs.msg import OccupancyGrid as GridMessage
 
         self._node = node
-        self._grid_publisher = node.create_publisher(GridMessage, "costmap", _LATCHED)
-        self._raw_publisher = node.create_publisher(CostmapMessage, "costmap_raw", _LATCHED)
+        self._grid_publisher = node.create_publisher(GridMessage, "costmap", LATCHED)
+        self._raw_publisher = node.create_publisher(CostmapMessage, "costmap_raw", LATCHED)
         self._footprint_publisher = node.create_publisher(PolygonStamped, "published_footprint", 1)
         self._create_services(node.get_name())
 

@@ -9,7 +9,7 @@ from typing import Any
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.lifecycle import LifecycleState, TransitionCallbackReturn
 from rclpy.node import Node
-from rclpy.qos import DurabilityPolicy, QoSProfile, qos_profile_sensor_data
+from rclpy.qos import qos_profile_sensor_data
 from rclpy.time import Time
 from tf2_ros import TransformException, TransformListener
 
@@ -33,11 +33,11 @@ from daidalos.nodes.managed import ManagedNode
 from daidalos.nodes.nav2_costmap_2d._costmap_interface import CostmapInterface
 from daidalos.nodes.navigation_extensions import ExtensionMaker
 from daidalos.nodes.parameters import declare
+from daidalos.nodes.qos import LATCHED
 from daidalos.nodes.transforms import BlockingBuffer, SensorPoses
 from daidalos.nodes.warming import warm_up_in_background
 from daidalos.samples.fields import nanoseconds, seconds
 
-_LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 _POLL_HZ = 20.0
 _FIRST_UPDATE_S = 15.0
 _DEFAULT_PLUGINS = {
@@ -189,7 +189,7 @@ class CostmapNode(ManagedNode):
             with self.lock:
                 listened.take(grid)
 
-        self.create_subscription(GridMessage, listened.topic or self._settings.map_topic, take, _LATCHED)
+        self.create_subscription(GridMessage, listened.topic or self._settings.map_topic, take, LATCHED)
 
     def _listen_to_scans(self, listened: Input) -> None:
         from sensor_msgs.msg import LaserScan

@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any
 
 from rclpy.lifecycle import LifecycleState, TransitionCallbackReturn
-from rclpy.qos import DurabilityPolicy, QoSProfile
 
 from daidalos.common.parameters import Parameters, parameter
 from daidalos.mapping.errors import MapFileError
@@ -16,8 +15,7 @@ from daidalos.nodes.conversions import grid_message, pose_message
 from daidalos.nodes.managed import ManagedNode
 from daidalos.nodes.packages import package_share
 from daidalos.nodes.parameters import declare
-
-_LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+from daidalos.nodes.qos import LATCHED
 
 
 @dataclass(frozen=True)
@@ -62,7 +60,7 @@ class MapServer(ManagedNode):
         self._map = self._load(file) if file else None
         if not file:
             self.get_logger().info("yaml_filename parameter is empty, set map through '~/load_map' service")
-        self._publisher = self.create_publisher(OccupancyGrid, self._settings.topic_name, _LATCHED)
+        self._publisher = self.create_publisher(OccupancyGrid, self._settings.topic_name, LATCHED)
         self.create_service(GetMap, "~/map", self._on_get_map)
         self.create_service(LoadMap, "~/load_map", self._on_load_map)
 

@@ -11,13 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 from rclpy.node import Node
 from rclpy.parameter import Parameter
-from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.utilities import remove_ros_args
 
 from daidalos.common.parameters import Parameters, parameter
 from daidalos.description.kinematics import KinematicTree
 from daidalos.nodes.description_files import parse_description, read_description
 from daidalos.nodes.parameters import declare
+from daidalos.nodes.qos import LATCHED
 from daidalos.nodes.robot_state_publisher._transform_bytes import TransformBytes
 from daidalos.nodes.runner import run
 from daidalos.samples.fields import nanoseconds
@@ -27,8 +27,6 @@ _KEPT = 100
 
 _SET_BACK_NS = 1_000_000_000
 """States that are older than this mean that the clock was set back; younger ones are another publisher's, and late."""
-
-_LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
 @dataclass(frozen=True)
@@ -89,7 +87,7 @@ class RobotStatePublisher(Node):
         from tf2_ros import StaticTransformBroadcaster
 
         self._settings = declare(self, RobotStatePublisherParameters, reconfigure=self._reconfigure)
-        self._description_publisher = self.create_publisher(String, "robot_description", _LATCHED)
+        self._description_publisher = self.create_publisher(String, "robot_description", LATCHED)
         self._tf_publisher = self.create_publisher(TFMessage, "/tf", 100)
         self._static_broadcaster = StaticTransformBroadcaster(self)
         self._read(self._settings, source)

@@ -8,18 +8,17 @@ from typing import Any
 
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.node import Node
-from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.task import Future
 
 from daidalos.common.parameters import parameter
 from daidalos.mapping.config import SlamConfig
 from daidalos.nodes.conversions import grid_message, pose2_of_transform, scan_data, transform_stamped
 from daidalos.nodes.parameters import declare
+from daidalos.nodes.qos import LATCHED
 from daidalos.nodes.runner import run
 from daidalos.nodes.warming import warm_up_in_background
 from daidalos.samples.fields import nanoseconds, time_message
 
-_LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 _SCANS_A_MAP = 100
 """Scans that one publication of the map may move to where a loop closure wants them."""
 
@@ -70,8 +69,8 @@ class SlamToolbox(Node):
         self._listener = TransformListener(self._buffer, self)
         self._sensor_poses = SensorPoses(self._buffer, p.base_frame, self.get_logger())
         self._broadcaster = TransformBroadcaster(self)
-        self._map_publisher = self.create_publisher(OccupancyGrid, "map", _LATCHED)
-        self._metadata_publisher = self.create_publisher(MapMetaData, "map_metadata", _LATCHED)
+        self._map_publisher = self.create_publisher(OccupancyGrid, "map", LATCHED)
+        self._metadata_publisher = self.create_publisher(MapMetaData, "map_metadata", LATCHED)
         # A scan may wait for its odometry; the map and the services do not wait with it.
         scans = MutuallyExclusiveCallbackGroup()
         self.create_subscription(LaserScan, p.scan_topic, self._on_scan, p.scan_queue_size, callback_group=scans)

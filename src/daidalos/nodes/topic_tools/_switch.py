@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from typing import Any
 
 from rclpy.node import Node
-from rclpy.qos import DurabilityPolicy, QoSProfile
 
 from daidalos.common.parameters import Parameters, parameter
 from daidalos.nodes.parameters import declare
+from daidalos.nodes.qos import LATCHED
 
 NONE = "__none"
 """Chooses no topic."""
@@ -53,8 +53,7 @@ class Switch(Node):
         self.chosen = self.settings.initial_topic or (self.topics[0] if self.topics else NONE)
         if self.chosen != NONE and self.chosen not in self.topics:
             raise RuntimeError(f"initial_topic '{self.chosen}' is not one of {', '.join(self.topics) or 'no topics'}")
-        latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-        self._selected = self.create_publisher(String, "~/selected", latched)
+        self._selected = self.create_publisher(String, "~/selected", LATCHED)
         handlers: tuple[Callable[[Any, Any], Any], ...] = (
             self._on_add,
             self._on_delete,
