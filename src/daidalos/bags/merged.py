@@ -8,7 +8,6 @@ from contextlib import ExitStack
 from dataclasses import replace
 from operator import attrgetter
 from pathlib import Path
-from types import TracebackType
 from typing import Self
 
 from daidalos.bags.errors import BagError
@@ -94,7 +93,5 @@ class MergedBags:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *exception: object) -> None:
         self.close()

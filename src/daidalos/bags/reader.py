@@ -8,7 +8,6 @@ from collections.abc import Callable, Collection, Iterator
 from contextlib import ExitStack
 from operator import attrgetter
 from pathlib import Path
-from types import TracebackType
 from typing import Self
 
 from daidalos.bags.compression import FORMATS, MESSAGE, message_decompressor
@@ -186,9 +185,7 @@ class BagReader:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *exception: object) -> None:
         self.close()
 
 

@@ -7,7 +7,6 @@ goals, cancellations and sensor data are handled meanwhile, and a stepped clock 
 from __future__ import annotations
 
 from collections.abc import Callable
-from types import TracebackType
 from typing import Self
 
 from rclpy.node import Node
@@ -35,9 +34,7 @@ class Cycle:
         self._timer = self._node.create_timer(self._period, self._tick)
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *exception: object) -> None:
         self._node.destroy_timer(self._timer)
 
     async def next(self) -> None:

@@ -7,7 +7,6 @@ import signal
 import sys
 import threading
 import time
-from types import TracebackType
 from typing import Any, Self
 
 from daidalos.nodes.runner import UserError
@@ -50,9 +49,7 @@ class Keyboard:
                 self._continued = signal.signal(signal.SIGCONT, lambda *_: self._take_keys())
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *exception: object) -> None:
         if sys.platform != "win32" and self._pipe is not None:
             import termios
 

@@ -20,6 +20,13 @@ if TYPE_CHECKING:
 _failed = threading.Event()
 
 
+def program_arguments() -> list[str]:
+    """Return the arguments of the command line without those of ROS, such as remappings."""
+    from rclpy.utilities import remove_ros_args
+
+    return remove_ros_args(sys.argv)[1:]
+
+
 def run_program(body: Callable[[], None], interrupted: int = 0) -> int:
     """Carry out a program that uses rclpy, and end it cleanly however it ends.
 

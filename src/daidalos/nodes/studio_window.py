@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
-from daidalos.nodes.runner import UserError, create, ignore_interrupts, run, run_program
+from daidalos.nodes.runner import UserError, create, ignore_interrupts, program_arguments, run, run_program
 from daidalos.studio.arrangement import Arrangement, ArrangementError
 from daidalos.studio.ports import PortError
 
@@ -169,6 +169,4 @@ def studio_parser(program: str, description: str) -> argparse.ArgumentParser:
 
 def parse(parser: argparse.ArgumentParser) -> argparse.Namespace:
     """Parse the command line of a command of the studio, without ROS's arguments."""
-    from rclpy.utilities import remove_ros_args
-
-    return parser.parse_args(remove_ros_args(sys.argv)[1:])
+    return parser.parse_args(program_arguments())

@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from importlib import import_module
 from importlib.util import find_spec
-from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
 from rclpy.context import Context
@@ -68,9 +67,7 @@ class InitContextManager:
     def __enter__(self) -> InitContextManager:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *exception: object) -> None:
         self.context.try_shutdown()
         if self._owns_handlers:
             uninstall_signal_handlers()

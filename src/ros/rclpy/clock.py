@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from types import TracebackType
 from typing import TYPE_CHECKING, Any, TypedDict
 
 from rclpy.clock_type import ClockType
@@ -130,9 +129,7 @@ class JumpHandle:
     def __enter__(self) -> JumpHandle:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *exception: object) -> None:
         self.unregister()
 
 

@@ -7,7 +7,6 @@ import threading
 import weakref
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager
-from types import TracebackType
 
 from rclpy.exceptions import NotInitializedException
 from rclpy.impl.context import ContextHandle
@@ -195,9 +194,7 @@ class Context(AbstractContextManager["Context"]):
             self.init()
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *exception: object) -> None:
         self.try_shutdown()
 
 

@@ -14,7 +14,6 @@ import warnings
 import weakref
 from collections.abc import Callable, Coroutine, Iterable, Iterator
 from contextlib import AbstractContextManager, contextmanager
-from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
 
 from rclpy.context import Context
@@ -163,9 +162,7 @@ class Executor(CallbackRunner, AbstractContextManager["Executor"]):
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *exception: object) -> None:
         self.shutdown()
 
     def __del__(self) -> None:

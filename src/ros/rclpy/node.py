@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import weakref
-from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
 
 from rclpy.callback_groups import CallbackGroup as CallbackGroup
@@ -288,9 +287,7 @@ class Node(NodeEntities, NodeGraph):
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *exception: object) -> None:
         if not self.handle.is_destroyed:
             self.destroy_node()
 

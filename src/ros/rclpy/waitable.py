@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from types import TracebackType
 from typing import Any, Self
 
 from rclpy.callback_groups import CallbackGroup
@@ -77,9 +76,7 @@ class Waitable:
         """Mark what is behind the waitable as in use."""
         raise NotImplementedError("Must be implemented by subclass")
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *exception: object) -> None:
         """Mark it as no longer in use."""
         raise NotImplementedError("Must be implemented by subclass")
 

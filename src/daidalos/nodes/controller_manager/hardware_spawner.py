@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 import argparse
-import sys
-
-from rclpy.utilities import remove_ros_args
 
 from daidalos.nodes.controller_manager._client import ManagerClient, add_manager_arguments
-from daidalos.nodes.runner import UserError, run_program
+from daidalos.nodes.runner import UserError, program_arguments, run_program
 
 
 def main() -> int:
@@ -19,7 +16,7 @@ def main() -> int:
     wanted.add_argument("--activate", action="store_true", help="make it active")
     wanted.add_argument("--configure", action="store_true", help="make it inactive: configured, but without power")
     add_manager_arguments(parser)
-    arguments = parser.parse_args(remove_ros_args(sys.argv)[1:])
+    arguments = parser.parse_args(program_arguments())
 
     def body() -> None:
         import rclpy

@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from collections.abc import Iterable
 from typing import Any
 
-from rclpy.utilities import remove_ros_args
-
 from daidalos.nodes.controller_manager._client import ManagerClient, add_manager_arguments
-from daidalos.nodes.runner import UserError, run_program
+from daidalos.nodes.runner import UserError, program_arguments, run_program
 
 
 def unspawn(manager: ManagerClient, names: Iterable[str], node: Any) -> None:
@@ -44,7 +41,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(prog="unspawner", description="Stop and unload controllers.")
     parser.add_argument("controller_names", nargs="+", metavar="controller", help="names of the controllers")
     add_manager_arguments(parser)
-    arguments = parser.parse_args(remove_ros_args(sys.argv)[1:])
+    arguments = parser.parse_args(program_arguments())
 
     def body() -> None:
         import rclpy

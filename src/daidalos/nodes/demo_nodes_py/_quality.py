@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import argparse
-import sys
 
 from rclpy.qos import QoSProfile, QoSReliabilityPolicy, qos_profile_sensor_data
-from rclpy.utilities import remove_ros_args
+
+from daidalos.nodes.runner import program_arguments
 
 
 def parse(description: str, cycles_help: str) -> argparse.Namespace:
@@ -14,7 +14,7 @@ def parse(description: str, cycles_help: str) -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=description)
     parser.add_argument("--reliable", action="store_true", help="set qos profile to reliable")
     parser.add_argument("-n", "--number_of_cycles", type=int, default=20, help=cycles_help)
-    return parser.parse_args(remove_ros_args(sys.argv)[1:])
+    return parser.parse_args(program_arguments())
 
 
 def profile(reliable: bool) -> QoSProfile:

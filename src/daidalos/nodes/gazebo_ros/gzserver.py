@@ -14,7 +14,6 @@ from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.logging import LoggingSeverity, set_logger_level
 from rclpy.node import Node
 from rclpy.parameter import Parameter
-from rclpy.utilities import remove_ros_args
 
 from daidalos.common.parameters import Parameters, parameter
 from daidalos.common.rate_gate import RateGate
@@ -22,7 +21,7 @@ from daidalos.description.errors import DescriptionError
 from daidalos.nodes.gazebo_ros._command_line import parse
 from daidalos.nodes.gazebo_ros._worlds import find_world
 from daidalos.nodes.parameters import declare
-from daidalos.nodes.runner import UserError, run
+from daidalos.nodes.runner import UserError, program_arguments, run
 from daidalos.samples.fields import time_message
 
 if TYPE_CHECKING:
@@ -230,7 +229,7 @@ def serve(start: Start, seed: int | None = None, verbose: bool = False) -> int:
 
 def main() -> int:
     """Run the node."""
-    arguments = parse(remove_ros_args(sys.argv)[1:])
+    arguments = parse(program_arguments())
     try:
         world = find_world(arguments.world)
     except FileNotFoundError as error:

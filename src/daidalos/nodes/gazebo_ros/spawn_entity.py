@@ -11,11 +11,10 @@ from typing import Any
 from rclpy.clock import Clock
 from rclpy.clock_type import ClockType
 from rclpy.duration import Duration
-from rclpy.utilities import remove_ros_args
 
 from daidalos.nodes.description_files import read_description
 from daidalos.nodes.gazebo_ros._command_line import bind_numbers
-from daidalos.nodes.runner import UserError, run_program
+from daidalos.nodes.runner import UserError, program_arguments, run_program
 
 
 def parse(words: Sequence[str], prog: str) -> argparse.Namespace:
@@ -198,4 +197,4 @@ def spawn(words: Sequence[str], joints: Mapping[str, float], prog: str) -> None:
 
 def main() -> int:
     """Run the program."""
-    return run_program(lambda: spawn(remove_ros_args(sys.argv)[1:], {}, "spawn_entity.py"), interrupted=130)
+    return run_program(lambda: spawn(program_arguments(), {}, "spawn_entity.py"), interrupted=130)

@@ -2,12 +2,8 @@
 
 from __future__ import annotations
 
-import sys
-
-from rclpy.utilities import remove_ros_args
-
 from daidalos.nodes.gazebo_ros.spawn_entity import spawn
-from daidalos.nodes.runner import UserError, run_program
+from daidalos.nodes.runner import UserError, program_arguments, run_program
 
 _RENAMED = {"-model": "-entity", "-param": "-topic"}
 _IGNORED = ("-urdf", "-sdf", "-trimesh", "-gazebo")
@@ -40,7 +36,7 @@ def main() -> int:
     """Run the program."""
 
     def body() -> None:
-        arguments, joints = translate(remove_ros_args(sys.argv)[1:])
+        arguments, joints = translate(program_arguments())
         spawn(arguments, joints, prog="spawn_model")
 
     return run_program(body, interrupted=130)

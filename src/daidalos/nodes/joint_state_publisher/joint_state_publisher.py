@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import sys
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from rclpy.node import Node
-from rclpy.utilities import remove_ros_args
 
 from daidalos.common.parameters import Parameters, parameter
 from daidalos.description.joint import Mimic
@@ -16,7 +14,7 @@ from daidalos.description.joint_values import JointValues
 from daidalos.nodes.description_files import parse_description, read_description
 from daidalos.nodes.parameters import declare, declare_one, given_below
 from daidalos.nodes.qos import LATCHED
-from daidalos.nodes.runner import UserError, run
+from daidalos.nodes.runner import UserError, program_arguments, run
 
 
 @dataclass(frozen=True)
@@ -162,7 +160,7 @@ class JointStatePublisher(Node):
 
 def description_from_arguments() -> dict[str, str]:
     """Return the description in the file that the command line names, if it does, and its source."""
-    files = remove_ros_args(sys.argv)[1:]
+    files = program_arguments()
     return {"description": read_description(Path(files[0])), "source": files[0]} if files else {}
 
 

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import argparse
-import sys
 
 from rclpy.node import Node
-from rclpy.utilities import remove_ros_args
 
 from daidalos.nodes.nav2_map_server._saving import FORMATS, MODES, MapSaverParameters, SaveRequest, save
 from daidalos.nodes.parameters import declare
-from daidalos.nodes.runner import run_program
+from daidalos.nodes.runner import program_arguments, run_program
 
 
 def _parse() -> argparse.Namespace:
@@ -22,7 +20,7 @@ def _parse() -> argparse.Namespace:
     add("--free", type=float, default=0.0, metavar="threshold_free", help="cells below it are free (0 to 1)")
     add("--fmt", default="", choices=FORMATS, help="format of the image (default: png in mode scale, else pgm)")
     add("--mode", default="trinary", choices=MODES, help="what the grey values mean (default: %(default)s)")
-    return parser.parse_args(remove_ros_args(sys.argv)[1:])
+    return parser.parse_args(program_arguments())
 
 
 def _save(arguments: argparse.Namespace) -> bool:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -11,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 from rclpy.node import Node
 from rclpy.parameter import Parameter
-from rclpy.utilities import remove_ros_args
 
 from daidalos.common.parameters import Parameters, parameter
 from daidalos.description.kinematics import KinematicTree
@@ -19,7 +17,7 @@ from daidalos.nodes.description_files import parse_description, read_description
 from daidalos.nodes.parameters import declare
 from daidalos.nodes.qos import LATCHED
 from daidalos.nodes.robot_state_publisher._transform_bytes import TransformBytes
-from daidalos.nodes.runner import run
+from daidalos.nodes.runner import program_arguments, run
 from daidalos.samples.fields import nanoseconds
 
 _KEPT = 100
@@ -202,5 +200,5 @@ def _from_file(path: str) -> RobotStatePublisher:
 
 def main() -> int:
     """Run the node."""
-    files = remove_ros_args(sys.argv)[1:]
+    files = program_arguments()
     return run(lambda: _from_file(files[0]) if files else RobotStatePublisher())

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -13,7 +12,6 @@ import rclpy
 from rclpy.node import Node
 from rclpy.qos import QoSPolicyKind
 from rclpy.qos_overriding_options import QoSOverridingOptions
-from rclpy.utilities import remove_ros_args
 
 from daidalos.common.parameters import Parameters, parameter
 from daidalos.nodes.node_thread import NodeThread
@@ -26,7 +24,7 @@ from daidalos.nodes.ros_gz_bridge._mapping import (
     read_file,
     simulator_topic,
 )
-from daidalos.nodes.runner import UserError, run
+from daidalos.nodes.runner import UserError, program_arguments, run
 from daidalos.transport.graph import EndpointInfo, EndpointKind
 
 _OVERRIDABLE = (QoSPolicyKind.DEPTH, QoSPolicyKind.DURABILITY, QoSPolicyKind.HISTORY, QoSPolicyKind.RELIABILITY)
@@ -169,4 +167,4 @@ def _forwarding_callback(publisher: Any, own: set[bytes], convert: Converter | N
 
 def main() -> int:
     """Run the node."""
-    return run(lambda: ParameterBridge(remove_ros_args(sys.argv)[1:]))
+    return run(lambda: ParameterBridge(program_arguments()))

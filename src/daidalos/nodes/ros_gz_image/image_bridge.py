@@ -2,12 +2,8 @@
 
 from __future__ import annotations
 
-import sys
-
-from rclpy.utilities import remove_ros_args
-
 from daidalos.nodes.ros_gz_bridge.parameter_bridge import ParameterBridge
-from daidalos.nodes.runner import UserError, run
+from daidalos.nodes.runner import UserError, program_arguments, run
 
 
 def _bridge(topics: list[str]) -> ParameterBridge:
@@ -18,4 +14,4 @@ def _bridge(topics: list[str]) -> ParameterBridge:
 
 def main() -> int:
     """Run the node."""
-    return run(lambda: _bridge(remove_ros_args(sys.argv)[1:]))
+    return run(lambda: _bridge(program_arguments()))

@@ -8,10 +8,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from rclpy.utilities import remove_ros_args
-
 from daidalos.nodes.gazebo_ros._command_line import bind_numbers
-from daidalos.nodes.runner import UserError, run_program
+from daidalos.nodes.runner import UserError, program_arguments, run_program
 
 _TIMEOUT = 30.0
 _NUMBERS = ("x", "y", "z", "R", "P", "Y")
@@ -142,5 +140,5 @@ def _create(arguments: argparse.Namespace) -> None:
 
 def main() -> int:
     """Run the program."""
-    arguments = parse(remove_ros_args(sys.argv)[1:])
+    arguments = parse(program_arguments())
     return run_program(lambda: _create(arguments), interrupted=130)

@@ -7,10 +7,9 @@ import shlex
 import sys
 from collections.abc import Sequence
 
-from rclpy.utilities import remove_ros_args
-
 from daidalos.nodes.gazebo_ros._worlds import find_world
 from daidalos.nodes.gazebo_ros.gzserver import Start, serve
+from daidalos.nodes.runner import program_arguments
 
 _DEBUG = 4
 _WITH_VALUE = (
@@ -49,7 +48,7 @@ def _apart(words: str) -> str:
 
 def main() -> int:
     """Run the node."""
-    arguments = parse(remove_ros_args(sys.argv)[1:])
+    arguments = parse(program_arguments())
     try:
         world = find_world(arguments.world)
     except FileNotFoundError as error:

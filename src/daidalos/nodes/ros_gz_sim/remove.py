@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from dataclasses import dataclass
-
-from rclpy.utilities import remove_ros_args
 
 from daidalos.common.parameters import Parameters, parameter
 from daidalos.nodes.parameters import declare
 from daidalos.nodes.ros_gz_sim.create import find_service
-from daidalos.nodes.runner import UserError, run_program
+from daidalos.nodes.runner import UserError, program_arguments, run_program
 
 
 @dataclass(frozen=True)
@@ -47,5 +44,5 @@ def main() -> int:
     parser = argparse.ArgumentParser(prog="remove", description="Take an entity out of the simulation.")
     parser.add_argument("-world", "--world", default="", help="that it is in")
     parser.add_argument("-name", "--name", default="", help="of the entity")
-    arguments = parser.parse_args(remove_ros_args(sys.argv)[1:])
+    arguments = parser.parse_args(program_arguments())
     return run_program(lambda: _remove(arguments.world, arguments.name), interrupted=130)

@@ -11,11 +11,10 @@ from dataclasses import dataclass
 from typing import Any
 
 from rclpy.node import Node
-from rclpy.utilities import remove_ros_args
 
 from daidalos.common.parameters import Parameters, group, parameter
 from daidalos.nodes.parameters import declare
-from daidalos.nodes.runner import UserError, run, run_program
+from daidalos.nodes.runner import UserError, program_arguments, run, run_program
 
 _DESCRIPTION = """A command line utility for manually sending a static transform. If no translation or orientation is
 provided, the identity transform will be published. The translation offsets are in meters. The rotation may be
@@ -162,7 +161,7 @@ def main() -> int:
     parameters: dict[str, Any] = {}
 
     def read() -> None:
-        parameters.update(parse(remove_ros_args(sys.argv)[1:]))
+        parameters.update(parse(program_arguments()))
 
     def make() -> StaticTransformBroadcasterNode:
         from rclpy.parameter import Parameter

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import math
-import sys
 from typing import Any
 
 from rclpy.node import Node
 from rclpy.time import Time
-from rclpy.utilities import remove_ros_args
 
-from daidalos.nodes.runner import UserError, run, run_program
+from daidalos.nodes.runner import UserError, program_arguments, run, run_program
 
 _USAGE = """Usage: tf2_echo source_frame target_frame [echo_rate]
 
@@ -90,7 +88,7 @@ def _rate(words: list[str]) -> float:
 
 def main() -> int:
     """Run the node."""
-    words = remove_ros_args(sys.argv)[1:]
+    words = program_arguments()
     if len(words) not in (2, 3):
         print(_USAGE)
         return 0 if set(words) & {"-h", "--help"} else 255

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import sys
 from collections import deque
 from typing import Any
 
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.time import Time
-from rclpy.utilities import remove_ros_args
 
-from daidalos.nodes.runner import UserError, run, run_program
+from daidalos.nodes.runner import UserError, program_arguments, run, run_program
 
 _GATHER_S = 10.0
 _KEPT = 1000
@@ -152,7 +150,7 @@ def _seconds(stamp: Any) -> float:
 
 def main() -> int:
     """Run the node."""
-    words = remove_ros_args(sys.argv)[1:]
+    words = program_arguments()
 
     def check() -> None:
         if len(words) not in (0, 2):

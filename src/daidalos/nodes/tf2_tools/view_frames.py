@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from datetime import datetime
 from pathlib import Path
 from typing import Any
 
 import yaml
 from rclpy.node import Node
-from rclpy.utilities import remove_ros_args
 
-from daidalos.nodes.runner import UserError, run_program
+from daidalos.nodes.runner import UserError, program_arguments, run_program
 from daidalos.nodes.tf2_tools._pdf import to_pdf
 from daidalos.nodes.tf2_tools._svg import to_svg
 from daidalos.nodes.tf2_tools._tree_picture import Picture, draw_tree
@@ -32,7 +30,7 @@ def _parse() -> argparse.Namespace:
     parser.add_argument("-o", "--output", help="Output filename, without its ending")
     parser.add_argument("--tf_topic", default="/tf", help="Topic for dynamic transforms")
     parser.add_argument("--tf_static_topic", default="/tf_static", help="Topic for static transforms")
-    return parser.parse_args(remove_ros_args(sys.argv)[1:])
+    return parser.parse_args(program_arguments())
 
 
 def _view(arguments: argparse.Namespace) -> None:

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from collections.abc import Callable
 from typing import Any
 
 from rclpy.executors import Executor
 from rclpy.node import Node
 from rclpy.task import Future
-from rclpy.utilities import remove_ros_args
 
-from daidalos.nodes.runner import UserError, run_program
+from daidalos.nodes.runner import UserError, program_arguments, run_program
 
 _TIMEOUT_S = 2.0
 
@@ -29,7 +27,7 @@ def parser(program: str, description: str) -> argparse.ArgumentParser:
 
 def parse(made: argparse.ArgumentParser) -> argparse.Namespace:
     """Read the command line."""
-    return made.parse_args(remove_ros_args(sys.argv)[1:])
+    return made.parse_args(program_arguments())
 
 
 def run_expression(name: str, arguments: argparse.Namespace, apply: Callable[[Any, Any], Any]) -> int:

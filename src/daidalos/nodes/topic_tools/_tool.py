@@ -9,11 +9,10 @@ from typing import Any
 
 from rclpy.node import Node
 from rclpy.parameter import Parameter
-from rclpy.utilities import remove_ros_args
 
 from daidalos.common.parameters import Parameters, parameter
 from daidalos.nodes.parameters import declare, declare_name
-from daidalos.nodes.runner import run
+from daidalos.nodes.runner import program_arguments, run
 from daidalos.nodes.topic_tools._forwarding import TopicForwarder
 
 
@@ -67,7 +66,7 @@ def run_tool(make: Callable[..., Node], usage: str, read: Callable[[Sequence[str
     read
         Turns words into parameters; raises ValueError or IndexError where it can not.
     """
-    words = remove_ros_args(sys.argv)[1:]
+    words = program_arguments()
     if set(words) & {"-h", "--help"}:
         print(f"usage: {usage}")
         return 0

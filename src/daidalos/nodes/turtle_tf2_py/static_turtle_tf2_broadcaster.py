@@ -6,9 +6,8 @@ import sys
 from typing import Any
 
 from rclpy.node import Node
-from rclpy.utilities import remove_ros_args
 
-from daidalos.nodes.runner import run
+from daidalos.nodes.runner import program_arguments, run
 from daidalos.nodes.turtle_tf2_py._transforms import transform
 
 _USAGE = """Invalid number of parameters. Usage:
@@ -29,7 +28,7 @@ class StaticTurtleTf2Broadcaster(Node):
 
 def main() -> int:
     """Run the node."""
-    words = remove_ros_args(sys.argv)[1:]
+    words = program_arguments()
     try:
         name, numbers = words[0], [float(word) for word in words[1:]]
     except (IndexError, ValueError):

@@ -5,17 +5,15 @@ from __future__ import annotations
 import argparse
 import math
 import random
-import sys
 from dataclasses import dataclass
 from typing import Any
 
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
-from rclpy.utilities import remove_ros_args
 
 from daidalos.common.parameters import Parameters, parameter
 from daidalos.nodes.parameters import declare
-from daidalos.nodes.runner import run
+from daidalos.nodes.runner import program_arguments, run
 from daidalos.nodes.studio_window import run_with_window
 from daidalos.nodes.turtlesim._drawing import Drawing
 from daidalos.nodes.turtlesim._turtle import SIZE, UPDATE_S, Turtle
@@ -205,7 +203,7 @@ def main() -> int:
         prog="turtlesim_node", description="Simulate turtles that draw.", allow_abbrev=False
     )
     parser.add_argument("--headless", action="store_true", help="open no window and serve none")
-    arguments = parser.parse_args(remove_ros_args(sys.argv)[1:])
+    arguments = parser.parse_args(program_arguments())
     if arguments.headless:
         return run(TurtleSim)
     return run_with_window(TurtleSim, "turtlesim", lambda node: {"window": node.window_topic})

@@ -8,7 +8,7 @@ import socket
 import sys
 import threading
 from collections.abc import Callable
-from types import FrameType, TracebackType
+from types import FrameType
 from typing import Any, ClassVar
 
 _AT_ONCE = 4096
@@ -52,9 +52,7 @@ class AsyncSafeSignalManager:
             self.__install(signum)
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *exception: object) -> None:
         for signum in list(self.__replaced):
             self.__uninstall(signum)
         self.__wake_no_more()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from types import GenericAlias, TracebackType
+from types import GenericAlias
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
 from rclpy.callback_groups import CallbackGroup
@@ -109,7 +109,5 @@ class ActionEnd(Waitable):
             raise InvalidHandle(f"the {self.role} was destroyed")
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *exception: object) -> None:
         """Do nothing."""

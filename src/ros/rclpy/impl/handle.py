@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import threading
-from types import TracebackType
 from typing import Self
 
 from rclpy.impl.errors import InvalidHandle
@@ -28,9 +27,7 @@ class Destroyable:
             self._uses += 1
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *exception: object) -> None:
         with self._use_lock:
             self._uses -= 1
             gone = self._please_destroy and self._uses == 0

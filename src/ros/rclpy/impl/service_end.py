@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from types import GenericAlias, TracebackType
+from types import GenericAlias
 from typing import TYPE_CHECKING, Any, ClassVar, Generic, Self, TypeVar
 
 from rclpy.callback_groups import CallbackGroup
@@ -91,7 +91,5 @@ class ServiceEnd(Generic[Handle]):
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *exception: object) -> None:
         self.destroy()
