@@ -48,7 +48,7 @@ def alone(
 ) -> tuple[Controller, Interfaces, Interfaces]:
     """Return an active controller with interfaces of its own, commands and states, at zero."""
     cls = find(CONTROLLERS, type_name)
-    controller = cls(parameters_from(cls.parameters, values), ControllerContext("it", 100.0, robot, **(context or {})))
+    controller = cls(parameters_from(cls.Parameters, values), ControllerContext("it", 100.0, robot, **(context or {})))
     commands, states = Interfaces(controller.command_names), Interfaces(controller.state_names)
     states.values[:] = 0.0
     controller.assign(LoanedInterfaces(commands.names, [commands]), LoanedInterfaces(states.names, [states]))

@@ -32,12 +32,12 @@ class WatchParameters(Parameters):
 class Watch(Controller):
     """Notes its cycles; passes references on; may fail."""
 
-    parameters = WatchParameters
+    Parameters = WatchParameters
     chainable = True
 
     def configure(self) -> None:
-        self.command_names = (self.p.command,) if self.p.command else ()
-        self.state_names = (self.p.state,) if self.p.state else ()
+        self.command_names = (self.parameters.command,) if self.parameters.command else ()
+        self.state_names = (self.parameters.state,) if self.parameters.state else ()
         self.references = Interfaces(["x"])
         self.exported = Interfaces(["seen"])
         self.cycles: list[tuple[int, float]] = []
@@ -48,7 +48,7 @@ class Watch(Controller):
 
     def update(self, now_ns: int, period: float) -> Iterable[Sample]:
         self.cycles.append((now_ns, period))
-        if 0 < self.p.fail_at_ns <= now_ns:
+        if 0 < self.parameters.fail_at_ns <= now_ns:
             raise ZeroDivisionError("nothing to divide by")
         self.commands.write(self.references.values)
         self.exported["seen"] = self.states.read()[0] if self.state_names else 0.0

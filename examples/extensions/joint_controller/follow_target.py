@@ -18,11 +18,11 @@ class FollowTargetParameters(Parameters):
 class FollowTarget(Controller):
     """Commands a joint's velocity in proportion to its distance from `~/target` (`std_msgs/msg/Float64MultiArray`)."""
 
-    parameters = FollowTargetParameters
+    Parameters = FollowTargetParameters
 
     def configure(self):
-        self.command_names = (f"{self.p.joint}/velocity",)
-        self.state_names = (f"{self.p.joint}/position",)
+        self.command_names = (f"{self.parameters.joint}/velocity",)
+        self.state_names = (f"{self.parameters.joint}/position",)
 
     @property
     def subscriptions(self):
@@ -35,5 +35,5 @@ class FollowTarget(Controller):
         self.target = self.states.read()[0]
 
     def update(self, now_ns, period):
-        self.commands.write(self.p.gain * (self.target - self.states.read()))
+        self.commands.write(self.parameters.gain * (self.target - self.states.read()))
         return ()

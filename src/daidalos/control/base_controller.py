@@ -37,14 +37,14 @@ class BaseController(Controller):
     def publications(self) -> Mapping[str, type[Sample]]:
         """Odometry, its transform, and the wheels."""
         topics: dict[str, type[Sample]] = {"~/odometry": OdometrySample, "~/controller_state": self.state_sample}
-        if self.p.enable_odom_tf:
+        if self.parameters.enable_odom_tf:
             topics["~/tf_odometry"] = TransformSample
         return topics
 
     @property
     def subscriptions(self) -> Mapping[str, Subscription]:
         """Commanded velocity."""
-        return self.input.subscription("~/reference", self.p.use_stamped_vel)
+        return self.input.subscription("~/reference", self.parameters.use_stamped_vel)
 
     def activate(self, now_ns: int) -> None:
         """Reset the odometry."""
@@ -55,5 +55,5 @@ class BaseController(Controller):
     def odometry_samples(self, now_ns: int) -> Iterator[Sample]:
         """Yield the odometry, and its transform if enabled."""
         yield self.odometry.sample(now_ns, "~/odometry")
-        if self.p.enable_odom_tf:
+        if self.parameters.enable_odom_tf:
             yield self.odometry.transform(now_ns, "~/tf_odometry")

@@ -1,7 +1,7 @@
 """Contracts of controllers and hardware, as ros2_control has them.
 
 An extension is one class. Controllers are made with ``(parameters, context)``: an instance of the frozen dataclass in
-their class attribute `parameters`, and a `ControllerContext`; they turn state interfaces into command interfaces, and
+their class attribute `Parameters`, and a `ControllerContext`; they turn state interfaces into command interfaces, and
 have topics, services and actions. Hardware is made with ``(info, context)``: what its ``<ros2_control>`` element says,
 and a `HardwareContext`. Built-in classes give their names in files in `names`; those of other packages are named by
 entry points, or by their class path. Values of interfaces are SI (m, rad, m/s, rad/s, N, Nm) and scalar, each of a
@@ -133,15 +133,15 @@ class Controller(Endpoint, ABC):
     Parameters
     ----------
     parameters : object
-        Of the class `parameters`.
+        An instance of the class attribute `Parameters`.
     context : ControllerContext
 
     Attributes
     ----------
     names : tuple of str
         Class attribute: the names that it goes by in parameter files.
-    parameters : type
-        Class attribute: a dataclass; see `daidalos.common.parameters`.
+    Parameters : type
+        Class attribute: a frozen dataclass; see `daidalos.common.parameters`.
     chainable : bool
         Class attribute: whether other controllers may command it.
     command_names, state_names : tuple of str
@@ -162,11 +162,11 @@ class Controller(Endpoint, ABC):
     """
 
     names: ClassVar[tuple[str, ...]] = ()
-    parameters: ClassVar[type]
+    Parameters: ClassVar[type]
     chainable: ClassVar[bool] = False
 
     def __init__(self, parameters: Any, context: ControllerContext) -> None:
-        self.p = parameters
+        self.parameters: Any = parameters
         self.context = context
         self.command_names: tuple[str, ...] = ()
         self.state_names: tuple[str, ...] = ()
@@ -183,7 +183,7 @@ class Controller(Endpoint, ABC):
 
     def reconfigure(self, parameters: Any) -> None:
         """Apply parameters that changed at run time; read-only ones never change."""
-        self.p = parameters
+        self.parameters = parameters
 
     def assign(self, commands: LoanedInterfaces, states: LoanedInterfaces) -> None:
         """Set the interfaces, in the order of their names."""

@@ -158,7 +158,7 @@ class ControllerManager:
             self._log(f"controller '{name}' wants {rate:g} Hz and gets the manager's {self.update_rate:g} Hz")
         rate = rate if 0 < rate < self.update_rate else self.update_rate
         context = replace(loaded.context, update_rate=rate, state_names=self.state_names)
-        controller = loaded.kind(loaded.read_parameters(loaded.kind.parameters), context)
+        controller = loaded.kind(loaded.read_parameters(loaded.kind.Parameters), context)
         loaded.references = prefixed(name, controller.references)
         loaded.exported = prefixed(name, controller.exported)
         loaded.gate = RateGate(rate) if rate < self.update_rate else None

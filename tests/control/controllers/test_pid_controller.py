@@ -130,7 +130,7 @@ def test_gains_can_change_while_it_runs() -> None:
     controller, commands, _ = rig(gains={"a": {"p": 1.0}})
     send(controller, 1.0, 0.0)
     cycle(controller, PERIOD_NS)
-    gains = {**controller.p.gains, "a": replace(controller.p.gains["a"], p=4.0)}
-    controller.reconfigure(replace(controller.p, gains=gains))
+    gains = {**controller.parameters.gains, "a": replace(controller.parameters.gains["a"], p=4.0)}
+    controller.reconfigure(replace(controller.parameters, gains=gains))
     cycle(controller, 2 * PERIOD_NS)
     assert commands.values[0] == pytest.approx(4.0)

@@ -390,7 +390,7 @@ def test_parameters_change_while_it_runs_or_say_why_not(arm: Rig) -> None:
     assert not fixed.successful
     assert arm.node.manager is not None
     controller: Any = arm.node.manager.controllers["arm"].controller
-    assert controller.p.joint_constraints["elbow"].goal == 0.5
+    assert controller.parameters.joint_constraints["elbow"].goal == 0.5
 
 
 def test_a_gripper_by_action(graph: Context, tmp_path: Path) -> None:  # noqa: F811

@@ -126,13 +126,13 @@ class AdmittanceController(Controller):
     """Controller of joint references from ``~/joint_references`` or other controllers, compliant to forces."""
 
     names = ("admittance_controller/AdmittanceController",)
-    parameters = AdmittanceParameters
+    Parameters = AdmittanceParameters
     chainable = True
-    p: AdmittanceParameters
+    parameters: AdmittanceParameters
 
     def configure(self) -> None:
         """Set the interface names, and find the chain."""
-        p = self.p
+        p = self.parameters
         if self.context.robot is None:
             raise ControlError("the robot's description is needed for its kinematics, and is not there")
         self._chain = Chain(self.context.robot, p.kinematics.base, p.kinematics.tip, p.joints)
@@ -154,14 +154,14 @@ class AdmittanceController(Controller):
             self._take_law()
 
     def _take_law(self) -> None:
-        given = self.p.admittance
+        given = self.parameters.admittance
         self._law = AdmittanceLaw.of_ratio(
             np.array(given.selected_axes, dtype=bool),
             np.array(given.mass),
             np.array(given.damping_ratio),
             np.array(given.stiffness),
             given.joint_damping,
-            self.p.kinematics.alpha,
+            self.parameters.kinematics.alpha,
         )
 
     @property
@@ -200,8 +200,8 @@ class AdmittanceController(Controller):
 
     def deactivate(self) -> None:
         """Stop."""
-        if "velocity" in self.p.command_interfaces:
-            place = self.p.command_interfaces.index("velocity") * self._count
+        if "velocity" in self.parameters.command_interfaces:
+            place = self.parameters.command_interfaces.index("velocity") * self._count
             commands = self.commands.read()
             commands[place : place + self._count] = 0.0
             self.commands.write(commands)
@@ -211,7 +211,7 @@ class AdmittanceController(Controller):
         if self._received is None:
             return
         rates = self._received.velocities
-        for row, kind in enumerate(self.p.chainable_command_interfaces):
+        for row, kind in enumerate(self.parameters.chainable_command_interfaces):
             values = self._received.positions if kind == "position" else rates
             place = slice(row * self._count, (row + 1) * self._count)
             self.references.values[place] = np.zeros(self._count) if values is None else values
@@ -222,19 +222,19 @@ class AdmittanceController(Controller):
         values = self.states.read()
         positions = values[: self._count]
         wrench = self._filtered(values[self._count :], positions)
-        rotation = self._rotation(self.p.control.frame, positions)
+        rotation = self._rotation(self.parameters.control.frame, positions)
         self._state = advance(self._law, self._chain, self._state, self._reference, rotation, wrench, period)
         wanted = {
             "position": self._reference + self._state.joints,
             "velocity": self._reference_rate + self._state.joint_velocities,
         }
-        self.commands.write(np.concatenate([wanted[kind] for kind in self.p.command_interfaces]))
+        self.commands.write(np.concatenate([wanted[kind] for kind in self.parameters.command_interfaces]))
         if self.context.has_subscribers("~/status"):
             yield self._sample(now_ns, rotation, wrench)
 
     def _read_references(self) -> None:
         given = self.references.values.reshape(-1, self._count)
-        for kind, values in zip(self.p.chainable_command_interfaces, given, strict=True):
+        for kind, values in zip(self.parameters.chainable_command_interfaces, given, strict=True):
             known = ~np.isnan(values)
             target = self._reference if kind == "position" else self._reference_rate
             target[known] = values[known]
@@ -245,12 +245,12 @@ class AdmittanceController(Controller):
 
     def _filtered(self, measured: np.ndarray, positions: np.ndarray) -> np.ndarray:
         """Return the filtered external wrench in the base's axes; a missing measurement counts as zero."""
-        tool, sensor = self.p.gravity_compensation, self.p.ft_sensor.frame
+        tool, sensor = self.parameters.gravity_compensation, self.parameters.ft_sensor.frame
         rotation = self._rotation(sensor, positions)
         centre = self._rotation(tool.frame, positions) @ np.array(tool.CoG.pos)
-        down = self._rotation(self.p.fixed_world_frame.frame, positions) @ np.array((0.0, 0.0, -1.0))
+        down = self._rotation(self.parameters.fixed_world_frame.frame, positions) @ np.array((0.0, 0.0, -1.0))
         wrench = without_weight(np.nan_to_num(measured), rotation, tool.CoG.force, centre, down)
-        share = min(self.p.ft_sensor.filter_coefficient, 1.0)
+        share = min(self.parameters.ft_sensor.filter_coefficient, 1.0)
         before = wrench if self._wrench is None else self._wrench
         self._wrench = share * wrench + (1.0 - share) * before
         return self._wrench
@@ -258,26 +258,26 @@ class AdmittanceController(Controller):
     def _sample(self, now_ns: int, rotation: np.ndarray, wrench: np.ndarray) -> AdmittanceSample:
         position, orientation = (
             (np.zeros(3), np.eye(3))
-            if self.p.ft_sensor.frame.external
-            else self._chain.pose(self._reference, self.p.ft_sensor.frame.id)
+            if self.parameters.ft_sensor.frame.external
+            else self._chain.pose(self._reference, self.parameters.ft_sensor.frame.id)
         )
         return AdmittanceSample(
             stamp_ns=now_ns,
             topic="~/status",
-            frame_id=self.p.kinematics.base,
+            frame_id=self.parameters.kinematics.base,
             mass=self._law.mass,
             damping=self._law.damping,
             stiffness=self._law.stiffness,
             selected=self._law.selected,
             control_orientation=np.array(quaternion_from_matrix(rotation)),
-            sensor_frame=self.p.ft_sensor.frame.id,
+            sensor_frame=self.parameters.ft_sensor.frame.id,
             sensor_position=position,
             sensor_orientation=np.array(quaternion_from_matrix(orientation)),
             offset=self._state.offset,
             velocity=self._state.velocity,
             acceleration=self._state.acceleration,
             wrench=wrench,
-            joints=self.p.joints,
+            joints=self.parameters.joints,
             joint_offset=self._state.joints,
             joint_velocity=self._state.joint_velocities,
         )

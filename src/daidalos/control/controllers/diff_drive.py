@@ -76,13 +76,13 @@ class DiffDriveController(Controller):
     """Controller of a differential-drive base; all wheels of a side rotate alike."""
 
     names = ("diff_drive_controller/DiffDriveController",)
-    parameters = DiffDriveParameters
+    Parameters = DiffDriveParameters
     chainable = True
-    p: DiffDriveParameters
+    parameters: DiffDriveParameters
 
     def configure(self) -> None:
         """Set the names of the wheels' interfaces."""
-        p, context = self.p, self.context
+        p, context = self.parameters, self.context
         wheels = (*p.left_wheel_names, *p.right_wheel_names)
         feedback = "position" if p.position_feedback else "velocity"
         self.command_names = tuple(f"{wheel}/velocity" for wheel in wheels)
@@ -107,7 +107,7 @@ class DiffDriveController(Controller):
         self._take_parameters()
 
     def _take_parameters(self) -> None:
-        p = self.p
+        p = self.parameters
         self._input.timeout = p.cmd_vel_timeout
         self._limiters = (SpeedLimiter(p.linear.x, "linear.x"), SpeedLimiter(p.angular.z, "angular.z"))
         self._separation = p.wheel_separation * p.wheel_separation_multiplier
@@ -120,16 +120,16 @@ class DiffDriveController(Controller):
     def publications(self) -> Mapping[str, type[Sample]]:
         """Odometry, its transform, and the limited velocity."""
         topics: dict[str, type[Sample]] = {"~/odom": OdometrySample}
-        if self.p.enable_odom_tf:
+        if self.parameters.enable_odom_tf:
             topics["/tf"] = TransformSample
-        if self.p.publish_limited_velocity:
+        if self.parameters.publish_limited_velocity:
             topics["~/cmd_vel_out"] = VelocitySample
         return topics
 
     @property
     def subscriptions(self) -> Mapping[str, Subscription]:
         """Commanded velocity."""
-        return self._input.subscription("~/cmd_vel", self.p.use_stamped_vel)
+        return self._input.subscription("~/cmd_vel", self.parameters.use_stamped_vel)
 
     def activate(self, now_ns: int) -> None:
         """Reset the odometry."""
@@ -164,9 +164,9 @@ class DiffDriveController(Controller):
         self._drive(*allowed)
         if self._publishing.is_due(now_ns):
             yield self._odometry.sample(now_ns, "~/odom")
-            if self.p.enable_odom_tf:
+            if self.parameters.enable_odom_tf:
                 yield self._odometry.transform(now_ns)
-        if self.p.publish_limited_velocity:
+        if self.parameters.publish_limited_velocity:
             linear, angular = np.array((allowed[0], 0.0, 0.0)), np.array((0.0, 0.0, allowed[1]))
             yield VelocitySample(now_ns, "~/cmd_vel_out", self._odometry.base_frame, linear, angular)
 
@@ -177,11 +177,11 @@ class DiffDriveController(Controller):
 
     def _measure(self, period: float) -> None:
         """Update the odometry by the wheels' motion since the last cycle, or by their commands."""
-        if self.p.open_loop:
+        if self.parameters.open_loop:
             self._odometry.move(float(self._last[0]) * period, float(self._last[1]) * period, period)
             return
         values = self.states.read()
-        if self.p.position_feedback:
+        if self.parameters.position_feedback:
             turned = np.zeros_like(values) if self._angles is None else values - self._angles
             self._angles = values
         else:

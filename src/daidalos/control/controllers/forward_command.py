@@ -102,37 +102,37 @@ class ForwardCommandController(ForwardController):
     """Forward controller of one interface of several joints."""
 
     names = ("forward_command_controller/ForwardCommandController",)
-    parameters = ForwardCommandParameters
-    p: ForwardCommandParameters
+    Parameters = ForwardCommandParameters
+    parameters: ForwardCommandParameters
 
     def interfaces(self) -> tuple[str, ...]:
         """Return the interface of each joint."""
-        return tuple(f"{joint}/{self.p.interface_name}" for joint in self.p.joints)
+        return tuple(f"{joint}/{self.parameters.interface_name}" for joint in self.parameters.joints)
 
 
 class MultiInterfaceForwardCommandController(ForwardController):
     """Forward controller of several interfaces of one joint."""
 
     names = ("forward_command_controller/MultiInterfaceForwardCommandController",)
-    parameters = MultiInterfaceParameters
-    p: MultiInterfaceParameters
+    Parameters = MultiInterfaceParameters
+    parameters: MultiInterfaceParameters
 
     def interfaces(self) -> tuple[str, ...]:
         """Return the joint's interfaces."""
-        return tuple(f"{self.p.joint}/{name}" for name in self.p.interface_names)
+        return tuple(f"{self.parameters.joint}/{name}" for name in self.parameters.interface_names)
 
 
 class JointGroupPositionController(ForwardController):
     """Forward controller of joint positions."""
 
     names = ("position_controllers/JointGroupPositionController",)
-    parameters = GroupParameters
+    Parameters = GroupParameters
     kind = "position"
-    p: GroupParameters
+    parameters: GroupParameters
 
     def interfaces(self) -> tuple[str, ...]:
         """Return the interface of each joint."""
-        return tuple(f"{joint}/{self.kind}" for joint in self.p.joints)
+        return tuple(f"{joint}/{self.kind}" for joint in self.parameters.joints)
 
 
 class JointGroupVelocityController(JointGroupPositionController):

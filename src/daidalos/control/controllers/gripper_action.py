@@ -66,16 +66,16 @@ class PositionGripperController(Controller):
     """Position controller of a gripper."""
 
     names = ("position_controllers/GripperActionController",)
-    parameters = GripperParameters
+    Parameters = GripperParameters
     command_kind = "position"
     request: ClassVar[type[GripperRequest]] = GripperRequest
-    p: GripperParameters
+    parameters: GripperParameters
 
     def configure(self) -> None:
         """Set the interface names."""
-        self.command_names = (f"{self.p.joint}/{self.command_kind}",)
-        self.state_names = (f"{self.p.joint}/position", f"{self.p.joint}/velocity")
-        self._monitor = RateGate(self.p.action_monitor_rate)
+        self.command_names = (f"{self.parameters.joint}/{self.command_kind}",)
+        self.state_names = (f"{self.parameters.joint}/position", f"{self.parameters.joint}/velocity")
+        self._monitor = RateGate(self.parameters.action_monitor_rate)
         self._goal: Goal | None = None
 
     @property
@@ -86,14 +86,14 @@ class PositionGripperController(Controller):
     def _refuse(self, request: GripperRequest) -> str:
         if not math.isfinite(request.position):
             return f"the position is not a number: {request.position}"
-        named = request.joint if isinstance(request, ParallelGripperRequest) else ""
-        return f"'{named}' is not the gripper's joint, '{self.p.joint}' is" if named not in ("", self.p.joint) else ""
+        joint, named = self.parameters.joint, request.joint if isinstance(request, ParallelGripperRequest) else ""
+        return f"'{named}' is not the gripper's joint, '{joint}' is" if named not in ("", joint) else ""
 
     def _start(self, goal: Goal) -> None:
         self._end("aborted")
         self._goal = goal
         self._target = goal.request.position
-        self._effort = goal.request.max_effort or self.p.max_effort or math.inf
+        self._effort = goal.request.max_effort or self.parameters.max_effort or math.inf
         self._moved_ns = self.now_ns
         self._monitor.restart()
 
@@ -105,7 +105,7 @@ class PositionGripperController(Controller):
     def activate(self, now_ns: int) -> None:
         """Hold the finger at its position."""
         self.now_ns = now_ns
-        self._effort, self._output = self.p.max_effort or math.inf, 0.0
+        self._effort, self._output = self.parameters.max_effort or math.inf, 0.0
         self._hold()
 
     def deactivate(self) -> None:
@@ -121,8 +121,8 @@ class PositionGripperController(Controller):
             goal.finish(status, self._state(stalled, reached))
 
     def _state(self, stalled: bool, reached: bool) -> GripperState:
-        position, velocity = self.states.read()
-        return GripperState(self.now_ns, self.p.joint, float(position), float(velocity), self._output, stalled, reached)
+        position, velocity = map(float, self.states.read())
+        return GripperState(self.now_ns, self.parameters.joint, position, velocity, self._output, stalled, reached)
 
     def update(self, now_ns: int, period: float) -> Iterable[Sample]:
         """Command the finger, and check the goal."""
@@ -132,14 +132,14 @@ class PositionGripperController(Controller):
         return ()
 
     def _watch(self, now_ns: int, error: float, speed: float) -> None:
-        if speed > self.p.stall_velocity_threshold:
+        if speed > self.parameters.stall_velocity_threshold:
             self._moved_ns = now_ns
         if self._goal is None:
             return
-        if abs(error) < self.p.goal_tolerance:
+        if abs(error) < self.parameters.goal_tolerance:
             self._end("succeeded", reached=True)
-        elif (now_ns - self._moved_ns) * 1e-9 > self.p.stall_timeout:
-            self._end("succeeded" if self.p.allow_stalling else "aborted", stalled=True)
+        elif (now_ns - self._moved_ns) * 1e-9 > self.parameters.stall_timeout:
+            self._end("succeeded" if self.parameters.allow_stalling else "aborted", stalled=True)
         elif self._monitor.is_due(now_ns):
             self._goal.feedback(self._state(stalled=False, reached=False))
 
@@ -158,7 +158,7 @@ class EffortGripperController(PositionGripperController):
     def configure(self) -> None:
         """Create the PID loop."""
         super().configure()
-        self._pid = Pid([self.p.gains.get(self.p.joint, Gains())])
+        self._pid = Pid([self.parameters.gains.get(self.parameters.joint, Gains())])
 
     def activate(self, now_ns: int) -> None:
         """Hold the finger at its position."""
@@ -181,29 +181,29 @@ class ParallelGripperController(PositionGripperController):
     """Position controller of a gripper with limits of effort and velocity."""
 
     names = ("parallel_gripper_action_controller/GripperActionController",)
-    parameters = ParallelGripperParameters
+    Parameters = ParallelGripperParameters
     request = ParallelGripperRequest
-    p: ParallelGripperParameters
+    parameters: ParallelGripperParameters
 
     def configure(self) -> None:
         """Set the interface names, including those of maximum effort and speed."""
         super().configure()
-        extra = (self.p.max_effort_interface, self.p.max_velocity_interface)
+        extra = (self.parameters.max_effort_interface, self.parameters.max_velocity_interface)
         self.command_names = (*self.command_names, *(name for name in extra if name))
 
     def activate(self, now_ns: int) -> None:
         """Hold the finger at its position."""
-        self._speed = self.p.max_velocity
+        self._speed = self.parameters.max_velocity
         super().activate(now_ns)
 
     def _start(self, goal: Goal) -> None:
         super()._start(goal)
-        self._speed = goal.request.max_velocity or self.p.max_velocity
+        self._speed = goal.request.max_velocity or self.parameters.max_velocity
 
     def _command(self, error: float, error_rate: float, period: float) -> None:
         values = [self._target]
-        if self.p.max_effort_interface:
+        if self.parameters.max_effort_interface:
             values.append(self._effort)
-        if self.p.max_velocity_interface:
+        if self.parameters.max_velocity_interface:
             values.append(self._speed)
         self.commands.write(np.array(values))

@@ -55,12 +55,12 @@ class JointStateBroadcaster(Controller):
     """Broadcaster of ``joint_states`` (position, velocity, effort) and ``dynamic_joint_states`` (all interfaces)."""
 
     names = ("joint_state_broadcaster/JointStateBroadcaster",)
-    parameters = JointStateBroadcasterParameters
-    p: JointStateBroadcasterParameters
+    Parameters = JointStateBroadcasterParameters
+    parameters: JointStateBroadcasterParameters
 
     def configure(self) -> None:
         """Select interfaces and joints."""
-        p = self.p
+        p = self.parameters
         if p.joints and p.interfaces:
             self.state_names = tuple(f"{joint}/{interface}" for joint in p.joints for interface in p.interfaces)
         else:
@@ -86,7 +86,7 @@ class JointStateBroadcaster(Controller):
     def _is_joint(self, name: str) -> bool:
         """Return whether a name belongs into joint states."""
         robot = self.context.robot
-        if robot is None or self.p.joints or not self.p.use_urdf_to_filter:
+        if robot is None or self.parameters.joints or not self.parameters.use_urdf_to_filter:
             return True
         return name in robot.joints and robot.joints[name].type is not JointType.FIXED
 
@@ -94,7 +94,7 @@ class JointStateBroadcaster(Controller):
     def publications(self) -> Mapping[str, type[Sample]]:
         """Joint states, and dynamic joint states if enabled."""
         topics: dict[str, type[Sample]] = {self._topic: JointStateSample}
-        if self.p.publish_dynamic_joint_states:
+        if self.parameters.publish_dynamic_joint_states:
             topics[self._dynamic_topic] = DynamicJointSample
         return topics
 
@@ -103,11 +103,11 @@ class JointStateBroadcaster(Controller):
         values = self.states.read()
         if self.context.has_subscribers(self._topic):
             yield self._joint_states(now_ns, values)
-        if self.p.publish_dynamic_joint_states and self.context.has_subscribers(self._dynamic_topic):
+        if self.parameters.publish_dynamic_joint_states and self.context.has_subscribers(self._dynamic_topic):
             yield DynamicJointSample(
                 stamp_ns=now_ns,
                 topic=self._dynamic_topic,
-                frame_id=self.p.frame_id,
+                frame_id=self.parameters.frame_id,
                 joints={
                     joint: {interface: float(values[place]) for interface, place in places.items()}
                     or dict.fromkeys(_FIELDS, 0.0)
@@ -124,7 +124,7 @@ class JointStateBroadcaster(Controller):
         return JointStateSample(
             stamp_ns=now_ns,
             topic=self._topic,
-            frame_id=self.p.frame_id,
+            frame_id=self.parameters.frame_id,
             names=self._joints,
             positions=columns["position"],
             velocities=columns["velocity"],

@@ -48,12 +48,12 @@ class JointTrajectoryController(Controller):
     """
 
     names = ("joint_trajectory_controller/JointTrajectoryController",)
-    parameters = JointTrajectoryParameters
-    p: JointTrajectoryParameters
+    Parameters = JointTrajectoryParameters
+    parameters: JointTrajectoryParameters
 
     def configure(self) -> None:
         """Set the interface names; find continuous joints."""
-        p = self.p
+        p = self.parameters
         self._joints = p.joints
         self.command_names = interface_names(p.command_joints or p.joints, p.command_interfaces)
         self.state_names = interface_names(p.joints, [kind for kind in _ORDER if kind in p.state_interfaces])
@@ -82,13 +82,13 @@ class JointTrajectoryController(Controller):
         self._take_gains()
 
     def _take_gains(self) -> None:
-        gains = [self.p.gains[joint] for joint in self._joints]
+        gains = [self.parameters.gains[joint] for joint in self._joints]
         self._pid = Pid([one.clamped for one in gains])
         self._feedforward = np.array([one.ff_velocity_scale for one in gains])
-        limits = [self.p.joint_constraints[joint] for joint in self._joints]
+        limits = [self.parameters.joint_constraints[joint] for joint in self._joints]
         self._path_tolerances = Tolerances.of([one.trajectory for one in limits])
         self._goal_tolerances = Tolerances.of(
-            [one.goal for one in limits], self.p.constraints.stopped_velocity_tolerance
+            [one.goal for one in limits], self.parameters.constraints.stopped_velocity_tolerance
         )
 
     # In and out
@@ -102,7 +102,7 @@ class JointTrajectoryController(Controller):
     def subscriptions(self) -> Mapping[str, Subscription]:
         """Trajectories, and their speed factor."""
         taken = {"~/joint_trajectory": Subscription(TrajectoryCommand, self._take)}
-        if not self.p.speed_scaling.state_interface:
+        if not self.parameters.speed_scaling.state_interface:
             taken["~/speed_scaling_input"] = Subscription(SpeedCommand, self._take_speed)
         return taken
 
@@ -118,7 +118,7 @@ class JointTrajectoryController(Controller):
         return {"~/follow_joint_trajectory": action}
 
     def _take(self, command: TrajectoryCommand) -> None:
-        problem = problem_with(command, self.p, self.now_ns)
+        problem = problem_with(command, self.parameters, self.now_ns)
         if problem:
             self.context.warn(f"trajectory not accepted: {problem}")
             return
@@ -131,7 +131,7 @@ class JointTrajectoryController(Controller):
         self._speed = command.factor
 
     def _refuse(self, request: TrajectoryRequest) -> str:
-        problem = problem_with(request.trajectory, self.p, self.now_ns)
+        problem = problem_with(request.trajectory, self.parameters, self.now_ns)
         unknown = next((name for name in (*request.path, *request.goal) if name not in self._joints), "")
         return problem or (f"tolerance for '{unknown}', which is not a joint of the controller" if unknown else "")
 
@@ -158,8 +158,9 @@ class JointTrajectoryController(Controller):
         """Hold the joints at the last command, or at their positions."""
         self.now_ns = now_ns
         position = self._actual()[0]
-        if "position" in self.p.command_interfaces and self.p.set_last_command_interface_value_as_state_on_activation:
-            place = self.p.command_interfaces.index("position") * self._count
+        names = self.parameters.command_interfaces
+        if "position" in names and self.parameters.set_last_command_interface_value_as_state_on_activation:
+            place = names.index("position") * self._count
             last = self.commands.read()[place : place + self._count]
             position = np.where(np.isnan(last), position, last) if len(last) == self._count else position
         if np.isnan(position).any():
@@ -175,15 +176,16 @@ class JointTrajectoryController(Controller):
         ended = TrajectoryResult(TrajectoryResult.INVALID_GOAL, "the controller was deactivated")
         self._end_goal("aborted", ended)
         self._drop_pending(ended)
-        if self.p.command_interfaces[0] in ("velocity", "effort"):
-            self._write(np.zeros(len(self.p.command_interfaces) * len(self.p.command_joints or self.p.joints)))
+        if self.parameters.command_interfaces[0] in ("velocity", "effort"):
+            joints = self.parameters.command_joints or self.parameters.joints
+            self._write(np.zeros(len(self.parameters.command_interfaces) * len(joints)))
 
     def update(self, now_ns: int, period: float) -> Iterable[Sample]:
         """Follow the trajectory."""
         if self._pending is not None and self._pending[0].start_ns <= now_ns:
             (command, goal), self._pending = self._pending, None
             self._begin(command, goal, self._desired_at(command.start_ns), command.start_ns)
-        if self.p.speed_scaling.state_interface:
+        if self.parameters.speed_scaling.state_interface:
             told = float(self.states.read()[-1])
             self._speed = told if math.isfinite(told) and told >= 0.0 else self._speed
         if self._moving:
@@ -209,7 +211,7 @@ class JointTrajectoryController(Controller):
             self._pending = (command, goal)
             return
         begin = replace(command, start_ns=command.start_ns or self.now_ns)
-        from_desired = self.p.interpolate_from_desired_state or self.p.open_loop_control
+        from_desired = self.parameters.interpolate_from_desired_state or self.parameters.open_loop_control
         start = self._desired_at(self.now_ns) if from_desired else self._actual()
         self._begin(begin, goal, start, self.now_ns)
 
@@ -223,7 +225,7 @@ class JointTrajectoryController(Controller):
             request = goal.request
             self._path = self._path_tolerances.changed(self._joints, request.path)
             self._at_goal = self._goal_tolerances.changed(self._joints, request.goal)
-            wanted = request.goal_time or self.p.constraints.goal_time
+            wanted = request.goal_time or self.parameters.constraints.goal_time
             self._goal_time = wanted if wanted > 0.0 else math.inf
             self._monitor.restart()
 
@@ -249,8 +251,8 @@ class JointTrajectoryController(Controller):
             positions,
             velocities,
             accelerations,
-            steps=self.p.interpolation_method == "none",
-            keep_velocity=self.p.allow_nonzero_velocity_at_trajectory_end,
+            steps=self.parameters.interpolation_method == "none",
+            keep_velocity=self.parameters.allow_nonzero_velocity_at_trajectory_end,
         )
 
     def _hold(self, position: Array) -> None:
@@ -272,7 +274,7 @@ class JointTrajectoryController(Controller):
         late = (now_ns - self._start_ns) * 1e-9 - self._trajectory.duration
         goal = self._goal
         if goal is None:
-            timeout = self.p.cmd_timeout
+            timeout = self.parameters.cmd_timeout
             expired = timeout > 0.0 and late > timeout
             if expired:
                 self._hold(actual[0])
@@ -313,7 +315,7 @@ class JointTrajectoryController(Controller):
     def _actual(self) -> Motion:
         """Return the measured state; NaN where there is no measurement."""
         values = np.full((3, self._count), np.nan)
-        measured = self.states.read()[: len(self.p.state_interfaces) * self._count].reshape(-1, self._count)
+        measured = self.states.read()[: len(self.parameters.state_interfaces) * self._count].reshape(-1, self._count)
         values[: len(measured)] = measured
         return values[0], values[1], values[2]
 
@@ -324,13 +326,13 @@ class JointTrajectoryController(Controller):
 
     def _command(self, desired: Motion, error: Motion, period: float) -> Array:
         columns = []
-        for interface in self.p.command_interfaces:
+        for interface in self.parameters.command_interfaces:
             if self._closed:
                 rate = None if np.isnan(error[1]).any() else error[1]
                 columns.append(self._feedforward * desired[1] + self._pid.update(error[0], period, rate))
             else:
                 columns.append(desired[_ORDER.index(interface)])
-        commanded = self.p.command_joints or self._joints
+        commanded = self.parameters.command_joints or self._joints
         if len(commanded) != self._count:  # some joints are only watched
             chosen = [self._joints.index(name) for name in commanded]
             columns = [column[chosen] for column in columns]
@@ -338,11 +340,13 @@ class JointTrajectoryController(Controller):
 
     def _write(self, output: Array) -> None:
         """Command the joints and, if configured, the hardware's speed scaling."""
-        self.commands.write(np.append(output, self._speed) if self.p.speed_scaling.command_interface else output)
+        scales = self.parameters.speed_scaling.command_interface
+        self.commands.write(np.append(output, self._speed) if scales else output)
 
     def _sample(self, now_ns: int, desired: Motion, actual: Motion, error: Motion, output: Array) -> TrajectorySample:
         elapsed = (now_ns - self._start_ns) * 1e-9
-        columns = dict(zip(self.p.command_interfaces, np.split(output, len(self.p.command_interfaces)), strict=True))
+        names = self.parameters.command_interfaces
+        columns = dict(zip(names, np.split(output, len(names)), strict=True))
         return TrajectorySample(
             stamp_ns=now_ns,
             topic="~/controller_state",

@@ -83,14 +83,14 @@ class MecanumDriveController(BaseController):
     """Controller of a base with four mecanum wheels."""
 
     names = ("mecanum_drive_controller/MecanumDriveController",)
-    parameters = MecanumParameters
+    Parameters = MecanumParameters
     chainable = True
     state_sample = MecanumSample
-    p: MecanumParameters
+    parameters: MecanumParameters
 
     def configure(self) -> None:
         """Set the interface names."""
-        p = self.p
+        p = self.parameters
         commands = [getattr(p, f"{wheel}_wheel_command_joint_name") for wheel in _WHEELS]
         states = [
             getattr(p, f"{wheel}_wheel_state_joint_name") or command
@@ -114,8 +114,8 @@ class MecanumDriveController(BaseController):
         self._take_parameters()
 
     def _take_parameters(self) -> None:
-        self.input.timeout = self.p.reference_timeout
-        offset, kinematics = self.p.kinematics.base_frame_offset, self.p.kinematics
+        self.input.timeout = self.parameters.reference_timeout
+        offset, kinematics = self.parameters.kinematics.base_frame_offset, self.parameters.kinematics
         cosine, sine = math.cos(offset.theta), math.sin(offset.theta)
         # From the base's velocity to that of the wheels' centre.
         self._to_centre = np.array([[cosine, -sine, offset.y], [sine, cosine, -offset.x], [0.0, 0.0, 1.0]])

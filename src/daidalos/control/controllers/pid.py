@@ -71,13 +71,13 @@ class PidController(Controller):
     """Controller with a PID loop for each degree of freedom."""
 
     names = ("pid_controller/PidController",)
-    parameters = PidParameters
+    Parameters = PidParameters
     chainable = True
-    p: PidParameters
+    parameters: PidParameters
 
     def configure(self) -> None:
         """Set the interface names."""
-        p = self.p
+        p = self.parameters
         self._dofs = p.reference_and_state_dof_names or p.dof_names
         names = interface_names(self._dofs, p.reference_and_state_interfaces)
         self.command_names = interface_names(p.dof_names, (p.command_interface,))
@@ -96,7 +96,7 @@ class PidController(Controller):
         self._take_gains()
 
     def _take_gains(self) -> None:
-        gains = [self.p.gains[name] for name in self.p.dof_names]
+        gains = [self.parameters.gains[name] for name in self.parameters.dof_names]
         self._endless = np.array([one.angle_wraparound for one in gains])
         self._forward = np.array([one.feedforward_gain for one in gains])
 
@@ -109,7 +109,7 @@ class PidController(Controller):
     def subscriptions(self) -> Mapping[str, Subscription]:
         """References, and measurements if these are received on a topic."""
         topics = {"~/reference": Subscription(DofCommand, self._take_reference)}
-        if self.p.use_external_measured_states:
+        if self.parameters.use_external_measured_states:
             topics["~/measured_state"] = Subscription(DofCommand, self._take_measured)
         return topics
 
@@ -153,7 +153,7 @@ class PidController(Controller):
         shape = (1 + self._with_rates, self._count)
         self._received, self._measured = np.full(shape, np.nan), np.full(shape, np.nan)
         self.references.values[:] = np.nan
-        keeps = all(one.save_i_term for one in self.p.gains.values())
+        keeps = all(one.save_i_term for one in self.parameters.gains.values())
         self._pid.reset(keep_integral=keeps)
 
     def take_references(self, now_ns: int, period: float) -> None:
@@ -164,7 +164,7 @@ class PidController(Controller):
     def update(self, now_ns: int, period: float) -> Iterable[Sample]:
         """Update the loops whose reference and measurement are known."""
         wanted = self.references.values.reshape(-1, self._count)
-        external = self.p.use_external_measured_states
+        external = self.parameters.use_external_measured_states
         measured = self._measured if external else self.states.read().reshape(-1, self._count)
         self.exported.values[:] = measured.ravel()
         error = wanted[0] - measured[0]

@@ -60,13 +60,13 @@ class ImuSensorBroadcaster(Controller):
     """Broadcaster of ``~/imu``."""
 
     names = ("imu_sensor_broadcaster/IMUSensorBroadcaster",)
-    parameters = ImuParameters
-    p: ImuParameters
+    Parameters = ImuParameters
+    parameters: ImuParameters
 
     def configure(self) -> None:
         """Set the names of the sensor's interfaces."""
-        self.state_names = tuple(f"{self.p.sensor_name}/{name}" for name in _IMU)
-        turn = self.p.rotation_offset
+        self.state_names = tuple(f"{self.parameters.sensor_name}/{name}" for name in _IMU)
+        turn = self.parameters.rotation_offset
         self._turn = Pose.from_xyz_rpy((0.0, 0.0, 0.0), (turn.roll, turn.pitch, turn.yaw)).orientation
 
     @property
@@ -81,13 +81,13 @@ class ImuSensorBroadcaster(Controller):
         yield ImuSample(
             stamp_ns=now_ns,
             topic="~/imu",
-            frame_id=self.p.frame_id,
+            frame_id=self.parameters.frame_id,
             orientation=np.array(multiply(self._turn, (x, y, z, w))),
             angular_velocity=values[4:7],
             linear_acceleration=values[7:10],
-            orientation_covariance=np.array(self.p.static_covariance_orientation),
-            angular_velocity_covariance=np.array(self.p.static_covariance_angular_velocity),
-            linear_acceleration_covariance=np.array(self.p.static_covariance_linear_acceleration),
+            orientation_covariance=np.array(self.parameters.static_covariance_orientation),
+            angular_velocity_covariance=np.array(self.parameters.static_covariance_angular_velocity),
+            linear_acceleration_covariance=np.array(self.parameters.static_covariance_linear_acceleration),
         )
 
 
@@ -170,13 +170,14 @@ class ForceTorqueSensorBroadcaster(Controller):
     """Broadcaster of ``~/wrench``; other controllers may use its exported interfaces."""
 
     names = ("force_torque_sensor_broadcaster/ForceTorqueSensorBroadcaster",)
-    parameters = ForceTorqueParameters
-    p: ForceTorqueParameters
+    Parameters = ForceTorqueParameters
+    parameters: ForceTorqueParameters
 
     def configure(self) -> None:
         """Set the interface names."""
         axes = tuple(f"{kind}.{axis}" for kind in ("force", "torque") for axis in "xyz")
-        given = tuple(f"{self.p.sensor_name}/{axis}" for axis in axes) if self.p.sensor_name else self.p.given
+        sensor = self.parameters.sensor_name
+        given = tuple(f"{sensor}/{axis}" for axis in axes) if sensor else self.parameters.given
         self._places = np.array([place for place, name in enumerate(given) if name], dtype=np.intp)
         self.state_names = tuple(name for name in given if name)
         self.exported = Interfaces(axes)
@@ -190,9 +191,9 @@ class ForceTorqueSensorBroadcaster(Controller):
         """Return the corrected measurement; missing axes are NaN."""
         values = np.full(6, np.nan)
         values[self._places] = self.states.read()
-        values = (values + _six(self.p.offset)) * _six(self.p.multiplier)
+        values = (values + _six(self.parameters.offset)) * _six(self.parameters.multiplier)
         self.exported.values[:] = values
-        yield WrenchSample(now_ns, "~/wrench", self.p.frame_id, values[:3], values[3:])
+        yield WrenchSample(now_ns, "~/wrench", self.parameters.frame_id, values[:3], values[3:])
 
 
 def _six(given: WrenchOffsets | WrenchFactors) -> np.ndarray:
@@ -216,12 +217,12 @@ class RangeSensorBroadcaster(Controller):
     """Broadcaster of ``~/range``."""
 
     names = ("range_sensor_broadcaster/RangeSensorBroadcaster",)
-    parameters = RangeParameters
-    p: RangeParameters
+    Parameters = RangeParameters
+    parameters: RangeParameters
 
     def configure(self) -> None:
         """Set the interface name."""
-        self.state_names = (f"{self.p.sensor_name}/range",)
+        self.state_names = (f"{self.parameters.sensor_name}/range",)
 
     @property
     def publications(self) -> Mapping[str, type[Sample]]:
@@ -230,7 +231,7 @@ class RangeSensorBroadcaster(Controller):
 
     def update(self, now_ns: int, period: float) -> Iterable[Sample]:
         """Publish what the range sensor measures."""
-        p = self.p
+        p = self.parameters
         yield VariedRangeSample(
             stamp_ns=now_ns,
             topic="~/range",
@@ -268,19 +269,19 @@ class PoseBroadcaster(Controller):
     """Broadcaster of ``~/pose`` and its transform."""
 
     names = ("pose_broadcaster/PoseBroadcaster",)
-    parameters = PoseParameters
-    p: PoseParameters
+    Parameters = PoseParameters
+    parameters: PoseParameters
 
     def configure(self) -> None:
         """Set the interface names."""
-        self.state_names = tuple(f"{self.p.pose_name}/{name}" for name in _POSE)
-        self._transforming = RateGate(self.p.tf.publish_rate)
+        self.state_names = tuple(f"{self.parameters.pose_name}/{name}" for name in _POSE)
+        self._transforming = RateGate(self.parameters.tf.publish_rate)
 
     @property
     def publications(self) -> Mapping[str, type[Sample]]:
         """Pose, and its transform if enabled."""
         topics: dict[str, type[Sample]] = {"~/pose": PoseSample}
-        if self.p.tf.enable:
+        if self.parameters.tf.enable:
             topics["/tf"] = TransformSample
         return topics
 
@@ -292,8 +293,8 @@ class PoseBroadcaster(Controller):
         """Publish the pose, and its transform where the pose is finite and its orientation a unit quaternion."""
         values = self.states.read()
         position, orientation = values[:3], values[3:]
-        yield PoseSample(now_ns, "~/pose", self.p.frame_id, position, orientation)
+        yield PoseSample(now_ns, "~/pose", self.parameters.frame_id, position, orientation)
         sound = bool(np.all(np.isfinite(values)) and abs(np.linalg.norm(orientation) - 1.0) < 1e-3)
-        if self.p.tf.enable and sound and self._transforming.is_due(now_ns):
-            child = self.p.tf.child_frame_id or self.p.pose_name
-            yield TransformSample(now_ns, "/tf", self.p.frame_id, child, position, orientation)
+        if self.parameters.tf.enable and sound and self._transforming.is_due(now_ns):
+            child = self.parameters.tf.child_frame_id or self.parameters.pose_name
+            yield TransformSample(now_ns, "/tf", self.parameters.frame_id, child, position, orientation)

@@ -194,14 +194,14 @@ class BicycleSteeringController(BaseController):
     """Controller of a base with one driven wheel and one steered wheel."""
 
     names = ("bicycle_steering_controller/BicycleSteeringController",)
-    parameters: ClassVar[type] = BicycleParameters
+    Parameters: ClassVar[type] = BicycleParameters
     chainable = True
     state_sample = SteeringSample
-    p: SteeringParameters
+    parameters: SteeringParameters
 
     def configure(self) -> None:
         """Set the interface names."""
-        p = self.p
+        p = self.parameters
         self._base = p.base
         feedback = "position" if p.position_feedback else "velocity"
         self.command_names = (
@@ -255,7 +255,7 @@ class BicycleSteeringController(BaseController):
         speed, turn = (float(one) for one in np.nan_to_num(self.references.values))
         angle = self._base.steering_angle(speed, turn)
         self._angle = self._angle if angle is None else angle
-        if self.p.reduce_wheel_speed_until_steering_reached:
+        if self.parameters.reduce_wheel_speed_until_steering_reached:
             speed *= speed_share(abs(self._angle - float(np.mean(values[self._count :]))))
         self._last = (speed, speed * math.tan(self._angle) / self._base.wheelbase)
         speeds, angles = self._base.wheel_speeds(speed, self._angle), self._base.wheel_angles(self._angle)
@@ -263,17 +263,17 @@ class BicycleSteeringController(BaseController):
         yield from self.odometry_samples(now_ns)
         if self.context.has_subscribers("~/controller_state"):
             measured, nothing = values[: self._count], np.zeros(0)
-            positions, velocities = (measured, nothing) if self.p.position_feedback else (nothing, measured)
+            positions, velocities = (measured, nothing) if self.parameters.position_feedback else (nothing, measured)
             yield SteeringSample(
                 now_ns, "~/controller_state", "", positions, velocities, values[self._count :], speeds, angles
             )
 
     def _measure(self, values: np.ndarray, period: float) -> None:
-        if self.p.open_loop:
+        if self.parameters.open_loop:
             speed, turn = self._last
         else:
             wheels = values[: self._count]
-            if self.p.position_feedback:
+            if self.parameters.position_feedback:
                 before, self._turned = self._turned, wheels
                 wheels = np.zeros_like(wheels) if before is None else (wheels - before) / period
             if np.isnan(wheels).any() or np.isnan(values).any():
@@ -286,11 +286,11 @@ class TricycleSteeringController(BicycleSteeringController):
     """Controller of a base with two driven wheels and one steered wheel."""
 
     names = ("tricycle_steering_controller/TricycleSteeringController",)
-    parameters: ClassVar[type] = TricycleParameters
+    Parameters: ClassVar[type] = TricycleParameters
 
 
 class AckermannSteeringController(BicycleSteeringController):
     """Controller of a base with two driven wheels and two steered wheels."""
 
     names = ("ackermann_steering_controller/AckermannSteeringController",)
-    parameters: ClassVar[type] = AckermannParameters
+    Parameters: ClassVar[type] = AckermannParameters

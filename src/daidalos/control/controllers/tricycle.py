@@ -69,12 +69,12 @@ class TricycleController(Controller):
     """Controller of a base with a driven and steered front wheel, which can rotate in place."""
 
     names = ("tricycle_controller/TricycleController",)
-    parameters = TricycleDriveParameters
-    p: TricycleDriveParameters
+    Parameters = TricycleDriveParameters
+    parameters: TricycleDriveParameters
 
     def configure(self) -> None:
         """Set the interface names."""
-        p = self.p
+        p = self.parameters
         self.command_names = (f"{p.traction_joint_name}/velocity", f"{p.steering_joint_name}/position")
         self.state_names = self.command_names
         self._odometry = BaseOdometry(
@@ -106,14 +106,14 @@ class TricycleController(Controller):
     def publications(self) -> Mapping[str, type[Sample]]:
         """Odometry and its transform."""
         topics: dict[str, type[Sample]] = {"~/odom": OdometrySample}
-        if self.p.enable_odom_tf:
+        if self.parameters.enable_odom_tf:
             topics["/tf"] = TransformSample
         return topics
 
     @property
     def subscriptions(self) -> Mapping[str, Subscription]:
         """Commanded velocity."""
-        if self.p.use_stamped_vel:
+        if self.parameters.use_stamped_vel:
             return {"~/cmd_vel": Subscription(VelocityCommand, self._input.take)}
         return {"~/cmd_vel": Subscription(TwistCommand, self._input.take_plain)}
 
@@ -140,7 +140,7 @@ class TricycleController(Controller):
     def update(self, now_ns: int, period: float) -> Iterable[Sample]:
         """Update the odometry from the wheel, then command its speed and angle."""
         measured = self.states.read()
-        wheel = (self._speed, self._angle) if self.p.open_loop else (float(measured[0]), float(measured[1]))
+        wheel = (self._speed, self._angle) if self.parameters.open_loop else (float(measured[0]), float(measured[1]))
         self._measure(*wheel, period)
         latest = self._input.latest(now_ns)
         ahead, _, turn = latest or (0.0, 0.0, 0.0)
@@ -152,25 +152,25 @@ class TricycleController(Controller):
         self._before, self._speed = self._speed, allowed
         self.commands.write(np.array((self._speed, self._angle)))
         odometry = self._odometry.sample(now_ns, "~/odom")
-        if self.p.odom_only_twist:
+        if self.parameters.odom_only_twist:
             odometry = replace(odometry, position=np.zeros(3), orientation=np.array(quaternion_from_yaw(0.0)))
         yield odometry
-        if self.p.enable_odom_tf:
+        if self.parameters.enable_odom_tf:
             yield self._odometry.transform(now_ns)
 
     def _wheel(self, ahead: float, turn: float) -> tuple[float, float]:
         """Return the wheel's speed [rad/s] and angle [rad] for a velocity of the base; at rest the angle stays."""
-        sideways = turn * self.p.wheelbase
+        sideways = turn * self.parameters.wheelbase
         if ahead == 0.0 and turn == 0.0:
             return 0.0, self._angle
-        speed = math.hypot(ahead, sideways) / self.p.wheel_radius
+        speed = math.hypot(ahead, sideways) / self.parameters.wheel_radius
         angle = math.atan2(sideways, ahead)
         if abs(angle) > math.pi / 2:  # backwards
             return -speed, angle - math.copysign(math.pi, angle)
         return speed, angle
 
     def _turn_to(self, angle: float, period: float) -> None:
-        limits = self.p.steering
+        limits = self.parameters.steering
         if not math.isnan(limits.max_position):
             angle = min(angle, limits.max_position)
         if not math.isnan(limits.min_position):
@@ -181,5 +181,5 @@ class TricycleController(Controller):
     def _measure(self, speed: float, angle: float, period: float) -> None:
         if math.isnan(speed) or math.isnan(angle):
             return
-        travel = speed * self.p.wheel_radius * period
-        self._odometry.move(travel * math.cos(angle), travel * math.sin(angle) / self.p.wheelbase, period)
+        travel = speed * self.parameters.wheel_radius * period
+        self._odometry.move(travel * math.cos(angle), travel * math.sin(angle) / self.parameters.wheelbase, period)
