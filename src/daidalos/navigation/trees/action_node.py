@@ -48,15 +48,15 @@ class ActionNode(Node):
     def goal(cls, inputs: Mapping[str, Any]) -> dict[str, Any]:
         """Return the fields of the action's goal or the service's request, such as ``target.x``; durations in seconds.
 
-        By default each input of the same name.
+        By default those that the ports name.
         """
-        return dict(inputs)
+        return {cls.PORTS[name].field or name: value for name, value in inputs.items()}
 
     @classmethod
     def outputs(cls, result: Any) -> dict[str, Any]:
-        """Return values of output ports from the action's result; by default the fields of the same names."""
-        outputs = (name for name, port in cls.PORTS.items() if port.output and name not in ERRORS)
-        return {name: getattr(result, name) for name in outputs if hasattr(result, name)}
+        """Return values of output ports from the action's result; by default the fields that they name."""
+        outputs = {name: port.field or name for name, port in cls.PORTS.items() if port.output and name not in ERRORS}
+        return {name: getattr(result, field) for name, field in outputs.items() if hasattr(result, field)}
 
     def initialise(self) -> None:
         """Start the task."""

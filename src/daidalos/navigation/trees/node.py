@@ -30,11 +30,14 @@ class Port:
         Value of an input that the file does not give.
     output : bool
         Whether the node writes it.
+    field : str
+        Field of an action's goal, request or result that has the value, such as ``target.x``, where its name differs.
     """
 
     kind: Callable[[str], Any]
     default: Any = REQUIRED
     output: bool = False
+    field: str = ""
 
 
 def flag(text: str) -> bool:

@@ -1,7 +1,6 @@
 """Action node that drives backwards."""
 
-from collections.abc import Mapping
-from typing import Any, ClassVar
+from typing import ClassVar
 
 from daidalos.navigation.trees.action_node import ActionNode, with_server
 from daidalos.navigation.trees.node import Port, flag
@@ -15,15 +14,10 @@ class BackUp(ActionNode):
     SERVER = "backup"
     PORTS: ClassVar[dict[str, Port]] = with_server(
         {
-            "backup_dist": Port(float, 0.15),
-            "backup_speed": Port(float, 0.025),
+            "backup_dist": Port(float, 0.15, field="target.x"),
+            "backup_speed": Port(float, 0.025, field="speed"),
             "time_allowance": Port(float, 10.0),
             "disable_collision_checks": Port(flag, False),
         }
     )
     RECOVERY: ClassVar[bool] = True
-
-    @classmethod
-    def goal(cls, inputs: Mapping[str, Any]) -> dict[str, Any]:
-        """Implement `ActionNode.goal`."""
-        return {**inputs, "target.x": inputs["backup_dist"], "speed": inputs["backup_speed"]}

@@ -1,7 +1,6 @@
 """Action node that drives straight."""
 
-from collections.abc import Mapping
-from typing import Any, ClassVar
+from typing import ClassVar
 
 from daidalos.navigation.trees.action_node import ActionNode, with_server
 from daidalos.navigation.trees.node import Port, flag
@@ -15,14 +14,9 @@ class DriveOnHeading(ActionNode):
     SERVER = "drive_on_heading"
     PORTS: ClassVar[dict[str, Port]] = with_server(
         {
-            "dist_to_travel": Port(float, 0.15),
+            "dist_to_travel": Port(float, 0.15, field="target.x"),
             "speed": Port(float, 0.025),
             "time_allowance": Port(float, 10.0),
             "disable_collision_checks": Port(flag, False),
         }
     )
-
-    @classmethod
-    def goal(cls, inputs: Mapping[str, Any]) -> dict[str, Any]:
-        """Implement `ActionNode.goal`."""
-        return {**inputs, "target.x": inputs["dist_to_travel"]}

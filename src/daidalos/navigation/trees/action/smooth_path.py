@@ -1,7 +1,6 @@
 """Smooth a path."""
 
-from collections.abc import Mapping
-from typing import Any, ClassVar
+from typing import ClassVar
 
 from daidalos.navigation.trees.action_node import ActionNode, with_server
 from daidalos.navigation.trees.node import Port, entry, flag
@@ -15,22 +14,12 @@ class SmoothPath(ActionNode):
     SERVER = "smooth_path"
     PORTS: ClassVar[dict[str, Port]] = with_server(
         {
-            "unsmoothed_path": Port(entry),
+            "unsmoothed_path": Port(entry, field="path"),
             "smoother_id": Port(str, ""),
             "max_smoothing_duration": Port(float, 3.0),
             "check_for_collisions": Port(flag, False),
-            "smoothed_path": Port(entry, output=True),
+            "smoothed_path": Port(entry, output=True, field="path"),
             "smoothing_duration": Port(float, output=True),
             "was_completed": Port(flag, output=True),
         }
     )
-
-    @classmethod
-    def goal(cls, inputs: Mapping[str, Any]) -> dict[str, Any]:
-        """Implement `ActionNode.goal`."""
-        return {**inputs, "path": inputs["unsmoothed_path"]}
-
-    @classmethod
-    def outputs(cls, result: Any) -> dict[str, Any]:
-        """Implement `ActionNode.outputs`."""
-        return {**super().outputs(result), "smoothed_path": result.path}

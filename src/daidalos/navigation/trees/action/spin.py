@@ -1,7 +1,6 @@
 """Action node that rotates in place."""
 
-from collections.abc import Mapping
-from typing import Any, ClassVar
+from typing import ClassVar
 
 from daidalos.navigation.trees.action_node import ActionNode, with_server
 from daidalos.navigation.trees.node import Port, flag
@@ -15,14 +14,9 @@ class Spin(ActionNode):
     SERVER = "spin"
     PORTS: ClassVar[dict[str, Port]] = with_server(
         {
-            "spin_dist": Port(float, 1.57),
+            "spin_dist": Port(float, 1.57, field="target_yaw"),
             "time_allowance": Port(float, 10.0),
             "is_recovery": Port(flag, True),
             "disable_collision_checks": Port(flag, False),
         }
     )
-
-    @classmethod
-    def goal(cls, inputs: Mapping[str, Any]) -> dict[str, Any]:
-        """Implement `ActionNode.goal`."""
-        return {**inputs, "target_yaw": inputs["spin_dist"]}

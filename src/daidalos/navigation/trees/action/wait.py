@@ -1,7 +1,6 @@
 """Behavior that waits."""
 
-from collections.abc import Mapping
-from typing import Any, ClassVar
+from typing import ClassVar
 
 from daidalos.navigation.trees.action_node import ActionNode, with_server
 from daidalos.navigation.trees.node import Port
@@ -13,10 +12,5 @@ class Wait(ActionNode):
     names = ("Wait",)
     INTERFACE = "nav2_msgs/action/Wait"
     SERVER = "wait"
-    PORTS: ClassVar[dict[str, Port]] = with_server({"wait_duration": Port(float, 1.0)})
+    PORTS: ClassVar[dict[str, Port]] = with_server({"wait_duration": Port(float, 1.0, field="time")})
     RECOVERY: ClassVar[bool] = True
-
-    @classmethod
-    def goal(cls, inputs: Mapping[str, Any]) -> dict[str, Any]:
-        """Implement `ActionNode.goal`."""
-        return {**inputs, "time": inputs["wait_duration"]}
