@@ -23,7 +23,7 @@ def test_gzs_arguments_may_come_in_one_word():
 def test_create_takes_one_dash_or_two():
     arguments = create.parse(["-name", "bot", "--file", "a.sdf", "-x", "1.5", "-Y", "-2", "-allow_renaming", "true"])
     assert (arguments.name, arguments.file, arguments.x, arguments.Y) == ("bot", "a.sdf", 1.5, -2.0)
-    assert arguments.allow_renaming == "true"
+    assert arguments.allow_renaming is True
 
 
 def test_numbers_may_be_as_programs_write_them():
@@ -42,11 +42,11 @@ def test_create_leaves_out_what_it_does_not_know(capsys):
 def test_create_takes_parameters_where_no_word_is_given(graph):  # noqa: F811
     values = {"name": "bot", "z": 2, "x": 1.0, "allow_renaming": True}
     overrides = [Parameter(name, value=value) for name, value in values.items()]
-    node = Node("create", parameter_overrides=overrides, automatically_declare_parameters_from_overrides=True)
+    node = Node("create", parameter_overrides=overrides)
     arguments = create.parse(["-x", "3"])
     create.take_parameters(arguments, node)
     assert (arguments.name, arguments.x, arguments.y, arguments.z) == ("bot", 3.0, 0.0, 2.0)
-    assert arguments.allow_renaming.lower() == "true"
+    assert arguments.allow_renaming is True
     assert arguments.file == ""
 
 

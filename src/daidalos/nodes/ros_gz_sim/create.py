@@ -5,15 +5,41 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from daidalos.common.parameters import Parameters, parameter, values_of
 from daidalos.nodes.gazebo_ros._command_line import bind_numbers
+from daidalos.nodes.parameters import declare, declare_given
 from daidalos.nodes.runner import UserError, program_arguments, run_program
 
 _TIMEOUT = 30.0
 _NUMBERS = ("x", "y", "z", "R", "P", "Y")
 _TEXTS = ("world", "file", "topic", "param", "string", "name")
+
+
+def _pose(what: str, unit: str) -> Any:
+    return parameter(0.0, f"Of the entity's pose: {what}.", unit=unit, takes_integer=True)
+
+
+@dataclass(frozen=True)
+class CreateParameters(Parameters):
+    """Parameters of ``create``, for what its options leave out."""
+
+    world: str = parameter("", "World to spawn in; the only one where empty.")
+    file: str = parameter("", "File or model with the description.")
+    topic: str = parameter("", "Topic with the description.")
+    param: str = parameter("", "Parameter of the node with the description.")
+    string: str = parameter("", "The description itself.")
+    name: str = parameter("", "Name of the entity; that of the description where empty.")
+    x: float = _pose("x", "m")
+    y: float = _pose("y", "m")
+    z: float = _pose("z", "m")
+    R: float = _pose("roll", "rad")
+    P: float = _pose("pitch", "rad")
+    Y: float = _pose("yaw", "rad")
+    allow_renaming: bool = parameter(False, "Whether to choose another name where it is taken.")
 
 
 def parse(words: Sequence[str]) -> argparse.Namespace:
@@ -30,7 +56,9 @@ def parse(words: Sequence[str]) -> argparse.Namespace:
         parser.add_argument(f"-{name}", f"--{name}", help=text)
     for name in _NUMBERS:
         parser.add_argument(f"-{name}", f"--{name}", type=float, help="pose [m, rad]")
-    parser.add_argument("-allow_renaming", "--allow_renaming", nargs="?", const="true", help="if taken")
+    parser.add_argument(
+        "-allow_renaming", "--allow_renaming", nargs="?", const=True, type=_is_true, help="choose another name if taken"
+    )
     arguments, unknown = parser.parse_known_args(bind_numbers(words))
     if unknown:
         print(f"warning: create does not know {' '.join(unknown)}, left out", file=sys.stderr)
@@ -39,11 +67,14 @@ def parse(words: Sequence[str]) -> argparse.Namespace:
 
 def take_parameters(arguments: argparse.Namespace, node: Any) -> None:
     """Fill in what the command line does not say from the node's parameters of the same names, or the default."""
-    defaults = dict.fromkeys(_TEXTS, "") | dict.fromkeys(_NUMBERS, 0.0) | {"allow_renaming": "false"}
-    for name, default in defaults.items():
+    for name, value in values_of(declare(node, CreateParameters)).items():
         if getattr(arguments, name) is None:
-            value = node.get_parameter(name).value if node.has_parameter(name) else default
-            setattr(arguments, name, type(default)(value))
+            setattr(arguments, name, value)
+    declare_given(node)  # one of them may be the description
+
+
+def _is_true(text: str) -> bool:
+    return text.lower() in ("true", "1")
 
 
 def find_service(node: Any, world: str, name: str, kind: str, timeout: float = _TIMEOUT) -> str:
@@ -120,11 +151,11 @@ def _create(arguments: argparse.Namespace) -> None:
     from daidalos.nodes.gazebo_ros._states import pose_message
 
     rclpy.init()
-    node = rclpy.create_node("ros_gz_sim", automatically_declare_parameters_from_overrides=True)
+    node = rclpy.create_node("ros_gz_sim")
     take_parameters(arguments, node)
     factory = EntityFactory(
         name=arguments.name,
-        allow_renaming=arguments.allow_renaming.lower() in ("true", "1"),
+        allow_renaming=arguments.allow_renaming,
         sdf=_description(arguments, node),
         pose=pose_message(
             Pose.from_xyz_rpy((arguments.x, arguments.y, arguments.z), (arguments.R, arguments.P, arguments.Y))

@@ -6,7 +6,7 @@ import argparse
 from dataclasses import dataclass
 
 from daidalos.common.parameters import Parameters, parameter
-from daidalos.nodes.parameters import declare
+from daidalos.nodes.parameters import declare, warn_of_undeclared
 from daidalos.nodes.ros_gz_sim.create import find_service
 from daidalos.nodes.runner import UserError, program_arguments, run_program
 
@@ -27,6 +27,7 @@ def _remove(world: str, name: str) -> None:
     rclpy.init()
     node = rclpy.create_node("entity_remover")
     settings = declare(node, RemoveParameters)
+    warn_of_undeclared(node)
     name, world = name or settings.entity_name, world or settings.world
     if not name:
         raise UserError("say what to remove: -name, or the parameter entity_name")
