@@ -3,9 +3,9 @@
 import math
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-Array = NDArray[np.float64]
+from daidalos.common.arrays import Array
 
 
 def wrap(angle: ArrayLike) -> Array:

@@ -10,10 +10,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.common.arrays import Array
 from daidalos.common.pose3 import quaternion_from_matrix, rotation_vector
 from daidalos.control.chain import Chain
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

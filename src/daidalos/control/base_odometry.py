@@ -7,15 +7,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from daidalos.common.arrays import Array
 from daidalos.common.parameters import Parameters, parameter
 from daidalos.common.pose2 import move_along_arc
 from daidalos.common.pose3 import quaternion_from_yaw
 from daidalos.samples.odometry import transform_of
 from daidalos.samples.sensors import OdometrySample, TransformSample
 
-Array = NDArray[np.float64]
 _ZEROS = (0.0,) * 6
 
 

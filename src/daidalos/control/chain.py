@@ -5,15 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from daidalos.common.arrays import Array
 from daidalos.control.errors import ControlError, UnknownError
 from daidalos.description.joint import JointType
 from daidalos.description.kinematics import KinematicTree
 from daidalos.description.robot import Robot
 from daidalos.description.world import Model
-
-Array = NDArray[np.float64]
 
 _SLIDING = (JointType.PRISMATIC,)
 _TURNING = (JointType.REVOLUTE, JointType.CONTINUOUS)

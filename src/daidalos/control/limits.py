@@ -6,13 +6,10 @@ import math
 from collections.abc import Iterable
 
 import numpy as np
-from numpy.typing import NDArray
 
 from daidalos.control.interfaces import Interfaces
 from daidalos.description.joint import Axis, JointType
 from daidalos.description.ros2_control import ComponentInfo
-
-Array = NDArray[np.float64]
 
 
 class CommandLimiter:

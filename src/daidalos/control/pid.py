@@ -10,11 +10,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from daidalos.common.arrays import Array
 from daidalos.common.parameters import ParameterError, Parameters, parameter
 
-Array = NDArray[np.float64]
 STRATEGIES = ("none", "legacy", "back_calculation", "conditional_integration")
 
 

@@ -10,9 +10,8 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from daidalos.common.arrays import Array
 
 _STRAIGHT = 1e-9
 _FREE_ANGLE = math.pi / 6

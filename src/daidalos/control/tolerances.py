@@ -7,11 +7,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from daidalos.common.arrays import Array
 from daidalos.samples.controllers import JointTolerance
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,11 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from daidalos.common.arrays import Array
 from daidalos.samples.controllers import TrajectoryPoint
-
-Array = NDArray[np.float64]
 
 
 class Trajectory:

@@ -7,12 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.common.arrays import Array
 from daidalos.common.pose3 import Pose, rotation_matrix
 from daidalos.description.geometry import Empty, Heightmap, Plane
 from daidalos.description.meshes import TriangleMesh, triangles_of
 from daidalos.description.world import World
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,15 +6,13 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from daidalos.common.arrays import Array
 from daidalos.common.pose3 import Pose, rotation_matrix
 from daidalos.description.errors import DescriptionError
 from daidalos.description.geometry import Box, Cylinder, Ellipsoid, Empty, Geometry, Heightmap, Plane, Sphere
 from daidalos.description.link import Collision, Inertial, Link, Visual
 from daidalos.description.meshes import triangles_of
-
-Array = NDArray[np.float64]
 
 WATER = 1000.0
 _LIGHTEST, _HEAVIEST = 5.0, 25_000.0  # hollow plastic, solid tungsten [kg/m^3]

@@ -8,12 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.common.arrays import Array
 from daidalos.common.pose3 import Pose
 from daidalos.description.joint import Joint, JointType
 from daidalos.description.robot import Robot
 from daidalos.description.world import Model
-
-Array = NDArray[np.float64]
 
 _TURNING = (JointType.REVOLUTE, JointType.CONTINUOUS, JointType.SCREW)
 _SLIDING = (JointType.PRISMATIC,)

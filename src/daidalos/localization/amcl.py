@@ -4,8 +4,8 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from daidalos.common.arrays import Array
 from daidalos.common.pose2 import between, compose, inverse, wrap
 from daidalos.localization.config import AmclConfig
 from daidalos.localization.errors import LocalizationError
@@ -28,8 +28,6 @@ from daidalos.localization.sensor_models.likelihood_field import (
 from daidalos.localization.sensor_models.sensor_model import Beams, SensorModel
 from daidalos.mapping.grid import OccupancyGrid
 from daidalos.mapping.scan import LaserScanData
-
-Array = NDArray[np.float64]
 
 MOTION_MODELS: dict[str, type[DifferentialMotionModel] | type[OmniMotionModel]] = {
     "nav2_amcl::DifferentialMotionModel": DifferentialMotionModel,

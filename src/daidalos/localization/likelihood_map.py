@@ -3,10 +3,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.common.arrays import Array
 from daidalos.localization.errors import LocalizationError
 from daidalos.mapping.grid import OccupancyGrid
-
-Array = NDArray[np.float64]
 
 OCCUPIED_FROM = 65
 FREE_UP_TO = 25

@@ -6,10 +6,9 @@ from statistics import NormalDist
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.common.arrays import Array
 from daidalos.common.kernels import compiled
 from daidalos.common.pose2 import wrap
-
-Array = NDArray[np.float64]
 
 TURNS = 36
 """Bins of a full turn."""

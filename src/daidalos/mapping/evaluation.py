@@ -7,10 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daidalos.common import pose2
+from daidalos.common.arrays import Array
 from daidalos.mapping.errors import RelationsError
 from daidalos.mapping.grid import OCCUPIED, OccupancyGrid
 
-Array = NDArray[np.float64]
 Stamps = NDArray[np.int64]
 
 

@@ -5,10 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.common.arrays import Array
 from daidalos.common.kernels import compiled
 from daidalos.mapping.scan import Cloud
 
-Array = NDArray[np.float64]
 Counts = NDArray[np.int32]
 Occupancy = NDArray[np.int8]
 

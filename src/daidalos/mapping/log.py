@@ -12,13 +12,13 @@ from numpy.typing import NDArray
 from daidalos.bags.errors import BagError
 from daidalos.bags.reader import BagReader
 from daidalos.common import pose2
+from daidalos.common.arrays import Array
 from daidalos.common.pose3 import yaw_from_quaternion
 from daidalos.interfaces.codec import CdrError, Codec, codec_of
 from daidalos.mapping.errors import LogError
 from daidalos.mapping.evaluation import poses_at
 from daidalos.mapping.scan import LaserScanData
 
-Array = NDArray[np.float64]
 Stamps = NDArray[np.int64]
 
 LASER_SCAN = "sensor_msgs/msg/LaserScan"

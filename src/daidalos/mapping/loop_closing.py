@@ -6,13 +6,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daidalos.common import pose2
+from daidalos.common.arrays import Array
 from daidalos.mapping.config import SlamConfig
 from daidalos.mapping.pose_graph import Edge
 from daidalos.mapping.scan import Cloud
 from daidalos.mapping.scan_matching.matcher import PointMap, Window, merge
 from daidalos.mapping.scan_matching.point_to_line import match_information
-
-Array = NDArray[np.float64]
 
 DRIFT_PER_METRE = 0.03
 DRIFT_PER_RADIAN = 0.03

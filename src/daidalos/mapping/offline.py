@@ -4,14 +4,12 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from daidalos.common import pose2
+from daidalos.common.arrays import Array
 from daidalos.mapping.grid import OccupancyGrid
 from daidalos.mapping.log import Log
 from daidalos.mapping.slam import Slam, SlamConfig
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

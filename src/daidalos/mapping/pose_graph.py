@@ -8,8 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daidalos.common import pose2
-
-Array = NDArray[np.float64]
+from daidalos.common.arrays import Array
 
 ROBUST_SCALE = 2.0
 """Whitened error beyond which the robust kernel lets a closure count less and less."""

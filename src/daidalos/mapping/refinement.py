@@ -3,15 +3,13 @@
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from daidalos.common import pose2
+from daidalos.common.arrays import Array
 from daidalos.mapping.pose_graph import Edge, optimize
 from daidalos.mapping.scan import Cloud
 from daidalos.mapping.scan_matching.buckets import build_reference
 from daidalos.mapping.scan_matching.point_to_line import match_information, refine
-
-Array = NDArray[np.float64]
 
 BACK = 3
 """Scans before each one that it is matched against in any case."""

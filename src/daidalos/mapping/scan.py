@@ -5,9 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.common.arrays import Array
 from daidalos.common.kernels import compiled
-
-Array = NDArray[np.float64]
 
 SPACING = 0.03
 """Least distance [m] of points in a row for matching: a near wall must not outweigh a far one."""

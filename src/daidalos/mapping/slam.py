@@ -3,9 +3,10 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from daidalos.common import pose2
+from daidalos.common.arrays import Array
 from daidalos.mapping.config import SlamConfig
 from daidalos.mapping.grid import OccupancyGrid, ScanGrid
 from daidalos.mapping.loop_closing import LoopCloser
@@ -16,7 +17,6 @@ from daidalos.mapping.scan_matching.point_to_line import Refinement, match_infor
 
 __all__ = ["ScanResult", "Slam", "SlamConfig"]
 
-Array = NDArray[np.float64]
 
 MIN_POINTS = 10
 """Points that a scan must have to be matched."""

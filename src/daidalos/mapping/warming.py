@@ -3,7 +3,6 @@
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
 from daidalos.common import pose2
 from daidalos.mapping.grid import ScanGrid
@@ -12,8 +11,6 @@ from daidalos.mapping.pose_graph import Edge, optimize
 from daidalos.mapping.scan import Cloud, LaserScanData, to_cloud
 from daidalos.mapping.scan_matching.matcher import PointMap, Window
 from daidalos.mapping.slam import SlamConfig
-
-Array = NDArray[np.float64]
 
 
 def steps() -> Iterator[tuple[float, str]]:

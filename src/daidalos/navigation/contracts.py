@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.common.arrays import Array
 from daidalos.common.errors import Location
 from daidalos.common.extensions import Kind, find
 from daidalos.navigation.costmap.costmap import FREE_SPACE, Bounds, Costmap, Window
@@ -28,7 +29,6 @@ from daidalos.navigation.costmap.footprint import Footprint
 if TYPE_CHECKING:
     from daidalos.navigation.controllers.mppi.rollouts import Rollouts
 
-Array = NDArray[np.float64]
 Command = TypeVar("Command")
 T = TypeVar("T")
 

@@ -1,9 +1,8 @@
 """Paths: arrays (n, 3) of poses (x, y, yaw), with common computations."""
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from daidalos.common.arrays import Array
 
 
 def with_headings(points: Array, *, final_heading: float | None = None, initial_heading: float = 0.0) -> Array:

@@ -3,11 +3,9 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from daidalos.common.arrays import Array
 from daidalos.common.parameters import ParameterError, Parameters, parameter
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -7,12 +7,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.common.arrays import Array
 from daidalos.common.pose3 import quaternion_from_yaw, yaw_from_quaternion
 
 if TYPE_CHECKING:
     from daidalos.mapping.scan import LaserScanData
-
-Array = NDArray[np.float64]
 
 
 def twist_message(velocity: Any, frame: str | None, stamp: Any) -> Any:

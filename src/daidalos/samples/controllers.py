@@ -11,9 +11,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.common.arrays import Array
 from daidalos.samples.sensors import Sample
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from daidalos.common.arrays import Array
 from daidalos.common.pose3 import quaternion_from_yaw
 from daidalos.samples.sensors import OdometrySample, TransformSample
-
-Array = NDArray[np.float64]
 
 _UNKNOWN = 1e12
 

@@ -12,9 +12,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.common.arrays import Array
 from daidalos.common.pose3 import Pose
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

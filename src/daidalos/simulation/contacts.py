@@ -14,8 +14,6 @@ from daidalos.samples.sensors import Contact
 from daidalos.simulation.instance import Instance
 from daidalos.simulation.physics import Physics
 
-Array = NDArray[np.float64]
-
 
 @dataclass(frozen=True)
 class Touch:

@@ -6,8 +6,8 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from daidalos.common.arrays import Array
 from daidalos.description.link import Surface
 from daidalos.description.world import Model
 from daidalos.samples.sensors import Sample
@@ -16,8 +16,6 @@ from daidalos.simulation.conversion.contact import MAX_FRICTION, friction_of, se
 from daidalos.simulation.conversion.model_build import ModelBuild
 from daidalos.simulation.instance import Instance
 from daidalos.simulation.last_step import cross, velocities
-
-Array = NDArray[np.float64]
 
 
 class DirectionalFriction(Component):

@@ -8,8 +8,8 @@ from dataclasses import replace
 
 import mujoco
 import numpy as np
-from numpy.typing import NDArray
 
+from daidalos.common.arrays import Array
 from daidalos.common.pose3 import Pose
 from daidalos.description.gazebo import model_from_robot
 from daidalos.description.joint import Joint, JointType
@@ -18,8 +18,6 @@ from daidalos.description.world import Model
 from daidalos.simulation.conversion.assets import Assets
 from daidalos.simulation.conversion.build import add_model
 from daidalos.simulation.errors import SimulationError, UnknownNameError
-
-Array = NDArray[np.float64]
 
 _log = logging.getLogger(__name__)
 _TURNING = (JointType.REVOLUTE, JointType.CONTINUOUS)

@@ -6,12 +6,8 @@ import math
 from collections.abc import Collection, Iterable
 from dataclasses import dataclass, field
 
-import numpy as np
-from numpy.typing import NDArray
-
+from daidalos.common.arrays import Array
 from daidalos.common.pose3 import Vector
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -6,11 +6,9 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from daidalos.common.arrays import Array
 from daidalos.description.world import SphericalCoordinates
-
-Array = NDArray[np.float64]
 
 _SEMI_MAJOR = 6378137.0
 _FLATTENING = 1 / 298.257223563

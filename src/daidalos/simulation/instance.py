@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import mujoco
 import numpy as np
-from numpy.typing import NDArray
 
+from daidalos.common.arrays import Array
 from daidalos.common.pose3 import Pose
 from daidalos.description.world import Model
 from daidalos.simulation.conversion.model_build import ModelBuild
@@ -17,8 +17,6 @@ from daidalos.simulation.physics import Physics
 
 if TYPE_CHECKING:
     from daidalos.simulation.contracts import Component
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.common.arrays import Array
 from daidalos.common.pose3 import rotation_matrix
 from daidalos.simulation.errors import UnknownNameError
 
@@ -18,7 +19,6 @@ if TYPE_CHECKING:
     from daidalos.simulation.conversion.model_build import ModelBuild
     from daidalos.simulation.instance import Instance
 
-Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
 
 SPEED_TIME = 0.0025

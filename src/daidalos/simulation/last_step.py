@@ -9,11 +9,9 @@ from collections.abc import Iterable
 
 import mujoco
 import numpy as np
-from numpy.typing import NDArray
 
+from daidalos.common.arrays import Array
 from daidalos.simulation.physics import Physics
-
-Array = NDArray[np.float64]
 
 
 def velocities(physics: Physics, bodies: Iterable[int]) -> tuple[Array, Array]:

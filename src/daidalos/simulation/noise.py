@@ -6,11 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from daidalos.common.arrays import Array
 from daidalos.description.markup import Element
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -7,8 +7,8 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from daidalos.common.arrays import Array
 from daidalos.common.pose3 import Pose, Vector
 from daidalos.description.gazebo import model_from_robot
 from daidalos.description.link import Inertial
@@ -21,8 +21,6 @@ from daidalos.simulation.errors import SimulationError
 from daidalos.simulation.forces import JointPush, Push
 from daidalos.simulation.instance import JointView
 from daidalos.simulation.trajectory_follower import ActiveTrajectory, TrajectoryFollower
-
-Array = NDArray[np.float64]
 
 
 class Simulation(Engine):

@@ -7,8 +7,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from daidalos.common.arrays import Array
 from daidalos.description.markup import Element
 from daidalos.description.world import Model, World
 from daidalos.samples.sensors import Sample
@@ -19,8 +19,6 @@ from daidalos.simulation.last_step import velocities
 from daidalos.simulation.libraries import library_of
 from daidalos.simulation.noise import SILENT, Noise
 from daidalos.simulation.sensors.noisy import nested_noise
-
-Array = NDArray[np.float64]
 
 LIBRARIES = ("gz-sim-wind-effects-system", "WindPlugin")
 

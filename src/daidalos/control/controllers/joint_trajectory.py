@@ -7,8 +7,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from daidalos.common.arrays import Array
 from daidalos.common.rate_gate import RateGate
 from daidalos.control.contracts import Action, Controller, Goal, Service, Subscription
 from daidalos.control.controllers.joint_trajectory_parameters import JointTrajectoryParameters
@@ -32,7 +32,6 @@ from daidalos.samples.controllers import (
 )
 from daidalos.samples.sensors import Sample
 
-Array = NDArray[np.float64]
 Motion = tuple[Array, Array, Array]
 """Positions, velocities and accelerations (n,)."""
 

@@ -13,7 +13,6 @@ from daidalos.control.contracts import Hardware, HardwareContext
 from daidalos.control.errors import HardwareError
 from daidalos.description.ros2_control import ComponentInfo, HardwareInfo, InterfaceInfo
 
-Array = NDArray[np.float64]
 Places = NDArray[np.intp]
 
 _MOTION = ("position", "velocity", "acceleration")

@@ -3,13 +3,11 @@
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from daidalos.common.arrays import Array
 from daidalos.common.pose2 import wrap
 from daidalos.localization.config import AmclConfig
 from daidalos.localization.motion_models.motion_model import MotionModel
-
-Array = NDArray[np.float64]
 
 SMALL = 0.01
 """Translation [m] below which its direction says nothing."""

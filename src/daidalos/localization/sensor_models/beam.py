@@ -5,13 +5,12 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.common.arrays import Array
 from daidalos.common.kernels import compiled
 from daidalos.common.pose2 import compose
 from daidalos.localization.config import AmclConfig
 from daidalos.localization.likelihood_map import LikelihoodMap
 from daidalos.localization.sensor_models.sensor_model import Beams, SensorModel
-
-Array = NDArray[np.float64]
 
 
 class BeamModel(SensorModel):

@@ -5,13 +5,11 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from daidalos.common.arrays import Array
 from daidalos.localization.config import AmclConfig
 from daidalos.localization.likelihood_map import LikelihoodMap
 from daidalos.mapping.scan import LaserScanData
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -9,10 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.common.arrays import Array
 from daidalos.common.kernels import compiled
 from daidalos.mapping.scan_matching.likelihood import FULL, Cells, Likelihood
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

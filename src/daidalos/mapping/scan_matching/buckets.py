@@ -5,9 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.common.arrays import Array
 from daidalos.common.kernels import compiled
 
-Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
 MERGE_RADIUS = 0.04

@@ -5,16 +5,14 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from daidalos.common.arrays import Array
 from daidalos.common.kernels import compiled
 from daidalos.mapping.scan import Cloud
 from daidalos.mapping.scan_matching.branch_and_bound import Match, search
 from daidalos.mapping.scan_matching.buckets import Reference, build_reference
 from daidalos.mapping.scan_matching.likelihood import Likelihood, build_likelihood
 from daidalos.mapping.scan_matching.point_to_line import Refinement, refine
-
-Array = NDArray[np.float64]
 
 REACH = 0.2
 """Largest distance [m] over which a point looks for its line."""

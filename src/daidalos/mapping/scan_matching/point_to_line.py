@@ -6,12 +6,10 @@ After Censi 2008, "An ICP variant using a point-to-line metric".
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from daidalos.common.arrays import Array
 from daidalos.common.kernels import compiled
 from daidalos.mapping.scan_matching.buckets import Indices, Reference
-
-Array = NDArray[np.float64]
 
 POINT_DEVIATION = 0.1
 """Standard deviation [m] of one point in a match: beams are better, but neighbours err alike."""

@@ -3,9 +3,7 @@
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
+from daidalos.common.arrays import Array
 from daidalos.navigation.behaviors.drive_on_heading import (
     DriveOnHeading,
     DriveOnHeadingCommand,
@@ -15,8 +13,6 @@ from daidalos.navigation.contracts import Behavior, BehaviorStep, NavigationCont
 from daidalos.navigation.costmap.costmap import Costmap
 from daidalos.navigation.costmap.footprint import Footprint
 from daidalos.navigation.errors import InvalidInput
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -1,12 +1,10 @@
 """Collision checks of motions."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from daidalos.common.arrays import Array
 from daidalos.navigation.costmap.costmap import Costmap
 from daidalos.navigation.costmap.footprint import Footprint, FootprintCollisionChecker
-
-Array = NDArray[np.float64]
 
 
 def contact_ahead(

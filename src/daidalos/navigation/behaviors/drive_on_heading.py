@@ -5,15 +5,13 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from daidalos.common.arrays import Array
 from daidalos.common.parameters import Parameters, parameter
 from daidalos.navigation.behaviors.collision import contact_ahead
 from daidalos.navigation.contracts import Behavior, BehaviorStep, NavigationContext
 from daidalos.navigation.costmap.costmap import Costmap
 from daidalos.navigation.errors import CollisionAhead, InvalidInput, TimedOut
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

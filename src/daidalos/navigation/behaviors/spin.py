@@ -4,8 +4,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from daidalos.common.arrays import Array
 from daidalos.common.parameters import ParameterError, Parameters, parameter
 from daidalos.common.pose2 import wrap
 from daidalos.navigation.behaviors.collision import contact_ahead
@@ -13,8 +13,6 @@ from daidalos.navigation.contracts import Behavior, BehaviorStep, NavigationCont
 from daidalos.navigation.controllers.rotation import rotation_speed
 from daidalos.navigation.costmap.costmap import Costmap
 from daidalos.navigation.errors import CollisionAhead, InvalidInput, TimedOut
-
-Array = NDArray[np.float64]
 
 DONE_ANGLE = 0.02
 """Rest of the angle [rad] at which the turn is done."""

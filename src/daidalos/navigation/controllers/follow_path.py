@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from daidalos.common.arrays import Array
 from daidalos.navigation.contracts import ControlInput, Controller, GoalChecker, ProgressChecker
 from daidalos.navigation.controllers.path_handler import PathHandler
 from daidalos.navigation.costmap.costmap import Costmap
@@ -15,8 +15,6 @@ from daidalos.navigation.errors import (
     NoValidControl,
     PatienceExceeded,
 )
-
-Array = NDArray[np.float64]
 
 SAME_FRAME = np.zeros(3)
 

@@ -5,8 +5,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from daidalos.common.arrays import Array
 from daidalos.common.kernels import compiled
 from daidalos.common.parameters import ParameterError, Parameters, parameter, per_name
 from daidalos.navigation.contracts import ControlInput, Controller, Critic, NavigationContext, Scene
@@ -16,8 +16,6 @@ from daidalos.navigation.costmap.costmap import INSCRIBED_INFLATED_OBSTACLE, NO_
 from daidalos.navigation.errors import NoValidControl
 from daidalos.navigation.extensions import CRITICS
 from daidalos.navigation.paths import distances_along
-
-Array = NDArray[np.float64]
 
 TURN_TO = 0.5
 """Distance along the path [m] of the point that one sample turns to."""

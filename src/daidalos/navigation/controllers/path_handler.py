@@ -1,13 +1,11 @@
 """Part of a plan ahead of the robot."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from daidalos.common.arrays import Array
 from daidalos.common.pose2 import compose
 from daidalos.navigation.errors import InvalidPath
 from daidalos.navigation.paths import distances_along
-
-Array = NDArray[np.float64]
 
 
 class PathHandler:

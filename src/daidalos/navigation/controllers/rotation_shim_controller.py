@@ -4,8 +4,8 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from daidalos.common.arrays import Array
 from daidalos.common.parameters import Parameters, parameter
 from daidalos.common.pose2 import between
 from daidalos.navigation.contracts import ControlInput, Controller, NavigationContext
@@ -13,8 +13,6 @@ from daidalos.navigation.controllers.rotation import rotation_speed
 from daidalos.navigation.costmap.footprint import FootprintCollisionChecker
 from daidalos.navigation.extensions import CONTROLLERS
 from daidalos.navigation.paths import distances_along
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

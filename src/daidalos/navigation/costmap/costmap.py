@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.common.arrays import Array
 from daidalos.navigation.errors import NavigationError
 
-Array = NDArray[np.float64]
 Costs = NDArray[np.uint8]
 
 FREE_SPACE = 0

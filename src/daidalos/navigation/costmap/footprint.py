@@ -5,8 +5,8 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from daidalos.common.arrays import Array
 from daidalos.common.kernels import compiled
 from daidalos.common.pose2 import transform_points
 from daidalos.navigation.costmap.costmap import (
@@ -17,8 +17,6 @@ from daidalos.navigation.costmap.costmap import (
     CostmapError,
     Costs,
 )
-
-Array = NDArray[np.float64]
 
 CIRCLE_CORNERS = 16
 

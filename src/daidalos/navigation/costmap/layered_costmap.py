@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from daidalos.common.arrays import Array
 from daidalos.common.parameters import Parameters, parameter
 from daidalos.navigation.contracts import Layer
 from daidalos.navigation.costmap.costmap import (
@@ -17,8 +17,6 @@ from daidalos.navigation.costmap.costmap import (
     Window,
 )
 from daidalos.navigation.costmap.footprint import Footprint
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

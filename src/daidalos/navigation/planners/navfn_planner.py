@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.common.arrays import Array
 from daidalos.common.parameters import Parameters, parameter
 from daidalos.navigation.contracts import GlobalPlanner
 from daidalos.navigation.costmap.costmap import (
@@ -24,7 +25,6 @@ from daidalos.navigation.planners.navigation_function import (
     propagate,
 )
 
-Array = NDArray[np.float64]
 Cell = tuple[int, int]
 
 COST_FACTOR = 0.8 / 50.0

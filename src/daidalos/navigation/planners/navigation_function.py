@@ -5,10 +5,10 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.common.arrays import Array
 from daidalos.common.kernels import compiled
 from daidalos.navigation.costmap.costmap import INSCRIBED_INFLATED_OBSTACLE, Costs
 
-Array = NDArray[np.float64]
 Field = NDArray[np.float32]
 
 MAX_DETOUR_RATIO = 0.1

@@ -3,15 +3,13 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from daidalos.common.arrays import Array
 from daidalos.common.kernels import compiled
 from daidalos.common.parameters import Parameters, parameter
 from daidalos.navigation.contracts import Smoother
 from daidalos.navigation.costmap.costmap import INSCRIBED_INFLATED_OBSTACLE, NO_INFORMATION, Costmap, Costs
 from daidalos.navigation.paths import with_headings
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from daidalos.common.arrays import Array
 
 _ENCAPSULATION = b"\x00\x01\x00\x00"
 """Encapsulation header of little-endian CDR; offsets in the body start after it."""

@@ -7,8 +7,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from daidalos.common.arrays import Array
 from daidalos.common.pose2 import move_along_arc
 from daidalos.description.geometry import Cylinder, Sphere
 from daidalos.description.link import Plugin as Description
@@ -27,8 +27,6 @@ from daidalos.simulation.conversion.model_build import ModelBuild
 from daidalos.simulation.instance import Instance
 from daidalos.simulation.plugins.ackermann_settings import Settings, read_settings
 from daidalos.simulation.plugins.truth import link_transforms, true_odometry
-
-Array = NDArray[np.float64]
 
 _SERVO_TIME = 0.01
 """Time constant of the wheel servos [s]."""

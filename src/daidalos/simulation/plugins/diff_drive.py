@@ -6,8 +6,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from daidalos.common.arrays import Array
 from daidalos.common.pose2 import move_along_arc
 from daidalos.description.link import Plugin as Description
 from daidalos.samples.commands import TwistCommand
@@ -24,8 +24,6 @@ from daidalos.simulation.conversion.model_build import ModelBuild
 from daidalos.simulation.instance import Instance, JointView, LinkView
 from daidalos.simulation.plugins.diff_drive_settings import read_settings
 from daidalos.simulation.plugins.truth import link_transforms, true_odometry
-
-Array = NDArray[np.float64]
 
 SERVO_TIME = 0.005
 """Time constant of the wheel servos [s]; the gain follows from it and the inertia that a wheel moves."""

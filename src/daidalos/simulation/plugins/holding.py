@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from daidalos.common.arrays import Array
 from daidalos.common.pose3 import Pose
 from daidalos.simulation.forces import Forces
 from daidalos.simulation.instance import LinkView
-
-Array = NDArray[np.float64]
 
 _BANDWIDTH = 60.0
 """Bandwidth of the holding spring [rad/s]: stiff, but well below the rate of the steps."""

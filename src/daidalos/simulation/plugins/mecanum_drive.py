@@ -7,8 +7,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
+from daidalos.common.arrays import Array
 from daidalos.common.pose2 import move_along_arc
 from daidalos.description.link import Plugin as Description
 from daidalos.samples.commands import TwistCommand
@@ -22,8 +22,6 @@ from daidalos.simulation.plugins.diff_drive import SERVO_TIME
 from daidalos.simulation.plugins.diff_drive_settings import Limits
 from daidalos.simulation.plugins.joint_forces import joint_of
 from daidalos.simulation.topics import absolute_topic, frame
-
-Array = NDArray[np.float64]
 
 _WHEELS = ("front_left_joint", "front_right_joint", "back_left_joint", "back_right_joint")
 _MIX = np.array([(1.0, -1.0, -1.0), (1.0, 1.0, 1.0), (1.0, 1.0, -1.0), (1.0, -1.0, 1.0)])

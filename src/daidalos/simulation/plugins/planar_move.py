@@ -6,8 +6,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from daidalos.common.arrays import Array
 from daidalos.common.pose3 import Pose, rotation_matrix
 from daidalos.description.link import Plugin as Description
 from daidalos.samples.commands import TwistCommand
@@ -18,8 +18,6 @@ from daidalos.simulation.contracts import ComponentContext, Plugin
 from daidalos.simulation.instance import Instance
 from daidalos.simulation.plugins.truth import true_odometry
 from daidalos.simulation.topics import absolute_topic, frame
-
-Array = NDArray[np.float64]
 
 
 @dataclass

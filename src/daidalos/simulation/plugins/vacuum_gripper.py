@@ -7,16 +7,14 @@ from dataclasses import dataclass
 
 import mujoco
 import numpy as np
-from numpy.typing import NDArray
 
+from daidalos.common.arrays import Array
 from daidalos.common.pose3 import Pose
 from daidalos.description.link import Plugin as Description
 from daidalos.samples.sensors import FlagSample, Sample
 from daidalos.simulation.contracts import ComponentContext, Plugin, Switch
 from daidalos.simulation.instance import Instance, LinkView
 from daidalos.simulation.plugins.holding import let_go, pull
-
-Array = NDArray[np.float64]
 
 
 @dataclass

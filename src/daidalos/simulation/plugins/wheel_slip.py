@@ -6,8 +6,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from daidalos.common.arrays import Array
 from daidalos.common.pose3 import rotate
 from daidalos.description.geometry import Cylinder, Sphere
 from daidalos.description.link import Link, Surface
@@ -19,8 +19,6 @@ from daidalos.simulation.conversion.contact import DEFAULT_FRICTION, set_frictio
 from daidalos.simulation.conversion.model_build import ModelBuild
 from daidalos.simulation.instance import Instance
 from daidalos.simulation.last_step import cross, velocities
-
-Array = NDArray[np.float64]
 
 _UP = np.array((0.0, 0.0, 1.0))
 

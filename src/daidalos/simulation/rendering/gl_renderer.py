@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.common.arrays import Array
 from daidalos.common.pose3 import Pose, rotate
 from daidalos.description.link import Light
 from daidalos.simulation.rendering import shaders
@@ -26,8 +27,6 @@ from daidalos.simulation.rendering.renderer import (
 )
 from daidalos.simulation.rendering.scene import Scene
 from daidalos.simulation.rendering.shadows import ShadowMap
-
-Array = NDArray[np.float64]
 
 # From the extra daidalos[egl]: type checkers do not find it everywhere.
 moderngl: Any = importlib.import_module("moderngl")

@@ -9,9 +9,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.common.arrays import Array
 from daidalos.common.pose3 import Pose, quaternion_from_rpy
-
-Array = NDArray[np.float64]
 
 OPTICAL = Pose(orientation=quaternion_from_rpy(-math.pi / 2, 0.0, -math.pi / 2))
 """Optical frame (z ahead, x right, y down) in a sensor's frame (x ahead, y left, z up)."""

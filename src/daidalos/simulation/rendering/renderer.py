@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.common.arrays import Array
 from daidalos.common.pose3 import Pose, rotate
 from daidalos.description.link import Light, Rgba
 from daidalos.simulation.rendering.image_effects import depths_of
@@ -19,8 +20,6 @@ from daidalos.simulation.rendering.raster import EDGES, NOTHING, PROJECTED, draw
 from daidalos.simulation.rendering.scene import Scene
 from daidalos.simulation.rendering.shading import shade
 from daidalos.simulation.rendering.shadows import ShadowMap
-
-Array = NDArray[np.float64]
 
 _SKY: tuple[Rgba, Rgba] = ((0.75, 0.84, 0.93, 1.0), (0.25, 0.47, 0.80, 1.0))
 _KINDS = {"point": POINT, "spot": SPOT, "directional": DIRECTIONAL}

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.common.arrays import Array
 from daidalos.common.pose3 import Pose
 from daidalos.description.errors import DescriptionError
 from daidalos.description.geometry import Mesh
@@ -17,7 +18,6 @@ from daidalos.description.link import Visual
 from daidalos.description.visuals import Part, visual_parts
 from daidalos.simulation.rendering.textures import TextureAtlas, make_atlas
 
-Array = NDArray[np.float64]
 Floats = NDArray[np.float32]
 
 UNLABELLED = 0

@@ -8,12 +8,11 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.common.arrays import Array
 from daidalos.simulation.rendering.flat_raster import draw_flat
 from daidalos.simulation.rendering.raster import place_parts
 from daidalos.simulation.rendering.scene import Scene, planes_of
 from daidalos.simulation.rendering.sunlight import BLOCK_BITS, coarsen
-
-Array = NDArray[np.float64]
 
 _MAX_REACH = 16.0
 _LINGER = 30

@@ -5,15 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
+from daidalos.common.arrays import Array
 from daidalos.common.pose3 import Pose, Quaternion, multiply, rotation_matrix
 from daidalos.description.markup import Element
 from daidalos.samples.sensors import ImuSample, Sample
 from daidalos.simulation.noise import Noise, read_noise
 from daidalos.simulation.sensors.noisy import Biases, NoisySensor, noise_of_axes
-
-Array = NDArray[np.float64]
 
 
 class Imu(NoisySensor):

@@ -10,6 +10,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.common.arrays import Array
 from daidalos.common.pose3 import rotation_matrix
 from daidalos.description.link import Sensor as Description
 from daidalos.description.markup import Element
@@ -23,8 +24,6 @@ from daidalos.simulation.contracts import ComponentContext, Sensor
 from daidalos.simulation.conversion.geometry import RAY_GROUPS
 from daidalos.simulation.instance import Instance
 from daidalos.simulation.noise import read_noise
-
-Array = NDArray[np.float64]
 
 MAX_RAYS = 1_000_000
 _TURN = 4 * math.pi

@@ -7,13 +7,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from daidalos.common.arrays import Array
 from daidalos.description.markup import Element
 from daidalos.simulation.contracts import Sensor
 from daidalos.simulation.noise import SILENT, Noise, NoiseVector, read_noise
-
-Array = NDArray[np.float64]
 
 
 @dataclass

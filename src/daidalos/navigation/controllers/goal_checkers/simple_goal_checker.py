@@ -3,14 +3,10 @@
 import math
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
+from daidalos.common.arrays import Array
 from daidalos.common.parameters import Parameters, parameter
 from daidalos.common.pose2 import wrap
 from daidalos.navigation.contracts import GoalChecker, NavigationContext
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -3,16 +3,12 @@
 import math
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
+from daidalos.common.arrays import Array
 from daidalos.common.parameters import parameter
 from daidalos.navigation.controllers.goal_checkers.simple_goal_checker import (
     SimpleGoalChecker,
     SimpleGoalCheckerParameters,
 )
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -3,12 +3,10 @@
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from daidalos.common.arrays import Array
 from daidalos.common.kernels import compiled
 from daidalos.navigation.controllers.mppi.rollouts import Limits, Samples
-
-Array = NDArray[np.float64]
 
 FACING = 0.15
 """Angle [rad] to the point at which driving begins."""

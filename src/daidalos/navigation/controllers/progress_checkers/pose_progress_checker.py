@@ -2,17 +2,13 @@
 
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
+from daidalos.common.arrays import Array
 from daidalos.common.parameters import parameter
 from daidalos.common.pose2 import wrap
 from daidalos.navigation.controllers.progress_checkers.simple_progress_checker import (
     SimpleProgressChecker,
     SimpleProgressCheckerParameters,
 )
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

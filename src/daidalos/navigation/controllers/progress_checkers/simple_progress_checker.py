@@ -3,13 +3,9 @@
 import math
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
+from daidalos.common.arrays import Array
 from daidalos.common.parameters import Parameters, parameter
 from daidalos.navigation.contracts import NavigationContext, ProgressChecker
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.common.arrays import Array
 from daidalos.common.kernels import compiled
 from daidalos.common.parameters import Parameters, parameter
 from daidalos.navigation.contracts import Layer, NavigationContext
@@ -21,8 +22,6 @@ from daidalos.navigation.costmap.costmap import (
     Costs,
     Window,
 )
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.common.arrays import Array
 from daidalos.common.kernels import compiled
 from daidalos.common.parameters import Parameters, parameter, per_name
 from daidalos.common.pose2 import compose
@@ -23,8 +24,6 @@ from daidalos.navigation.costmap.costmap import (
     Window,
 )
 from daidalos.navigation.costmap.footprint import fill_polygon
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

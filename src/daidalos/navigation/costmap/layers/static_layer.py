@@ -3,15 +3,13 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from daidalos.common.arrays import Array
 from daidalos.common.parameters import Parameters, parameter
 from daidalos.mapping.grid import OccupancyGrid
 from daidalos.navigation.contracts import Input, Layer, NavigationContext
 from daidalos.navigation.costmap.costmap import EVERYWHERE, Bounds, Costmap, CostmapError, Window
 from daidalos.navigation.costmap.occupancy import from_occupancy
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.common.arrays import Array
 from daidalos.common.kernels import compiled
 from daidalos.common.parameters import Parameters, parameter
 from daidalos.navigation.contracts import Critic, NavigationContext, Scene
@@ -16,8 +17,6 @@ from daidalos.navigation.costmap.costmap import (
     Costs,
 )
 from daidalos.navigation.costmap.footprint import FootprintCollisionChecker, outline_cost
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
