@@ -59,7 +59,7 @@ def _subclasses(kind: type[Parameters]) -> Iterator[type[Parameters]]:
 
 
 def _title(kind: type[Parameters]) -> str:
-    """Return the names in ROS of what has the parameters: of plugins, or package and executable of a node."""
+    """Return the names in ROS of what has the parameters: of plugins, or a node's package and executable or class."""
     module = import_module(kind.__module__)
     for owner in vars(module).values():
         if isinstance(owner, type) and kind in (getattr(owner, "parameters", None), getattr(owner, "Parameters", None)):
@@ -68,7 +68,13 @@ def _title(kind: type[Parameters]) -> str:
                 return ", ".join(f"`{name}`" for name in names)
     parts = kind.__module__.split(".")
     if parts[1] == "nodes" and len(parts) == 4:
-        return f"`{parts[2]}`: `{parts[3].removeprefix('_')}`"
+        of_module = [
+            one for one in vars(module).values() if isinstance(one, type) and one.__module__ == kind.__module__
+        ]
+        is_program = (
+            not parts[3].startswith("_") and kind is [one for one in of_module if issubclass(one, Parameters)][-1]
+        )
+        return f"`{parts[2]}`: `{parts[3] if is_program else kind.__name__.removesuffix('Parameters')}`"
     return f"`{kind.__name__}`"
 
 
