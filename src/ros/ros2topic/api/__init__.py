@@ -63,7 +63,7 @@ def get_msg_class(node: Any, topic: str, blocking: bool = False, include_hidden_
 
 def unsigned_int(string: str) -> int:
     """Read a whole number that is not negative; for argparse."""
-    return _number(string, int, lambda value: value >= 0, "a non-negative integer")
+    return _number(string, int, lambda value: value >= 0, "non-negative integer")
 
 
 def positive_int(string: str) -> int:

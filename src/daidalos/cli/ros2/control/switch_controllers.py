@@ -5,10 +5,10 @@ from __future__ import annotations
 from argparse import ArgumentParser, Namespace
 
 from ros2cli.node.direct import direct_node
+from ros2topic.api import positive_float
 
 from daidalos.cli.ros2.controllers import ControlVerb, add_controller_argument, switch
 from daidalos.cli.ros2.extension import Status
-from daidalos.cli.ros2.topic.echo import positive_float
 
 
 class SwitchControllersVerb(ControlVerb):

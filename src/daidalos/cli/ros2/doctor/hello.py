@@ -13,11 +13,11 @@ from typing import Any
 
 from ros2cli.node.direct import add_arguments as add_direct_arguments
 from ros2cli.node.direct import direct_node
+from ros2topic.api import positive_float
 
 from daidalos.cli.ros2 import datagrams
 from daidalos.cli.ros2.errors import CliError
 from daidalos.cli.ros2.extension import Status, Verb
-from daidalos.cli.ros2.topic.echo import positive_float
 
 _TOPIC = "/canyouhearme"
 

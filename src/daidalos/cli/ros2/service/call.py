@@ -7,12 +7,12 @@ from argparse import ArgumentParser, Namespace
 from typing import TYPE_CHECKING, Any
 
 from ros2cli.node.direct import direct_node
+from ros2topic.api import positive_float
 
 from daidalos.cli.ros2.completion import complete_services, complete_types, complete_values
 from daidalos.cli.ros2.extension import Status, Verb
 from daidalos.cli.ros2.graph import services
 from daidalos.cli.ros2.interfaces import fill, parse_values, service_class
-from daidalos.cli.ros2.topic.echo import positive_float
 from daidalos.common.suggestions import hint_line
 
 if TYPE_CHECKING:

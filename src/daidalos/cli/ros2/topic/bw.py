@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import time
-from argparse import ArgumentParser, ArgumentTypeError, Namespace
+from argparse import ArgumentParser, Namespace
 from collections import deque
 
 from ros2cli.node.direct import direct_node
 from ros2cli.node.strategy import add_arguments as add_graph_arguments
 from ros2cli.qos import add_qos_arguments
+from ros2topic.api import positive_int
 
 from daidalos.cli.ros2.completion import complete_topics
 from daidalos.cli.ros2.extension import Status, Verb
@@ -56,14 +57,6 @@ class BwVerb(Verb):
             node.create_timer(1.0, report, clock=Clock(clock_type=ClockType.STEADY_TIME))
             spin(node)
         return 0
-
-
-def positive_int(text: str) -> int:
-    """Return an integer of at least one; argument type."""
-    value = int(text) if text.isascii() and text.isdigit() else 0
-    if value <= 0:
-        raise ArgumentTypeError("value must be a positive integer")
-    return value
 
 
 class BandwidthMeter:

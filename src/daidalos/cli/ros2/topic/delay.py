@@ -10,11 +10,11 @@ from typing import Any
 from ros2cli.node.direct import direct_node
 from ros2cli.node.strategy import add_arguments as add_graph_arguments
 from ros2cli.qos import add_qos_arguments
+from ros2topic.api import positive_int
 
 from daidalos.cli.ros2.completion import complete_topics
 from daidalos.cli.ros2.errors import CliError
 from daidalos.cli.ros2.extension import Status, Verb
-from daidalos.cli.ros2.topic.bw import positive_int
 from daidalos.cli.ros2.topics import spin, subscribe, topic_class
 
 DEFAULT_WINDOW_SIZE = 10000

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import sys
-from argparse import ArgumentParser, ArgumentTypeError, Namespace
+from argparse import ArgumentParser, Namespace
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from ros2cli.node.direct import direct_node
 from ros2cli.node.strategy import add_arguments as add_graph_arguments
 from ros2cli.qos import add_qos_arguments
+from ros2topic.api import positive_float, unsigned_int
 
 from daidalos.cli.ros2.completion import complete_topics, complete_types
 from daidalos.cli.ros2.extension import Status, Verb
@@ -108,25 +109,6 @@ def add_length_arguments(parser: ArgumentParser) -> None:
     parser.add_argument(
         "--flow-style", action="store_true", help="Print collections in the block style (not available with csv format)"
     )
-
-
-def unsigned_int(text: str) -> int:
-    """Return an integer of at least zero; argument type."""
-    value = int(text) if text.isascii() and text.isdigit() else -1
-    if value < 0:
-        raise ArgumentTypeError("value must be non-negative integer")
-    return value
-
-
-def positive_float(text: str) -> float:
-    """Return a number above zero; argument type."""
-    try:
-        value = float(text)
-    except ValueError:
-        value = 0.0
-    if not value > 0.0:
-        raise ArgumentTypeError("value must be positive")
-    return value
 
 
 def _listen(

@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING, Any
 from ros2cli.node.direct import direct_node
 from ros2cli.node.strategy import add_arguments as add_graph_arguments
 from ros2cli.qos import add_qos_arguments
+from ros2topic.api import unsigned_int
 
 from daidalos.cli.ros2.completion import complete_topics
 from daidalos.cli.ros2.extension import Status, Verb
-from daidalos.cli.ros2.topic.echo import unsigned_int
 from daidalos.cli.ros2.topics import filter_function, spin, subscribe, topic_class
 
 if TYPE_CHECKING:

@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING, Any
 from ros2cli.node.direct import add_arguments as add_direct_arguments
 from ros2cli.node.direct import direct_node
 from ros2cli.qos import add_qos_arguments, qos_profile_from_short_keys
+from ros2topic.api import positive_float, unsigned_int
 
 from daidalos.cli.ros2.completion import complete_topics, complete_types, complete_values
 from daidalos.cli.ros2.errors import CliError
 from daidalos.cli.ros2.extension import Status, Verb
 from daidalos.cli.ros2.interfaces import fill, message_class, parse_values
 from daidalos.cli.ros2.qos import requested_qos
-from daidalos.cli.ros2.topic.echo import positive_float, unsigned_int
 from daidalos.cli.ros2.topics import spin
 from daidalos.common.suggestions import hint_line
 
