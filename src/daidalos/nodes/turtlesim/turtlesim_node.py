@@ -48,10 +48,13 @@ class TurtleSim(Node):
         super().__init__("turtlesim", **kwargs)
         from daidalos_msgs.msg import TurtleWindow
         from daidalos_msgs.srv import GetTurtleDrawing
+        from rcl_interfaces.msg import ParameterEvent
         from std_srvs.srv import Empty
         from turtlesim.srv import Kill, Spawn
 
         self.settings = declare(self, TurtleSimParameters, reconfigure=self._reconfigure)
+        self._read_background()
+        self.create_subscription(ParameterEvent, "/parameter_events", self._on_parameters, 10)
         self._turtles: dict[str, TurtleInterface] = {}
         self._drawing = Drawing()
         self._named = 0
@@ -93,9 +96,12 @@ class TurtleSim(Node):
     def _reconfigure(self, parameters: TurtleSimParameters) -> None:
         self.settings = parameters
 
-    @property
-    def _background(self) -> tuple[int, int, int]:
-        return self.settings.background_r, self.settings.background_g, self.settings.background_b
+    def _on_parameters(self, event: Any) -> None:
+        if event.node == self.get_fully_qualified_name():
+            self._read_background()
+
+    def _read_background(self) -> None:
+        self._background = (self.settings.background_r, self.settings.background_g, self.settings.background_b)
 
     # Services.
 
