@@ -92,8 +92,14 @@ class Component(Endpoint, ABC):
         made anew by `start` when the simulation is reset.
     random : numpy Generator
         Its own stream.
+    topic : str
+        Absolute name of the topic of a component with a `sample`.
+    sample : type
+        Class attribute: what a component with one topic publishes; others override `publications`.
     """
 
+    topic: str
+    sample: ClassVar[type[Sample] | None] = None
     period: float = 0.0
     state: Any = None
 
@@ -114,6 +120,11 @@ class Component(Endpoint, ABC):
     @abstractmethod
     def update(self, now_ns: int) -> Iterable[Sample]:
         """Act at a simulated time [ns] and return the samples to publish."""
+
+    @property
+    def publications(self) -> Mapping[str, type[Sample]]:
+        """Topics with the classes of their samples."""
+        return {} if self.sample is None else {self.topic: self.sample}
 
     @property
     def switches(self) -> Mapping[str, Switch]:

@@ -33,6 +33,7 @@ class LinearBattery(Plugin):
     """gz's LinearBatteryPlugin: v = e0 + e1 (1 - q / c) - r i, with i = load / v."""
 
     names = ("gz-sim-linearbatteryplugin-system", "gz-sim-linear-battery-plugin-system")
+    sample = BatterySample
     unused = ("fix_issue_225", "recharge_by_topic", "soc_threshold")
     state: Charge
     period = _PERIOD
@@ -68,11 +69,6 @@ class LinearBattery(Plugin):
         )
         if self._starters and element.first("start_draining") is None:
             self.starts = False
-
-    @property
-    def publications(self) -> Mapping[str, type[Sample]]:
-        """Topic of the battery state."""
-        return {self.topic: BatterySample}
 
     @property
     def subscriptions(self) -> Mapping[str, Subscription]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 
 import numpy as np
 
@@ -18,6 +18,7 @@ class JointStatePublisher(Plugin):
     """``libgazebo_ros_joint_state_publisher.so`` of ROS 1 and 2, and gz's JointStatePublisher system."""
 
     names = ("gazebo_ros_joint_state_publisher", "gz-sim-joint-state-publisher-system")
+    sample = JointStateSample
 
     def __init__(self, description: Description, context: ComponentContext) -> None:
         super().__init__(description, context)
@@ -36,11 +37,6 @@ class JointStatePublisher(Plugin):
             self.topic = parameters.topic(element.text_of("topicName", "topic_name", default="joint_states"))
             rate = element.number_of("updateRate", "update_rate", default=100.0)
         self.period = 1.0 / rate if rate > 0 else 0.0
-
-    @property
-    def publications(self) -> Mapping[str, type[Sample]]:
-        """Topic of the joint states."""
-        return {self.topic: JointStateSample}
 
     def bind(self, instance: Instance) -> None:
         """Find the joints; without names all that move."""

@@ -22,6 +22,7 @@ class P3d(Plugin):
     """``libgazebo_ros_p3d.so`` of ROS 1 and 2: the pose of a link in the world or relative to another link."""
 
     names = ("gazebo_ros_p3d",)
+    sample = OdometrySample
 
     def __init__(self, description: Description, context: ComponentContext) -> None:
         super().__init__(description, context)
@@ -36,11 +37,6 @@ class P3d(Plugin):
         self.noise = element.number_of("gaussianNoise", "gaussian_noise", default=0.0)
         rate = element.number_of("updateRate", "update_rate", default=0.0)
         self.period = 1.0 / rate if rate > 0 else 0.0
-
-    @property
-    def publications(self) -> Mapping[str, type[Sample]]:
-        """Topic of the odometry."""
-        return {self.topic: OdometrySample}
 
     def bind(self, instance: Instance) -> None:
         """Find the link and its reference link."""

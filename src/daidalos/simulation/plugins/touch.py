@@ -29,6 +29,7 @@ class Touch(Plugin):
     """
 
     names = ("gz-sim-touchplugin-system", "gz-sim-touch-plugin-system")
+    sample = FlagSample
     state: Watch
 
     def __init__(self, description: Description, context: ComponentContext) -> None:
@@ -42,11 +43,6 @@ class Touch(Plugin):
         self.on = element.flag_of("enabled", default=False)
         self.topic = absolute_topic(f"{namespace}/touched", context.namespace)
         self.service = absolute_topic(f"{namespace}/enable", context.namespace)
-
-    @property
-    def publications(self) -> Mapping[str, type[Sample]]:
-        """Topic of the report."""
-        return {self.topic: FlagSample}
 
     @property
     def switches(self) -> Mapping[str, Switch]:

@@ -35,6 +35,7 @@ class VacuumGripper(Plugin):
     """
 
     names = ("gazebo_ros_vacuum_gripper",)
+    sample = FlagSample
     state: Hold
 
     def __init__(self, description: Description, context: ComponentContext) -> None:
@@ -51,11 +52,6 @@ class VacuumGripper(Plugin):
         names = (f"{topic}/on", f"{topic}/off") if self.is_ros1 else ("switch",)
         self._services = tuple(parameters.topic(name) for name in names)
         self._key = f"{context.model_name}::{description.name}"
-
-    @property
-    def publications(self) -> Mapping[str, type[Sample]]:
-        """Topic of whether a link is held."""
-        return {self.topic: FlagSample}
 
     @property
     def switches(self) -> Mapping[str, Switch]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -58,17 +58,13 @@ class WheelSlip(Plugin):
     """
 
     names = ("WheelSlipPlugin", "gazebo_ros_wheel_slip", "gz-sim-wheel-slip-system")
+    sample = WheelSlipSample
 
     def __init__(self, description: Description, context: ComponentContext) -> None:
         super().__init__(description, context)
         self.wheels = [self._wheel(child) for child in description.element.all("wheel")]
         self.topic = self.parameters.topic(description.element.text_of("topic", default="wheel_slip"))
         self._key = f"{context.model_name}::{description.name}"
-
-    @property
-    def publications(self) -> Mapping[str, type[Sample]]:
-        """Topic of the slip of all wheels."""
-        return {self.topic: WheelSlipSample}
 
     def prepare(self, build: ModelBuild) -> None:
         """Remove the wheels' contact friction."""

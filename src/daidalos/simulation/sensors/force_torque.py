@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 
 import mujoco
 import numpy as np
@@ -30,6 +30,7 @@ class ForceTorque(NoisySensor):
 
     names = ("force_torque",)
     default_topic = "forcetorque"
+    sample = WrenchSample
 
     def read(self, element: Element) -> None:
         """Read frame, direction and noise."""
@@ -51,11 +52,6 @@ class ForceTorque(NoisySensor):
     def noises(self) -> tuple[Noise, ...]:
         """Noise of force and torque."""
         return self._noises
-
-    @property
-    def publications(self) -> Mapping[str, type[Sample]]:
-        """Topic of the wrench."""
-        return {self.topic: WrenchSample}
 
     def bind(self, instance: Instance) -> None:
         """Find the joint, or the parent joint of the link."""

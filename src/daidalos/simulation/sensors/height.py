@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 
 import numpy as np
 
@@ -22,6 +22,7 @@ class Altimeter(NoisySensor):
 
     names = ("altimeter",)
     default_topic = "altimeter"
+    sample = AltimeterSample
 
     def read(self, element: Element) -> None:
         """Read the noise of height and speed."""
@@ -33,11 +34,6 @@ class Altimeter(NoisySensor):
     def noises(self) -> tuple[Noise, ...]:
         """Noise of height and its rate."""
         return self._noises
-
-    @property
-    def publications(self) -> Mapping[str, type[Sample]]:
-        """Topic of the altitude."""
-        return {self.topic: AltimeterSample}
 
     def start(self) -> Biases:
         """Record the current height as the reference."""
@@ -60,6 +56,7 @@ class Barometer(NoisySensor):
 
     names = ("air_pressure",)
     default_topic = "air_pressure"
+    sample = PressureSample
 
     def read(self, element: Element) -> None:
         """Read the altitude of the world's origin and the noise."""
@@ -71,11 +68,6 @@ class Barometer(NoisySensor):
     def noises(self) -> tuple[Noise, ...]:
         """Noise of the pressure."""
         return self._noises
-
-    @property
-    def publications(self) -> Mapping[str, type[Sample]]:
-        """Topic of the pressure."""
-        return {self.topic: PressureSample}
 
     def measure(self, now_ns: int) -> Iterable[Sample]:
         """Return the pressure [Pa]."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 
 import numpy as np
 
@@ -25,6 +25,7 @@ class Imu(NoisySensor):
 
     names = ("imu",)
     default_topic = "imu"
+    sample = ImuSample
 
     def read(self, element: Element) -> None:
         """Read the noise of each axis, in the old and the new notation."""
@@ -41,11 +42,6 @@ class Imu(NoisySensor):
             self.acceleration_noise = noise_of_axes(settings.first("linear_acceleration"))
         self.with_orientation = settings.flag_of("enable_orientation", default=True)
         self.starts_level = False
-
-    @property
-    def publications(self) -> Mapping[str, type[Sample]]:
-        """Topic of the measurements."""
-        return {self.topic: ImuSample}
 
     @property
     def noises(self) -> tuple[Noise, ...]:

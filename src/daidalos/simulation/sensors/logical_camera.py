@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 
 import numpy as np
 
@@ -19,6 +19,7 @@ class LogicalCamera(Sensor):
 
     names = ("logical_camera",)
     default_topic = "logical_camera"
+    sample = LogicalImageSample
 
     def read(self, element: Element) -> None:
         """Read the frustum."""
@@ -28,11 +29,6 @@ class LogicalCamera(Sensor):
         self.aspect = settings.number_of("aspect_ratio", default=1.0)
         if not 0 <= self.near < self.far or not 0 < self.angle < math.pi or self.aspect <= 0:
             raise settings.error("expected 0 <= near < far, a field of view below pi and a positive aspect ratio")
-
-    @property
-    def publications(self) -> Mapping[str, type[Sample]]:
-        """Topic of the models."""
-        return {self.topic: LogicalImageSample}
 
     def measure(self, now_ns: int) -> Iterable[Sample]:
         """Return the models with a shape in the frustum."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 
 import numpy as np
 
@@ -24,6 +24,7 @@ class Magnetometer(NoisySensor):
 
     names = ("magnetometer",)
     default_topic = "magnetometer"
+    sample = MagneticFieldSample
 
     def read(self, element: Element) -> None:
         """Read the noise of each axis."""
@@ -33,11 +34,6 @@ class Magnetometer(NoisySensor):
     def noises(self) -> tuple[Noise, ...]:
         """Noise of the three axes."""
         return self.field_noise
-
-    @property
-    def publications(self) -> Mapping[str, type[Sample]]:
-        """Topic of the field."""
-        return {self.topic: MagneticFieldSample}
 
     def measure(self, now_ns: int) -> Iterable[Sample]:
         """Return the field in the sensor's axes."""

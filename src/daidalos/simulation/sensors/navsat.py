@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 
 import numpy as np
 
@@ -28,6 +28,7 @@ class NavSat(NoisySensor):
 
     names = ("gps", "navsat")
     default_topic = "navsat"
+    sample = NavSatSample
 
     def read(self, element: Element) -> None:
         """Read the noise; that of positions is in metres."""
@@ -42,11 +43,6 @@ class NavSat(NoisySensor):
     def noises(self) -> tuple[Noise, ...]:
         """Noise of position and velocity."""
         return (*self.position_noise, *self.velocity_noise)
-
-    @property
-    def publications(self) -> Mapping[str, type[Sample]]:
-        """Topic of the fix."""
-        return {self.topic: NavSatSample}
 
     def measure(self, now_ns: int) -> Iterable[Sample]:
         """Return the position of the sensor."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 
 import mujoco
 import numpy as np
@@ -23,6 +23,7 @@ class Sonar(Sensor):
 
     names = ("sonar",)
     default_topic = "sonar"
+    sample = RangeSample
 
     def read(self, element: Element) -> None:
         """Read the cone: its length and the radius of its base."""
@@ -34,11 +35,6 @@ class Sonar(Sensor):
         self.angle = 2 * math.atan2(radius, self.range_max)
         self.noise = read_noise(settings.first("noise"))
         self._rays = _cone(self.angle / 2)
-
-    @property
-    def publications(self) -> Mapping[str, type[Sample]]:
-        """Topic of the range."""
-        return {self.topic: RangeSample}
 
     def measure(self, now_ns: int) -> Iterable[Sample]:
         """Return the length of the shortest ray."""
