@@ -60,9 +60,13 @@ class Peer:
         self.process.wait()
         self._printed.join()
 
-    def ready(self) -> Self:
-        """Wait until it is ready."""
-        self.wait_for("ready")
+    def ready(self, timeout_s: float = TIMEOUT_S) -> Self:
+        """Wait until it is ready; a process that does not get so far is killed."""
+        try:
+            self.wait_for("ready", timeout_s=timeout_s)
+        except BaseException:
+            self.kill()
+            raise
         return self
 
     def wait_for(self, text: str, after: int = 0, timeout_s: float = TIMEOUT_S) -> int:

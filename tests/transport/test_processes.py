@@ -60,7 +60,7 @@ def _size(session: Session) -> tuple[int, int]:
 
 @pytest.mark.slow
 def test_a_large_graph_is_right_within_seconds(new_session: Callable[[], Session]):
-    with Peer("crowd").ready():
+    with Peer("crowd").ready(timeout_s=150.0):
         session = new_session()
         begin = time.monotonic()
         assert session.backend.settle(5.0)

@@ -119,7 +119,7 @@ class Session:
         publisher = Publisher(endpoint, codec_of(message_type, self.backend.wide))
         remote = self.backend.declare_publisher(key, endpoint)
         publisher.attach(remote, lambda: self._remove(key, self._publishers, publisher))
-        remote.watch_readers(lambda: self._note_listeners(publisher))
+        remote.watch_readers(lambda: self._on_readers_change(publisher))
         with self._lock:
             self._publishers.setdefault(topic, set()).add(publisher)
             self._match_topic(topic)
@@ -266,6 +266,12 @@ class Session:
             watchers = tuple(self._watchers.get(what.name, ()))
         for watcher in watchers:
             watcher(added, what)
+
+    def _on_readers_change(self, publisher: Publisher) -> None:
+        """Update a publisher of which the middleware itself has gained or lost readers."""
+        with self._lock:
+            self._note_listeners(publisher)
+        self.graph.notify()
 
     def _note_listeners(self, publisher: Publisher) -> None:
         """Update whether a publisher has remote subscribers, whose QoS may be laxer."""

@@ -50,8 +50,8 @@ def simulated(graph: Context) -> Node:
 @pytest.mark.parametrize("period", [0.02, 0.001])
 def test_a_timer_ticks_at_its_period(node: Node, period: float) -> None:
     ticks: list[int] = []
-    timer = node.create_timer(period, lambda: ticks.append(time.monotonic_ns()))
     begin = time.monotonic_ns()
+    timer = node.create_timer(period, lambda: ticks.append(time.monotonic_ns()))
     spin_until(executor_of(node), lambda: len(ticks) == 10)
     assert ticks[-1] - begin >= 10 * period * 1e9
     assert timer.timer_period_ns == int(period * 1e9)

@@ -54,10 +54,12 @@ def test_a_publisher_that_writes_by_hand(session, stranger, domain):
         stranger.liveliness().declare_token(mine),
     ]
     publisher = stranger.declare_publisher(f"{domain}/chatter/{TEXT}")
+    matched = threading.Event()
+    held.append(publisher.declare_matching_listener(lambda status: matched.set() if status.matching else None))
     assert session.graph.wait_for(
         lambda: bool(session.graph.endpoints(EndpointKind.PUBLISHER, name="/chatter")), TIMEOUT_S
     )
-    assert publisher.matching_status.matching
+    assert publisher.matching_status.matching or matched.wait(TIMEOUT_S)
     publisher.put(b"\0\1\0\0\6\0\0\0hello\0", attachment=attachment(1, gid_of(mine)))
     message, item = inbox.wait(1, TIMEOUT_S)[0]
     assert message.data == "hello"
