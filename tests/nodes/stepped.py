@@ -116,7 +116,7 @@ class Stage:
         return node
 
     def add_robot(self) -> Robot:
-        """Let the test play the robot."""
+        """Return a robot that the test plays."""
         self.robot = Robot(self.node)
         self.step()
         return self.robot

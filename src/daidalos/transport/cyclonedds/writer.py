@@ -141,7 +141,13 @@ class Writer:
                     self._queue_changed.notify_all()
                     return
                 sample = self._queue[0]
-            if self._write(*_buffers([sample])):
+            try:
+                taken = self._write(*_buffers([sample]))
+            except CdrError as error:
+                taken = True  # it would block those behind it for ever
+                self.dropped += 1
+                _LOGGER.error("dropped a message: %s", error)
+            if taken:
                 with self._queue_changed:
                     if self._queue and self._queue[0] is sample:
                         self._queue.popleft()
