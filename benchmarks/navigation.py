@@ -109,7 +109,7 @@ def measure_amcl() -> dict[str, float | str]:
     results: dict[str, float | str] = {}
     for model in ("likelihood_field", "likelihood_field_prob", "beam"):
         filter_ = Amcl(AmclConfig(laser_model_type=model), known)
-        filter_.initialise(start, np.diag([0.1, 0.1, 0.05]))
+        filter_.initialize(start, np.diag([0.1, 0.1, 0.05]))
         wanderer = Wanderer(FlatRobot(world, start.copy(), beams=180, max_range=12.0, seed=1), 1)
         times, errors = [], []
         for _ in range(400):

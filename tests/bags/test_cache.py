@@ -66,7 +66,7 @@ def test_a_full_disk_is_told_once(tmp_path, monkeypatch):
     told = []
 
     def write(message):
-        raise BagError(writer.folder, "can not be written: No space left on device")
+        raise BagError(writer.folder, "cannot be written: No space left on device")
 
     monkeypatch.setattr(writer, "write", write)
     thread = WriterThread(writer, 0, told.append)
@@ -77,7 +77,7 @@ def test_a_full_disk_is_told_once(tmp_path, monkeypatch):
         thread.write(message)
     thread.close()
     writer.close()
-    assert [str(error) for error in told] == [f"{tmp_path / 'bag'}: can not be written: No space left on device"]
+    assert [str(error) for error in told] == [f"{tmp_path / 'bag'}: cannot be written: No space left on device"]
 
 
 def test_a_snapshot_holds_the_last_moments(tmp_path):

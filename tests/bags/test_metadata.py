@@ -206,7 +206,7 @@ def test_writing_leaves_one_file(tmp_path):
     write_metadata(tmp_path, metadata)
     assert [path.name for path in tmp_path.iterdir()] == ["metadata.yaml"]
     assert read_metadata(tmp_path) == metadata
-    with pytest.raises(BagError, match="can not be written"):
+    with pytest.raises(BagError, match="cannot be written"):
         write_metadata(tmp_path / "nowhere", metadata)
     with pytest.raises(BagError, match="Could not find metadata"):
         read_metadata(tmp_path / "nowhere")

@@ -104,9 +104,9 @@ def test_a_file_that_is_missing(tmp_path):
         ("a.mcap", b"", "the file is empty, expected a bag"),
         ("a.mcap", b"hello, this is no bag", "not a bag: it begins with 68 65 6c 6c 6f"),
         ("a.mcap", b"\x89MCAP1\r\n", "not an MCAP file: it begins with"),
-        ("a.db3", b"SQLite format 3\0", "not an sqlite3 file|damaged|can not be opened"),
-        ("a.db3", b"SQLite format 3\0" + bytes(5000), "not an sqlite3 file|damaged|can not be opened"),
-        ("a.mcap.zstd", b"\x28\xb5\x2f\xfd" + bytes(30), "empty|can not be decompressed"),
+        ("a.db3", b"SQLite format 3\0", "not an sqlite3 file|damaged|cannot be opened"),
+        ("a.db3", b"SQLite format 3\0" + bytes(5000), "not an sqlite3 file|damaged|cannot be opened"),
+        ("a.mcap.zstd", b"\x28\xb5\x2f\xfd" + bytes(30), "empty|cannot be decompressed"),
         ("a.zstd", b"\x28\xb5\x2f\xfd" + bytes(30), "not a bag"),
     ],
 )

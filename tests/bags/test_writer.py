@@ -138,9 +138,9 @@ def test_a_setting_outweighs_the_profile(tmp_path):
         ("mcap", "compression: Gzip", "compression: 'Gzip'"),
         ("mcap", "noChunking: maybe", "noChunking: 'maybe'"),
         ("mcap", "- noChunking", "expected a mapping"),
-        ("mcap", "a: [", "can not be read"),
+        ("mcap", "a: [", "cannot be read"),
         ("sqlite3", "write: 3", 'expected "write" with a list "pragmas"'),
-        ("sqlite3", 'write: {pragmas: ["no such pragma ("]}', "can not be made"),
+        ("sqlite3", 'write: {pragmas: ["no such pragma ("]}', "cannot be made"),
     ],
 )
 def test_settings_that_are_not_understood(tmp_path, storage, text, fault):
@@ -160,7 +160,7 @@ def test_options_that_make_no_sense(tmp_path):
     for options, fault in (
         (WriterOptions("leveldb"), "unknown storage 'leveldb'; there are: mcap, sqlite3"),
         (WriterOptions(storage=StorageOptions("resilient")), "mcap has no profile 'resilient'; there are: none"),
-        (WriterOptions(max_size=10), "files can not be limited to 10 bytes; with mcap the limit must be 1024 or more"),
+        (WriterOptions(max_size=10), "files cannot be limited to 10 bytes; with mcap the limit must be 1024 or more"),
         (WriterOptions("sqlite3", max_size=2000), "must be 86016 or more"),
         (WriterOptions(compression=Compression("FILE", "gzip")), "unknown compression format 'gzip'; there is: zstd"),
         (WriterOptions(compression=Compression("HALF", "zstd")), "unknown compression mode 'HALF'"),

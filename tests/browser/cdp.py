@@ -60,12 +60,12 @@ def require_chromium() -> None:
 
 
 def require_page() -> None:
-    """Build the page where it is not; skip the test where that can not be done, unless it must be."""
+    """Build the page where it is not; skip the test where that cannot be done, unless it must be."""
     words: list[str] = []
     with FileLock(Path(tempfile.gettempdir()) / "daidalos-test-page.lock"):  # tests run in several processes
         built = is_fresh() or build(words.append)
     if not built:
-        text = f"the page can not be built: {words}"
+        text = f"the page cannot be built: {words}"
         if os.environ.get("DAIDALOS_REQUIRE_BROWSER"):
             pytest.fail(text)
         pytest.skip(text)

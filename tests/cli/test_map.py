@@ -86,7 +86,7 @@ def test_the_name_is_that_of_the_bag_unless_told(
         (["{bag}", "--relations", "{bad}"], "bad.relations:1: expected eight numbers"),
         (["{bag}", "-o", "nowhere/map"], "no such folder"),
         (["{bag}", "--trajectory", "nowhere/t.tum"], "no such folder"),
-        (["{bag}", "--trajectory", "folder"], "folder: can not be written"),
+        (["{bag}", "--trajectory", "folder"], "folder: cannot be written"),
     ],
 )
 def test_bad_input_is_one_line_and_nothing_is_written(

@@ -73,5 +73,5 @@ def test_what_does_not_fit_is_named() -> None:
         Chain(ROBOT, "b", "side", ())
     with pytest.raises(UnknownError, match="no joint 'j4'; there are: aside, flange, j1, j2"):
         Chain(ROBOT, "world", "d", ("j4",))
-    with pytest.raises(ControlError, match="'flange' can not be moved"):
+    with pytest.raises(ControlError, match="'flange' cannot be moved"):
         Chain(ROBOT, "world", "d", ("flange",))

@@ -230,7 +230,7 @@ def test_hardware_that_can_not_start_is_said_and_stays_unconfigured(fragile: Non
     Fragile.fail_in = "configure"
     one = manager(arm(f"{PLACE}.Fragile"), log=log.append)
     assert one.components["arm"].state == "unconfigured"
-    assert log == ["hardware 'arm' can not be made active: broken in configure"]
+    assert log == ["hardware 'arm' cannot be made active: broken in configure"]
 
 
 def test_hardware_states_say_what_can_be_used() -> None:

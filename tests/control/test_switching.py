@@ -46,9 +46,9 @@ def test_free_interfaces_are_given() -> None:
     [
         (["nobody"], [], "there is no controller 'nobody'"),
         ([], ["nobody"], "there is no controller 'nobody'"),
-        (["raw"], [], "'raw' is unconfigured and can not be started"),
-        (["moves_a"], [], "'moves_a' is active and can not be started"),
-        ([], ["reads"], "'reads' is inactive and can not be stopped"),
+        (["raw"], [], "'raw' is unconfigured and cannot be started"),
+        (["moves_a"], [], "'moves_a' is active and cannot be started"),
+        ([], ["reads"], "'reads' is inactive and cannot be stopped"),
         (["moves_both"], [], "'moves_both' needs a/position, which 'moves_a' holds"),
         (["inner", "moves_both"], ["moves_a"], "'moves_both' needs b/position, which 'inner' holds"),
         (["lost"], [], "'lost' needs c/position: there is no c/position"),
@@ -75,7 +75,7 @@ def test_a_chain_starts_from_the_hardware_upwards() -> None:
 def test_a_chain_stops_from_above() -> None:
     everything = plan(stop=["low", "middle", "top"], controllers=CHAIN)
     assert everything.stop == ("top", "middle", "low")
-    with pytest.raises(SwitchError, match="'low' is needed by 'middle' and can not be stopped without it"):
+    with pytest.raises(SwitchError, match="'low' is needed by 'middle' and cannot be stopped without it"):
         plan(stop=["low"], controllers=CHAIN)
     assert plan(stop=["low"], strictness=Strictness.BEST_EFFORT, controllers=CHAIN).stop == ()
     assert plan(stop=["low"], strictness=Strictness.FORCE_AUTO, controllers=CHAIN).stop == ("top", "middle", "low")

@@ -32,7 +32,7 @@ def test_shapes_are_stretched_along_their_axes():
     assert stretched_geometry(Box((1, 2, 3)), (2, 3, 1)) == Box((2, 6, 3))
     assert stretched_geometry(Sphere(1.0), (1, 2, 3)) == Ellipsoid((1, 2, 3))
     assert stretched_geometry(Cylinder(1, 2), (3, 3, 0.5)) == Cylinder(3, 1.0)
-    with pytest.raises(ValueError, match="a cylinder can not be scaled by 1, 2, 1"):
+    with pytest.raises(ValueError, match="a cylinder cannot be scaled by 1, 2, 1"):
         stretched_geometry(Cylinder(1, 2), (1, 2, 1))
 
 

@@ -71,7 +71,7 @@ def test_textures(tmp_path):
     assert part.texture.tolist() == [[[255, 0, 0, 255], [0, 255, 0, 255]]]
     assert part.uv.tolist() == [[0, 0], [1, 0], [1, 1], [0, 1]]
     picture.write_text("no image")
-    with pytest.raises(DescriptionError, match="can not be read"):
+    with pytest.raises(DescriptionError, match="cannot be read"):
         visual_parts(Visual(Plane(), material=material))
 
 

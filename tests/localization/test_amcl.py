@@ -39,7 +39,7 @@ def errors(filter_, wanderer, steps):
 @pytest.mark.parametrize("model", ["likelihood_field", "likelihood_field_prob", "beam"])
 def test_a_robot_is_tracked(model):
     filter_ = Amcl(AmclConfig(laser_model_type=model), MAP, seed=1)
-    filter_.initialise(START, NEAR)
+    filter_.initialize(START, NEAR)
     tracked = errors(filter_, wandering_from_start(1), 300)
     rms = np.sqrt((tracked[50:] ** 2).mean(axis=0))
     assert rms[0] < 0.1
@@ -70,7 +70,7 @@ def test_a_robot_is_found_anywhere(seed):
 def test_a_robot_that_was_carried_away_finds_itself_with_recovery(alphas, finds_itself):
     config = AmclConfig(recovery_alpha_slow=alphas[0], recovery_alpha_fast=alphas[1], **GOOD_ODOMETRY)
     filter_ = Amcl(config, MAP, seed=1)
-    filter_.initialise(START, NEAR)
+    filter_.initialize(START, NEAR)
     wanderer = wandering_from_start(1)
     errors(filter_, wanderer, 300)
     wanderer.carry((6.5, 3.8, 2.0))
@@ -94,7 +94,7 @@ def test_particles_are_fewer_when_the_robot_is_sure():
 
 def test_while_the_robot_stands_scans_are_not_used_unless_asked_for():
     filter_ = Amcl(AmclConfig(), MAP)
-    filter_.initialise(START, NEAR)
+    filter_.initialize(START, NEAR)
     scan = wandering_from_start().robot.scan()
     assert filter_.update(np.zeros(3), scan).updated
     assert not filter_.update(np.array([0.1, 0.0, 0.1]), scan).updated
@@ -106,7 +106,7 @@ def test_while_the_robot_stands_scans_are_not_used_unless_asked_for():
 
 def test_between_scans_the_pose_follows_odometry():
     filter_ = Amcl(AmclConfig(), MAP)
-    filter_.initialise(START, NEAR)
+    filter_.initialize(START, NEAR)
     scan = wandering_from_start().robot.scan()
     at_rest = filter_.update(np.zeros(3), scan)
     ahead = filter_.update(np.array([0.2, 0.0, 0.0]), scan)
@@ -116,7 +116,7 @@ def test_between_scans_the_pose_follows_odometry():
 
 def test_an_estimate_is_consistent():
     filter_ = Amcl(AmclConfig(), MAP)
-    filter_.initialise(START, NEAR)
+    filter_.initialize(START, NEAR)
     estimate = filter_.update(np.zeros(3), wandering_from_start().robot.scan())
     assert estimate.weights.sum() == pytest.approx(1.0)
     assert estimate.particles.shape == (estimate.weights.size, 3)
@@ -128,14 +128,14 @@ def test_the_same_seed_gives_the_same_run():
     runs = []
     for _ in range(2):
         filter_ = Amcl(AmclConfig(), MAP, seed=5)
-        filter_.initialise(START, NEAR)
+        filter_.initialize(START, NEAR)
         runs.append(errors(filter_, wandering_from_start(5), 40))
     assert np.array_equal(*runs)
 
 
 def test_scans_that_say_nothing_do_no_harm():
     filter_ = Amcl(AmclConfig(), MAP)
-    filter_.initialise(START, np.diag([1e-4, 1e-4, 1e-4]))
+    filter_.initialize(START, np.diag([1e-4, 1e-4, 1e-4]))
     for ranges in (np.full(10, np.nan), np.full(10, np.inf), np.zeros(0)):
         filter_.request_nomotion_update()
         estimate = filter_.update(np.zeros(3), LaserScanData(ranges, 0.0, 0.1, 0.1, 10.0))
@@ -147,7 +147,7 @@ def test_another_map_is_taken_over_and_a_bad_one_is_not():
     filter_.set_map(MAP)
     with pytest.raises(LocalizationError):
         filter_.set_map(type(MAP)(np.zeros((3, 3), dtype=np.int8), 0.1, (0.0, 0.0, 0.0)))
-    filter_.initialise(START, NEAR)
+    filter_.initialize(START, NEAR)
     assert filter_.update(np.zeros(3), wandering_from_start().robot.scan()).updated
 
 
@@ -176,4 +176,4 @@ def test_unknown_models_are_named_with_the_known():
 
 def test_an_initial_pose_must_be_finite():
     with pytest.raises(LocalizationError, match="finite"):
-        Amcl(AmclConfig(), MAP).initialise(np.array([np.nan, 0.0, 0.0]), NEAR)
+        Amcl(AmclConfig(), MAP).initialize(np.array([np.nan, 0.0, 0.0]), NEAR)

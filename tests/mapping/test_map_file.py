@@ -189,7 +189,7 @@ def test_what_can_not_be_written_leaves_the_old_files(tmp_path: Path) -> None:
     grid = OccupancyGrid(np.zeros((2, 2), np.int8), 0.05, (0, 0, 0))
     save_map(grid, tmp_path / "room")
     before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
-    with pytest.raises(MapFileError, match="scale can not hold unknown cells"):
+    with pytest.raises(MapFileError, match="scale cannot hold unknown cells"):
         save_map(OccupancyGrid(np.full((2, 2), -1, np.int8), 0.05, (0, 0, 0)), tmp_path / "room", "scale")
     with pytest.raises(MapFileError, match="no cells"):
         save_map(OccupancyGrid(np.zeros((0, 0), np.int8), 0.05, (0, 0, 0)), tmp_path / "room")

@@ -1,4 +1,4 @@
-"""Building the page: when it is due, with what, and that nothing is lost when it can not be done."""
+"""Building the page: when it is due, with what, and that nothing is lost when it cannot be done."""
 
 import json
 import os

@@ -247,7 +247,7 @@ def _without_nobody(graph):
 
 @pytest.mark.parametrize("value", [2**63, -(2**63) - 1, [1, "a"], [True, 1], [2**70], {"a": 1}])
 def test_values_that_no_parameter_can_hold_are_refused(value):
-    with pytest.raises(ProtocolError, match="can not hold"):
+    with pytest.raises(ProtocolError, match="cannot hold"):
         protocol.parse_parameter(protocol.ParameterEntry("/node.x", value))
 
 

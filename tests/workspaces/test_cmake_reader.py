@@ -170,7 +170,7 @@ def test_what_programs_and_other_packages_would_have_made_is_no_mistake(read):
         ("rosidl_generate_interfaces(${PROJECT_NAME} msg/No.msg)\n", 2, "there is no file 'msg/No.msg'"),
         ('message(FATAL_ERROR "not here")\n', 2, "not here"),
         ("if(A B C)\nendif()\n", 2, "where AND or OR was expected"),
-        ("list(LENGTH)\n", 2, "list() can not be run with these arguments"),
+        ("list(LENGTH)\n", 2, "list() cannot be run with these arguments"),
         ("install(FILES CMakeLists.txt DESTINATION /etc)\n", 2, "outside of the folder to install to"),
     ],
 )

@@ -31,7 +31,7 @@ class WriterThread:
     max_size
         How many bytes may wait; what comes when there are more is lost. 0 for no limit.
     on_error
-        Called, on the thread, when the bag can not be written any more.
+        Called, on the thread, when the bag cannot be written any more.
 
     Attributes
     ----------

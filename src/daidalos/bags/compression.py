@@ -69,7 +69,7 @@ def compress_file(path: Path) -> Path:
     Raises
     ------
     BagError
-        When that can not be written; the file stays as it was.
+        When that cannot be written; the file stays as it was.
     """
     import zstandard
 
@@ -80,7 +80,7 @@ def compress_file(path: Path) -> Path:
         path.unlink()
     except OSError as error:
         packed.unlink(missing_ok=True)
-        raise BagError(packed, f"can not be written: {error.strerror}") from None
+        raise BagError(packed, f"cannot be written: {error.strerror}") from None
     return packed
 
 
@@ -99,7 +99,7 @@ def decompress_file(path: Path, folder: Path) -> Path:
         with path.open("rb") as source, restored.open("wb") as target:
             zstandard.ZstdDecompressor().copy_stream(source, target)
     except OSError as error:
-        raise BagError(path, f"can not be decompressed: {error.strerror}") from None
+        raise BagError(path, f"cannot be decompressed: {error.strerror}") from None
     except zstandard.ZstdError as error:
-        raise BagError(path, f"can not be decompressed: {error}") from None
+        raise BagError(path, f"cannot be decompressed: {error}") from None
     return restored

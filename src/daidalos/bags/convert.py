@@ -61,7 +61,7 @@ def convert(
     Raises
     ------
     BagError
-        When an input can not be read, or an output is there already.
+        When an input cannot be read, or an output is there already.
     """
     for output in outputs:
         if output.folder.exists():

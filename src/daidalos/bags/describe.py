@@ -99,7 +99,7 @@ def reindex(folder: str | Path, storage_id: str = "") -> tuple[BagMetadata, list
     Raises
     ------
     BagError
-        As `describe` does, or when it can not be written.
+        As `describe` does, or when it cannot be written.
     """
     metadata, faults = describe(folder, storage_id)
     for file in metadata.files:
@@ -114,7 +114,7 @@ def complete(path: Path, storage_id: str) -> None:
     Raises
     ------
     BagError
-        When it can not be written; the file stays as it was then.
+        When it cannot be written; the file stays as it was then.
     """
     if path.name.endswith(ZSTD_SUFFIX):
         return
@@ -156,7 +156,7 @@ def opened(path: Path, storage_id: str) -> Iterator[StorageReader]:
     Raises
     ------
     BagError
-        When it is missing or can not be read.
+        When it is missing or cannot be read.
     """
     with tempfile.TemporaryDirectory(prefix="bag_") as folder:
         source = decompress_file(path, Path(folder)) if path.name.endswith(ZSTD_SUFFIX) else path

@@ -33,7 +33,7 @@ def storage_of(path: Path) -> str:
         with path.open("rb") as file:
             start = file.read(16)
     except OSError as error:
-        raise BagError(path, f"can not be read: {error.strerror}") from None
+        raise BagError(path, f"cannot be read: {error.strerror}") from None
     if not start:
         raise BagError(path, "the file is empty, expected a bag (MCAP or sqlite3)")
     for magic, storage in _MAGIC.items():
@@ -74,7 +74,7 @@ def open_writer(path: Path, storage_id: str, options: StorageOptions, ros_distro
     Raises
     ------
     BagError
-        When it is there already or can not be made, or the options are not understood.
+        When it is there already or cannot be made, or the options are not understood.
     """
     if storage_id not in SUFFIXES:
         raise BagError(path, f"unknown storage '{storage_id}'; there are: {', '.join(SUFFIXES)}")

@@ -75,7 +75,7 @@ class McapReader(StorageReader):
         except ValueError:
             raise BagError(path, "the file is empty, expected an MCAP file") from None
         except OSError as error:
-            raise BagError(path, f"can not be read: {error.strerror}") from None
+            raise BagError(path, f"cannot be read: {error.strerror}") from None
         self._schemas: dict[int, Any] = {}
         self._channels: dict[int, Any] = {}
         self._counts: dict[int, int] = {}

@@ -43,7 +43,7 @@ class McapWriter(StorageWriter):
     Raises
     ------
     BagError
-        When the file is there already or can not be made.
+        When the file is there already or cannot be made.
     """
 
     smallest_split = 1024
@@ -54,7 +54,7 @@ class McapWriter(StorageWriter):
         try:
             self._file = path.open("xb", buffering=0)
         except OSError as error:
-            raise BagError(path, f"can not be made: {error.strerror}") from None
+            raise BagError(path, f"cannot be made: {error.strerror}") from None
         self._position = 0
         self._data_crc = 0
         self._channels: dict[str, int] = {}
@@ -194,7 +194,7 @@ class McapWriter(StorageWriter):
             while len(view):
                 view = view[self._file.write(view) :]
         except OSError as error:
-            raise BagError(self.path, f"can not be written: {error.strerror}") from None
+            raise BagError(self.path, f"cannot be written: {error.strerror}") from None
         self._position += len(data)
 
     def close(self, metadata: str = "") -> None:

@@ -40,7 +40,7 @@ class MergedBags:
     Raises
     ------
     BagError
-        When a bag can not be read, or a topic is of another type in another one.
+        When a bag cannot be read, or a topic is of another type in another one.
     """
 
     def __init__(

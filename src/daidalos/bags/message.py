@@ -27,7 +27,7 @@ class Topic:
     name, type
         Such as ``/chatter`` and ``std_msgs/msg/String``.
     serialization_format
-        How its messages are serialised.
+        How its messages are serialized.
     qos
         What its publishers offered.
     type_hash

@@ -92,7 +92,7 @@ def read_metadata(folder: str | Path) -> BagMetadata:
     except FileNotFoundError:
         raise BagError(folder, f"Could not find metadata for bag: there is no {FILE_NAME}") from None
     except (OSError, UnicodeDecodeError) as error:
-        raise BagError(path, f"can not be read: {error}") from None
+        raise BagError(path, f"cannot be read: {error}") from None
     return parse_metadata(text, path)
 
 
@@ -102,7 +102,7 @@ def write_metadata(folder: str | Path, metadata: BagMetadata) -> None:
     Raises
     ------
     BagError
-        When it can not be written.
+        When it cannot be written.
     """
     path = Path(folder) / FILE_NAME
     draft = path.with_suffix(".yaml.new")
@@ -110,7 +110,7 @@ def write_metadata(folder: str | Path, metadata: BagMetadata) -> None:
         draft.write_text(format_metadata(metadata), encoding="utf-8")
         os.replace(draft, path)
     except OSError as error:
-        raise BagError(path, f"can not be written: {error.strerror}") from None
+        raise BagError(path, f"cannot be written: {error.strerror}") from None
 
 
 def format_metadata(metadata: BagMetadata) -> str:

@@ -45,7 +45,7 @@ class BagReader:
     Raises
     ------
     BagError
-        When there is no bag, or one that can not be read.
+        When there is no bag, or one that cannot be read.
     """
 
     def __init__(

@@ -31,7 +31,7 @@ class SqliteReader(StorageReader):
     def __init__(self, path: Path) -> None:
         self.path = path
         if not path.is_file():
-            raise BagError(path, "can not be read: No such file or directory")
+            raise BagError(path, "cannot be read: No such file or directory")
         if not path.stat().st_size:
             raise BagError(path, "the file is empty, expected an sqlite3 file")
         self._ids: dict[int, str] = {}
@@ -57,7 +57,7 @@ class SqliteReader(StorageReader):
                 continue
             except _FAULTS as error:
                 raise BagError(self.path, f"not an sqlite3 file: {_line(error)}") from None
-        raise BagError(self.path, "can not be opened as an sqlite3 file")
+        raise BagError(self.path, "cannot be opened as an sqlite3 file")
 
     def close(self) -> None:
         """Close the file."""

@@ -57,7 +57,7 @@ def checkpoint_journal(path: Path) -> None:
     Raises
     ------
     BagError
-        When the file can not be written.
+        When the file cannot be written.
     """
     if not path.with_name(f"{path.name}-wal").exists():
         return
@@ -68,7 +68,7 @@ def checkpoint_journal(path: Path) -> None:
         finally:
             database.close()
     except sqlite3.Error as error:
-        raise BagError(path, f"can not be written: {error}") from None
+        raise BagError(path, f"cannot be written: {error}") from None
 
 
 class SqliteWriter(StorageWriter):
@@ -77,7 +77,7 @@ class SqliteWriter(StorageWriter):
     Raises
     ------
     BagError
-        When the file is there already or can not be made.
+        When the file is there already or cannot be made.
     """
 
     smallest_split = 86016
@@ -85,7 +85,7 @@ class SqliteWriter(StorageWriter):
     def __init__(self, path: Path, statements: list[str], ros_distro: str) -> None:
         self.path = path
         if path.exists():
-            raise BagError(path, "can not be made: File exists")
+            raise BagError(path, "cannot be made: File exists")
         self._topics: dict[str, int] = {}
         self._definitions: set[str] = set()
         self._rows: list[tuple[int, int, bytes]] = []
@@ -98,7 +98,7 @@ class SqliteWriter(StorageWriter):
             self._database.executescript(_TABLES)
             self._database.execute("INSERT INTO schema VALUES(?, ?)", (_SCHEMA_VERSION, ros_distro))
         except _FAULTS as error:
-            raise BagError(path, f"can not be made: {error}") from None
+            raise BagError(path, f"cannot be made: {error}") from None
         self._base = path.stat().st_size
 
     def add_topic(self, topic: Topic) -> None:
@@ -117,7 +117,7 @@ class SqliteWriter(StorageWriter):
                 (topic.name, topic.type, topic.serialization_format, profiles_text(topic.qos), topic.type_hash),
             )
         except _FAULTS as error:
-            raise BagError(self.path, f"can not be written: {error}") from None
+            raise BagError(self.path, f"cannot be written: {error}") from None
         self._topics[topic.name] = int(row.lastrowid or 0)
 
     def write(self, message: BagMessage) -> None:
@@ -141,7 +141,7 @@ class SqliteWriter(StorageWriter):
         except _FAULTS as error:
             with contextlib.suppress(sqlite3.Error):
                 self._database.execute("ROLLBACK")
-            raise BagError(self.path, f"can not be written: {error}") from None
+            raise BagError(self.path, f"cannot be written: {error}") from None
 
     @property
     def size(self) -> int:
@@ -161,6 +161,6 @@ class SqliteWriter(StorageWriter):
         except sqlite3.ProgrammingError:
             return  # It is closed.
         except sqlite3.Error as error:
-            raise BagError(self.path, f"can not be written: {error}") from None
+            raise BagError(self.path, f"cannot be written: {error}") from None
         finally:
             self._database.close()

@@ -137,14 +137,14 @@ def settings(config: Path) -> dict[str, object]:
     Raises
     ------
     BagError
-        When it can not be read or is no mapping.
+        When it cannot be read or is no mapping.
     """
     import yaml
 
     try:
         values = yaml.safe_load(config.read_text(encoding="utf-8"))
     except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
-        raise BagError(config, f"can not be read: {' '.join(str(error).split())}") from None
+        raise BagError(config, f"cannot be read: {' '.join(str(error).split())}") from None
     if values is None:
         return {}
     if not isinstance(values, dict):

@@ -59,7 +59,7 @@ class BagWriter:
     Raises
     ------
     BagError
-        When the folder is there or can not be made, or the options contradict each other.
+        When the folder is there or cannot be made, or the options contradict each other.
     """
 
     def __init__(
@@ -93,7 +93,7 @@ class BagWriter:
         except FileExistsError:
             raise BagError(self.folder, "already exists; a bag is not written over another") from None
         except OSError as error:
-            raise BagError(self.folder, f"can not be made: {error.strerror}") from None
+            raise BagError(self.folder, f"cannot be made: {error.strerror}") from None
 
     def _begin_file(self) -> StorageWriter:
         options = self.options
@@ -108,7 +108,7 @@ class BagWriter:
             storage.close()
             self._path.unlink()
             self._remove_empty_folder()
-            raise BagError(self.folder, f"files can not be limited to {options.max_size} bytes; "
+            raise BagError(self.folder, f"files cannot be limited to {options.max_size} bytes; "
                            f"with {options.storage_id} the limit must be {storage.smallest_split} or more")  # fmt: skip
         self._start, self._end, self._count = 2**63, 0, 0
         for topic in self._topics.values():

@@ -46,7 +46,7 @@ def _parser() -> argparse.ArgumentParser:
     resolver = _add(commands, "resolve", _resolve, "show the resolution of dependencies")
     resolver.add_argument("keys", nargs="+", metavar="key")
     resolver.add_argument("--rosdistro", help=argparse.SUPPRESS)
-    for name, text in (("init", "nothing has to be initialised"), ("update", "nothing has to be updated")):
+    for name, text in (("init", "nothing has to be initialized"), ("update", "nothing has to be updated")):
         nothing = _add(commands, name, _nothing, text)
         nothing.add_argument("--rosdistro", help=argparse.SUPPRESS)
         nothing.add_argument("--include-eol-distros", action="store_true", help=argparse.SUPPRESS)

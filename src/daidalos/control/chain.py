@@ -33,7 +33,7 @@ class Chain:
     UnknownError
         When the robot has no such link or joint.
     ControlError
-        When the tip does not hang on the base, or a joint can not be moved.
+        When the tip does not hang on the base, or a joint cannot be moved.
     """
 
     def __init__(self, robot: Robot | Model, base: str, tip: str, joints: Sequence[str]) -> None:
@@ -54,7 +54,7 @@ class Chain:
             if name not in robot.joints:
                 raise UnknownError("joint", name, robot.joints)
             if robot.joints[name].type not in _TURNING + _SLIDING or robot.joints[name].mimic is not None:
-                raise ControlError(f"joint '{name}' can not be moved by a controller")
+                raise ControlError(f"joint '{name}' cannot be moved by a controller")
         self._tree = KinematicTree(robot)
         count = len(self._tree.link_names)
         self._rows = {name: row for row, name in enumerate(self._tree.link_names)} | dict.fromkeys(outside, count)

@@ -56,12 +56,12 @@ class Component:
         Raises
         ------
         StateError
-            When it can not be reached.
+            When it cannot be reached.
         HardwareError
             When the hardware refuses; the component is then unconfigured.
         """
         if target not in (*_STEPS, FINALIZED) or self.state == FINALIZED != target:
-            raise StateError(f"hardware '{self.name}' can not go from '{self.state}' to '{target}'")
+            raise StateError(f"hardware '{self.name}' cannot go from '{self.state}' to '{target}'")
         goal = _STEPS.index(UNCONFIGURED if target == FINALIZED else target)
         try:
             while self.state != FINALIZED and _STEPS.index(self.state) != goal:

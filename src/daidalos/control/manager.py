@@ -77,7 +77,7 @@ class ControllerManager:
         try:
             component.go_to(state)
         except HardwareError as error:
-            self._log(f"hardware '{component.name}' can not be made {state}: {error}")
+            self._log(f"hardware '{component.name}' cannot be made {state}: {error}")
 
     # Hardware
 
@@ -151,7 +151,7 @@ class ControllerManager:
         """
         loaded = _find(self.controllers, "controller", name)
         if loaded.state not in (UNCONFIGURED, INACTIVE):
-            raise StateError(f"controller '{name}' is {loaded.state} and can not be configured")
+            raise StateError(f"controller '{name}' is {loaded.state} and cannot be configured")
         self._forget(loaded)
         rate = loaded.context.update_rate
         if rate > self.update_rate:
@@ -212,7 +212,7 @@ class ControllerManager:
         Raises
         ------
         SwitchError
-            When it can not be done; nothing has changed then.
+            When it cannot be done; nothing has changed then.
         """
         return self._switcher.switch(start, stop, strictness, self.time_ns)
 
@@ -287,7 +287,7 @@ class ControllerManager:
             try:
                 self.switch(start=loaded.fallbacks)
             except SwitchError as error:
-                self._log(f"the fallback controllers of '{loaded.name}' can not be started: {error}")
+                self._log(f"the fallback controllers of '{loaded.name}' cannot be started: {error}")
 
     def _guard(self, component: Component, work: Callable[[int, float], None], now_ns: int, period: float) -> None:
         try:

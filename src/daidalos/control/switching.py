@@ -85,7 +85,7 @@ def plan_switch(
     Raises
     ------
     SwitchError
-        When something can not be switched and the strictness wants all of it.
+        When something cannot be switched and the strictness wants all of it.
     """
     return _Planner(controllers, start, stop, strictness, problem_with).run()
 
@@ -150,7 +150,7 @@ class _Planner:
                 state = self._all[name].state
                 restarts = names is self._start and state == "active" and name in self._stop
                 if state != wanted and not restarts:
-                    self._leave_out(names, name, f"controller '{name}' is {state} and can not be {doing}")
+                    self._leave_out(names, name, f"controller '{name}' is {state} and cannot be {doing}")
 
     def _add_dependencies(self) -> None:
         """Add the controllers whose references are needed, and stop conflicting ones if requested."""
@@ -183,7 +183,7 @@ class _Planner:
                 return True
             stopped = self._stopped_below(name)
             if problem and stopped:
-                reason = f"controller '{stopped}' is needed by '{name}' and can not be stopped without it"
+                reason = f"controller '{stopped}' is needed by '{name}' and cannot be stopped without it"
                 self._leave_out(self._stop, stopped, reason)
                 return True
         return self._drop_claimed_twice(running)

@@ -92,7 +92,7 @@ def _problem_with_point(point: TrajectoryPoint, command: TrajectoryCommand, rule
         if not np.all(np.isfinite(values)):
             return f"{at} has {name} that are not numbers"
     if point.efforts is not None:
-        return f"{at} has efforts, which a trajectory can not be followed by"
+        return f"{at} has efforts, which a trajectory cannot be followed by"
     integrates = rules.allow_integration_in_goal_trajectories and point.velocities is not None
     return "" if point.positions is not None or integrates else f"{at} has no positions"
 

@@ -84,7 +84,7 @@ def footprint(world: World, height: float, resolution: float = 0.05, margin: flo
     Raises
     ------
     DescriptionError
-        When a collision mesh is missing or can not be read.
+        When a collision mesh is missing or cannot be read.
     """
     cuts = [segments for segments in _cuts(world, height) if len(segments)]
     points = np.concatenate(cuts).reshape(-1, 2) if cuts else np.zeros((1, 2))

@@ -53,5 +53,5 @@ def _open(path: Path, where: str) -> Any:
         image = pillow.open(path)
         image.load()
     except (OSError, ValueError) as problem:
-        raise DescriptionError(f"image {path} can not be read: {problem}", where) from None
+        raise DescriptionError(f"image {path} cannot be read: {problem}", where) from None
     return image

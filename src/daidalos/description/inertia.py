@@ -40,7 +40,7 @@ def solid_properties(geometry: Geometry, density: float = WATER) -> MassProperti
     Raises
     ------
     DescriptionError
-        When a mesh is missing or can not be read.
+        When a mesh is missing or cannot be read.
     """
     if isinstance(geometry, Plane | Heightmap | Empty):
         return MassProperties(0.0, np.zeros(3), np.zeros((3, 3)))

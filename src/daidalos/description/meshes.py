@@ -62,7 +62,7 @@ def triangles_of(geometry: Geometry, segments: int = 48) -> TriangleMesh:
     Raises
     ------
     DescriptionError
-        When a mesh file is missing or can not be read, or a shape has no extent.
+        When a mesh file is missing or cannot be read, or a shape has no extent.
     TypeError
         When the shape has no closed surface.
     """
@@ -141,7 +141,7 @@ def read_scene(path: Path, where: str, with_materials: bool = False) -> Any:
     except Exception as problem:
         # The readers of the formats raise whatever their file's content leads them to.
         reason = " ".join(str(problem).split()) or type(problem).__name__
-        raise DescriptionError(f"mesh {path} can not be read: {reason}", where) from None
+        raise DescriptionError(f"mesh {path} cannot be read: {reason}", where) from None
 
 
 def _collada_unit(path: Path) -> float:

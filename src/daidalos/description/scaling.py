@@ -101,7 +101,7 @@ def stretched_geometry(shape: Geometry, factors: Vector) -> Geometry:
             return replace(shape, radius=radius * x, length=length * z)
         case Mesh(scale=(first, second, third)):
             return replace(shape, scale=(first * x, second * y, third * z))
-    raise ValueError(f"a {type(shape).__name__.lower()} can not be scaled by {x:g}, {y:g}, {z:g}")
+    raise ValueError(f"a {type(shape).__name__.lower()} cannot be scaled by {x:g}, {y:g}, {z:g}")
 
 
 def _link(link: Link, factor: float) -> Link:

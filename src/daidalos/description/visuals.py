@@ -67,7 +67,7 @@ def visual_parts(visual: Visual, segments: int = 32) -> tuple[Part, ...]:
     Raises
     ------
     DescriptionError
-        When a mesh or an image is missing or can not be read.
+        When a mesh or an image is missing or cannot be read.
     """
     shape, material = visual.geometry, visual.material
     if isinstance(shape, Empty):

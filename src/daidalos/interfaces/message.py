@@ -166,7 +166,7 @@ def check_string(name: str, value: object, bound: int | None = None) -> str:
 def check_message(name: str, value: Any, kind: type[Message]) -> Any:
     """Return `value` if it is a message of class `kind` or its ``STANDS_FOR`` names that message, else raise an error.
 
-    Such an object is kept as it is, for who reads the message in the same program; it cannot be serialised.
+    Such an object is kept as it is, for who reads the message in the same program; it cannot be serialized.
     """
     if not isinstance(value, kind) and getattr(value, "STANDS_FOR", None) != kind._TYPE_NAME:
         raise AssertionError(f"The '{name}' field must be a sub message of type '{kind.__name__}', not {_kind(value)}")

@@ -91,7 +91,7 @@ class Amcl:
     Raises
     ------
     LocalizationError
-        There is no such model, or the map can not be used.
+        There is no such model, or the map cannot be used.
     """
 
     def __init__(self, config: AmclConfig, grid: OccupancyGrid, seed: int = 0) -> None:
@@ -106,7 +106,7 @@ class Amcl:
         self._weights: Array = np.ones(1)
         self._odom: Array | None = None
         self._map_to_odom: Array = np.zeros(3)
-        self.initialise(np.zeros(3), DEFAULT_COVARIANCE)
+        self.initialize(np.zeros(3), DEFAULT_COVARIANCE)
 
     def set_map(self, grid: OccupancyGrid) -> None:
         """Continue in another map of the same frame.
@@ -114,11 +114,11 @@ class Amcl:
         Raises
         ------
         LocalizationError
-            The map can not be used; the last one stays.
+            The map cannot be used; the last one stays.
         """
         self._world = LikelihoodMap(grid, self.config.laser_likelihood_max_dist)
 
-    def initialise(self, pose: Array, covariance: Array) -> None:
+    def initialize(self, pose: Array, covariance: Array) -> None:
         """Draw the particles around a pose.
 
         Parameters

@@ -67,7 +67,7 @@ def read_log(path: str | Path, *, scan_topic: str | None = None, odom_topic: str
     Raises
     ------
     LogError
-        When the bag can not be read or lacks scans or odometry.
+        When the bag cannot be read or lacks scans or odometry.
     """
     bag = Path(path)
     if not bag.exists():

@@ -96,7 +96,7 @@ def save_map(
     Raises
     ------
     MapFileError
-        When the folder can not be written to, the mode can not hold the map or the thresholds make no sense.
+        When the folder cannot be written to, the mode cannot hold the map or the thresholds make no sense.
     """
     import yaml
 
@@ -116,7 +116,7 @@ def save_map(
     known = (cells >= FREE) & (cells <= OCCUPIED)
     if mode == "scale" and image_format != "png" and not known.all():
         raise MapFileError(
-            image_path, "mode", f"scale can not hold unknown cells in a {image_format.upper()} image; use PNG"
+            image_path, "mode", f"scale cannot hold unknown cells in a {image_format.upper()} image; use PNG"
         )
     grey = _to_grey(cells, known, mode, occupied_thresh, free_thresh)
     image = encode_image(grey, known if mode == "scale" and image_format == "png" else None, image_format)

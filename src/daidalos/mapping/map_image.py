@@ -28,7 +28,7 @@ def read_image(path: Path) -> tuple[Image, Mask | None]:
     Raises
     ------
     MapFileError
-        When it can not be read, naming the part.
+        When it cannot be read, naming the part.
     """
     try:
         content = path.read_bytes()

@@ -23,7 +23,7 @@ class LogMap:
     poses : ndarray, shape (n, 3)
         Pose (x, y, yaw) of the base in the map at each scan of the log.
     key_scans, closures : int
-        Number of scans that make up the map, and of recognised places.
+        Number of scans that make up the map, and of recognized places.
     """
 
     grid: OccupancyGrid

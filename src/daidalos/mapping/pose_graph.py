@@ -56,7 +56,7 @@ class Solution:
     Attributes
     ----------
     poses : ndarray, shape (n, 3)
-        The optimised poses; the first is held where it was.
+        The optimized poses; the first is held where it was.
     chi2 : float
         Sum of the squared whitened errors of the edges that were not rejected.
     rejected : tuple of int

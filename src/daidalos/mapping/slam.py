@@ -1,4 +1,4 @@
-"""Simultaneous localisation and mapping (SLAM) from laser scans and odometry."""
+"""Simultaneous localization and mapping (SLAM) from laser scans and odometry."""
 
 from dataclasses import dataclass
 
@@ -26,10 +26,10 @@ CERTAIN_INLIER_RATIO = 0.8
 
 TOLERATED_GAP = 0.05
 TOLERATED_TURN = 0.01
-"""Disagreement [m], [rad] between a closure and the poses so far up to which optimising can wait."""
+"""Disagreement [m], [rad] between a closure and the poses so far up to which optimizing can wait."""
 
 BENT_GAP = 2.0
-"""Disagreement [m] from which the poses are too bent to start an optimisation from them alone."""
+"""Disagreement [m] from which the poses are too bent to start an optimization from them alone."""
 
 MAX_STEP_NS = 500_000_000
 """Time [ns] since the last scan after which odometry no longer tells how fast the robot moves now."""
@@ -52,7 +52,7 @@ class ScanResult:
     added : bool
         Whether it became a key scan, a part of the map.
     closed : bool
-        Whether a place seen before was recognised.
+        Whether a place seen before was recognized.
     optimized : bool
         Whether earlier poses moved.
     """
@@ -82,7 +82,7 @@ class Slam:
 
     A scan is matched against the latest key scans; when the robot has moved far enough it becomes a key scan
     itself, with an edge in the pose graph. Key scans are matched against earlier ones nearby, and when such a
-    closure disagrees with the poses so far, all of them are optimised and the grid follows, scan by scan.
+    closure disagrees with the poses so far, all of them are optimized and the grid follows, scan by scan.
 
     Parameters
     ----------
@@ -207,7 +207,7 @@ class Slam:
         return len(waiting) - count
 
     def finish(self) -> None:
-        """Optimise all poses after the last scan."""
+        """Optimize all poses after the last scan."""
         from daidalos.mapping.refinement import refine_poses
 
         if len(self._keys) > 1:

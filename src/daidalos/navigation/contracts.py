@@ -492,5 +492,5 @@ class Behavior(NavigationExtension, Generic[Command]):
         Raises
         ------
         BehaviorError
-            It can not go on: `CollisionAhead` or `TimedOut`.
+            It cannot go on: `CollisionAhead` or `TimedOut`.
         """

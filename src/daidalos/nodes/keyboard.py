@@ -15,7 +15,7 @@ _ARROWS = {"A": "up", "B": "down", "C": "right", "D": "left"}
 _WINDOWS_ARROWS = {"H": "up", "P": "down", "M": "right", "K": "left"}
 _INTERRUPT = "\x03"
 _SEQUENCE_S = 0.05  # within which the rest of an escape sequence comes
-_POLL_S = 0.02  # on Windows, where a console can not be waited for together with anything else
+_POLL_S = 0.02  # on Windows, where a console cannot be waited for together with anything else
 
 
 class Keyboard:

@@ -102,7 +102,7 @@ def create(make_node: Callable[[], NodeT]) -> NodeT:
 
 
 def run(make_node: Callable[[], Node], args: Sequence[str] | None = None, threads: int = 1) -> int:
-    """Initialise rclpy, make a node and spin it until the process is asked to end.
+    """Initialize rclpy, make a node and spin it until the process is asked to end.
 
     Parameters
     ----------

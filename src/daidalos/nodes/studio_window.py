@@ -25,7 +25,7 @@ def run_with_window(make_node: Callable[[], NodeT], panel: str, details: Callabl
     Parameters
     ----------
     make_node
-        Creates the node after rclpy is initialised.
+        Creates the node after rclpy is initialized.
     panel
         The studio's panel to open.
     details

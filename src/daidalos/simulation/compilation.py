@@ -81,7 +81,7 @@ class Compilation:
         Raises
         ------
         SimulationError
-            When it can not be simulated; it is not there then.
+            When it cannot be simulated; it is not there then.
         """
         build = add_model(self.spec, self._assets, model, model.name, pose, self._warn)
         instance = Instance(build, namespace, components)

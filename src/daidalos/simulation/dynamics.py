@@ -45,7 +45,7 @@ class Dynamics:
     Raises
     ------
     SimulationError
-        When a joint has more than one degree of freedom, or the robot can not be simulated.
+        When a joint has more than one degree of freedom, or the robot cannot be simulated.
     """
 
     def __init__(self, robot: Robot | Model, gravity: tuple[float, float, float] = (0.0, 0.0, -9.8)) -> None:

@@ -256,7 +256,7 @@ class Engine:
         try:
             self._compilation.compile()
         except SimulationError as problem:
-            raise SimulationError(f"the world can not be simulated: {problem}") from None
+            raise SimulationError(f"the world cannot be simulated: {problem}") from None
         for instance in self._compilation.instances.values():
             self._start(instance)
 

@@ -240,7 +240,7 @@ def _wheel_radius(build: ModelBuild, name: str) -> float:
         try:
             vertices = triangles_of(collision.geometry).vertices
         except (DescriptionError, TypeError):
-            continue  # what it can not be made of is said where collisions are added
+            continue  # what it cannot be made of is said where collisions are added
         turn = rotation_matrix(collision.pose.orientation)
         corners.append(vertices @ turn.T + np.array(collision.pose.position) - np.array(joint.anchor.position))
     if not corners:

@@ -82,7 +82,7 @@ class NoiseVector:
     def wander(self, bias: Array, elapsed: float, random: np.random.Generator) -> Array:
         """Return the drifting errors (n,) after `elapsed` seconds.
 
-        Exact discretisation of a Gauss-Markov process whose stationary standard deviation is
+        Exact discretization of a Gauss-Markov process whose stationary standard deviation is
         ``dynamic_bias_stddev`` (Crassidis, "Sigma-point Kalman filtering for integrated GPS and inertial
         navigation", 2006).
         """

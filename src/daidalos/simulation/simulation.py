@@ -44,7 +44,7 @@ class Simulation(Engine):
     Raises
     ------
     SimulationError
-        When the world can not be simulated.
+        When the world cannot be simulated.
     """
 
     # Models
@@ -78,7 +78,7 @@ class Simulation(Engine):
         NameTakenError
             When a model of this name is there already.
         SimulationError, DescriptionError
-            When it can not be simulated; the world is then as it was before.
+            When it cannot be simulated; the world is then as it was before.
         """
         model = model_from_robot(description) if isinstance(description, Robot) else description
         name = name or model.name
@@ -89,7 +89,7 @@ class Simulation(Engine):
         except (ValueError, SimulationError) as problem:
             self._drop(instance)
             self._recompile()
-            raise SimulationError(f"model {name!r} can not be simulated: {problem}") from None
+            raise SimulationError(f"model {name!r} cannot be simulated: {problem}") from None
         return name
 
     def delete(self, name: str) -> None:

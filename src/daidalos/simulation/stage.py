@@ -48,7 +48,7 @@ class Stage:
     ----------
     world : World
     warn : callable
-        Called with a line for each visual that can not be drawn.
+        Called with a line for each visual that cannot be drawn.
     """
 
     def __init__(self, world: World, warn: Callable[[str], None]) -> None:

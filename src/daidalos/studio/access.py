@@ -2,7 +2,7 @@
 
 A web page from anywhere may send requests to a server on loopback. Two headers identify it: ``Origin`` names the page,
 and ``Host`` the name under which the server was looked up. With DNS rebinding both carry the
-attacker's name, so a name is trusted only when it is known; a bare address can not be rebound, and is a ``Host`` where
+attacker's name, so a name is trusted only when it is known; a bare address cannot be rebound, and is a ``Host`` where
 the server is exposed. The page's own origin must be that of the server, or one that was named.
 """
 

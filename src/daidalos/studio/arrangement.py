@@ -13,7 +13,7 @@ Value = str | float | bool
 
 
 class ArrangementError(UserError):
-    """A layout file that can not be read; the text names the file, the line and what is wrong."""
+    """A layout file that cannot be read; the text names the file, the line and what is wrong."""
 
     def __init__(self, path: Path | str, line: int | None, what: str) -> None:
         super().__init__(what, Location(str(path), line))

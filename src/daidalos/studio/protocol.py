@@ -433,7 +433,7 @@ def parse_parameter(entry: ParameterEntry) -> Parameter:
     Raises
     ------
     ProtocolError
-        When it has a value that a ROS parameter can not hold.
+        When it has a value that a ROS parameter cannot hold.
     """
     name, value = entry.name, entry.value
     try:
@@ -446,7 +446,7 @@ def parse_parameter(entry: ParameterEntry) -> Parameter:
     except (TypeError, ValueError):
         raise ProtocolError(f"parameter {name}: {value!r} is not a {entry.type}") from None
     if not _is_parameter_value(value):
-        raise ProtocolError(f"parameter {name}: ROS parameters can not hold {reprlib.repr(value)}")
+        raise ProtocolError(f"parameter {name}: ROS parameters cannot hold {reprlib.repr(value)}")
     return Parameter(name, value)
 
 

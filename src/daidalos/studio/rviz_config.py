@@ -27,7 +27,7 @@ def read_rviz(path: Path) -> Arrangement:
     ArrangementError
         When it is not a display configuration.
     OSError
-        When it can not be read.
+        When it cannot be read.
     """
     try:
         document = yaml.safe_load(path.read_text(encoding="utf-8"))

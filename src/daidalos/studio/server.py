@@ -122,7 +122,7 @@ class StudioServer:
         Raises
         ------
         PortError
-            When the address can not be opened, or no port is free.
+            When the address cannot be opened, or no port is free.
         """
         sockets = open_port(self._hosts, self._wanted_port)
         self._port = sockets[0].getsockname()[1]

@@ -134,4 +134,4 @@ class GraphSource(Protocol):
 
 
 class SourceError(Exception):
-    """The graph can not do what a client asked; the text is shown to that client."""
+    """The graph cannot do what a client asked; the text is shown to that client."""

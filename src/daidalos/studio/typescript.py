@@ -48,7 +48,7 @@ _NAMES: Mapping[object, str] = {
 
 
 class GenerationError(Exception):
-    """The page's types can not be generated; the text says why."""
+    """The page's types cannot be generated; the text says why."""
 
 
 def generate(web: Path = WEB) -> dict[Path, str]:

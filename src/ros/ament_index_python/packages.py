@@ -31,7 +31,7 @@ def get_package_prefix(package_name: str) -> str:
     PackageNotFoundError
         If there is no such package.
     ValueError
-        If the name can not be one of a package.
+        If the name cannot be one of a package.
     """
     if not re.fullmatch(r"[a-zA-Z][a-zA-Z0-9_-]+", package_name, re.ASCII):
         raise ValueError(f"'{package_name}' is not a valid package name")
@@ -61,7 +61,7 @@ def get_package_share_directory(package_name: str, print_warning: bool = True) -
     PackageNotFoundError
         If there is no such package.
     ValueError
-        If the name can not be one of a package.
+        If the name cannot be one of a package.
     """
     path = os.path.join(get_package_prefix(package_name), "share", package_name)
     if print_warning and not os.path.exists(path):

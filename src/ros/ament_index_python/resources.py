@@ -12,11 +12,11 @@ from .search_paths import get_all_prefixes, get_built_in_prefix
 
 
 class InvalidResourceTypeNameError(ValueError):
-    """The name of a resource type can not be one."""
+    """The name of a resource type cannot be one."""
 
 
 class InvalidResourceNameError(ValueError):
-    """The name of a resource can not be one."""
+    """The name of a resource cannot be one."""
 
 
 def get_resource(resource_type: str, resource_name: str) -> tuple[str, str]:
@@ -32,11 +32,11 @@ def get_resource(resource_type: str, resource_name: str) -> tuple[str, str]:
     Raises
     ------
     ValueError
-        If one of the names is empty or can not be one.
+        If one of the names is empty or cannot be one.
     LookupError
         If there is no such resource.
     OSError
-        If its file can not be read.
+        If its file cannot be read.
     """
     prefix = has_resource(resource_type, resource_name)
     if not prefix:
@@ -57,7 +57,7 @@ def get_resources(resource_type: str) -> dict[str, str]:
     Raises
     ------
     ValueError
-        If the type is empty or can not be one.
+        If the type is empty or cannot be one.
     """
     _check_type(resource_type)
     found: dict[str, str] = {}
@@ -83,7 +83,7 @@ def has_resource(resource_type: str, resource_name: str) -> str | Literal[False]
     Raises
     ------
     ValueError
-        If one of the names is empty or can not be one.
+        If one of the names is empty or cannot be one.
     """
     _check_type(resource_type)
     _check_name(resource_name)

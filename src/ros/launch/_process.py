@@ -191,7 +191,7 @@ async def start_process(
     Raises
     ------
     OSError
-        If it can not be started.
+        If it cannot be started.
     """
     if cwd is not None and not os.path.isdir(cwd):
         raise NotADirectoryError(f"the working directory '{cwd}' does not exist")

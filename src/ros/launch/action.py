@@ -38,7 +38,7 @@ class Action(LaunchDescriptionEntity):
         if_text = entity.get_attr("if", optional=True)
         unless_text = entity.get_attr("unless", optional=True)
         if if_text is not None and unless_text is not None:
-            raise RuntimeError("if and unless conditions can not be used on the same action")
+            raise RuntimeError("if and unless conditions cannot be used on the same action")
         kwargs: dict[str, Any] = {}
         if if_text is not None:
             kwargs["condition"] = IfCondition(parser.parse_substitution(if_text))

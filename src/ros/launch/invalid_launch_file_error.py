@@ -1,4 +1,4 @@
-"""The error of a launch file that can not be read."""
+"""The error of a launch file that cannot be read."""
 
 from __future__ import annotations
 

@@ -108,7 +108,7 @@ def _collect_arguments(
                 entity._conditionally_included = conditional or entity.condition is not None
                 found.append((entity, includes))
         elif isinstance(entity, ResetLaunchConfigurations):
-            # What is declared after this can not be set from outside.
+            # What is declared after this cannot be set from outside.
             return
         inner = [*includes, entity] if isinstance(entity, IncludeLaunchDescription) else includes
         _collect_arguments(entity.describe_sub_entities(), conditional, inner, found)

@@ -41,7 +41,7 @@ class LaunchDescriptionSource:
     def try_get_launch_description_without_context(self) -> LaunchDescription | None:
         """Return the description if it can be found before launching, else None.
 
-        It can not where its location depends on what only happens while launching.
+        It cannot where its location depends on what only happens while launching.
         """
         if self.__launch_description is None:
             from .launch_context import LaunchContext

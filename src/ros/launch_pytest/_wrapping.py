@@ -101,7 +101,7 @@ _ENDED = object()
 
 
 def _advance_in_thread(loop: Any, generator: Any) -> None:
-    # A StopIteration can not leave a future.
+    # A StopIteration cannot leave a future.
     if run_until_complete(loop, loop.run_in_executor(None, next, generator, _ENDED)) is _ENDED:
         pytest.fail("launch tests using a generator function must yield once", pytrace=False)
 

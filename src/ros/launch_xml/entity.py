@@ -105,7 +105,7 @@ class Entity(BaseEntity):
         except ValueError as error:
             raise TypeError(
                 f"The attribute `{name}` of `{self.type_name}` is expected to be of type "
-                f"{getattr(data_type, '__name__', data_type)}, but `{value}` can not be converted to it"
+                f"{getattr(data_type, '__name__', data_type)}, but `{value}` cannot be converted to it"
             ) from error
 
     def __find(self, name: str, data_type: Any) -> Any:

@@ -58,7 +58,7 @@ class TimeSynchronizer(SimpleFilter):
         time = self.time_getter(msg)
         if time is None:
             raise ValueError(
-                f"a {type(msg).__name__} has no stamp to synchronise by; give a 'time_getter' that knows one"
+                f"a {type(msg).__name__} has no stamp to synchronize by; give a 'time_getter' that knows one"
             )
         stamp = time.nanoseconds
         with self.lock:

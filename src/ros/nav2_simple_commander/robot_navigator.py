@@ -77,7 +77,7 @@ class BasicNavigator(Costmaps):
         super().destroy_node()
 
     def setInitialPose(self, initial_pose: PoseStamped) -> None:
-        """Publish the robot's pose to the localisation."""
+        """Publish the robot's pose to the localization."""
         self.initial_pose_received = False
         self.initial_pose = initial_pose
         message = PoseWithCovarianceStamped(header=initial_pose.header)

@@ -201,7 +201,7 @@ class Clock:
         ValueError
             For a time of another clock type.
         NotInitializedException
-            When the context is not initialised.
+            When the context is not initialized.
         """
         from rclpy.utilities import get_default_context
 

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 class NotInitializedException(Exception):
-    """rclpy was used before it was initialised."""
+    """rclpy was used before it was initialized."""
 
     def __init__(self, message: str | None = None) -> None:
         text = "rclpy.init() has not been called"

@@ -24,7 +24,7 @@ class GuardCondition:
     ) -> None:
         context = context or get_default_context()
         if context.handle is None:
-            raise NotInitializedException("the context must be initialised before it can have guard conditions")
+            raise NotInitializedException("the context must be initialized before it can have guard conditions")
         self._rcl_hook = ReadyHook(self)
         self._rcl_node: Any = None
         self.__handle = GuardConditionHandle(context.handle, self._rcl_hook)

@@ -38,7 +38,7 @@ class Publisher:
         )
 
     def publish(self, msg: Any) -> None:
-        """Send a message, or one already serialised as bytes.
+        """Send a message, or one already serialized as bytes.
 
         Raises
         ------

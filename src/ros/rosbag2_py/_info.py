@@ -11,7 +11,7 @@ class Info:
     """Reader of what bags hold."""
 
     def read_metadata(self, uri: str, storage_id: str = "") -> BagMetadata:
-        """Return what a bag holds; RuntimeError when it can not be read."""
+        """Return what a bag holds; RuntimeError when it cannot be read."""
         with BagReader(uri, storage_id) as bag:
             return of_bag(bag.metadata, bag.size)
 

@@ -56,7 +56,7 @@ class Player(Runner[PlayerNode]):
     Raises
     ------
     RuntimeError
-        For an unknown log level or a bag that can not be read, and by methods where no options were given.
+        For an unknown log level or a bag that cannot be read, and by methods where no options were given.
     """
 
     _running: ClassVar[list[Player]] = []

@@ -50,7 +50,7 @@ class PlayerNode(Node):
     Raises
     ------
     BagError
-        When a bag can not be read.
+        When a bag cannot be read.
     ValueError
         When an option is not valid.
     """

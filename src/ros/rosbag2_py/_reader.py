@@ -32,7 +32,7 @@ class SequentialReader:
         self._is_ahead = False
 
     def open(self, storage_options: StorageOptions, converter_options: ConverterOptions) -> None:
-        """Open a bag; RuntimeError when it can not be read."""
+        """Open a bag; RuntimeError when it cannot be read."""
         converter_options.check()
         self.close()
         self._bag = BagReader(storage_options.uri, storage_options.storage_id)
@@ -86,7 +86,7 @@ class SequentialReader:
         return self._ahead() is not None
 
     def read_next(self) -> tuple[str, bytes, int]:
-        """Return the next message: its topic, its serialised data and when it was received [ns]."""
+        """Return the next message: its topic, its serialized data and when it was received [ns]."""
         message = self._ahead()
         if message is None:
             raise RuntimeError("Bag is at end. No next message.")

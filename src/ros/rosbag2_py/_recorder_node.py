@@ -46,7 +46,7 @@ class RecorderNode(Node):
     context
         Its context.
     on_failure
-        Called when the bag can not be written any more.
+        Called when the bag cannot be written any more.
 
     Raises
     ------
@@ -101,7 +101,7 @@ class RecorderNode(Node):
         Raises
         ------
         BagError
-            When the bag can not be made.
+            When the bag cannot be made.
         RuntimeError
             When one is recorded already.
         """

@@ -85,7 +85,7 @@ def bag_rewrite(
     Raises
     ------
     RuntimeError
-        When a bag can not be read or written, or the file is not understood.
+        When a bag cannot be read or written, or the file is not understood.
     """
     return convert([(one.uri, one.storage_id) for one in input_options], _outputs(Path(output_config_file)), progress)
 
@@ -96,7 +96,7 @@ def _outputs(path: Path) -> list[Output]:
     try:
         document = yaml.safe_load(path.read_text(encoding="utf-8"))
     except (OSError, UnicodeDecodeError) as error:
-        raise BagError(path, f"can not be read: {error}") from None
+        raise BagError(path, f"cannot be read: {error}") from None
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
         where = f"line {mark.line + 1}, column {mark.column + 1}: " if mark else ""

@@ -30,6 +30,6 @@ def service_class(type_name: str) -> Any:
 
 @cache
 def opaque_class(type_name: str, type_hash: str) -> Any:
-    """Return a class by which serialised messages of a type can be sent and received, though not looked into."""
+    """Return a class by which serialized messages of a type can be sent and received, though not looked into."""
     name = type_name.rpartition("/")[2]
     return MessageType(name, (Message,), {"__slots__": (), "_TYPE_NAME": type_name, "_TYPE_HASH": type_hash})

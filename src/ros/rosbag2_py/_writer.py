@@ -17,7 +17,7 @@ from rosbag2_py._storage import ConverterOptions, StorageOptions
 
 
 class SequentialWriter:
-    """Writer of a bag; methods raise RuntimeError while none is open, and when it can not be written."""
+    """Writer of a bag; methods raise RuntimeError while none is open, and when it cannot be written."""
 
     _compression = Compression()
 
@@ -59,7 +59,7 @@ class SequentialWriter:
         self._opened().remove_topic(topic.name)
 
     def write(self, topic_name: str, message: bytes, timestamp: int, send_timestamp: int | None = None) -> None:
-        """Write a serialised message with the times [ns] when it was received and sent."""
+        """Write a serialized message with the times [ns] when it was received and sent."""
         bag = self._opened()
         record = BagMessage(
             topic_name, bytes(message), timestamp, timestamp if send_timestamp is None else send_timestamp

@@ -1,6 +1,6 @@
 """Point clouds as arrays, and arrays as point clouds.
 
-Organised clouds are arrays of shape (width, height) here, as they are in ROS 2's own package: that what one program
+Organized clouds are arrays of shape (width, height) here, as they are in ROS 2's own package: that what one program
 writes another one reads the same way matters more than which axis comes first.
 """
 
@@ -207,7 +207,7 @@ def create_cloud(
         Its fields.
     points
         A structured array with just these fields; a plain array with the fields along its last axis, if they are of
-        one type; or any iterable of points that are iterables of values. An organised cloud has one more axis.
+        one type; or any iterable of points that are iterables of values. An organized cloud has one more axis.
     point_step
         Bytes from one point to the next; as much as the fields need where None.
 

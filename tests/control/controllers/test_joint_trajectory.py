@@ -366,7 +366,7 @@ def test_what_cannot_be_followed_is_refused(given: TrajectoryCommand, message: s
 @pytest.mark.parametrize(
     ("values", "message"),
     [
-        ({"command_interfaces": ["position", "effort"]}, "can not be position, effort together"),
+        ({"command_interfaces": ["position", "effort"]}, "cannot be position, effort together"),
         ({"state_interfaces": ["velocity"]}, "must have position"),
         ({"command_interfaces": ["torque"]}, "may have position"),
         ({"command_joints": ["elbow", "knee"]}, "'knee', which is not in joints"),

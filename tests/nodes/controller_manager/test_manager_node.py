@@ -97,7 +97,7 @@ def test_hardware_and_interfaces_are_listed(graph: Context) -> None:  # noqa: F8
 @pytest.mark.parametrize(
     ("values", "message"),
     [
-        ({"joints": ["elbow"]}, "controller 'it' can not be configured: parameter 'interface_name' of /it must not"),
+        ({"joints": ["elbow"]}, "controller 'it' cannot be configured: parameter 'interface_name' of /it must not"),
         (
             {"joints": "elbow", "interface_name": "position"},
             ":4: parameter 'joints' of /it must be a list of strings, got 'elbow'",

@@ -109,7 +109,7 @@ def test_companions_come_and_go_with_models(rig: Rig) -> None:
 @pytest.mark.parametrize(
     ("content", "message"),
     [
-        ("a: [", "the controllers of 'r' can not be started: "),
+        ("a: [", "the controllers of 'r' cannot be started: "),
         (
             "controller_manager:\n  ros__parameters:\n    update_rate: fast\n",
             "parameters.yaml:3: parameter 'update_rate'",

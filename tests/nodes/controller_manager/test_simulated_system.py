@@ -248,7 +248,7 @@ def test_a_trajectory_is_forgotten_by_a_reset() -> None:
 def test_a_joint_is_commanded_in_one_way() -> None:
     rig = Rig(pendulum())
     rig.group("position", "swing")
-    with pytest.raises(SwitchError, match="joint 'swing' can not take position and velocity at once"):
+    with pytest.raises(SwitchError, match="joint 'swing' cannot take position and velocity at once"):
         rig.group("velocity", "swing")
     rig.manager.switch(["velocity"], ["position"])
     assert rig.manager.claimed("swing/velocity") == "velocity"

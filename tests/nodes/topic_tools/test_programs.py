@@ -152,4 +152,4 @@ def test_a_mistake_in_an_expression_is_named(domain: int) -> None:
     words = ("run", "topic_tools", "transform", "/chatter", "/out", "std_msgs/Float64", "m.dat")
     with publishing("/chatter", 10, "hello", domain), Terminal(*words, domain=domain) as program:
         assert program.wait(30) == 2
-        assert "the expression 'm.dat' can not be evaluated: AttributeError" in program.text
+        assert "the expression 'm.dat' cannot be evaluated: AttributeError" in program.text

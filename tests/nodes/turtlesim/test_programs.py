@@ -71,7 +71,7 @@ def test_course_of_the_services(domain: int) -> None:
         )
         simulator.wait_for(r"\[turtlesim\]: A turtle named \[bob\] already exists")
         _ros2(domain, *spawn, "{name: not/so good}")
-        simulator.wait_for(r"A turtle can not be named \[not/so good\]: Invalid topic name")
+        simulator.wait_for(r"A turtle cannot be named \[not/so good\]: Invalid topic name")
         until_shown("^/bob/pose$", "topic", "list", domain=domain)
 
         _ros2(domain, "service", "call", "/kill", "turtlesim/srv/Kill", "{name: bob}")
@@ -84,7 +84,7 @@ def test_course_of_the_services(domain: int) -> None:
         teleported = {"x": 3.0, "y": 4.0, "theta": 1.5, "linear_velocity": 0.0, "angular_velocity": 0.0}
         assert _pose(domain) == teleported
         _ros2(domain, *teleport, "{x: .nan, y: 4, theta: 1.5}")
-        simulator.wait_for(r"Turtle \[turtle1\] can not obey \(nan, 4.0, 1.5\)")
+        simulator.wait_for(r"Turtle \[turtle1\] cannot obey \(nan, 4.0, 1.5\)")
         relative = ("service", "call", "/turtle1/teleport_relative", "turtlesim/srv/TeleportRelative")
         _ros2(domain, *relative, "{linear: 1, angular: -1.5}")
         assert _pose(domain)["x"] == pytest.approx(4.0)
@@ -131,7 +131,7 @@ def test_what_is_no_speed_moves_nobody(domain: int) -> None:
         for value in (".nan", ".inf", "1.0e300"):
             words = ("/turtle1/cmd_vel", "geometry_msgs/msg/Twist", f"{{linear: {{x: {value}}}}}")
             _ros2(domain, "topic", "pub", "--once", *words)
-        simulator.wait_for(r"Turtle \[turtle1\] can not obey \(", 3)
+        simulator.wait_for(r"Turtle \[turtle1\] cannot obey \(", 3)
         assert _pose(domain)["x"] == pytest.approx(5.544445, abs=1e-6)
 
 

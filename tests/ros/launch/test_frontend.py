@@ -101,7 +101,7 @@ def test_texts(text, performed):
         ('$(q "b)', 'closing " is missing'),
         ("$()", "name of a substitution is missing"),
         ("$(1)", "name of a substitution is missing"),
-        ("$(q$)", "can not follow"),
+        ("$(q$)", "cannot follow"),
         ("$(q (a)", "is missing"),
     ],
 )

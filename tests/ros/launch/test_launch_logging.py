@@ -81,7 +81,7 @@ def test_log_dir(tmp_path):
     assert launch_config.get_log_file_path() == str(tmp_path / "launch.log")
     assert launch_config.get_log_file_path("x.log") == str(tmp_path / "x.log")
     launch_config.get_log_file_handler()
-    with pytest.raises(RuntimeError, match="can not be changed"):
+    with pytest.raises(RuntimeError, match="cannot be changed"):
         launch_config.log_dir = str(tmp_path)
 
 

@@ -1,4 +1,4 @@
-"""Launch files of ROS 1: recognised, translated, run."""
+"""Launch files of ROS 1: recognized, translated, run."""
 
 import io
 import re
@@ -185,7 +185,7 @@ def test_parameter_files(ran, package):
 
 @pytest.mark.parametrize(
     ("content", "reason"),
-    [("a: [", "is not YAML"), ("just text", "has no names of parameters"), (None, "can not be read")],
+    [("a: [", "is not YAML"), ("just text", "has no names of parameters"), (None, "cannot be read")],
 )
 def test_broken_parameter_files(run_text, tmp_path, content, reason):
     path = tmp_path / "a.yaml"

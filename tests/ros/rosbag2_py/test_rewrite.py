@@ -63,5 +63,5 @@ def test_files_that_are_not_understood(tmp_path, text, fault):
 
 
 def test_a_file_that_is_missing(tmp_path):
-    with pytest.raises(RuntimeError, match=r"out\.yaml: can not be read"):
+    with pytest.raises(RuntimeError, match=r"out\.yaml: cannot be read"):
         bag_rewrite([], str(tmp_path / "out.yaml"))

@@ -230,7 +230,7 @@ def test_an_infinite_plane_stays_where_it_is():
     simulation.spawn(urdf.parse(text), pose=Pose((0, 0, 2)))
     simulation.step(100)
     assert simulation.pose("floor") == Pose((0, 0, 2))
-    assert lines[-1].endswith("link 'floor' stays where it is, as an infinite plane can not move")
+    assert lines[-1].endswith("link 'floor' stays where it is, as an infinite plane cannot move")
 
 
 def test_shapes_without_size_are_left_out_with_a_line():

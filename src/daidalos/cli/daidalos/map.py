@@ -206,7 +206,7 @@ def _require_writable(path: Path) -> None:
     if not path.parent.is_dir():
         raise UserError(f"{path}: no such folder: {path.parent}")
     if path.is_dir() or not os.access(path.parent, os.W_OK):
-        raise UserError(f"{path}: can not be written")
+        raise UserError(f"{path}: cannot be written")
 
 
 def _positive(text: str) -> float:

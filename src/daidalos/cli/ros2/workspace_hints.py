@@ -29,7 +29,7 @@ def unknown_executable(package: str, executable: str) -> str:
     prefix = Path(get_package_prefix(package))
     file = prefix / "lib" / package / executable
     if file.is_file():
-        return f"\n'{executable}' can not be run: make it executable with 'chmod +x {file.resolve()}'"
+        return f"\n'{executable}' cannot be run: make it executable with 'chmod +x {file.resolve()}'"
     workspace = prefix.parent if prefix.parent.name != "install" else prefix.parent.parent
     source = _source(workspace, package)
     if source is None:

@@ -121,7 +121,7 @@ class JointTrajectoryParameters(Parameters):
     def check(self) -> None:
         """Check the combination of interfaces."""
         if set(self.command_interfaces) not in _COMMANDS:
-            raise ParameterError("command_interfaces", f"can not be {', '.join(self.command_interfaces)} together")
+            raise ParameterError("command_interfaces", f"cannot be {', '.join(self.command_interfaces)} together")
         if set(self.state_interfaces) not in _STATES:
             raise ParameterError("state_interfaces", "must have position, before acceleration also velocity")
         unknown = [name for name in self.command_joints if name not in self.joints]

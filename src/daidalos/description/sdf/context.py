@@ -27,7 +27,7 @@ class Context:
     model_path : sequence of Path
         Folders that hold models.
     strict : bool
-        An include that can not be found is an error; else it is left out, with a warning.
+        An include that cannot be found is an error; else it is left out, with a warning.
     warnings : list of str
         Shared by all files of one world.
     including : tuple of Path

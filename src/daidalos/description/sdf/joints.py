@@ -55,7 +55,7 @@ def read_joint(
     if parent == child:
         raise element.error(f"parent and child are the same link {parent!r}")
     if child == "world":
-        raise element.error("the child of a joint can not be the world")
+        raise element.error("the child of a joint cannot be the world")
     here = frame(own, element)
     in_child = frame(child, element).inverse @ here
     in_parent = here if parent == "world" else frame(parent, element).inverse @ here

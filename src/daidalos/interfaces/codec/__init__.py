@@ -199,15 +199,15 @@ def _explain(message: Any, error: Exception) -> str:
         try:
             setattr(message, name, value)
         except AssertionError as reason:
-            return f"cannot serialise {message._TYPE_NAME}: {reason}"
+            return f"cannot serialize {message._TYPE_NAME}: {reason}"
         if not isinstance(base, str):
             for item in [value] if kind == "single" else value or []:
                 if not isinstance(item, base):
                     return (
-                        f"cannot serialise {message._TYPE_NAME}: The '{name}' field holds a "
+                        f"cannot serialize {message._TYPE_NAME}: The '{name}' field holds a "
                         f"'{type(item).__module__}.{type(item).__name__}', which only stands for a {base._TYPE_NAME}"
                     )
                 inner = _explain(item, error)
                 if ": The " in inner:
                     return inner
-    return f"cannot serialise {message._TYPE_NAME}: {error}"
+    return f"cannot serialize {message._TYPE_NAME}: {error}"

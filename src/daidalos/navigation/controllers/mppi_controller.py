@@ -50,13 +50,13 @@ class MppiParameters(Parameters):
     ax_max: float = parameter(2.5, "Largest acceleration.", unit="m/s^2", minimum=0.0)
     ax_min: float = parameter(-2.5, "Largest deceleration, negative.", unit="m/s^2", maximum=0.0)
     az_max: float = parameter(3.2, "Largest turn acceleration.", unit="rad/s^2", minimum=0.0)
-    iteration_count: int = parameter(1, "Number of optimisations in a cycle.", minimum=1)
+    iteration_count: int = parameter(1, "Number of optimizations in a cycle.", minimum=1)
     temperature: float = parameter(
         0.3, "How much worse trajectories contribute; less selects the best more sharply.", above=0.0
     )
     gamma: float = parameter(0.015, "Weight of smooth control against low cost.", minimum=0.0)
     prune_distance: float = parameter(1.7, "Length of path ahead that is looked at.", unit="m", above=0.0)
-    retry_attempt_limit: int = parameter(1, "Number of further optimisations when all trajectories collide.", minimum=0)
+    retry_attempt_limit: int = parameter(1, "Number of further optimizations when all trajectories collide.", minimum=0)
     open_loop: bool = parameter(True, "Whether rollouts begin with the last command instead of odometry's velocity.")
     noise_correlation_time: float = parameter(0.5, "How long a sampled deviation lasts.", unit="s", minimum=0.0)
     critics: tuple[str, ...] = parameter(

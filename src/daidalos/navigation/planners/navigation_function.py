@@ -40,7 +40,7 @@ def propagate(
     costs : ndarray of uint8, shape (height, width)
         The costmap.
     step : ndarray of float32, shape (256,)
-        Cost of a step over a cell of each value, at least 1; infinite where the robot can not be.
+        Cost of a step over a cell of each value, at least 1; infinite where the robot cannot be.
     start_column, start_row, goal_column, goal_row : int
         The two cells. The front stops when the goal's value is final.
     bound : float

@@ -50,7 +50,7 @@ class BehaviorTree:
         Raises
         ------
         TreeError
-            The file can not be read, is not XML, or names a node or port that does not exist.
+            The file cannot be read, is not XML, or names a node or port that does not exist.
         """
         try:
             text = path.read_text(encoding="utf-8")

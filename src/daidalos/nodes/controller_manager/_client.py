@@ -95,7 +95,7 @@ class ManagerClient:
             raise UserError(f"{self.name} does not take the parameter '{name}': {result.reason}")
 
     def switch(self, start: Sequence[str] = (), stop: Sequence[str] = (), asap: bool = True) -> str:
-        """Start and stop controllers, all or none; return why that can not be, nothing when it was done."""
+        """Start and stop controllers, all or none; return why that cannot be, nothing when it was done."""
         from builtin_interfaces.msg import Duration
         from controller_manager_msgs.srv import SwitchController
 

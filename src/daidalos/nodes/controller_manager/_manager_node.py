@@ -256,7 +256,7 @@ class ControllerManagerNode(Node):
                 parameter_overrides=[sim_time],
             )
         except (ValueError, RuntimeError) as error:  # the name, or something in a file, breaks the rules
-            raise ControlError(f"controller '{name}' can not be loaded: {error}") from error
+            raise ControlError(f"controller '{name}' cannot be loaded: {error}") from error
 
     def _configure(self, request: Any, response: Any) -> None:
         name = request.name
@@ -265,7 +265,7 @@ class ControllerManagerNode(Node):
         except UserError as error:
             if name in self._nodes:
                 self._nodes[name].disconnect()
-            raise ControlError(f"controller '{name}' can not be configured: {error}") from error
+            raise ControlError(f"controller '{name}' cannot be configured: {error}") from error
         loaded = self._running.controllers[name]
         self._nodes[name].connect(loaded.running, lambda: loaded.state == "active")
         self.get_logger().info(f"configured controller '{name}'")

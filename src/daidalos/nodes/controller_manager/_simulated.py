@@ -28,7 +28,7 @@ class SimulatedManager:
     Raises
     ------
     ControlError, ExtensionError
-        When the hardware can not be used.
+        When the hardware cannot be used.
     """
 
     def __init__(self, plugin: Ros2Control, context: Context) -> None:

@@ -94,7 +94,7 @@ class SimulatedSystem(Hardware):
         for name in (*going_on, *start):
             joint, _, kind = name.rpartition("/")
             if joint in self._driven and kind in _MODES and wanted.setdefault(joint, kind) != kind:
-                raise HardwareError(f"joint '{joint}' can not take {wanted[joint]} and {kind} at once")
+                raise HardwareError(f"joint '{joint}' cannot take {wanted[joint]} and {kind} at once")
 
     def switch(self, start: Sequence[str], stop: Sequence[str]) -> None:
         """Set the motors' commands; joints without a command hold or are free."""

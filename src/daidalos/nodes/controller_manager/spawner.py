@@ -60,7 +60,7 @@ def _type_in(files: list[str], name: str, namespace: str) -> str:
             try:
                 values = parameter_dict_from_yaml_file(file, use_wildcard=True, target_nodes=[full])
             except (OSError, ValueError, yaml.YAMLError) as error:
-                raise UserError(f"parameter file '{file}' can not be read: {error}") from None
+                raise UserError(f"parameter file '{file}' cannot be read: {error}") from None
             except RuntimeError as error:
                 if "does not contain" in str(error):
                     continue

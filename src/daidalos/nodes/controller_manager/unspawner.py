@@ -16,7 +16,7 @@ def unspawn(manager: ManagerClient, names: Iterable[str], node: Any) -> None:
     Raises
     ------
     UserError
-        When that can not be done.
+        When that cannot be done.
     """
     from controller_manager_msgs.srv import UnloadController
 

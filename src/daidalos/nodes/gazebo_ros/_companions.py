@@ -32,7 +32,7 @@ class Companions:
     context : Context
         Of their nodes.
     warn : callable
-        Called with a line for the user where one can not be started.
+        Called with a line for the user where one cannot be started.
     """
 
     def __init__(self, context: Context, warn: Callable[[str], None]) -> None:
@@ -72,7 +72,7 @@ class Companions:
         try:
             return _MAKERS[type(component)](component, self._context)
         except (ControlError, ExtensionError, ValueError, RuntimeError) as error:  # a parameter file that is not valid
-            self._warn(f"the controllers of '{component.context.model_name}' can not be started: {error}")
+            self._warn(f"the controllers of '{component.context.model_name}' cannot be started: {error}")
             return None
 
     def _end(self, key: int) -> None:

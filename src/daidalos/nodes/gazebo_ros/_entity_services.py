@@ -117,7 +117,7 @@ class EntityServices:
 
     def _set_state(self, request: Any, response: Any) -> None:
         if request.set_acceleration:
-            raise Failure(UNSUPPORTED, "accelerations can not be set")
+            raise Failure(UNSUPPORTED, "accelerations cannot be set")
         state = request.state
         twist = state.twist
         velocity = np.array(vector_of(twist.linear)), np.array(vector_of(twist.angular))
@@ -210,7 +210,7 @@ def _entity(resource: Any) -> Robot | Model:
     try:
         return read_entity_file(path)
     except (OSError, UnicodeDecodeError) as error:
-        raise Failure(_NO_RESOURCE, f"{path} can not be read: {error}") from None
+        raise Failure(_NO_RESOURCE, f"{path} cannot be read: {error}") from None
 
 
 def _state(simulation: Simulation, name: str) -> Any:

@@ -198,7 +198,7 @@ class Host:
         Raises
         ------
         SimulationError
-            When it can not be simulated; the world is then the old one.
+            When it cannot be simulated; the world is then the old one.
         """
         simulation = self._make(world)
 

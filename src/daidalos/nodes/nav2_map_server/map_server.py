@@ -75,7 +75,7 @@ class MapServer(ManagedNode):
         Raises
         ------
         MapFileError
-            When it can not be read.
+            When it cannot be read.
         """
         grid = load_map(_path_of(url))
         stamp = self.get_clock().now().to_msg()

@@ -40,7 +40,7 @@ def run_expression(name: str, arguments: argparse.Namespace, apply: Callable[[An
     arguments
         What `parse` returned.
     apply
-        Called with a message and the class of the output; returns a message. Raises UserError where it can not.
+        Called with a message and the class of the output; returns a message. Raises UserError where it cannot.
     """
     import rclpy
     from rclpy.executors import SingleThreadedExecutor
@@ -79,7 +79,7 @@ def evaluate(expression: str, names: dict[str, Any]) -> Any:
         return eval(expression, {}, names)
     except Exception as error:
         kind = type(error).__name__
-        raise UserError(f"the expression '{expression}' can not be evaluated: {kind}: {error}") from None
+        raise UserError(f"the expression '{expression}' cannot be evaluated: {kind}: {error}") from None
 
 
 def _wait_for_input(node: Node, executor: Executor, arguments: argparse.Namespace) -> tuple[str, Any, Any]:

@@ -83,7 +83,7 @@ class Switch(Node):
             self.added(request.topic)
             self.get_logger().info(f"added {request.topic}")
         else:
-            self.get_logger().warning(f"tried to add a topic that is there already, or can not be: [{request.topic}]")
+            self.get_logger().warning(f"tried to add a topic that is there already, or cannot be: [{request.topic}]")
         return response
 
     def _on_delete(self, request: Any, response: Any) -> Any:

@@ -62,9 +62,9 @@ def run_tool(make: Callable[..., Node], usage: str, read: Callable[[Sequence[str
     make
         The node's class.
     usage
-        Shown when the words can not be read.
+        Shown when the words cannot be read.
     read
-        Turns words into parameters; raises ValueError or IndexError where it can not.
+        Turns words into parameters; raises ValueError or IndexError where it cannot.
     """
     words = program_arguments()
     if set(words) & {"-h", "--help"}:

@@ -131,7 +131,7 @@ class TurtleInterface:
         """Return whether numbers are valid positions and speeds; log an error if they are not."""
         if all(abs(number) < _MAX_MAGNITUDE for number in numbers):
             return True
-        self._node.get_logger().error(f"Turtle [{self.turtle.name}] can not obey {numbers}")
+        self._node.get_logger().error(f"Turtle [{self.turtle.name}] cannot obey {numbers}")
         return False
 
     # Action.

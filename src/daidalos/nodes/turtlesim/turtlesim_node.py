@@ -124,7 +124,7 @@ class TurtleSim(Node):
         if all(map(math.isfinite, (request.x, request.y, request.theta))):
             response.name = self._spawn(request.name, request.x, request.y, request.theta)
         else:
-            self.get_logger().error("A turtle can not be spawned where no number says")
+            self.get_logger().error("A turtle cannot be spawned where no number says")
         return response
 
     def _on_kill(self, request: Any, response: Any) -> Any:
@@ -136,7 +136,7 @@ class TurtleSim(Node):
         return response
 
     def _spawn(self, wanted: str, x: float, y: float, theta: float) -> str:
-        """Add a turtle and return its name, empty when there can not be one of that name."""
+        """Add a turtle and return its name, empty when there cannot be one of that name."""
         from rclpy.exceptions import InvalidTopicNameException
         from rclpy.validate_topic_name import validate_topic_name
 
@@ -147,7 +147,7 @@ class TurtleSim(Node):
         try:
             validate_topic_name(f"{name}/pose")
         except InvalidTopicNameException as error:
-            self.get_logger().error(f"A turtle can not be named [{name}]: {str(error).splitlines()[0]}")
+            self.get_logger().error(f"A turtle cannot be named [{name}]: {str(error).splitlines()[0]}")
             return ""
         turtle = Turtle(name, x, y, theta, kind=self._free_kind())
         self._turtles[name] = TurtleInterface(self, turtle, self._draw)

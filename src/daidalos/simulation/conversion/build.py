@@ -104,7 +104,7 @@ class _Builder:
             base = self._base()
             self._add_branches([(base, joint, False) for joint in in_world])
             for link in self._held:
-                self._warn(f"{link.where}: link {link.name!r} stays where it is, as an infinite plane can not move")
+                self._warn(f"{link.where}: link {link.name!r} stays where it is, as an infinite plane cannot move")
                 self._add_link(base, link, link.pose)
                 self._add_children(link, moves=False)
         for link in self._free:

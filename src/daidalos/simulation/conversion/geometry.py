@@ -63,7 +63,7 @@ def add_geoms(body: Any, geometry: Geometry, pose: Pose, assets: Assets, static:
     Raises
     ------
     DescriptionError
-        When a mesh or image is missing or can not be read.
+        When a mesh or image is missing or cannot be read.
     """
     if isinstance(geometry, Empty):
         return []
@@ -74,7 +74,7 @@ def add_geoms(body: Any, geometry: Geometry, pose: Pose, assets: Assets, static:
         return _add_solid(body, assets.solid(triangles_of(geometry), decompose), pose)
     if isinstance(geometry, Heightmap):
         if not static:
-            raise DescriptionError("a heightmap can not move", geometry.where)
+            raise DescriptionError("a heightmap cannot move", geometry.where)
         return _add_terrain(body, geometry, pose, assets)
     return _ADDERS[type(geometry)](body, geometry, pose)
 

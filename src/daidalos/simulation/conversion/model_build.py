@@ -41,7 +41,7 @@ class ModelBuild:
     joints : dict
         Joint to the names of MuJoCo's joints.
     start : dict
-        MuJoCo's joints that can not start at zero, with where they do.
+        MuJoCo's joints that cannot start at zero, with where they do.
     free : dict
         Link to the name of its free joint.
     base : MjsBody or None

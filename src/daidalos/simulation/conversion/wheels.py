@@ -54,7 +54,7 @@ def wheel_disc(joint: Joint | None, collision: Collision) -> Disc | None:
     Raises
     ------
     DescriptionError
-        When its mesh can not be read.
+        When its mesh cannot be read.
     """
     if joint is None or joint.type not in (JointType.CONTINUOUS, JointType.REVOLUTE):
         return None

@@ -106,7 +106,7 @@ def make_scene(items: Iterable[Item], warn: Callable[[str], None]) -> Scene:
     ----------
     items : iterable of Item
     warn : callable
-        Called with a line for each visual that can not be drawn; it is left out.
+        Called with a line for each visual that cannot be drawn; it is left out.
     """
     pairs: list[tuple[Item, Part]] = []
     for item in items:

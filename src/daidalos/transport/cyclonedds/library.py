@@ -1,7 +1,7 @@
 """Bindings to the C library of the `cyclonedds` package.
 
 The package's own Python layer encodes messages itself and holds the interpreter's lock while a write is blocked;
-here messages are bytes already, so the library's functions for serialised samples are called directly.
+here messages are bytes already, so the library's functions for serialized samples are called directly.
 """
 
 from __future__ import annotations

@@ -147,10 +147,10 @@ class SampleReader:
             if count < _BATCH:
                 return
 
-    def _copy(self, serialised: int | None) -> bytes:
+    def _copy(self, serialized: int | None) -> bytes:
         library, vector = self._library, self._vector
-        size = library.ddsi_serdata_size(serialised)
-        held = library.ddsi_serdata_to_ser_ref(serialised, 0, size, self._reference)
+        size = library.ddsi_serdata_size(serialized)
+        held = library.ddsi_serdata_to_ser_ref(serialized, 0, size, self._reference)
         data = c.string_at(vector.base, vector.length)
         library.ddsi_serdata_to_ser_unref(held, self._reference)
         return data

@@ -1,4 +1,4 @@
-"""DDS writers of serialised samples, and the queue of samples that readers do not take in time."""
+"""DDS writers of serialized samples, and the queue of samples that readers do not take in time."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _LOG_INTERVAL_NS = 5_000_000_000
 
 
 class Writer:
-    """A DDS writer of serialised samples.
+    """A DDS writer of serialized samples.
 
     A reader that does not keep up blocks `write` for at most `qos.BLOCKING_NS`. Samples that it has not
     taken by then wait in a queue as long as the history, which a thread empties: what is within the history's depth is
@@ -87,10 +87,10 @@ class Writer:
         with self._lock:
             if self._closed:
                 return True
-            serialised = library.ddsi_serdata_from_ser_iov(self._type, SERDATA_DATA, count, buffers, size)
-            if not serialised:
+            serialized = library.ddsi_serdata_from_ser_iov(self._type, SERDATA_DATA, count, buffers, size)
+            if not serialized:
                 raise CdrError(f"DDS refused a sample of {size} bytes on '{self._name}'")
-            result: int = library.dds_writecdr(self.entity, serialised)
+            result: int = library.dds_writecdr(self.entity, serialized)
         return result != RETCODE_TIMEOUT
 
     def _append(self, parts: list[Any], *, first: bool = False) -> bool:

@@ -224,7 +224,7 @@ class Interpreter:
                 raise
             except (IndexError, ValueError, re.error) as error:
                 if len(call.values) >= len(command.arguments):
-                    raise self._fault(command, f"{name}() can not be run with these arguments: {error}") from None
+                    raise self._fault(command, f"{name}() cannot be run with these arguments: {error}") from None
                 self.contents.notes.append(f"{call.where}: {name}() was left out: a variable is not set here")
         elif name not in self._ignored:
             self.contents.notes.append(f"{call.where}: {name}() is not understood and was left out")

@@ -78,14 +78,13 @@ def __expose_impl(name: str, parse_methods_map: dict[str, Callable[..., Any]], e
             parse = getattr(exposed, "parse", None)
             if not callable(parse):
                 raise RuntimeError(
-                    f"the {exposed_type} '{name}' can not be exposed: the class {exposed.__name__} has no "
-                    "method 'parse'"
+                    f"the {exposed_type} '{name}' cannot be exposed: the class {exposed.__name__} has no method 'parse'"
                 )
         elif callable(exposed):
             parse = exposed
         else:
             raise RuntimeError(
-                f"the {exposed_type} '{name}' can not be exposed: {exposed!r} is neither a class nor a function"
+                f"the {exposed_type} '{name}' cannot be exposed: {exposed!r} is neither a class nor a function"
             )
         known = parse_methods_map.setdefault(name, parse)
         if not _same(known, parse):

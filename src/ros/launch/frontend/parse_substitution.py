@@ -108,7 +108,7 @@ class _Reader:
             raise self.error(start, "the name of a substitution is missing after '$('")
         self.at = name.end()
         if self.peek() and not self.peek().isspace() and self.peek() != ")":
-            raise self.error(start, f"'{self.peek()}' can not follow the substitution's name '{name[0]}'")
+            raise self.error(start, f"'{self.peek()}' cannot follow the substitution's name '{name[0]}'")
         arguments: list[list[Substitution]] = []
         self.skip_space()
         while self.peek() and self.peek() != ")":

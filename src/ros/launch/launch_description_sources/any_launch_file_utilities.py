@@ -36,7 +36,7 @@ def get_launch_description_from_any_launch_file(
     InvalidLaunchFileError
         If no kind fits.
     OSError
-        If the file can not be read.
+        If the file cannot be read.
     """
     if not os.path.isfile(launch_file_path):
         raise FileNotFoundError(f"the launch file '{launch_file_path}' does not exist")

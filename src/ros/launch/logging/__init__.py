@@ -84,7 +84,7 @@ class LaunchConfig:
             return
         folder = os.path.abspath(new_log_dir)
         if self._file_handlers:
-            raise RuntimeError("the log folder can not be changed once log files were opened in it")
+            raise RuntimeError("the log folder cannot be changed once log files were opened in it")
         if not (os.path.isdir(folder) and os.access(folder, os.W_OK)):
             raise ValueError(f"'{folder}' is not a folder that can be written to")
         self._log_dir = folder

@@ -56,7 +56,7 @@ def output_screen_formatter() -> logging.Formatter:
 def _choose(name: str, style: Style | None, standard: dict[str, str]) -> tuple[str, Style]:
     if name in standard:
         if style is not None:
-            raise ValueError(f"the format '{name}' has its own style; '{style}' can not be set for it")
+            raise ValueError(f"the format '{name}' has its own style; '{style}' cannot be set for it")
         return standard[name], "{"
     return name, style or "{"
 

@@ -70,7 +70,7 @@ class Command(Substitution):
         try:
             arguments = shlex.split(line) if os.name != "nt" else shlex.split(line.replace("\\", "/"))
         except ValueError as error:
-            raise SubstitutionFailure(f"the command line '{line}' can not be split: {error}") from error
+            raise SubstitutionFailure(f"the command line '{line}' cannot be split: {error}") from error
         if not arguments:
             raise SubstitutionFailure("the command line is empty")
         result = _run(arguments, dict(context.environment), line, merged=on_stderr == "capture")
@@ -109,4 +109,4 @@ def _run(
             check=False,
         )
     except OSError as error:
-        raise SubstitutionFailure(f"the command can not be run: {line}: {error}") from error
+        raise SubstitutionFailure(f"the command cannot be run: {line}: {error}") from error

@@ -51,4 +51,4 @@ class FileContent(Substitution):
             with open(path, encoding="utf-8") as file:
                 return file.read()
         except (OSError, UnicodeDecodeError) as error:
-            raise SubstitutionFailure(f"the file '{path}' can not be read: {error}") from error
+            raise SubstitutionFailure(f"the file '{path}' cannot be read: {error}") from error

@@ -1,8 +1,8 @@
-"""The error of a substitution whose text can not be worked out."""
+"""The error of a substitution whose text cannot be worked out."""
 
 
 class SubstitutionFailure(RuntimeError):
-    """A substitution's text can not be worked out."""
+    """A substitution's text cannot be worked out."""
 
     def __init__(self, msg: object) -> None:
         super().__init__(msg)

@@ -111,7 +111,7 @@ class AsyncSafeSignalManager:
 
     def __uninstall(self, signum: int) -> None:
         previous = self.__replaced.pop(signum)
-        # None stands for a handler that was not installed from Python; it can not be put back.
+        # None stands for a handler that was not installed from Python; it cannot be put back.
         signal.signal(signum, signal.SIG_DFL if previous is None else previous)
 
     def __on_signal(self, signum: int, frame: FrameType | None) -> None:

@@ -140,12 +140,12 @@ def coerce_to_type(value: str, data_type: AllowedTypesType | None = None, *, can
     data_type
         The type, or None for whatever the text looks like.
     can_be_str
-        Give the text back when it can not be converted.
+        Give the text back when it cannot be converted.
 
     Raises
     ------
     ValueError
-        If it can not be converted.
+        If it cannot be converted.
     """
     if not isinstance(value, str):
         raise ValueError(f"the value to convert must be a string, but it is {value!r}")
@@ -212,12 +212,12 @@ def coerce_list(value: Iterable[str], data_type: ScalarType | None = None, *, ca
     data_type
         The type of the items, or None for whatever they all look like.
     can_be_str
-        Leave a text that can not be converted as it is.
+        Leave a text that cannot be converted as it is.
 
     Raises
     ------
     ValueError
-        If one can not be converted, or if they do not look alike.
+        If one cannot be converted, or if they do not look alike.
     """
     items = [coerce_to_type(item, data_type, can_be_str=can_be_str) for item in value]
     if data_type is not None or is_instance_of(items, None, can_be_str=can_be_str):
@@ -231,7 +231,7 @@ def get_typed_value(value: str | list[str], data_type: AllowedTypesType | None, 
     Raises
     ------
     ValueError
-        If it can not be converted.
+        If it cannot be converted.
     """
     if not isinstance(value, list):
         return coerce_to_type(value, data_type, can_be_str=can_be_str)
@@ -280,7 +280,7 @@ def normalize_typed_substitution(value: SomeValueType, data_type: AllowedTypesTy
     Raises
     ------
     TypeError
-        If the value can not become that.
+        If the value cannot become that.
     """
     scalar, is_list = (None, False) if data_type is None else extract_type(data_type)
     if isinstance(value, Mapping | bytes):
@@ -340,7 +340,7 @@ def perform_typed_substitution(context: LaunchContext, value: NormalizedValueTyp
     Raises
     ------
     ValueError
-        If the text can not be converted to the type.
+        If the text cannot be converted to the type.
     TypeError
         If the value is of another type.
     """

@@ -54,7 +54,7 @@ def instantiate_extension(
     *,
     unique_instance: bool = False,
 ) -> NodeActionExtension | None:
-    """Return an instance of an extension, None if it can not be made.
+    """Return an instance of an extension, None if it cannot be made.
 
     Parameters
     ----------

@@ -34,7 +34,7 @@ class SetParameter(Action):
 
     def __init__(self, name: Any, value: Any, **kwargs: Any) -> None:
         super().__init__(**kwargs)
-        # A name made of several pieces can not be a key as it is.
+        # A name made of several pieces cannot be a key as it is.
         key = tuple(normalize_to_list_of_substitutions(name))
         self.__parameter = normalize_parameter_dict({key: value})
 

@@ -86,7 +86,7 @@ class ComposableNode:
             text = entity.get_attr(attribute, optional=True)
             if text is not None:
                 if "condition" in kwargs:
-                    raise RuntimeError("if and unless conditions can not be used on the same node")
+                    raise RuntimeError("if and unless conditions cannot be used on the same node")
                 kwargs["condition"] = condition(parser.parse_substitution(text))
         return cls, kwargs
 

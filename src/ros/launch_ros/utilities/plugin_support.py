@@ -4,7 +4,7 @@ from __future__ import annotations
 
 
 class PluginException(Exception):
-    """An extension can not be used."""
+    """An extension cannot be used."""
 
 
 def satisfies_version(version: str, caret_range: str) -> bool:

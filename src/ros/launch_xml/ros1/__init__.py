@@ -1,4 +1,4 @@
-"""Launch files of ROS 1: recognised, translated to those of ROS 2, and what was translated is said."""
+"""Launch files of ROS 1: recognized, translated to those of ROS 2, and what was translated is said."""
 
 from launch._lazy import attach_stub
 

@@ -66,7 +66,7 @@ class Ros1Parameters(ParameterFile):
         Raises
         ------
         SubstitutionFailure
-            If the file can not be read, or is not YAML.
+            If the file cannot be read, or is not YAML.
         """
         import yaml
 
@@ -77,7 +77,7 @@ class Ros1Parameters(ParameterFile):
             try:
                 text = pathlib.Path(source).read_text(encoding="utf-8")
             except OSError as error:
-                raise SubstitutionFailure(f"the parameter file {source} can not be read: {error.strerror}") from error
+                raise SubstitutionFailure(f"the parameter file {source} cannot be read: {error.strerror}") from error
             if self.__substitutes:
                 from .translation import translate_text
 

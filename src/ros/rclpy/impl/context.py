@@ -26,7 +26,7 @@ class GraphMember(Protocol):
 
 
 class ContextHandle(Destroyable):
-    """An initialised context; valid until `shutdown`.
+    """An initialized context; valid until `shutdown`.
 
     Raises
     ------

@@ -117,7 +117,7 @@ class NodeEntities(NodeMembers, NodeParameters):
         callback
             Called with every message, and with its `MessageInfo` when it takes two arguments.
         raw
-            Whether the callback gets the serialised bytes.
+            Whether the callback gets the serialized bytes.
         content_filter_options
             Which messages are wanted; all where None.
         callback_group

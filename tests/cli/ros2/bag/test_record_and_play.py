@@ -168,7 +168,7 @@ def test_a_full_disk_ends_the_recording_with_a_word(ros2_bag, partner, tmp_path)
     assert _polled(lambda: _count(tmp_path / "bag") == 100)
     partner.talk(range(100, 5000))
     assert record.finish() == 1
-    assert "bag_0.mcap: can not be written: File too large" in record.text
+    assert "bag_0.mcap: cannot be written: File too large" in record.text
     assert "Traceback" not in record.text
     assert numbers(tmp_path / "bag") == list(range(100))
 

@@ -22,7 +22,7 @@ def read_overrides(path: str | None) -> dict[str, QoSProfile]:
     try:
         document = yaml.safe_load(Path(path).read_text(encoding="utf-8"))
     except (OSError, UnicodeDecodeError) as fault:
-        raise error(f"{path}: can not be read: {fault}") from None
+        raise error(f"{path}: cannot be read: {fault}") from None
     except yaml.YAMLError as fault:
         mark = getattr(fault, "problem_mark", None)
         where = f"line {mark.line + 1}, column {mark.column + 1}: " if mark else ""

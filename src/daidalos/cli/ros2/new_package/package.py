@@ -32,7 +32,7 @@ class NewPackage:
         if self.build_type == "ament_python" and not (self.name.isidentifier() and not keyword.iskeyword(self.name)):
             return f"'{self.name}' is not a valid name of a Python package"
         if self.build_type == "ament_python" and self.name == "test":
-            return "a package of type 'ament_python' can not be named 'test', as the folder of its tests is"
+            return "a package of type 'ament_python' cannot be named 'test', as the folder of its tests is"
         for what, name in (("node", self.node_name), ("library", self.library_name)):
             if name and not re.fullmatch(r"[a-zA-Z_]\w*", name):
                 return f"'{name}' is not a valid {what} name: it must consist of letters, digits and '_'"

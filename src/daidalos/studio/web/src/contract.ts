@@ -18,7 +18,7 @@ export interface TopicInfo {
   readonly name: string;
   /** In full, such as sensor_msgs/msg/LaserScan. */
   readonly type: string;
-  /** False where the server does not know the definition, so that messages can not be decoded. */
+  /** False where the server does not know the definition, so that messages cannot be decoded. */
   readonly known: boolean;
 }
 

@@ -50,7 +50,7 @@ function Lost({ studio }: { studio: Studio }) {
     <div class="lost" role="alert" data-test="lost">
       <span class="spinner" />
       <span>
-        <strong>Connection lost.</strong> The program that serves this page has ended or can not be reached; trying
+        <strong>Connection lost.</strong> The program that serves this page has ended or cannot be reached; trying
         again…
       </span>
     </div>

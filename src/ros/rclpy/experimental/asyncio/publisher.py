@@ -11,7 +11,7 @@ class AsyncPublisher(Publisher):
     """Publisher of messages on a topic; made by `AsyncNode.create_publisher`."""
 
     def publish(self, msg: Any) -> None:
-        """Send a message, or one already serialised as bytes.
+        """Send a message, or one already serialized as bytes.
 
         Raises
         ------

@@ -91,7 +91,7 @@ export class Layout {
         this.dock.fromJSON(saved);
         return;
       } catch (error) {
-        console.warn("the saved layout can not be used", error);
+        console.warn("the saved layout cannot be used", error);
         this.dock.clear();
       }
     }

@@ -114,7 +114,7 @@ describe("subscriptions", () => {
     expect(received("batch").at(-1)?.messages[0]?.message).toEqual({ data: "again" });
   });
 
-  it("reports an error for messages that can not be read and goes on", () => {
+  it("reports an error for messages that cannot be read and goes on", () => {
     advertise(4, "/a");
     link.receivePage({ kind: "subscribe", topic: "/a", keep: 4 });
     link.receiveBinary(message(subscription(), "good").slice(0, 19));

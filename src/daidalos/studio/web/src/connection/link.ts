@@ -200,7 +200,7 @@ export class Link {
             transfer.push(payload.buffer as ArrayBuffer);
           }
         } catch (error) {
-          this.reportError(`${topic}: a message can not be read: ${String(error)}`, `read:${topic}`);
+          this.reportError(`${topic}: a message cannot be read: ${String(error)}`, `read:${topic}`);
         }
       }
     }
@@ -307,7 +307,7 @@ export class Link {
       reader = attempt(() => makeReader(channel.schema));
       this.readers.set(topic, reader);
       if (reader instanceof Error && channel.schemaEncoding !== undefined) {
-        this.reportError(`${topic}: the definition of ${channel.schemaName} can not be read: ${reader.message}`);
+        this.reportError(`${topic}: the definition of ${channel.schemaName} cannot be read: ${reader.message}`);
       }
     }
     return reader instanceof Error ? undefined : reader;

@@ -65,7 +65,7 @@ export class Session implements contract.Session {
     this.send({ kind: "open", url });
   }
 
-  /** Listen to a topic, existing or not; keep this many messages when the page can not follow. */
+  /** Listen to a topic, existing or not; keep this many messages when the page cannot follow. */
   subscribe<M>(topic: string, keep: number, received: Listener<M>): () => void {
     const subscriber: Subscriber = { keep, received: received as Listener<never> };
     const others = this.subscribers.get(topic) ?? new Set();

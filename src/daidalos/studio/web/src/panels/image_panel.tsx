@@ -42,7 +42,7 @@ function ImagePanel({ studio, visible, params, remember }: PanelProps) {
             errorText.value = "";
           })
           .catch((error: Error) => {
-            errorText.value = error instanceof ImageError ? error.message : `${topic}: the image can not be decoded`;
+            errorText.value = error instanceof ImageError ? error.message : `${topic}: the image cannot be decoded`;
           })
           .finally(() => (drawing = false));
       }

@@ -20,6 +20,6 @@ it("gives back what was edited", () => {
   expect(fromText(toText(message))).toEqual(edited);
 });
 
-it("keeps integers that JavaScript's numbers can not hold", () => {
+it("keeps integers that JavaScript's numbers cannot hold", () => {
   expect(fromText(toText({ large: 2n ** 63n - 1n }))).toEqual({ large: "9223372036854775807" });
 });

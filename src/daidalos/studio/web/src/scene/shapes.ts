@@ -45,7 +45,7 @@ export function thickLine(color: Color | string | number, width: number): Line2 
 
 /** Give a thick line new points (x, y, z one after another). */
 export function setLinePoints(line: Line2, points: number[] | Float32Array): void {
-  // A line's buffers can not grow: a new geometry is what the library expects.
+  // A line's buffers cannot grow: a new geometry is what the library expects.
   line.geometry.dispose();
   const geometry = new LineGeometry();
   if (points.length >= 6) {

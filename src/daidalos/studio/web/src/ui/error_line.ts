@@ -1,4 +1,4 @@
-// One line in place of a panel that can not be shown.
+// One line in place of a panel that cannot be shown.
 
 export function showErrorLine(element: HTMLElement, text: string): void {
   const line = document.createElement("div");

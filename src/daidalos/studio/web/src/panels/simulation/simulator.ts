@@ -20,7 +20,7 @@ import {
 import type { ColorRGBA } from "../../generated/std_msgs";
 import type { Outgoing, ServiceType } from "../../contract";
 
-/** The service by which a simulator is recognised. */
+/** The service by which a simulator is recognized. */
 export const SIMULATOR_TYPE = "simulation_interfaces/srv/SetSimulationState";
 const KEEP = 1;
 

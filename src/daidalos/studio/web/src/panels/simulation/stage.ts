@@ -277,7 +277,7 @@ export class Stage {
       assets: this.context.assets,
       dark: true,
       changed: this.touch,
-      onError: () => undefined, // a mesh that can not be read: the rest is shown
+      onError: () => undefined, // a mesh that cannot be read: the rest is shown
     });
   }
 
