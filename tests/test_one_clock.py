@@ -17,6 +17,7 @@ OTHER_CLOCKS = {
     "ClockType": {"STEADY_TIME", "SYSTEM_TIME"},
 }
 ALLOWED = {
+    "nodes/asset_folders.py": "the age of a file",
     "nodes/daidalos_demo/_measuring.py": "the computing time of other processes",
     "nodes/daidalos_demo/_robot.py": "when to ask again whether other processes are up",
     "nodes/gazebo_ros/_pacing.py": "the pace of simulated time in real time",

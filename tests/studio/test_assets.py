@@ -54,41 +54,59 @@ def test_refuses_what_is_outside_absent_or_no_mesh(resolver, uri):
     assert str(caught.value).startswith(uri)
 
 
-def test_files_need_a_description_that_names_them(resolver, tmp_path):
+def test_files_are_read_from_the_folders_that_the_caller_allows(share, tmp_path):
     part = tmp_path / "elsewhere" / "part.stl"
     part.parent.mkdir()
     part.write_bytes(b"part")
-    (part.parent / "texture.png").write_bytes(b"texture")
     (part.parent / "key.txt").write_bytes(b"key")
-    with pytest.raises(AssetError):
-        resolver.read(part.as_uri())
-    resolver.allow_meshes_of(f'<mesh filename="{part.as_uri()}"/><mesh filename="file:///etc/passwd"/>')
+    lines = []
+    resolver = AssetResolver(lambda _: share, lambda path: path.is_relative_to(part.parent.resolve()), lines.append)
     assert resolver.read(part.as_uri()) == b"part"
-    assert resolver.read((part.parent / "texture.png").as_uri()) == b"texture"
-    for refused in [part.parent / "key.txt", part.parent / ".." / "share" / "outside.stl"]:
-        with pytest.raises(AssetError):
-            resolver.read("file://" + str(refused))
-    with pytest.raises(AssetError):
-        resolver.read("file:///etc/passwd")
+    with pytest.raises(AssetError, match="not a mesh"):
+        resolver.read((part.parent / "key.txt").as_uri())
+    assert not lines
+    outside = f"file://{part.parent}/../share/outside.stl"
+    with pytest.raises(AssetError, match="outside of"):
+        resolver.read(outside)
+    assert len(lines) == 1
+    assert outside in lines[0]
 
 
-def test_what_a_simulator_shows_may_be_read(resolver, tmp_path):
-    part = tmp_path / "world" / "rock.png"
-    part.parent.mkdir()
-    part.write_bytes(b"rock")
-    for uri in ("", "model://rock", part.with_suffix(".txt").as_uri()):
-        resolver.allow(uri)
-    with pytest.raises(AssetError):
-        resolver.read(part.as_uri())
-    resolver.allow(part.as_uri())
-    assert resolver.read(part.as_uri()) == b"rock"
-
-
-def test_follows_links_that_a_symlinked_install_makes(resolver, share, tmp_path):
-    source = tmp_path / "source.stl"
-    source.write_bytes(b"source")
+def linked(link, target):
     try:
-        os.symlink(source, share / "meshes" / "linked.stl")
+        os.symlink(target, link)
     except OSError:
         pytest.skip("this system makes no links")
+
+
+def test_a_link_out_of_a_package_needs_an_allowed_target(share, tmp_path):
+    sources = tmp_path / "src"
+    sources.mkdir()
+    (sources / "mesh.stl").write_bytes(b"source")
+    (tmp_path / "private.png").write_bytes(b"private")
+    (sources / "key.txt").write_bytes(b"key")
+    linked(share / "meshes" / "linked.stl", sources / "mesh.stl")
+    linked(share / "meshes" / "private.png", tmp_path / "private.png")
+    linked(share / "meshes" / "key.png", sources / "key.txt")
+    linked(share / "meshes" / "up", tmp_path)
+    linked(share / "meshes" / "loop.png", share / "meshes" / "loop.png")
+    resolver = AssetResolver(lambda _: share, lambda path: path.is_relative_to(sources.resolve()))
     assert resolver.read("package://my_robot/meshes/linked.stl") == b"source"
+    for refused in ("private.png", "key.png", "up/private.png", "loop.png"):
+        with pytest.raises(AssetError):
+            resolver.read(f"package://my_robot/meshes/{refused}")
+
+
+@pytest.mark.parametrize(
+    "uri", ["file://server/share/a.png", "file:a.png", "package://my_robot/" + "a" * 5000 + ".png"]
+)
+def test_no_path_of_another_machine_nor_a_relative_one(share, uri):
+    with pytest.raises(AssetError):
+        AssetResolver(lambda _: share, lambda path: True).read(uri)
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="this system has no named pipes")
+def test_a_pipe_is_not_read(share):
+    os.mkfifo(share / "meshes" / "pipe.png")
+    with pytest.raises(AssetError, match="not a file"):
+        AssetResolver(lambda _: share).read("package://my_robot/meshes/pipe.png")

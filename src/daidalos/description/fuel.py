@@ -35,7 +35,7 @@ def fuel_candidates(uri: str, model_path: Sequence[Path] = ()) -> Iterator[Path]
     if address is None:
         return
     name, inside = unquote(address["name"]), unquote(address["inside"] or "")
-    for cache in _caches():
+    for cache in fuel_caches():
         for server in dict.fromkeys((address["server"], *(_SERVERS if address["server"] in _SERVERS else ()))):
             folder = cache / server / unquote(address["owner"]).lower() / address["kind"] / name.lower()
             yield from (version / inside for version in _versions(folder, address["version"]))
@@ -43,7 +43,8 @@ def fuel_candidates(uri: str, model_path: Sequence[Path] = ()) -> Iterator[Path]
         yield from (folder / called / inside for called in dict.fromkeys((name, re.sub(r"\W+", "_", name.lower()))))
 
 
-def _caches() -> list[Path]:
+def fuel_caches() -> list[Path]:
+    """Return the folders in which Fuel's tools keep what they downloaded."""
     named = (os.environ.get(variable) for variable in ("GZ_FUEL_CACHE_PATH", "IGN_FUEL_CACHE_PATH"))
     home = Path.home()
     return [*(Path(folder) for folder in named if folder), home / ".gz" / "fuel", home / ".ignition" / "fuel"]

@@ -64,15 +64,19 @@ def resolve_uri(
     return next((path for path in candidates if path.exists()), None)
 
 
-def default_model_path() -> tuple[Path, ...]:
-    """Return the folders in Gazebo's environment variables, and the user's own models."""
-    folders = [
+def environment_model_path() -> tuple[Path, ...]:
+    """Return the folders in Gazebo's environment variables."""
+    return tuple(
         Path(folder)
         for variable in _MODEL_PATH_VARIABLES
         for folder in os.environ.get(variable, "").split(os.pathsep)
         if folder
-    ]
-    return (*folders, Path.home() / ".gazebo" / "models")
+    )
+
+
+def default_model_path() -> tuple[Path, ...]:
+    """Return the folders in Gazebo's environment variables, and the user's own models."""
+    return (*environment_model_path(), Path.home() / ".gazebo" / "models")
 
 
 def packages_near(name: str, folder: Path) -> Iterator[Path]:

@@ -46,6 +46,9 @@ def run_program(body: Callable[[], None], interrupted: int = 0) -> int:
     from rclpy.exceptions import NotInitializedException
     from rclpy.signals import is_orderly
 
+    from daidalos.nodes.asset_folders import record_named_files
+
+    record_named_files(sys.argv[1:])
     try:
         body()
     except (UserError, NotInitializedException) as error:

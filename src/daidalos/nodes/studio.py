@@ -9,20 +9,17 @@ import sys
 import webbrowser
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 from urllib.parse import urlencode
 
 from rclpy.node import Node
 
-from daidalos.description.resolve import default_model_path
 from daidalos.distribution import DISTRIBUTION
+from daidalos.nodes.asset_folders import is_asset_readable
 from daidalos.nodes.foxglove_bridge._graph_source import RosGraphSource
 from daidalos.nodes.packages import package_share
-from daidalos.nodes.qos import LATCHED
 from daidalos.studio.arrangement import Arrangement
 from daidalos.studio.assets import AssetResolver
 from daidalos.studio.server import DEFAULT_PORT, LOOPBACK, StudioServer
-from daidalos.transport.graph import EndpointInfo, EndpointKind, NodeInfo
 
 
 class Studio:
@@ -52,23 +49,16 @@ class Studio:
         hosts: Sequence[str] = LOOPBACK,
         arrangement: Arrangement | None = None,
     ) -> None:
-        self._node = node
-        self._graph = node.handle.graph
-        self._assets = AssetResolver(_share_directory, default_model_path())
-        self._source = RosGraphSource(node, self._read_shapes)
+        self._source = RosGraphSource(node)
         self._server = StudioServer(
             self._source,
             port=port,
             hosts=hosts,
-            assets=self._assets,
+            assets=AssetResolver(_share_directory, is_asset_readable, node.get_logger().warning),
             arrangement=arrangement,
             metadata={"ROS_DISTRO": os.environ.get("ROS_DISTRO", DISTRIBUTION)},
         )
         self._server.start()
-        self._seen: set[str] = set()
-        self._description_found = node.create_guard_condition(self._read_descriptions)
-        self._stop_watching = self._graph.listen(self._on_graph_change)
-        self._description_found.trigger()
 
     def url(self, panel: str = "", front: str = "", **details: str) -> str:
         """Return the page's address for a browser on this machine.
@@ -88,31 +78,8 @@ class Studio:
 
     def close(self) -> None:
         """Close the page's connections and the port."""
-        self._stop_watching()
         self._server.stop()
         self._source.close()
-
-    def _on_graph_change(self, added: bool, what: NodeInfo | EndpointInfo) -> None:
-        if added and isinstance(what, EndpointInfo) and what.name.endswith("/robot_description"):
-            self._description_found.trigger()
-
-    def _read_descriptions(self) -> None:
-        """Allow the page the meshes of every robot that is described in the graph."""
-        from std_msgs.msg import String
-
-        published = {endpoint.name for endpoint in self._graph.endpoints(EndpointKind.PUBLISHER)}
-        for topic in {name for name in published if name.endswith("/robot_description")} - self._seen:
-            self._seen.add(topic)
-            self._node.create_subscription(String, topic, lambda text: self._assets.allow_meshes_of(text.data), LATCHED)
-
-    def _read_shapes(self, response: Any) -> None:
-        """Allow the page the meshes and textures of the shapes that a simulator returns."""
-        from daidalos_msgs.srv import GetShapes
-
-        if isinstance(response, GetShapes.Response):
-            for shape in response.shapes:
-                self._assets.allow(shape.mesh_resource)
-                self._assets.allow(shape.texture_resource)
 
 
 def open_in_browser(url: str) -> bool:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Callable, Iterable
+import stat
+from collections.abc import Callable
 from pathlib import Path, PurePosixPath
 from urllib.parse import unquote, urlsplit
 from urllib.request import url2pathname
@@ -15,41 +15,43 @@ EXTENSIONS = frozenset(
     }
 )  # fmt: skip
 LIMIT_BYTES = 512 << 20
-_FILE_REFERENCE = re.compile(r"""["'](file://[^"']+)["']""")
+MAX_URI_LENGTH = 4096
 
 
 class AssetError(Exception):
     """An asset that is missing or may not be read; the text is shown to the client."""
 
 
+class AssetRefusedError(AssetError):
+    """An asset outside of the folders that may be read."""
+
+
 class AssetResolver:
-    """Reads assets from packages' share directories and from where robot descriptions point.
+    """Reads assets from packages' share directories and from folders that the user named.
+
+    Nothing that a client sends, or that arrives over the graph, changes which files these are. Paths are compared
+    after links are resolved, so that a link can not lead out of these folders.
 
     Parameters
     ----------
     share_directory
         Finds a package's share directory; None when there is no such package.
-    directories
-        More directories whose files may be read by ``file://``.
+    is_readable
+        Returns whether a file outside of its package may be read, given its path without links: one that ``file://``
+        names, or to which a link in a package leads.
+    warn
+        Called with a line about every URI that is refused.
     """
 
-    def __init__(self, share_directory: Callable[[str], Path | None], directories: Iterable[Path] = ()) -> None:
+    def __init__(
+        self,
+        share_directory: Callable[[str], Path | None],
+        is_readable: Callable[[Path], bool] = lambda path: False,
+        warn: Callable[[str], object] = lambda line: None,
+    ) -> None:
         self._share_directory = share_directory
-        self._directories = {_normal(Path(directory)) for directory in directories}
-
-    def allow_meshes_of(self, description: str) -> None:
-        """Allow the folders of the files that a robot's description names by ``file://``.
-
-        Folders, because a mesh has its textures beside it; the list of extensions still holds.
-        """
-        for uri in _FILE_REFERENCE.findall(description):
-            self.allow(uri)
-
-    def allow(self, uri: str) -> None:
-        """Allow the folder of a mesh or texture that is named by ``file://``; other addresses change nothing."""
-        path = _file_path(uri) if uri.startswith("file://") else None
-        if path is not None and path.suffix.lower() in EXTENSIONS:
-            self._directories.add(path.parent)
+        self._is_readable = is_readable
+        self._warn = warn
 
     def read(self, uri: str) -> bytes:
         """Return the bytes of an asset.
@@ -59,54 +61,65 @@ class AssetResolver:
         AssetError
             When the scheme is unknown, the file is absent, too large, or outside of what may be read.
         """
-        path = self._locate(uri)
-        if path.suffix.lower() not in EXTENSIONS:
-            raise AssetError(f"{uri}: {path.suffix or 'a file without extension'} is not a mesh or texture")
         try:
-            if path.stat().st_size > LIMIT_BYTES:
-                raise AssetError(f"{uri}: larger than {LIMIT_BYTES >> 20} MiB")
-            return path.read_bytes()
+            return self._read(uri)
+        except AssetRefusedError as error:
+            self._warn(f"not served to the page: {error}")
+            raise
+
+    def _read(self, uri: str) -> bytes:
+        if len(uri) > MAX_URI_LENGTH:
+            raise AssetError(f"{uri[:80]}...: longer than {MAX_URI_LENGTH} characters")
+        try:
+            path, share = self._locate(uri)
+            real = path.resolve()
+            if not (share is not None and real.is_relative_to(share.resolve())) and not self._is_readable(real):
+                raise AssetRefusedError(
+                    f"{uri}: outside of the packages, the sources of their workspace, the model path "
+                    "(GZ_SIM_RESOURCE_PATH) and the folders of files on the command line"
+                )
+            for name in (path, real):
+                if name.suffix.lower() not in EXTENSIONS:
+                    raise AssetError(f"{uri}: {name.suffix or 'a file without extension'} is not a mesh or texture")
+            return _read_regular(real, uri)
         except FileNotFoundError:
             raise AssetError(f"{uri}: no such file") from None
-        except (OSError, ValueError) as error:
+        except (OSError, ValueError, RuntimeError) as error:  # a link to itself is a RuntimeError
             reason = error.strerror if isinstance(error, OSError) else str(error)
             raise AssetError(f"{uri}: {reason}") from None
 
-    def _locate(self, uri: str) -> Path:
+    def _locate(self, uri: str) -> tuple[Path, Path | None]:
+        """Return the path that a URI names, and its package's share directory for ``package://``."""
         try:
             parts = urlsplit(uri)
         except ValueError:
             raise AssetError(f"{uri}: not a URI") from None
         if parts.scheme == "package":
             return self._in_package(uri, parts.netloc, unquote(parts.path))
-        if parts.scheme == "file":
-            path = _file_path(uri)
-            if any(path.is_relative_to(directory) for directory in self._directories):
-                return path
-            raise AssetError(f"{uri}: outside of the packages and of what robot descriptions name")
-        raise AssetError(f"{uri}: expected package:// or file://")
+        if parts.scheme != "file":
+            raise AssetError(f"{uri}: expected package:// or file://")
+        if parts.netloc not in ("", "localhost"):
+            raise AssetRefusedError(f"{uri}: names another machine")
+        path = Path(url2pathname(parts.path))
+        if not path.is_absolute():
+            raise AssetError(f"{uri}: expected an absolute path")
+        return path, None
 
-    def _in_package(self, uri: str, package: str, path: str) -> Path:
+    def _in_package(self, uri: str, package: str, path: str) -> tuple[Path, Path]:
         share = self._share_directory(package)
         if share is None:
             raise AssetError(f"{uri}: no package {package!r}")
         relative = PurePosixPath(path.lstrip("/"))
-        # By name, not by what links resolve to: --symlink-install makes a workspace link to its sources.
         if ".." in relative.parts or "\\" in path:
-            raise AssetError(f"{uri}: leaves its package")
-        return share.joinpath(*relative.parts)
+            raise AssetRefusedError(f"{uri}: leaves its package")
+        return share.joinpath(*relative.parts), share
 
 
-def _file_path(uri: str) -> Path:
-    return _normal(Path(url2pathname(uri.removeprefix("file://"))))
-
-
-def _normal(path: Path) -> Path:
-    """Resolve ``..`` by name; what may be read is decided on the result."""
-    parts: list[str] = []
-    for part in path.absolute().parts:
-        if part == "..":
-            parts = parts[:-1] or parts
-        else:
-            parts.append(part)
-    return Path(*parts)
+def _read_regular(path: Path, uri: str) -> bytes:
+    """Return the bytes of a regular file; a pipe or a device would block or never end."""
+    found = path.stat()
+    if not stat.S_ISREG(found.st_mode):
+        raise AssetError(f"{uri}: not a file")
+    if found.st_size > LIMIT_BYTES:
+        raise AssetError(f"{uri}: larger than {LIMIT_BYTES >> 20} MiB")
+    return path.read_bytes()

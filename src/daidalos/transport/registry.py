@@ -93,7 +93,7 @@ class Registry:
     @contextmanager
     def locked(self) -> Iterator[None]:
         """Lock the registry against other readers and writers while the context lasts."""
-        with _open_private(self.folder / "registry.lock") as file:
+        with open_private(self.folder / "registry.lock") as file:
             _lock(file, wait=True)
             yield
 
@@ -127,10 +127,10 @@ class Registry:
 
     def register(self, peer: Peer) -> None:
         """Register this session until this process ends or `unregister` is called."""
-        self._entry = _open_private(self.folder / f"{peer.session}.alive")
+        self._entry = open_private(self.folder / f"{peer.session}.alive")
         _lock(self._entry, wait=False)
         self._data = self.folder / f"{peer.session}.json"
-        with _open_private(self._data) as file:
+        with open_private(self._data) as file:
             file.write(json.dumps(peer.endpoints).encode())
 
     def unregister(self) -> None:
@@ -145,7 +145,7 @@ class Registry:
         entry.close()
 
 
-def _open_private(path: Path) -> IO[bytes]:
+def open_private(path: Path) -> IO[bytes]:
     """Open a file for appending; a new one is accessible only to the user."""
     return open(path, "ab", opener=lambda name, flags: os.open(name, flags, 0o600))
 

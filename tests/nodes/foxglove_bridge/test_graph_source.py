@@ -72,20 +72,7 @@ def test_a_clock_that_is_there_already_is_heard(node: Node) -> None:  # noqa: F8
     source.close()
 
 
-def test_descriptions_are_read_when_they_come(node: Node) -> None:  # noqa: F811
-    with spinning(node):
-        studio = Studio(node, port=0)
-        assert "/robot_description" not in names(node)
-        latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-        publisher = node.create_publisher(String, "arm/robot_description", latched)
-        reached = node.handle.graph.wait_for(lambda: publisher.get_subscription_count() == 1, 10.0)
-        assert reached, "nobody reads the description"
-        assert studio.url("plot", topic="/a b").endswith("/?panel=plot&topic=/a+b")
-        assert studio.url(front="simulation").endswith("/?front=simulation")
-        studio.close()
-
-
-def test_meshes_that_a_simulator_shows_may_be_fetched(node: Node, tmp_path: Path) -> None:  # noqa: F811
+def test_nothing_from_the_graph_widens_what_the_page_may_fetch(node: Node, tmp_path: Path) -> None:  # noqa: F811
     mesh = tmp_path / "rock.stl"
     mesh.write_bytes(b"rock")
 
@@ -96,10 +83,16 @@ def test_meshes_that_a_simulator_shows_may_be_fetched(node: Node, tmp_path: Path
     node.create_service(GetShapes, "/gazebo/get_shapes", answer)
     with spinning(node):
         studio = Studio(node, port=0)
-        with pytest.raises(AssetError):
-            studio._assets.read(mesh.as_uri())
+        assert studio.url("plot", topic="/a b").endswith("/?panel=plot&topic=/a+b")
+        assert studio.url(front="simulation").endswith("/?front=simulation")
+        latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        publisher = node.create_publisher(String, "arm/robot_description", latched)
+        publisher.publish(String(data=f'<mesh filename="{mesh.as_uri()}"/>'))
         studio._source.call("/gazebo/get_shapes", serialize_message(GetShapes.Request())).result(10.0)
-        assert studio._assets.read(mesh.as_uri()) == b"rock"
+        assets = studio._server._assets
+        assert assets is not None
+        with pytest.raises(AssetError, match="outside of"):
+            assets.read(mesh.as_uri())
         studio.close()
 
 

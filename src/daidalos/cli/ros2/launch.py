@@ -134,6 +134,9 @@ def _launch(
     from launch import LaunchDescription, LaunchService
     from launch.actions import IncludeLaunchDescription
 
+    from daidalos.nodes.asset_folders import record_named_files
+
+    record_named_files([args.package_name, *words])
     options = {"launch-prefix": args.launch_prefix, "launch-prefix-filter": args.launch_prefix_filter}
     arguments = [*arguments, *((name, value) for name, value in options.items() if value is not None)]
     service = LaunchService(argv=words, noninteractive=args.noninteractive, debug=args.debug)

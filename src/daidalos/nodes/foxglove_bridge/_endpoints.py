@@ -45,8 +45,7 @@ class Publication(Closing):
 class Caller:
     """Client of one service with serialized messages."""
 
-    def __init__(self, node: Any, kind: Any, name: str, answered: Callable[[Any], None]) -> None:
-        self._answered = answered
+    def __init__(self, node: Any, kind: Any, name: str) -> None:
         self._handle = ClientHandle(node, kind, name, QoSProfile(depth=DEPTH))
         self._request = codec_of(kind.Request)
         self._response = codec_of(kind.Response)
@@ -65,10 +64,8 @@ class Caller:
             header, response = taken
             with self._lock:
                 answer = self._waiting.pop(header.request_id.sequence_number, None)
-            if answer is not None:
-                self._answered(response)
-                if answer.set_running_or_notify_cancel():  # the client may be gone
-                    answer.set_result(self._response.encode(response))
+            if answer is not None and answer.set_running_or_notify_cancel():  # the client may be gone
+                answer.set_result(self._response.encode(response))
             taken = self._handle.take_response()
 
     def close(self) -> None:

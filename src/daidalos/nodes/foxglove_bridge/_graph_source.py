@@ -43,13 +43,10 @@ class RosGraphSource:
     Parameters
     ----------
     node : Node
-    answered : callable
-        Called with every response to a client's call, before the client gets it.
     """
 
-    def __init__(self, node: Node, answered: Callable[[Any], None] = lambda response: None) -> None:
+    def __init__(self, node: Node) -> None:
         self._node = node
-        self._answered = answered
         self._handle = node.handle
         self._graph = node.handle.graph
         self._parameters = GraphParameters(node)
@@ -186,7 +183,7 @@ class RosGraphSource:
                 caller = self._callers.get((service, type_name))
                 if caller is None:
                     kind = _class_of(get_service, type_name)
-                    caller = self._callers[service, type_name] = Caller(self._handle, kind, service, self._answered)
+                    caller = self._callers[service, type_name] = Caller(self._handle, kind, service)
             caller.call(request, answer)
         except (SourceError, ValueError) as error:
             answer.set_exception(SourceError(str(error)))

@@ -18,6 +18,7 @@ from rclpy.parameter import Parameter
 from daidalos.common.parameters import Parameters, parameter
 from daidalos.common.rate_gate import RateGate
 from daidalos.description.errors import DescriptionError
+from daidalos.nodes.asset_folders import record_model_path
 from daidalos.nodes.gazebo_ros._command_line import parse
 from daidalos.nodes.gazebo_ros._worlds import find_world
 from daidalos.nodes.parameters import declare
@@ -216,6 +217,7 @@ def serve(start: Start, seed: int | None = None, verbose: bool = False) -> int:
     def make() -> Node:
         from daidalos.simulation.errors import SimulationError
 
+        record_model_path()
         overrides: list[Parameter[int]] = [] if seed is None else [Parameter("seed", value=seed)]
         if verbose:
             set_logger_level("gazebo", LoggingSeverity.DEBUG)

@@ -19,7 +19,10 @@ def main() -> int:
 
     from xacro import main as expand
 
+    from daidalos.nodes.asset_folders import record_named_files
+
     sys.argv = ["xacro", *(word for word in sys.argv[1:] if word not in _IN_ORDER)]
+    record_named_files(sys.argv[1:])
     said = io.StringIO()
     try:
         with contextlib.redirect_stderr(said):
