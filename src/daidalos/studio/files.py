@@ -32,5 +32,8 @@ def find_file(folder: Path, path: str) -> Path | None:
     if any(part.startswith(".") or "\\" in part or ":" in part for part in parts):
         return None
     found = folder.joinpath(*parts)
-    inside = found.resolve().is_relative_to(folder.resolve())
-    return found if inside and found.suffix in CONTENT_TYPES and found.is_file() else None
+    try:
+        inside = found.resolve().is_relative_to(folder.resolve())
+        return found if inside and found.suffix in CONTENT_TYPES and found.is_file() else None
+    except (OSError, ValueError, RuntimeError):  # a name that no file can have, or a link to itself
+        return None

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import errno
+import ipaddress
 import socket
 import sys
 from collections.abc import Sequence
 
 MAX_PORTS_TRIED = 64
 BACKLOG = 128
+ANY_ADDRESS = frozenset({"0.0.0.0", "::", ""})
+"""Addresses that stand for every address of this machine."""
+_DOCUMENTATION_ADDRESS = ("192.0.2.1", 9)
 
 _USED = {errno.EADDRINUSE, errno.EACCES}
 _ABSENT = {errno.EADDRNOTAVAIL, errno.EAFNOSUPPORT}
@@ -44,6 +48,24 @@ def open_port(hosts: Sequence[str], wanted: int) -> list[socket.socket]:
         if sockets is not None:
             return sockets
     raise PortError(f"no free port from {wanted} to {wanted + len(ports) - 1} on {', '.join(hosts)}")
+
+
+def is_loopback(host: str) -> bool:
+    """Return whether an address or name is reached from this machine only."""
+    try:
+        return ipaddress.ip_address(host).is_loopback
+    except ValueError:
+        return host.lower() == "localhost"
+
+
+def outward_address() -> str:
+    """Return the address of this machine on the way to other machines, its name where it has none."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        try:
+            probe.connect(_DOCUMENTATION_ADDRESS)  # looks for the way there, and sends nothing
+            return str(probe.getsockname()[0])
+        except OSError:
+            return socket.gethostname()
 
 
 def _open_on_all(hosts: Sequence[str], port: int) -> list[socket.socket] | None:

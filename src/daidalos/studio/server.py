@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import socket
+import ssl
 import threading
 import uuid
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -15,12 +16,21 @@ from aiohttp import web
 from aiohttp.typedefs import Handler
 
 from daidalos.studio import protocol
-from daidalos.studio.access import AccessPolicy
+from daidalos.studio.access import (
+    TOKEN_QUERY,
+    AccessPolicy,
+    Refusal,
+    entrance,
+    identify,
+    new_token,
+    too_long,
+)
 from daidalos.studio.arrangement import Arrangement
 from daidalos.studio.assets import AssetResolver
 from daidalos.studio.client import Client
 from daidalos.studio.files import STATIC
 from daidalos.studio.hub import Changes, Hub
+from daidalos.studio.local_users import is_of_another_user
 from daidalos.studio.pages import (
     ARRANGEMENT_KEY,
     HEADERS,
@@ -30,7 +40,7 @@ from daidalos.studio.pages import (
     extensions_of,
     page,
 )
-from daidalos.studio.ports import open_port
+from daidalos.studio.ports import ANY_ADDRESS, is_loopback, open_port, outward_address
 from daidalos.studio.protocol import Level
 from daidalos.studio.source import GraphSource, Parameter, Topic
 
@@ -63,6 +73,12 @@ class StudioServer:
         Folder of the built page.
     metadata
         What else clients are told, e.g. ``{"ROS_DISTRO": "jazzy"}``.
+    arrangement
+        The layout with which the page opens; None: the page's default.
+    token
+        What clients must send; None: nothing where the server listens on loopback, else a random one.
+    tls
+        Certificate and key; None: connections are not encrypted.
     """
 
     def __init__(
@@ -78,13 +94,18 @@ class StudioServer:
         static: Path = STATIC,
         metadata: Mapping[str, str] | None = None,
         arrangement: Arrangement | None = None,
+        token: str | None = None,
+        tls: ssl.SSLContext | None = None,
     ) -> None:
         self._source = source
         self._name = name
         self._wanted_port = port
         self._hosts = tuple(hosts)
-        exposed = not set(self._hosts) <= {*LOOPBACK, "localhost"}
-        self._access = AccessPolicy(allowed_hosts, allowed_origins, exposed=exposed)
+        if token is None and not all(map(is_loopback, self._hosts)):
+            token = new_token()
+        self._token = token
+        self._tls = tls
+        self._access = AccessPolicy(allowed_hosts, allowed_origins, token)
         self._assets = assets
         self._static = static
         self._metadata = dict(metadata or {})
@@ -108,8 +129,32 @@ class StudioServer:
 
     @property
     def url(self) -> str:
-        """The page's address for a browser on this machine."""
-        return f"http://localhost:{self._port}/"
+        """The page's address for a browser on this machine; with the token, where the server asks for one."""
+        local = any(is_loopback(host) or host in ANY_ADDRESS for host in self._hosts)
+        return self._address("localhost" if local else self._hosts[0])
+
+    @property
+    def remote_url(self) -> str | None:
+        """The page's address for other machines; None where they can not reach it."""
+        if all(map(is_loopback, self._hosts)):
+            return None
+        host = next(host for host in self._hosts if not is_loopback(host))
+        return self._address(outward_address() if host in ANY_ADDRESS else host)
+
+    @property
+    def asks_for_token(self) -> bool:
+        """Whether clients must send a token."""
+        return self._token is not None
+
+    @property
+    def is_encrypted(self) -> bool:
+        """Whether connections are encrypted."""
+        return self._tls is not None
+
+    def _address(self, host: str) -> str:
+        name = f"[{host}]" if ":" in host else host
+        query = f"?{TOKEN_QUERY}={self._token}" if self._token else ""
+        return f"{'https' if self._tls else 'http'}://{name}:{self._port}/{query}"
 
     @property
     def client_count(self) -> int:
@@ -196,7 +241,7 @@ class StudioServer:
         try:
             await runner.setup()
             for opened in sockets:
-                await web.SockSite(runner, opened).start()
+                await web.SockSite(runner, opened, ssl_context=self._tls).start()
             self._time = self._source.time()
             observing = self._source.attach(self)
             self._hub.refresh()
@@ -222,10 +267,17 @@ class StudioServer:
 
     @web.middleware
     async def _guard(self, request: web.Request, handler: Handler) -> web.StreamResponse:
-        refusal_reason = self._access.refusal_reason(request.headers.get("Host"), request.headers.get("Origin"))
-        if refusal_reason is not None:
-            return web.Response(status=403, text=refusal_reason + "\n", headers=HEADERS)
-        return await handler(request)
+        refusal = too_long(request) or self._access.refusal(identify(request, self._port)) or self._other_user(request)
+        if refusal is not None:
+            return web.Response(status=refusal.status, text=refusal.reason + "\n", headers=HEADERS)
+        return (entrance(request, self._port) if self._token else None) or await handler(request)
+
+    def _other_user(self, request: web.Request) -> Refusal | None:
+        """Return the refusal of a connection by another user of this machine, where no token is asked for."""
+        ends = [request.get_extra_info(name) for name in ("peername", "sockname")]
+        if self._token is not None or None in ends or not is_of_another_user(*ends):
+            return None
+        return Refusal(403, "this server is another user's; it serves others only where it is started with a token")
 
     async def _root(self, request: web.Request) -> web.StreamResponse:
         if "websocket" not in request.headers.get("Upgrade", "").lower():
