@@ -38,7 +38,7 @@ from launch.event_handler import EventHandler
 from launch.event_handlers import OnExecutionComplete, OnProcessExit
 from launch.events import ExecutionComplete
 from launch.events import Shutdown as ShutdownEvent
-from launch.substitutions import EnvironmentVariable, LaunchConfiguration, ThisLaunchFileDir
+from launch.substitutions import EnvironmentVariable, LaunchConfiguration, TextSubstitution, ThisLaunchFileDir
 from launch.utilities import perform_substitutions, visit_all_entities_and_collect_futures
 
 
@@ -90,7 +90,7 @@ def test_environment_variables(context):
     [
         ({}, f"old{os.pathsep}new"),
         ({"prepend": True}, f"new{os.pathsep}old"),
-        ({"prepend": "true", "separator": "|"}, "new|old"),
+        ({"prepend": TextSubstitution(text="true"), "separator": "|"}, "new|old"),
         ({"prepend": LaunchConfiguration("no"), "separator": ""}, "oldnew"),
     ],
 )

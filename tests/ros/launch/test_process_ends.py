@@ -12,7 +12,7 @@ from launch.actions import (
     Shutdown,
 )
 from launch.event_handlers import OnProcessExit, OnProcessStart
-from launch.substitutions import LaunchConfiguration, LocalSubstitution
+from launch.substitutions import LaunchConfiguration, LocalSubstitution, TextSubstitution
 
 from ros.launched_processes import PATIENT, when_ready
 
@@ -72,7 +72,7 @@ def test_exit_starts_the_next(run_launch, python):
     [
         ({}, 1),
         ({"respawn": True, "respawn_max_retries": 2}, 3),
-        ({"respawn": "true", "respawn_max_retries": "1"}, 2),
+        ({"respawn": TextSubstitution(text="true"), "respawn_max_retries": TextSubstitution(text="1")}, 2),
         ({"respawn": LaunchConfiguration("again"), "respawn_max_retries": 1, "respawn_delay": 0.01}, 2),
         ({"respawn": False, "respawn_max_retries": 5}, 1),
         ({"respawn": True, "respawn_max_retries": 0}, 1),

@@ -448,7 +448,7 @@ def test_yaml(show_arguments, run_text, capsys):
             param:
             - {name: i, value: 1}
             - {name: f, value: [1.5, 2.5]}
-            - {name: s, value: ['a', '$(eval 1)']}
+            - {name: s, value: ['a', '$(eval 1)b']}
             - name: outer
               param: [{name: inner, value: true}]
             remap: [{from: a, to: b}]
@@ -458,7 +458,7 @@ def test_yaml(show_arguments, run_text, capsys):
     merged = {}
     for content in params(arguments):
         merged.update(content["/pushed/n"]["ros__parameters"])
-    assert merged == {"i": 1, "f": [1.5, 2.5], "s": ["a", "1"], "outer.inner": True}
+    assert merged == {"i": 1, "f": [1.5, 2.5], "s": ["a", "1b"], "outer.inner": True}
 
 
 @pytest.mark.parametrize(
@@ -468,7 +468,7 @@ def test_yaml(show_arguments, run_text, capsys):
         ("<param value='a'/>", "must have either 'name' or 'from'"),
         ("<param name='a' from='b'/>", "must have either 'name' or 'from'"),
         ("<param name='a' value='1' colour='red'/>", "colour"),
-        ("<param name='a' value='x' type='int'/>", "'x' to int"),
+        ("<param name='a' value='x' type='int'/>", "expected int, but got 'x'"),
         ("<param name='a' value='1' type='number'/>", "unknown type 'number'"),
         ("<param name='a'><param from='b'/></param>", "there can be no files"),
         ("<remap from='a'/>", "`to` is missing in `remap`"),

@@ -9,6 +9,7 @@ from launch import LaunchContext, LaunchDescription, LaunchService
 from launch.actions import GroupAction, LogInfo, OpaqueFunction, RegisterEventHandler, Shutdown, TimerAction
 from launch.conditions import IfCondition
 from launch.event_handlers import OnProcessIO
+from launch.substitutions import TextSubstitution
 from launch_ros.actions import (
     ComposableNodeContainer,
     LifecycleNode,
@@ -340,7 +341,9 @@ def test_which_nodes_autostart():
     context = LaunchContext()
     assert not ComposableNode(package="p", plugin="q").autostarts(context)
     assert not ComposableLifecycleNode(package="p", plugin="q", name="n").autostarts(context)
-    assert ComposableLifecycleNode(package="p", plugin="q", name="n", autostart="true").autostarts(context)
+    assert ComposableLifecycleNode(
+        package="p", plugin="q", name="n", autostart=TextSubstitution(text="true")
+    ).autostarts(context)
 
 
 # The launch's own node ----------------------------------------------------------------------------------

@@ -128,15 +128,19 @@ ONE, WORD, TRUTH = LaunchConfiguration("one"), LaunchConfiguration("word"), Laun
         (True, True),
         (b"\xff\x00", b"\xff\x00"),
         ("text", "text"),
-        ("1", 1),
-        ("true", True),
-        ("1.5", 1.5),
-        ("'1'", "1"),
-        ('"true"', "true"),
+        ("8080", "8080"),
+        ("true", "true"),
+        ("'1'", "'1'"),
         ("", ""),
-        ("two words # and no comment", "two words # and no comment"),
-        ("a\n\n  b", "a\n\n  b"),
-        ("[1, 2]", (1, 2)),
+        ("a: b: # c", "a: b: # c"),
+        ("[1, 2]", "[1, 2]"),
+        (TextSubstitution(text="1.5"), 1.5),
+        (TextSubstitution(text="'1'"), "1"),
+        (TextSubstitution(text='"true"'), "true"),
+        (TextSubstitution(text=""), ""),
+        (TextSubstitution(text="two words # and no comment"), "two words # and no comment"),
+        (TextSubstitution(text="a\n\n  b"), "a\n\n  b"),
+        (TextSubstitution(text="[1, 2]"), (1, 2)),
         (ONE, 1),
         ([ONE, "5"], 15),
         ([WORD, "_", ONE], "text_1"),
@@ -146,17 +150,15 @@ ONE, WORD, TRUTH = LaunchConfiguration("one"), LaunchConfiguration("word"), Laun
         ([1, 2.5], (1.0, 2.5)),
         ([True, False], (True, False)),
         (["a", "b"], ("a", "b")),
-        (["1", "2"], (1, 2)),
+        (["1", "2"], ("1", "2")),
         (["1", "a"], ("1", "a")),
-        ([True, 1], ("True", "1")),
-        ([1, "a"], ("1", "a")),
+        ([["1", TextSubstitution(text="2")], ["3"]], (12, 3)),
         ([[ONE], [ONE, "2"]], (1, 12)),
         ([[WORD], "x"], ("text", "x")),
-        ([], ()),
         (ParameterValue(ONE, value_type=str), "1"),
-        (ParameterValue("1", value_type=int), 1),
+        (ParameterValue("1"), "1"),
         (ParameterValue("a: b: # c", value_type=str), "a: b: # c"),
-        (ParameterValue([ONE, "2"], value_type=list[int]), [1, 2]),
+        (ParameterValue(["[", ONE, ", 2]"], value_type=list[int]), [1, 2]),
         (ParameterValue(2.5), 2.5),
     ],
 )
@@ -189,17 +191,28 @@ def test_what_is_no_parameter(wrong):
 
 
 @pytest.mark.parametrize(
-    ("text", "error", "reason"),
+    ("value", "reason"),
     [
-        ("a: b: c", SubstitutionFailure, "Unable to parse the value of parameter name as yaml.*ParameterValue"),
-        ("{a: b}", TypeError, "Got dict for the parameter name"),
-        ("[1, a]", TypeError, "not of one type"),
-        ("2024-01-01", TypeError, "Got date"),
+        (TextSubstitution(text="a: b: c"), "Unable to parse the value of parameter name as yaml.*ParameterValue"),
+        (TextSubstitution(text="{a: b}"), "Got dict for the parameter name"),
+        (TextSubstitution(text="[1, a]"), "Expected a non-empty sequence.*the parameter name"),
+        (TextSubstitution(text="[]"), "Expected a non-empty sequence"),
+        (TextSubstitution(text="2024-01-01"), "Got date"),
+        ([True, 2.0, 3], "Expected a non-empty sequence"),
+        ([True, 1], "Expected a non-empty sequence"),
+        ([1, "a"], "Expected a non-empty sequence"),
+        ([[ONE], [WORD]], "Expected a non-empty sequence"),
+        ([], "Expected a non-empty sequence"),
     ],
 )
-def test_texts_that_are_no_values(context, text, error, reason):
-    with pytest.raises(error, match=reason):
-        evaluated(context, {"name": text})
+def test_values_that_no_parameter_can_have(context, value, reason):
+    with pytest.raises(TypeError, match=reason):
+        evaluated(context, {"name": value})
+
+
+@given(st.text())
+def test_strings_stay_what_they_are(text):
+    assert evaluated(LaunchContext(), {"one": text, "some": [text, "1"]}) == {"one": text, "some": (text, "1")}
 
 
 @given(

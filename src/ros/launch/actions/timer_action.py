@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import warnings
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any, cast
 
@@ -18,6 +19,7 @@ from ..some_substitutions_type import SomeSubstitutionsType
 from ..utilities import is_a_subclass
 from ..utilities.type_utils import (
     NormalizedValueType,
+    coerce_to_type,
     normalize_typed_substitution,
     perform_typed_substitution,
 )
@@ -58,6 +60,9 @@ class TimerAction(Action):
         **kwargs: Any,
     ) -> None:
         super().__init__(**kwargs)
+        if isinstance(period, str):
+            warnings.warn("'period' of TimerAction is a number of seconds, not a string", stacklevel=2)
+            period = coerce_to_type(period, float)
         self.__period = normalize_typed_substitution(period, float)
         self.__actions = list(actions)
         self.__cancel_on_shutdown = normalize_typed_substitution(cancel_on_shutdown, bool)

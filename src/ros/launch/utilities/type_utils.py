@@ -77,8 +77,8 @@ SomeValueType = SomeSubstitutionsType | AllowedValueType | NormalizedValueType
 
 
 def is_typing_list(data_type: Any) -> bool:
-    """Return whether a type is one of the list types."""
-    return get_origin(data_type) is list and get_args(data_type)[0] in ScalarTypesTuple
+    """Return whether a type is `typing.List`, with or without the type of its items."""
+    return data_type is List or get_origin(data_type) is list  # noqa: UP006 - see above
 
 
 def is_valid_scalar_type(data_type: Any) -> TypeGuard[ScalarType]:
@@ -94,8 +94,9 @@ def extract_type(data_type: AllowedTypesType) -> tuple[ScalarType, bool]:
     ValueError
         If it is neither a scalar type nor a list type.
     """
-    if is_typing_list(data_type):
-        return get_args(data_type)[0], True
+    items = get_args(data_type) if is_typing_list(data_type) else ()
+    if items and is_valid_scalar_type(items[0]):
+        return items[0], True
     if is_valid_scalar_type(data_type):
         return data_type, False
     raise ValueError(f"unrecognized data type: {data_type}")
@@ -140,28 +141,29 @@ def coerce_to_type(value: str, data_type: AllowedTypesType | None = None, *, can
     data_type
         The type, or None for whatever the text looks like.
     can_be_str
-        Give the text back when it cannot be converted.
+        Return the text as it is when it cannot be converted, and accept strings among the items of a list.
 
     Raises
     ------
+    TypeError
+        If `value` is not a string.
     ValueError
         If it cannot be converted.
     """
-    if not isinstance(value, str):
-        raise ValueError(f"the value to convert must be a string, but it is {value!r}")
+    ensure_argument_type(value, str, "value", "coerce_to_type")
     if data_type is str:
         return value
     if data_type is not None:
         extract_type(data_type)
     try:
-        return _coerce(value, data_type)
+        return _coerce(value, data_type, can_be_str)
     except ValueError:
         if can_be_str:
             return value
         raise
 
 
-def _coerce(value: str, data_type: AllowedTypesType | None) -> Any:
+def _coerce(value: str, data_type: AllowedTypesType | None, can_be_str: bool) -> Any:
     if data_type is None and not value:
         return value
     if data_type is bool and value.strip() in ("0", "1"):
@@ -169,9 +171,7 @@ def _coerce(value: str, data_type: AllowedTypesType | None) -> Any:
     output = _load_yaml(value, data_type)
     if data_type is float:
         output = _as_float(output)
-    if data_type is not None and extract_type(data_type) == (float, True) and isinstance(output, list):
-        output = [_as_float(item) for item in output]
-    if not is_instance_of(output, data_type):
+    if not is_instance_of(output, data_type, can_be_str=can_be_str and isinstance(output, list)):
         wanted = "one of the types of launch" if data_type is None else _name(data_type)
         raise ValueError(f"failed to convert '{value}' to {wanted} using YAML's rules")
     return output
@@ -216,9 +216,12 @@ def coerce_list(value: Iterable[str], data_type: ScalarType | None = None, *, ca
 
     Raises
     ------
+    TypeError
+        If `value` is not a list of strings.
     ValueError
         If one cannot be converted, or if they do not look alike.
     """
+    ensure_argument_type(value, list, "value", "coerce_list")
     items = [coerce_to_type(item, data_type, can_be_str=can_be_str) for item in value]
     if data_type is not None or is_instance_of(items, None, can_be_str=can_be_str):
         return items
@@ -230,6 +233,8 @@ def get_typed_value(value: str | list[str], data_type: AllowedTypesType | None, 
 
     Raises
     ------
+    TypeError
+        If `value` is neither of these, or if it is a list and `data_type` is a scalar type.
     ValueError
         If it cannot be converted.
     """
@@ -239,7 +244,7 @@ def get_typed_value(value: str | list[str], data_type: AllowedTypesType | None, 
     if data_type is not None:
         scalar, is_list = extract_type(data_type)
         if not is_list:
-            raise ValueError(f"{value} is a list, but {_name(data_type)} is expected")
+            raise TypeError(f"{value} is a list, but {_name(data_type)} is expected")
     return coerce_list(value, scalar, can_be_str=can_be_str)
 
 
@@ -266,14 +271,14 @@ def is_normalized_substitution(x: Any) -> TypeGuard[list[Substitution]]:
 def normalize_typed_substitution(value: SomeValueType, data_type: AllowedTypesType | None) -> NormalizedValueType:
     """Convert a value that may hold substitutions to the form that `perform_typed_substitution` takes.
 
-    Scalars stay what they are, a text becomes a list of substitutions, and a list becomes a list of these
-    two.
+    Scalars and strings stay what they are. Substitutions, and strings and substitutions in a row, become a
+    list of substitutions, whose text is converted when they are performed. Any other list becomes a list of
+    these two.
 
     Parameters
     ----------
     value
-        A scalar, a text, or a list of these. Strings and substitutions in a row are one text, unless a list
-        is asked for.
+        A scalar, a substitution, substitutions and strings in a row, or a list of these.
     data_type
         What it is to be in the end, or None for any type.
 
@@ -283,23 +288,18 @@ def normalize_typed_substitution(value: SomeValueType, data_type: AllowedTypesTy
         If the value cannot become that.
     """
     scalar, is_list = (None, False) if data_type is None else extract_type(data_type)
-    if isinstance(value, Mapping | bytes):
-        raise TypeError(f"a value with a type is a scalar, a text or a list, not {value!r}")
-    if not is_list:
-        if isinstance(value, str | Path) or is_substitution(value):
-            return normalize_to_list_of_substitutions(value)
-        if not isinstance(value, Iterable):
-            return _checked_scalar(value, scalar)
-        if scalar is not None:
-            items = list(value)
-            texts = [item for item in items if isinstance(item, str | Path)]
-            if len(texts) == len(items):
-                return normalize_to_list_of_substitutions(texts)
-            raise TypeError(f"expected {_name(data_type)}, but got the list {value!r}")
-    if isinstance(value, str | Path | Substitution) and is_list:
+    if isinstance(value, Path):
+        value = str(value)
+    if is_substitution(value):
         return normalize_to_list_of_substitutions(value)
-    if not isinstance(value, Iterable):
-        raise TypeError(f"expected {_name(data_type)}, but got {value!r}")
+    if isinstance(value, ScalarTypesTuple):
+        if is_list:
+            raise TypeError(f"expected {_name(data_type)}, but got {value!r}")
+        return _checked_scalar(value, scalar)
+    if isinstance(value, Mapping | bytes) or not isinstance(value, Iterable):
+        raise TypeError(f"a value with a type is a scalar, a substitution or a list, not {value!r}")
+    if scalar is not None and not is_list:
+        raise TypeError(f"expected {_name(data_type)}, but got the list {value!r}")
     return _normalized_list(list(value), scalar)
 
 
@@ -314,14 +314,14 @@ def _checked_scalar(value: Any, scalar: ScalarType | None) -> ScalarValueType:
 
 
 def _normalized_list(items: list[Any], scalar: ScalarType | None) -> list[NormalizedScalarType]:
-    normalized: list[NormalizedScalarType] = []
-    for item in items:
-        if isinstance(item, str | Path) or is_substitution(item) or is_normalized_substitution(item):
-            normalized.append(normalize_to_list_of_substitutions(item))
-        else:
-            normalized.append(_checked_scalar(item, scalar))
+    normalized = [
+        normalize_to_list_of_substitutions(item) if is_substitution(item) else _checked_scalar(item, scalar)
+        for item in items
+    ]
     plain = [item for item in normalized if not isinstance(item, list)]
-    if not is_instance_of_valid_type(plain):
+    if {type(item) for item in plain} == {int, float}:
+        normalized = [item if isinstance(item, list) else _checked_scalar(item, float) for item in normalized]
+    elif not is_instance_of_valid_type(plain):
         raise TypeError(f"the items of {items!r} are not of one type")
     return normalized
 
@@ -346,9 +346,9 @@ def perform_typed_substitution(context: LaunchContext, value: NormalizedValueTyp
     """
     if is_normalized_substitution(value):
         return coerce_to_type(perform_substitutions(context, value), data_type)
-    if not isinstance(value, list):
-        return _checked_scalar(value, None if data_type is None else extract_type(data_type)[0])
     scalar = None if data_type is None else extract_type(data_type)[0]
+    if not isinstance(value, list):
+        return _checked_scalar(value, scalar)
     performed = [
         coerce_to_type(perform_substitutions(context, item), scalar)
         if isinstance(item, list)

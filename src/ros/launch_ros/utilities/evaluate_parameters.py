@@ -6,16 +6,20 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from launch.substitution import Substitution
-from launch.substitutions import SubstitutionFailure
 from launch.utilities import ensure_argument_type, perform_substitutions
 
 from ..parameter_descriptions import Parameter, ParameterFile, ParameterValue
 from ..parameters_type import EvaluatedParameters, EvaluatedParameterValue, Parameters, ParametersDict
+from .normalize_parameters import StringSubstitution
 
 if TYPE_CHECKING:
     from launch import LaunchContext
 
 _SCALARS = (bool, int, float, str, bytes)
+_STRING_HINT = (
+    "If the parameter is meant to be a string, try wrapping it in "
+    "launch_ros.parameter_descriptions.ParameterValue(value, value_type=str)"
+)
 
 
 def evaluate_parameters(context: LaunchContext, parameters: Parameters) -> EvaluatedParameters:
@@ -41,14 +45,12 @@ def evaluate_parameters(context: LaunchContext, parameters: Parameters) -> Evalu
 def evaluate_parameter_dict(context: LaunchContext, parameters: ParametersDict) -> dict[str, EvaluatedParameterValue]:
     """Evaluate a dictionary that `normalize_parameter_dict` prepared.
 
-    Texts become what they look like by the rules of YAML; in quotes they stay texts.
+    The text of substitutions becomes what it looks like by the rules of YAML; in quotes it stays a string.
 
     Raises
     ------
     TypeError
-        If a value is of no type that a parameter may have.
-    SubstitutionFailure
-        If a text is not YAML.
+        If a text is not YAML, or if a value is of no type that a parameter may have.
     """
     if not isinstance(parameters, Mapping):
         raise TypeError(f"expected a prepared dictionary of parameters, got {parameters!r}")
@@ -69,28 +71,25 @@ def _evaluate(context: LaunchContext, name: str, value: Any) -> EvaluatedParamet
         plain: EvaluatedParameterValue = value
         return plain
     if isinstance(value[0], Substitution):
-        return _from_text(name, perform_substitutions(context, value))
+        return _from_substitutions(context, name, value)
     if isinstance(value[0], Sequence) and not isinstance(value[0], str | bytes):
-        texts = tuple(perform_substitutions(context, item) for item in value)
-        typed = tuple(_load(name, text) for text in texts)
-        return typed if _is_uniform(typed) else texts
+        return _uniform(name, [_from_substitutions(context, name, item) for item in value])
     return value
 
 
-def _from_text(name: str, text: str) -> EvaluatedParameterValue:
-    value = _load(name, text)
-    if isinstance(value, list):
-        value = tuple(value)
-        if not _is_uniform(value):
-            raise TypeError(f"the items of the parameter {name} are not of one type: {text}")
-        return value
-    if not isinstance(value, _SCALARS):
+def _from_substitutions(context: LaunchContext, name: str, value: Sequence[Substitution]) -> EvaluatedParameterValue:
+    text = perform_substitutions(context, value)
+    if isinstance(value[0], StringSubstitution):
+        return text
+    loaded = _load(name, text)
+    if isinstance(loaded, list):
+        return _uniform(name, loaded)
+    if not isinstance(loaded, _SCALARS):
         raise TypeError(
             "Allowed value types are bytes, bool, int, float, str, Sequence[bool], Sequence[int], Sequence[float], "
-            f"Sequence[str]. Got {type(value).__name__} for the parameter {name}. If the parameter is meant to be a "
-            "string, try wrapping it in launch_ros.parameter_descriptions.ParameterValue(value, value_type=str)"
+            f"Sequence[str]. Got {type(loaded).__name__} for the parameter {name}. {_STRING_HINT}"
         )
-    return value
+    return loaded
 
 
 def _load(name: str, text: str) -> Any:
@@ -100,10 +99,7 @@ def _load(name: str, text: str) -> Any:
     try:
         value = yaml.safe_load(text)
     except yaml.YAMLError as error:
-        raise SubstitutionFailure(
-            f"Unable to parse the value of parameter {name} as yaml. If the parameter is meant to be a string, try "
-            "wrapping it in launch_ros.parameter_descriptions.ParameterValue(value, value_type=str)"
-        ) from error
+        raise TypeError(f"Unable to parse the value of parameter {name} as yaml. {_STRING_HINT}") from error
     if value is None and not text.strip():
         return ""
     # YAML folds lines and drops what looks like a comment; a text without quotes is to stay as it is.
@@ -112,6 +108,11 @@ def _load(name: str, text: str) -> Any:
     return value
 
 
-def _is_uniform(values: Sequence[Any]) -> bool:
+def _uniform(name: str, values: Sequence[Any]) -> EvaluatedParameterValue:
     types = {type(value) for value in values}
-    return len(types) == 1 and types <= {bool, int, float, str}
+    if len(types) != 1 or not types <= {bool, int, float, str}:
+        raise TypeError(
+            "Expected a non-empty sequence, with items that are all bool, int, float or str, "
+            f"for the parameter {name}, but got {list(values)!r}"
+        )
+    return tuple(values)

@@ -16,6 +16,10 @@ from ..parameters_type import ParameterName, Parameters, ParametersDict, SomePar
 _SCALARS = (bool, int, float, bytes)
 
 
+class StringSubstitution(TextSubstitution):
+    """A parameter's text that is a string whatever it looks like."""
+
+
 def normalize_parameters(parameters: SomeParameters) -> Parameters:
     """Return a node's parameters, prepared.
 
@@ -48,9 +52,9 @@ def normalize_parameter_dict(
 ) -> ParametersDict:
     """Return a dictionary of parameters, prepared.
 
-    Dictionaries inside it become names with dots. A text becomes a tuple of substitutions, a list of texts a
-    tuple of such tuples. Numbers in a list become floats if one of them is, and any other mixture becomes
-    texts.
+    Dictionaries inside it become names with dots. Substitutions become a tuple of substitutions, whose text
+    `evaluate_parameters` reads as YAML; a string becomes a `StringSubstitution`, which stays a string. A list
+    of these becomes a tuple of such tuples. Numbers in a list become floats if one of them is.
 
     Parameters
     ----------
@@ -60,7 +64,8 @@ def normalize_parameter_dict(
     Raises
     ------
     TypeError
-        If a name is not text, or if a value is of no type that a parameter may have.
+        If a name is not text, or if a value is of no type that a parameter may have; a list without items is
+        of none.
     """
     if not isinstance(parameters, Mapping):
         raise TypeError(f"expected a dictionary of parameters, got {parameters!r}")
@@ -84,8 +89,10 @@ def _normalize_name(name: Any, prefix: Sequence[Substitution] | None) -> Paramet
 def _normalize_value(value: Any) -> Any:
     if isinstance(value, ParameterValue) or type(value) in _SCALARS:
         return value
-    if isinstance(value, str | pathlib.Path | Substitution):
-        return tuple(normalize_to_list_of_substitutions(value))
+    if isinstance(value, str | pathlib.Path):
+        return (StringSubstitution(text=str(value)),)
+    if isinstance(value, Substitution):
+        return (value,)
     if isinstance(value, Sequence):
         return _normalize_array(value)
     # Numbers of other libraries behave like Python's.
@@ -102,10 +109,16 @@ def _normalize_array(values: Sequence[Any]) -> Any:
         # Strings and substitutions in a row are one text.
         return tuple(normalize_to_list_of_substitutions(values))
     types = {type(item) for item in values}
+    if not types:
+        raise TypeError("Expected a non-empty sequence as the value of a parameter, but got []")
     if types <= {int, float} and float in types:
         return tuple(float(item) for item in values)
-    if len(types) <= 1 and types <= {bool, int}:
+    if len(types) == 1 and types <= {bool, int}:
         return tuple(values)
-    return tuple(
-        tuple(normalize_to_list_of_substitutions(str(item) if type(item) in _SCALARS else item)) for item in values
-    )
+    return tuple(_normalize_item(item) for item in values)
+
+
+def _normalize_item(item: Any) -> tuple[Substitution, ...]:
+    if isinstance(item, str):
+        return (StringSubstitution(text=item),)
+    return tuple(normalize_to_list_of_substitutions(str(item) if type(item) in _SCALARS else item))
