@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
 
-from daidalos.common.extensions import Kind, classes_in, find
+from daidalos.common.extensions import Kind, UnknownExtension, classes_in, find
 
 if TYPE_CHECKING:
     from daidalos.control.contracts import Controller, Hardware
@@ -26,8 +28,44 @@ HARDWARE: Kind[Hardware] = Kind(
     partial(classes_in, "daidalos.control.hardware", "daidalos.nodes.controller_manager"),
 )
 KINDS = (CONTROLLERS, HARDWARE)
+MOCK = "mock_components/GenericSystem"
+"""Plugin of the hardware whose states follow its commands."""
 
 
 def hardware_class(info: HardwareInfo) -> type[Hardware]:
     """Return the class that a ``<ros2_control>`` element names; raises `ExtensionError` where there is none."""
     return find(HARDWARE, info.plugin, asked_by=info.location._replace(name=info.name))
+
+
+def substitute_unknown(info: HardwareInfo, warn: Callable[[str], None], substitute: str = MOCK) -> HardwareInfo:
+    """Return a ``<ros2_control>`` element whose plugin can be loaded, with a substitute for an unknown one.
+
+    Robots name plugins in C++ that drive their devices; their controllers run on the substitute as well.
+
+    Parameters
+    ----------
+    info : HardwareInfo
+    warn : callable
+        Takes a line for the user, which names the unknown plugin and where it is written.
+    substitute : str
+        Plugin that is used in place of an unknown one.
+
+    Raises
+    ------
+    ExtensionError
+        When the plugin is known and cannot be loaded.
+    """
+    try:
+        hardware_class(info)
+    except UnknownExtension:
+        from daidalos.common.extensions import listing
+        from daidalos.common.suggestions import near
+
+        names = near(info.plugin, [name for extension in listing(HARDWARE) for name in extension.names])
+        question = f" (did you mean {' or '.join(repr(name) for name in names)}?)" if names else ""
+        warn(
+            f"{info.location._replace(name=info.name).prefix()}there is no Python class for the hardware plugin "
+            f"'{info.plugin}'{question}; '{substitute}' takes its place and no device is driven"
+        )
+        return replace(info, plugin=substitute, parameters={"calculate_dynamics": "true", **info.parameters})
+    return info

@@ -23,6 +23,28 @@ class DynamicJointSample(Sample):
 
 
 @dataclass(frozen=True, eq=False)
+class InterfaceGroupsSample(Sample):
+    """State interfaces of groups, such as GPIOs: value by interface name."""
+
+    groups: Mapping[str, Mapping[str, float]]
+
+
+@dataclass(frozen=True, eq=False)
+class InterfaceGroupsCommand:
+    """Values of command interfaces of groups, such as GPIOs.
+
+    Parameters
+    ----------
+    groups : tuple of n strings
+    values : tuple of n pairs
+        For each group the names of its interfaces, and their values.
+    """
+
+    groups: tuple[str, ...]
+    values: tuple[tuple[tuple[str, ...], tuple[float, ...]], ...]
+
+
+@dataclass(frozen=True, eq=False)
 class TrajectoryPoint:
     """State of n joints at one instant; None where a derivative is not known.
 

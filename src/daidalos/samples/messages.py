@@ -131,7 +131,23 @@ _CONTROLLERS = (
     Conversion(
         controllers.DynamicJointSample,
         "control_msgs/DynamicJointState",
-        {"joint_names": "joints", "interface_values": special_messages.interface_values},
+        {
+            "joint_names": "joints",
+            "interface_values": lambda sample: special_messages.interface_values(sample.joints),
+        },
+    ),
+    Conversion(
+        controllers.InterfaceGroupsSample,
+        "control_msgs/DynamicInterfaceGroupValues",
+        {
+            "interface_groups": "groups",
+            "interface_values": lambda sample: special_messages.interface_values(sample.groups),
+        },
+    ),
+    Conversion(
+        controllers.InterfaceGroupsCommand,
+        "control_msgs/DynamicInterfaceGroupValues",
+        from_message=special_messages.interface_groups_of,
     ),
     Conversion(
         controllers.TrajectorySample,

@@ -128,13 +128,17 @@ def contact_states(sample: sensors.BumperSample) -> Any:
     return states
 
 
-def interface_values(sample: controllers.DynamicJointSample) -> Any:
-    """Return the states of joints as ``control_msgs/msg/InterfaceValue``."""
+def interface_values(groups: Mapping[str, Mapping[str, float]]) -> Any:
+    """Return values of interfaces, by group and name, as ``control_msgs/msg/InterfaceValue``."""
     from control_msgs.msg import InterfaceValue
 
-    return [
-        InterfaceValue(interface_names=list(values), values=list(values.values())) for values in sample.joints.values()
-    ]
+    return [InterfaceValue(interface_names=list(values), values=list(values.values())) for values in groups.values()]
+
+
+def interface_groups_of(message: Any) -> controllers.InterfaceGroupsCommand:
+    """Return a ``control_msgs/msg/DynamicInterfaceGroupValues`` as a command."""
+    values = tuple((tuple(one.interface_names), tuple(one.values)) for one in message.interface_values)
+    return controllers.InterfaceGroupsCommand(tuple(message.interface_groups), values)
 
 
 def trajectory_point(point: controllers.TrajectoryPoint) -> Any:

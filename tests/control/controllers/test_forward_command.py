@@ -15,6 +15,10 @@ KINDS = {
         {"joint": "a", "interface_names": ["velocity", "effort"]},
         ("a/velocity", "a/effort"),
     ),
+    "passthrough_controller/PassthroughController": (
+        {"interfaces": ["a/position", "below/b/position"]},
+        ("a/position", "below/b/position"),
+    ),
     "position_controllers/JointGroupPositionController": ({"joints": ["a", "b"]}, ("a/position", "b/position")),
     "velocity_controllers/JointGroupVelocityController": ({"joints": ["a", "b"]}, ("a/velocity", "b/velocity")),
     "effort_controllers/JointGroupEffortController": ({"joints": ["a", "b"]}, ("a/effort", "b/effort")),

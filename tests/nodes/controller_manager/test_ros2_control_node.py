@@ -126,7 +126,6 @@ def test_the_wall_clock_keeps_the_rate_as_far_as_the_machine_does(graph: Context
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        (URDF.format("my_robot/Missing"), "no hardware 'my_robot/Missing'"),
         (URDF.format("gazebo_ros2_control/GazeboSystem"), "GazeboSystem' is the simulator's"),
         ("<robot name='r'><link name='a'/></robot>", "has no <ros2_control> element"),
         ("<robot", "robot_description"),
@@ -135,6 +134,40 @@ def test_the_wall_clock_keeps_the_rate_as_far_as_the_machine_does(graph: Context
 def test_what_can_not_be_run_is_said(graph: Context, text: str, message: str) -> None:  # noqa: F811
     with pytest.raises(UserError, match=message):
         Counting(robot_description=text)
+
+
+def test_mock_hardware_takes_the_place_of_a_plugin_in_c_plus_plus(graph: Context) -> None:  # noqa: F811
+    warnings: list[str] = []
+
+    class Warned(Counting):
+        def warn(self, line: str) -> None:
+            warnings.append(line)
+
+    node = Warned(robot_description=URDF.format("my_robot/Missing"))
+    assert warnings == [
+        "robot_description:3: 'h': there is no Python class for the hardware plugin 'my_robot/Missing'; "
+        "'mock_components/GenericSystem' takes its place and no device is driven"
+    ]
+    assert node.manager is not None
+    hardware = node.manager.components["h"].hardware
+    assert hardware.info.plugin == "mock_components/GenericSystem"
+    hardware.commands["j/position"] = 0.5
+    with spun(node):
+        wait_for(lambda: hardware.states["j/position"] == 0.5)
+
+
+def test_a_published_description_that_can_not_be_run_ends_the_program(
+    graph: Context,  # noqa: F811
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    ended = threading.Event()
+    monkeypatch.setattr("daidalos.nodes.controller_manager.ros2_control_node.fail", ended.set)
+    node, user = Counting(), rclpy.create_node("user")
+    latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    publisher = user.create_publisher(String, "/robot_description", latched)
+    with spun(node, user):
+        publisher.publish(String(data="<robot name='r'><link name='a'/></robot>"))
+        assert ended.wait(TIMEOUT_S)
 
 
 def test_hardware_of_the_users_own_is_found(

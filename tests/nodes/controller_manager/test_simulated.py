@@ -90,6 +90,19 @@ def test_names_rates_and_topics_are_as_the_plugin_says(rig: Rig, tmp_path: Path)
     user.destroy_node()
 
 
+def test_the_simulator_moves_what_a_plugin_in_c_plus_plus_would_drive(rig: Rig) -> None:
+    described = ROBOT.format("").replace("gz_ros2_control/GazeboSimSystem", "my_robot/Driver")
+    rig.simulation.spawn(urdf.parse(described), "r")
+    rig.companions.follow(rig.simulation)
+    user = rclpy.create_node("user")
+    with spinning(user):
+        answer = ask(user, "/controller_manager", srv.ListHardwareComponents, "list_hardware_components")
+    assert [(one.plugin_name, one.state.label) for one in answer.component] == [
+        ("gz_ros2_control/GazeboSimSystem", "active")
+    ]
+    user.destroy_node()
+
+
 def test_companions_come_and_go_with_models(rig: Rig) -> None:
     user = rclpy.create_node("user")
     for name in ("one", "two"):

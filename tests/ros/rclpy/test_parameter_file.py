@@ -30,3 +30,9 @@ def test_a_wrong_file_is_refused_with_its_place(tmp_path: Path, content: bytes, 
 def test_a_value_with_an_alias_is_refused() -> None:
     with pytest.raises(ValueError, match="aliases are not supported"):
         parse_value("[&a 1, *a]")
+
+
+def test_mappings_in_a_list_are_read_as_if_there_were_no_list(tmp_path: Path) -> None:
+    file = tmp_path / "params.yaml"
+    file.write_text("n:\n  ros__parameters:\n    a:\n      b:\n        - c:\n          - d\n        - e: {f: 1}\n")
+    assert [(name, value) for _, name, value, _ in read_file(file)] == [("a.b.c", ["d"]), ("a.b.e.f", 1)]

@@ -45,6 +45,15 @@ class GroupParameters(Parameters):
     )  # fmt: skip
 
 
+@dataclass(frozen=True)
+class PassthroughParameters(Parameters):
+    """Commanded interfaces."""
+
+    interfaces: tuple[str, ...] = parameter(
+        (), "Commanded interfaces, in the order of the command's values.", not_empty=True, unique=True, read_only=True
+    )
+
+
 class ForwardController(Controller):
     """Base of the controllers that forward ``~/commands``, in the order of the interfaces."""
 
@@ -120,6 +129,18 @@ class MultiInterfaceForwardCommandController(ForwardController):
     def interfaces(self) -> tuple[str, ...]:
         """Return the joint's interfaces."""
         return tuple(f"{self.parameters.joint}/{name}" for name in self.parameters.interface_names)
+
+
+class PassthroughController(ForwardController):
+    """Forward controller of any interfaces, those of other controllers among them."""
+
+    names = ("passthrough_controller/PassthroughController",)
+    Parameters = PassthroughParameters
+    parameters: PassthroughParameters
+
+    def interfaces(self) -> tuple[str, ...]:
+        """Return the interfaces as they are given."""
+        return self.parameters.interfaces
 
 
 class JointGroupPositionController(ForwardController):

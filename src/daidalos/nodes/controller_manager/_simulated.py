@@ -6,7 +6,7 @@ from rclpy.context import Context
 from rclpy.parameter import Parameter
 
 from daidalos.control.contracts import Hardware, HardwareContext
-from daidalos.control.extensions import hardware_class
+from daidalos.control.extensions import hardware_class, substitute_unknown
 from daidalos.description.ros2_control import HardwareInfo
 from daidalos.nodes.controller_manager._manager_node import ControllerManagerNode
 from daidalos.nodes.controller_manager._simulated_system import SimulatedSystem
@@ -57,6 +57,7 @@ class SimulatedManager:
         plugin.cycle = self._cycle
 
     def _hardware(self, info: HardwareInfo, context: HardwareContext) -> Hardware:
+        info = substitute_unknown(info, self._node.warn, SimulatedSystem.names[1])
         cls = hardware_class(info)
         return cls(info, context, self._plugin) if issubclass(cls, SimulatedSystem) else cls(info, context)
 

@@ -10,14 +10,14 @@ from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from daidalos.common.extensions import ExtensionError
 from daidalos.control.contracts import Hardware, HardwareContext
 from daidalos.control.errors import ControlError
-from daidalos.control.extensions import hardware_class
+from daidalos.control.extensions import hardware_class, substitute_unknown
 from daidalos.description import urdf
 from daidalos.description.errors import DescriptionError
-from daidalos.description.ros2_control import read_hardware
+from daidalos.description.ros2_control import HardwareInfo, read_hardware
 from daidalos.nodes.controller_manager._manager_node import ControllerManagerNode
 from daidalos.nodes.packages import package_share
 from daidalos.nodes.qos import LATCHED
-from daidalos.nodes.runner import UserError, run
+from daidalos.nodes.runner import UserError, fail, run
 
 _MAX_LAG_NS = 1_000_000_000
 """Delay after which cycles that were missed are left out."""
@@ -43,13 +43,15 @@ class Ros2ControlNode(ControllerManagerNode):
         try:
             self._begin(message.data)
         except UserError as error:
-            self.get_logger().error(str(error))
+            # Without hardware there are no services, for which spawners would wait without end.
+            self.get_logger().fatal(str(error))
+            fail()
 
     def _begin(self, text: str) -> None:
         try:
             robot = urdf.parse(text, "robot_description", package_share)
             context = HardwareContext(self.update_rate, self.warn)
-            hardware: list[Hardware] = [hardware_class(info)(info, context) for info in read_hardware(robot)]
+            hardware = [self._hardware(info, context) for info in read_hardware(robot)]
             if not hardware:
                 raise ControlError("the robot description has no <ros2_control> element")
             self.start(robot, hardware)
@@ -57,6 +59,10 @@ class Ros2ControlNode(ControllerManagerNode):
             raise UserError(str(error)) from None
         self._cycles = _Cycles(self.update_rate)
         self.create_timer(1.0 / self.update_rate, self._tick, callback_group=MutuallyExclusiveCallbackGroup())
+
+    def _hardware(self, info: HardwareInfo, context: HardwareContext) -> Hardware:
+        known = substitute_unknown(info, self.warn)
+        return hardware_class(known)(known, context)
 
     def _tick(self) -> None:
         """Run a cycle; as many as are due where the time is a simulator's, which goes in larger steps."""

@@ -202,6 +202,9 @@ def _walk_parameters(tree: dict[_Name, Any], prefix: str, node: str, found: list
         name = f"{prefix}.{key}" if prefix else str(key)
         if isinstance(value, dict):
             _walk_parameters(value, name, node, found)
+        elif isinstance(value, list) and value and all(isinstance(item, dict) for item in value):
+            for item in value:  # rcl's parser reads the names of mappings in a list as if there were no list
+                _walk_parameters(item, name, node, found)
         elif value is not None:
             try:
                 found.append((node, name, check_value(value), key.line))
