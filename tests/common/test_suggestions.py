@@ -1,4 +1,4 @@
-from daidalos.common.suggestions import did_you_mean, hint_line, near
+from daidalos.common.suggestions import did_you_mean, hint_line, near, near_or_all
 
 TOPICS = ["/chatter", "/lab/enable", "/lab/add_two_ints", "/scan"]
 
@@ -27,3 +27,11 @@ def test_texts():
     assert did_you_mean("/chater", TOPICS) == "\nDid you mean '/chatter'?"
     assert hint_line("/chater", TOPICS) == "Did you mean '/chatter'?\n"
     assert did_you_mean("/nothing", TOPICS) == hint_line("/nothing", TOPICS) == ""
+
+
+def test_few_names_are_listed_and_many_are_counted():
+    assert near_or_all("/chater", TOPICS, "topics") == "Did you mean '/chatter'?\n"
+    assert near_or_all("/x", ["/b", "/a", "/x"], "topics") == "There are these topics: /a, /b\n"
+    assert near_or_all("/x", [], "topics") == "There are no topics\n"
+    many = [f"/number_{number}" for number in range(30)]
+    assert near_or_all("/x", many, "topics") == "There is no '/x' among 30 topics\n"

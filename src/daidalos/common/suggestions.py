@@ -36,6 +36,26 @@ def did_you_mean(name: str, known: Iterable[str]) -> str:
     return f"\nDid you mean {' or '.join(repr(one) for one in names)}?" if names else ""
 
 
+def near_or_all(name: str, known: Iterable[str], kind: str) -> str:
+    """Return a whole line with the near names, with all names where they are few, or that there are none.
+
+    Parameters
+    ----------
+    name
+        The unknown name.
+    known
+        The known ones.
+    kind
+        What they are, in the plural, such as ``actions``.
+    """
+    names = sorted(set(known) - {name})
+    if near(name, names):
+        return hint_line(name, names)
+    if len(names) > MAX_LISTED:
+        return f"There is no '{name}' among {len(names)} {kind}\n"
+    return f"There are these {kind}: {', '.join(names)}\n" if names else f"There are no {kind}\n"
+
+
 def hint_line(name: str, known: Iterable[str]) -> str:
     """Return a whole line that suggests near names; empty where there are none."""
     text = did_you_mean(name, known).removeprefix("\n")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import contextlib
 import os
+import shutil
 import signal
 import sys
 from collections.abc import Iterator, Sequence
@@ -16,6 +17,7 @@ BUILT_IN = Path(__file__).resolve().parents[1] / "nodes"
 """Folder of the built-in packages, with a subfolder of modules for each."""
 
 _START = str(BUILT_IN / "start.py")
+_RUN_SCRIPT = str(Path(__file__).with_name("run_script.py"))
 
 
 class ExecutableNotFound(LookupError):
@@ -47,6 +49,17 @@ def find_executable(package: str, executable: str) -> list[str]:
 def built_in_command(package: str, executable: str) -> list[str]:
     """Return the beginning of the command that starts an executable of a built-in package, whatever is sourced."""
     return [sys.executable, "-S", "-P", _START, package, _modules(package)[executable]]
+
+
+def reporting_command(command: Sequence[str]) -> list[str]:
+    """Return a command line that reports uncaught exceptions of a package's Python script without frames of libraries.
+
+    Other command lines, and scripts for another interpreter, are returned as they are.
+    """
+    path = Path(command[0])
+    if path.is_absolute() and path.parent in _folders(path.parent.name) and _is_script_of_this_python(path):
+        return [sys.executable, _RUN_SCRIPT, *command]
+    return list(command)
 
 
 @contextlib.contextmanager
@@ -95,6 +108,22 @@ def _folders(package: str) -> list[Path]:
 
 def _files(folder: Path) -> list[Path]:
     return [path for path in folder.iterdir() if _is_executable(path)] if folder.is_dir() else []
+
+
+def _is_script_of_this_python(path: Path) -> bool:
+    """Return whether a file is a Python script that the interpreter of this process would run."""
+    try:
+        with path.open("rb") as file:
+            line = file.readline()
+    except OSError:
+        return False
+    words = line[2:].decode(errors="replace").split() if line.startswith(b"#!") else []
+    if len(words) == 2 and Path(words[0]).name == "env":
+        words = [shutil.which(words[1]) or ""]
+    if len(words) != 1:
+        return False
+    own, other = Path(sys.executable), Path(words[0])
+    return other.parent == own.parent and other.name.startswith("python") and other.resolve() == own.resolve()
 
 
 def _is_executable(path: Path) -> bool:

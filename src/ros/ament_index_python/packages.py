@@ -33,7 +33,7 @@ def get_package_prefix(package_name: str) -> str:
     ValueError
         If the name cannot be one of a package.
     """
-    if not re.fullmatch(r"[a-zA-Z][a-zA-Z0-9_-]+", package_name, re.ASCII):
+    if not re.fullmatch(r"[a-zA-Z][a-zA-Z0-9_-]*", package_name, re.ASCII):
         raise ValueError(f"'{package_name}' is not a valid package name")
     try:
         return get_resource("packages", package_name)[1]

@@ -17,7 +17,7 @@ from collections.abc import Callable, Coroutine, Generator
 from contextlib import AbstractContextManager
 from typing import Any
 
-from daidalos.workspaces.executables import interrupts_blocked
+from daidalos.workspaces.executables import interrupts_blocked, reporting_command
 
 from ._programs import search_path, which
 
@@ -227,7 +227,7 @@ async def _spawn(child: ChildProcess, cmd: list[str], shell: bool, options: dict
         if found is None:
             raise FileNotFoundError(f"executable '{program}' not found on the PATH")
         program = found
-    starting = loop.subprocess_exec(lambda: child, program, *cmd[1:], **options)
+    starting = loop.subprocess_exec(lambda: child, *reporting_command([program, *cmd[1:]]), **options)
     await _first_step_in(interrupts_blocked(cmd), starting)
 
 

@@ -12,6 +12,7 @@ from enum import IntFlag
 from types import FrameType, TracebackType
 from typing import Any
 
+from daidalos.common import tracebacks
 from rclpy.context import Context
 from rclpy.exceptions import ExternalShutdownException, ROSInterruptException
 from rclpy.guard_condition import GuardCondition
@@ -104,7 +105,7 @@ def _on_signal(number: int, frame: FrameType | None) -> None:
 def _quiet_excepthook(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
     """Suppress the traceback when a program ends because it was asked to."""
     if not is_orderly(error):
-        (_previous_hook or sys.__excepthook__)(kind, error, trace)
+        (tracebacks.show if _previous_hook in (None, sys.__excepthook__) else _previous_hook)(kind, error, trace)
 
 
 def _quiet_thread_excepthook(arguments: threading.ExceptHookArgs) -> None:

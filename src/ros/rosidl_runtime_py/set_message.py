@@ -58,7 +58,11 @@ def _set(
     if kind != "single":
         setattr(msg, name, _sequence(base, value, header_auto, time_now, stampers))
     elif isinstance(base, str):
-        setattr(msg, name, _primitive(base, value))
+        try:
+            setattr(msg, name, _primitive(base, value))
+        except (TypeError, ValueError) as error:
+            holder = getattr(msg, "_TYPE_NAME", "") or type(msg).__name__
+            raise type(error)(f"field '{name}' of {holder}: {error}") from None
     elif value is None:
         return
     elif isinstance(value, base) or not issubclass(base, Message):

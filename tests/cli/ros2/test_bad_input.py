@@ -1,23 +1,30 @@
 """What a user meets who mistypes: one or two lines that say what is near, never a traceback."""
 
+import signal
+import subprocess
+
 import pytest
 
-from .commands import ros2
+from .commands import ROS2, ros2
 
 NODE = """
 import rclpy
 from geometry_msgs.msg import Twist
 from std_msgs.msg import String
+from example_interfaces.action import Fibonacci
 from example_interfaces.srv import AddTwoInts
+from rclpy.action import ActionServer
 rclpy.init()
 node = rclpy.create_node("talker")
 publisher = node.create_publisher(String, "chatter", 10)
 node.create_subscription(Twist, "cmd_vel", print, 10)
 node.create_service(AddTwoInts, "add_two_ints", lambda request, response: response)
+ActionServer(node, Fibonacci, "fibonacci", lambda goal: Fibonacci.Result())
 node.declare_parameter("speed", 1.0)
 node.create_timer(0.1, lambda: publisher.publish(String(data="hello")))
 rclpy.spin(node)
 """
+FIBONACCI = "example_interfaces/action/Fibonacci"
 TWIST = "geometry_msgs/msg/Twist"
 _BRIEFLY = ["topic", "pub", "--once", "--max-wait-time-secs", "1.1"]
 
@@ -70,11 +77,42 @@ def test_mistakes_about_the_graph(env, talker):
             ["Setting parameter failed", "not valid YAML: line 2, column 1"],
         ),
         (["param", "load", "/talker", "missing.yaml"], 1, ["missing.yaml: No such file or directory"]),
+        (["topic", "type", "/chater"], 1, ["Unknown topic '/chater'", "Did you mean '/chatter'?"]),
+        (
+            ["service", "call", "/add_two_ints", "std_srvs/srv/Empty"],
+            1,
+            ["'/add_two_ints' has the type example_interfaces/srv/AddTwoInts, not std_srvs/srv/Empty"],
+        ),
+        (
+            ["action", "send_goal", "/fibonacci", "turtlesim/action/RotateAbsolute"],
+            1,
+            [f"'/fibonacci' has the type {FIBONACCI}, not turtlesim/action/RotateAbsolute"],
+        ),
+        (["action", "info", "/sum"], 0, ["There are these actions: /fibonacci"]),
         (["service", "info", "/add_two_int"], 1, ["Unknown service", "Did you mean '/add_two_ints'?"]),
         ([*_BRIEFLY, "/cmd_vl", TWIST], 1, ["Did you mean '/cmd_vel'?"]),
         ([*_BRIEFLY, "/cmd_vel", "std_msgs/msg/String"], 1, [f"'/cmd_vel' is listened to as {TWIST}"]),
     ):
         _check(ros2(*words, env=env), status, lines)
+    for line, hint in (
+        (
+            "service call /sum example_interfaces/srv/AddTwoInts",
+            "There are these services of type example_interfaces/srv/AddTwoInts: /add_two_ints",
+        ),
+        ("service call /sum nav_msgs/srv/GetMap", "There are no services of type nav_msgs/srv/GetMap"),
+        (f"action send_goal /sum {FIBONACCI}", "There are these actions: /fibonacci"),
+    ):
+        assert _first_hint_while_waiting(line, env) == hint
+
+
+def _first_hint_while_waiting(line, env):
+    """Return the first line on standard error of a command that waits for what may still come."""
+    with subprocess.Popen([*ROS2, *line.split()], stderr=subprocess.PIPE, text=True, env=env) as process:
+        assert process.stderr is not None
+        hint = process.stderr.readline().rstrip()
+        assert process.poll() is None
+        process.send_signal(signal.SIGINT)
+    return hint
 
 
 @pytest.mark.parametrize(
@@ -82,8 +120,9 @@ def test_mistakes_about_the_graph(env, talker):
     [
         ("{linear: [}", "The passed value is not valid YAML: line 1, column 11: "),
         ("{lnear: {x: 1}}", "Did you mean 'linear'?"),
+        ("{linear: {speed: 1}}", "Its fields are: x, y, z"),
         ("{linear: {x:1.5}}", "Did you mean 'x: 1.5'? YAML wants a space after the colon"),
-        ("{linear: {x: fast}}", "Failed to populate field: could not convert string to float: 'fast'"),
+        ("{linear: {x: fast}}", "field 'x' of geometry_msgs/msg/Vector3: could not convert string to float: 'fast'"),
         ("3", "needs to be a dictionary in YAML format"),
     ],
 )

@@ -45,6 +45,13 @@ def test_what_is_dumped_can_be_loaded(env, talker, tmp_path):
         in ros2("param", "load", "/lab/talker", "faster.yaml", env=env, cwd=tmp_path).out
     )
     assert ros2("param", "get", "--hide-type", "/lab/talker", "speed", env=env).out == "2.0\n"
+    again = ros2("param", "load", "/lab/talker", "lab__talker.yaml", env=env, cwd=tmp_path)
+    assert again.err == ""
+    assert "Parameter start_type_description_service is read-only and has this value already\n" in again.out
+    other = text.replace("description_service: true", "description_service: false")
+    (tmp_path / "other.yaml").write_text(other)
+    refused = ros2("param", "load", "/lab/talker", "other.yaml", env=env, cwd=tmp_path)
+    assert "Set parameter start_type_description_service failed: " in refused.err
     result = ros2("param", "dump", "/lab/talker", "--output-dir", "nowhere", env=env, cwd=tmp_path)
     assert (result.status, result.err) == (1, "nowhere/lab__talker.yaml: No such file or directory\n")
 

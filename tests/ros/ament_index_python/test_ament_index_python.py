@@ -127,6 +127,8 @@ def test_unknown_packages(prefixes):
             function("fooo")
     with pytest.raises(KeyError):
         get_package_prefix("nothing_like_it")
+    with pytest.raises(PackageNotFoundError):
+        get_package_prefix("a")
     for name in ("", "_a", "a b", "a/b", "1a", "grün"):
         with pytest.raises(ValueError, match="not a valid package name"):
             get_package_prefix(name)

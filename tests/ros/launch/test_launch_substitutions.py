@@ -152,6 +152,19 @@ def test_command_that_fails(context):
         Command("echo", on_stderr="whatever").perform(context)
 
 
+def test_of_a_traceback_that_a_command_prints_the_last_line_is_told(context):
+    with pytest.raises(SubstitutionFailure) as caught:
+        Command([sys.executable, " -c \"int('one')\""]).perform(context)
+    assert "Traceback" not in str(caught.value)
+    assert str(caught.value).endswith("ValueError: invalid literal for int() with base 10: 'one'")
+
+
+def test_a_missing_xacro_file_is_named_in_one_line(context, tmp_path):
+    file = tmp_path / "robot.urdf.xacro"
+    with pytest.raises(SubstitutionFailure, match=f"error: {file}: no such file$"):
+        Command(["xacro ", str(file)]).perform(context)
+
+
 def test_command_does_not_wait_for_input(context):
     assert Command(f"{sys.executable} -c 'import sys; print(repr(sys.stdin.read()))'").perform(context) == "''\n"
 

@@ -71,6 +71,11 @@ def test_a_timer_does_not_tick_early_nor_make_up_for_lost_time(simulator: Simula
     assert len(ticks) == 1
 
 
+def test_a_timer_without_a_callback_is_warned_of(node: Node, capfd: pytest.CaptureFixture[str]) -> None:
+    node.create_timer(1.0, None)
+    assert "the callback of a timer is None" in capfd.readouterr().err
+
+
 def test_a_timer_can_be_stopped_and_started(node: Node) -> None:
     timer = node.create_timer(0.001, lambda: None, autostart=False)
     assert timer.is_canceled()

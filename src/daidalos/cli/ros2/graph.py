@@ -7,6 +7,7 @@ from collections.abc import Iterable
 
 from ros2cli.graph import NamesAndTypes, visible
 
+from daidalos.cli.ros2.errors import CliError
 from daidalos.transport.graph import EndpointInfo, EndpointKind, Graph, NodeInfo, names_and_types
 
 TOPIC_KINDS = (EndpointKind.PUBLISHER, EndpointKind.SUBSCRIPTION)
@@ -57,6 +58,13 @@ def duplicate_names(found: Iterable[NodeInfo]) -> list[str]:
 def absolute(name: str) -> str:
     """Return a name with a leading slash."""
     return name if name.startswith("/") else f"/{name}"
+
+
+def check_type(found: NamesAndTypes, name: str, type_name: str) -> None:
+    """Raise CliError if a service or action is served as another type than the one it is to be called with."""
+    types = types_of(found, name)
+    if types and type_name not in types:
+        raise CliError(f"'{name}' has the type {' or '.join(types)}, not {type_name}")
 
 
 def types_of(found: NamesAndTypes, name: str) -> list[str]:

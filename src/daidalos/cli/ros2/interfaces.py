@@ -117,4 +117,5 @@ def _near_fields(error: Exception) -> str:
     field, colon, value = str(error.name).partition(":")  # type: ignore[attr-defined]
     if colon and field in holder.get_fields_and_field_types():
         return f"\nDid you mean '{field}: {value}'? YAML wants a space after the colon"
-    return did_you_mean(error.name, holder.get_fields_and_field_types())  # type: ignore[attr-defined]
+    known = holder.get_fields_and_field_types()
+    return did_you_mean(error.name, known) or f"\nIts fields are: {', '.join(known) or 'none'}"  # type: ignore[attr-defined]

@@ -10,7 +10,7 @@ from ros2cli.graph import NamesAndTypes
 
 from daidalos.cli.ros2.extension import Status
 from daidalos.cli.ros2.graph import types_of
-from daidalos.common.suggestions import hint_line
+from daidalos.common.suggestions import did_you_mean
 
 
 def add_count_argument(parser: ArgumentParser, kind: str) -> None:
@@ -44,11 +44,14 @@ def print_found(found: NamesAndTypes, *, show_types: bool, count: bool) -> None:
     print_names([f"{name} [{', '.join(types)}]" if show_types else name for name, types in found], count=count)
 
 
-def print_types(found: NamesAndTypes, name: str) -> Status:
-    """Print the types of a name; if there are none, print suggestions and return 1."""
+def print_types(found: NamesAndTypes, name: str, kind: str) -> Status:
+    """Print the types of a name; if there are none, print suggestions and return 1.
+
+    `kind` is what the names are, such as ``topic``.
+    """
     types = types_of(found, name)
     for one in types:
         print(one)
     if not types:
-        sys.stderr.write(hint_line(name, (other for other, _ in found)))
+        sys.stderr.write(f"Unknown {kind} '{name}'{did_you_mean(name, (other for other, _ in found))}\n")
     return 0 if types else 1

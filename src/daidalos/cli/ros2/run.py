@@ -30,9 +30,10 @@ class RunCommand(Command):
 
     def main(self, *, parser: ArgumentParser, args: Namespace) -> Status:
         """Replace this process by the executable, which gets its signals, its terminal and its exit status."""
-        from daidalos.workspaces.executables import interrupts_blocked
+        from daidalos.workspaces.executables import interrupts_blocked, reporting_command
 
         command = [*shlex.split(args.prefix or ""), *_find(args.package_name, args.executable_name), *args.argv]
+        command = reporting_command(command)
         sys.stdout.flush()
         if sys.platform == "win32":
             return subprocess.run(command, check=False).returncode

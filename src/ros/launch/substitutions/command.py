@@ -5,8 +5,13 @@ from __future__ import annotations
 import os
 import shlex
 import subprocess
+import sys
 from collections.abc import Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+from daidalos.common.tracebacks import without_frames
+from daidalos.workspaces.executables import built_in_command
 
 from .._programs import search_path, which
 from ..frontend.expose import expose_substitution
@@ -77,11 +82,12 @@ class Command(Substitution):
         if result.returncode != 0:
             raise SubstitutionFailure(
                 f"executed command failed with exit code {result.returncode}. Command: {line}\n"
-                f"Captured stderr output: {result.stderr or result.stdout}"
+                f"Captured stderr output: {without_frames(result.stderr or result.stdout)}"
             )
         if result.stderr and on_stderr in ("fail", "warn"):
             message = (
-                f"executed command showed stderr output. Command: {line}\nCaptured stderr output:\n{result.stderr}"
+                f"executed command showed stderr output. Command: {line}\n"
+                f"Captured stderr output:\n{without_frames(result.stderr)}"
             )
             if on_stderr == "fail":
                 raise SubstitutionFailure(message)
@@ -98,9 +104,12 @@ def _run(
     program = which(arguments[0], environment)
     if program is None:
         raise SubstitutionFailure(f"file not found: '{arguments[0]}', in the command: {line}")
+    own_xacro = Path(program) == Path(sys.executable).with_name("xacro")
+    # Ours names the file and the line of a mistake; the one of the package `xacro` may stand there.
+    beginning = built_in_command("xacro", "xacro") if own_xacro else [program]
     try:
         return subprocess.run(
-            [program, *arguments[1:]],
+            [*beginning, *arguments[1:]],
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT if merged else subprocess.PIPE,

@@ -16,6 +16,7 @@ from rclpy.impl.entities import ClientHandle, NodeHandle, PublisherHandle, Servi
 from rclpy.impl.node_graph import checked_name
 from rclpy.impl.node_members import NodeMembers
 from rclpy.impl.node_parameters import NodeParameters
+from rclpy.impl.rcutils_logger import RcutilsLogger
 from rclpy.publisher import Publisher
 from rclpy.qos import QoSProfile, qos_profile_services_default
 from rclpy.service import Service
@@ -35,6 +36,7 @@ class NodeEntities(NodeMembers, NodeParameters):
     _context: Context
     _default_callback_group: CallbackGroup
     _clock: ROSClock
+    _logger: RcutilsLogger
     _rcl_client_class: type[Client] = Client
 
     @property
@@ -229,6 +231,10 @@ class NodeEntities(NodeMembers, NodeParameters):
         """Call a function every `timer_period_sec` seconds of a clock, by default the node's."""
         if timer_period_sec < 0:
             raise ValueError(f"timer period must not be negative, got {timer_period_sec}")
+        if callback is None:
+            self._logger.warning(
+                "the callback of a timer is None, so it calls nothing: pass the function itself, without parentheses"
+            )
         group = callback_group or self.default_callback_group
         timer = Timer(
             callback,

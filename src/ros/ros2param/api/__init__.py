@@ -106,9 +106,30 @@ def load_parameter_file(*, node: Any, node_name: str, parameter_file: str, use_w
     except OSError as error:
         raise RuntimeError(f"{parameter_file}: {error.strerror}") from None
     response = call_set_parameters(node=node, node_name=node_name, parameters=list(parameters.values()))
+    failed = [
+        parameters[name] for name, result in zip(parameters, response.results, strict=True) if not result.successful
+    ]
+    unchanged = _unchanged(node, node_name, failed)
     for name, result in zip(parameters, response.results, strict=True):
-        report(result, f"Set parameter {name} successful", f"Set parameter {name} failed")
+        if name in unchanged:
+            sys.stdout.write(f"Parameter {name} is read-only and has this value already\n")
+        else:
+            report(result, f"Set parameter {name} successful", f"Set parameter {name} failed")
     sys.stdout.flush()
+
+
+def _unchanged(node: Any, node_name: str, parameters: Sequence[Parameter]) -> set[str]:
+    """Return the names of those read-only parameters that have the values which they were to get."""
+    names = [one.name for one in parameters]
+    if not names:
+        return set()
+    descriptors = call_describe_parameters(node=node, node_name=node_name, parameter_names=names).descriptors
+    values = call_get_parameters(node=node, node_name=node_name, parameter_names=names).values
+    return {
+        one.name
+        for one, descriptor, value in zip(parameters, descriptors, values, strict=False)
+        if descriptor.read_only and value == one.value
+    }
 
 
 def report(result: Any, good: str, bad: str) -> bool:

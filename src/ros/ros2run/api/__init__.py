@@ -16,6 +16,7 @@ from daidalos.workspaces.executables import (
     find_executable,
     interrupts_blocked,
     is_known,
+    reporting_command,
 )
 
 
@@ -75,7 +76,7 @@ def run_executable(*, path: str, argv: Sequence[str], prefix: str | Sequence[str
     import shlex
 
     before = shlex.split(prefix) if isinstance(prefix, str) else list(prefix or [])
-    command = [*before, *_command(path), *argv]
+    command = reporting_command([*before, *_command(path), *argv])
     with interrupts_blocked(command):
         process = subprocess.Popen(command)
     while process.returncode is None:

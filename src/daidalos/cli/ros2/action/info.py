@@ -11,7 +11,7 @@ from daidalos.cli.ros2.completion import complete_actions
 from daidalos.cli.ros2.extension import Status, Verb
 from daidalos.cli.ros2.graph import absolute, action_parties, actions, all_actions
 from daidalos.cli.ros2.graph_view import graph_view
-from daidalos.common.suggestions import hint_line
+from daidalos.common.suggestions import near_or_all
 from daidalos.transport.graph import EndpointInfo, EndpointKind
 
 
@@ -42,7 +42,7 @@ class InfoVerb(Verb):
             if not args.count:
                 _print_nodes(parties, args.show_types)
         if name not in known:
-            sys.stderr.write(hint_line(name, known))
+            sys.stderr.write(near_or_all(name, known, "actions"))
         return 0
 
 

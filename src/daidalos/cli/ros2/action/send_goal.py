@@ -12,15 +12,17 @@ from ros2cli.node.direct import direct_node
 from daidalos.cli.ros2.completion import complete_actions, complete_types, complete_values
 from daidalos.cli.ros2.errors import CliError
 from daidalos.cli.ros2.extension import Status, Verb
-from daidalos.cli.ros2.graph import all_actions
+from daidalos.cli.ros2.graph import actions, check_type, types_of
 from daidalos.cli.ros2.interfaces import action_class, fill, parse_values
 from daidalos.cli.ros2.topics import spin
-from daidalos.common.suggestions import hint_line
+from daidalos.common.suggestions import near_or_all
+from daidalos.transport.graph import EndpointKind
 
 if TYPE_CHECKING:
     from rclpy.action import ActionClient
     from rclpy.action.client import ClientGoalHandle
     from rclpy.node import Node
+    from ros2cli.graph import NamesAndTypes
 
 _STATUS_NAMES = ("UNKNOWN", "ACCEPTED", "EXECUTING", "CANCELING", "SUCCEEDED", "CANCELED", "ABORTED")
 """Names of the states by their number in `action_msgs/msg/GoalStatus`."""
@@ -64,19 +66,28 @@ class SendGoalVerb(Verb):
                 stamp(node.get_clock().now().to_msg())
             client = ActionClient(node, action_type, args.action_name)
             try:
-                _wait(node, client, args.action_name)
+                _wait(node, client, args.action_name, action_type._TYPE_NAME)
                 _send(node, client, goal, args.feedback)
             finally:
                 client.destroy()
         return 0
 
 
-def _wait(node: Node, client: ActionClient, name: str) -> None:
-    print("Waiting for an action server to become available...")
+def _wait(node: Node, client: ActionClient, name: str, wanted: str) -> None:
+    """Wait for the action's server, and print what there is instead; CliError if the action has another type."""
+    graph, full_name = node.handle.graph, node.resolve_topic_name(name)
+
+    def served() -> NamesAndTypes:
+        return actions(graph.endpoints(EndpointKind.PUBLISHER))
+
+    print("Waiting for an action server to become available...", flush=True)
     if not client.server_is_ready():
-        full_name = node.resolve_topic_name(name)
-        known = [other for other, _ in all_actions(node.handle.graph) if other != full_name]
-        sys.stderr.write(hint_line(full_name, known))
+        check_type(served(), full_name, wanted)
+        if not types_of(served(), full_name):
+            sys.stderr.write(near_or_all(full_name, [other for other, _ in served()], "actions"))
+            sys.stderr.flush()
+            graph.wait_for(lambda: bool(types_of(served(), full_name)))
+            check_type(served(), full_name, wanted)
     client.wait_for_server()
 
 

@@ -28,4 +28,4 @@ class TypeVerb(Verb):
         name = absolute(args.action_name)
         with graph_view(args) as graph:
             known = all_actions(graph)
-        return print_types(known, name)
+        return print_types(known, name, "action")

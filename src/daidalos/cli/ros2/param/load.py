@@ -6,11 +6,10 @@ from argparse import ArgumentParser, Namespace
 
 from ros2cli.node.direct import direct_node
 from ros2cli.node.strategy import add_arguments as add_graph_arguments
-from ros2param.api import report
+from ros2param.api import load_parameter_file
 
-from daidalos.cli.ros2.errors import CliError
 from daidalos.cli.ros2.extension import Status, Verb
-from daidalos.cli.ros2.parameters import add_node_arguments, add_timeout_argument, find_node, set_parameters
+from daidalos.cli.ros2.parameters import add_node_arguments, add_timeout_argument, find_node
 
 
 class LoadVerb(Verb):
@@ -30,17 +29,9 @@ class LoadVerb(Verb):
 
     def main(self, *, args: Namespace) -> Status:
         """Set the parameters of the file, and print the result of each."""
-        from rclpy.parameter import parameter_dict_from_yaml_file
-
         with direct_node(args) as node:
             name = find_node(node, args)
-            try:
-                parameters = parameter_dict_from_yaml_file(
-                    args.parameter_file, use_wildcard=not args.no_use_wildcard, target_nodes=[name]
-                )
-            except OSError as error:
-                raise CliError(f"{args.parameter_file}: {error.strerror}") from None
-            results = set_parameters(node, name, list(parameters.values()))
-        for parameter, result in zip(parameters, results, strict=True):
-            report(result, f"Set parameter {parameter} successful", f"Set parameter {parameter} failed")
+            load_parameter_file(
+                node=node, node_name=name, parameter_file=args.parameter_file, use_wildcard=not args.no_use_wildcard
+            )
         return 0

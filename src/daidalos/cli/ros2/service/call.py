@@ -11,13 +11,15 @@ from ros2topic.api import positive_float
 
 from daidalos.cli.ros2.completion import complete_services, complete_types, complete_values
 from daidalos.cli.ros2.extension import Status, Verb
-from daidalos.cli.ros2.graph import services
+from daidalos.cli.ros2.graph import check_type, types_of
 from daidalos.cli.ros2.interfaces import fill, parse_values, service_class
-from daidalos.common.suggestions import hint_line
+from daidalos.common.suggestions import hint_line, near_or_all
+from daidalos.transport.graph import EndpointKind, names_and_types
 
 if TYPE_CHECKING:
     from rclpy.client import Client
     from rclpy.node import Node
+    from ros2cli.graph import NamesAndTypes
 
 
 class CallVerb(Verb):
@@ -56,7 +58,7 @@ class CallVerb(Verb):
         stampers = fill(request, parse_values(sys.stdin.read() if args.stdin else args.values))
         with direct_node(args) as node:
             client = node.create_client(service_type, args.service_name)
-            _wait(node, client)
+            _wait(node, client, service_type._TYPE_NAME)
             while True:
                 now = node.get_clock().now().to_msg() if stampers else None
                 for stamp in stampers:
@@ -67,13 +69,23 @@ class CallVerb(Verb):
                 node.handle.graph.wait_for(lambda: False, 1.0 / args.rate)
 
 
-def _wait(node: Node, client: Client) -> None:
+def _wait(node: Node, client: Client, wanted: str) -> None:
+    """Wait for the service, and print what there is instead; CliError if it has another type."""
+    graph, name = node.handle.graph, client.service_name
+
+    def served() -> NamesAndTypes:
+        return names_and_types(graph.endpoints(EndpointKind.SERVICE))
+
     if client.service_is_ready():
         return
-    print("waiting for service to become available...")
-    name = client.service_name
-    known = [other for other, _ in services(node.handle.graph) if other != name]
-    sys.stderr.write(hint_line(name, known))
+    check_type(served(), name, wanted)
+    print("waiting for service to become available...", flush=True)
+    same_type = [other for other, types in served() if wanted in types]
+    known = [other for other, _ in served()]
+    sys.stderr.write(hint_line(name, known) or near_or_all(name, same_type, f"services of type {wanted}"))
+    sys.stderr.flush()
+    graph.wait_for(lambda: bool(types_of(served(), name)))
+    check_type(served(), name, wanted)
     client.wait_for_service()
 
 

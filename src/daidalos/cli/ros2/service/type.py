@@ -27,4 +27,4 @@ class TypeVerb(Verb):
         name = absolute(args.service_name)
         with graph_view(args) as graph:
             known = services(graph)
-        return print_types(known, name)
+        return print_types(known, name, "service")

@@ -26,4 +26,4 @@ class TypeVerb(Verb):
         name = absolute(args.topic_name)
         with graph_view(args) as graph:
             known = topics(graph, args.include_hidden_topics)
-        return print_types(known, name)
+        return print_types(known, name, "topic")
