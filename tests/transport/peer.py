@@ -12,9 +12,11 @@ from std_msgs.msg import Int32
 
 from daidalos.transport.environment import read_environment
 from daidalos.transport.graph import EndpointKind
-from daidalos.transport.qos import Qos, Reliability
+from daidalos.transport.qos import Durability, Qos, Reliability
 from daidalos.transport.session import Session
 from daidalos.transport.shared import make_backend
+
+LATCHED = Qos(durability=Durability.TRANSIENT_LOCAL)
 
 
 def say(text: object) -> None:
@@ -61,6 +63,16 @@ def look(session: Session) -> None:
     threading.Event().wait()
 
 
+def keep(session: Session) -> None:
+    """Keep a number on each of two latched publishers."""
+    node, _remove = session.create_node("keeper", "/")
+    publishers = [session.create_publisher(node, "/kept", Int32, LATCHED) for _ in range(2)]
+    for number, publisher in enumerate(publishers):
+        publisher.publish(Int32(data=number))
+    say("ready")
+    threading.Event().wait()
+
+
 def serve(session: Session) -> None:
     """Add numbers."""
     node, _remove = session.create_node("server", "/")
@@ -100,7 +112,7 @@ def crowd(session: Session) -> None:
     assert publishers
 
 
-ROLES = {"crowd": crowd, "talk": talk, "flood": flood, "listen": listen, "look": look, "serve": serve, "watch": watch}
+ROLES = {role.__name__: role for role in (crowd, talk, flood, keep, listen, look, serve, watch)}
 
 if __name__ == "__main__":
     ROLES[sys.argv[1]](Session(make_backend(read_environment())))

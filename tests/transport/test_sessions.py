@@ -17,9 +17,11 @@ from std_msgs.msg import Int32, String
 from test_msgs.msg import WStrings
 
 from daidalos.interfaces.codec import CdrError, codec_of
+from daidalos.transport.environment import Environment
 from daidalos.transport.graph import EndpointInfo, EndpointKind, NodeInfo, names_and_types
-from daidalos.transport.qos import Durability, History, Qos, Reliability
+from daidalos.transport.qos import Durability, History, Qos, Reliability, incompatibilities
 from daidalos.transport.session import Session
+from daidalos.transport.shared import make_backend
 from daidalos.transport.subscription import Subscription
 
 TIMEOUT_S = 10.0
@@ -377,3 +379,27 @@ def test_closing_while_others_publish_harms_nobody(two):
         for thread in threads:
             thread.join(TIMEOUT_S)
             assert not thread.is_alive()
+
+
+def test_what_a_further_endpoint_of_a_topic_costs_does_not_grow(domain, monkeypatch):
+    compared = []
+
+    def count(offered: Qos, requested: Qos) -> list[Any]:
+        compared.append(None)
+        return incompatibilities(offered, requested)
+
+    monkeypatch.setattr("daidalos.transport.session.incompatibilities", count)
+    session = Session(make_backend(Environment(domain, middleware="rmw_daidalos_inprocess")))
+    node = node_of(session, "crowd")
+    told: list[EndpointInfo] = []
+    publisher = session.create_publisher(node, "/topic", Int32, Qos())
+    for _ in range(100):
+        session.watch("/topic", lambda added, endpoint: told.append(endpoint), EndpointKind.PUBLISHER)
+    made = [session.create_subscription(node, "/topic", Int32, Qos()) for _ in range(100)]
+    assert len(compared) <= 3 * len(made)
+    assert {endpoint.kind for endpoint in told} == {EndpointKind.PUBLISHER}
+    publisher.publish(Int32(data=1))
+    made.pop().close()
+    publisher.publish(Int32(data=2))
+    assert [len(one) for one in made] == [2] * 99
+    session.close()

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Hashable, Iterable
 from dataclasses import dataclass
 from enum import Enum
+from typing import TypeVar
 
 from daidalos.transport.qos import Qos
 
@@ -58,6 +59,7 @@ class EndpointInfo:
     gid: bytes
 
 
+Group = TypeVar("Group", bound=Hashable)
 Listener = Callable[[bool, NodeInfo | EndpointInfo], None]
 """Told of every change: whether it was added (else removed), and what."""
 
@@ -69,7 +71,7 @@ class Graph:
         self._changed = threading.Condition()
         self._nodes: dict[str, NodeInfo] = {}
         self._endpoints: dict[str, EndpointInfo] = {}
-        self._by_name: dict[str, dict[str, EndpointInfo]] = {}
+        self._by_name: dict[tuple[str, EndpointKind], dict[str, EndpointInfo]] = {}
         self._by_node: dict[str, dict[str, EndpointInfo]] = {}
         self._listeners: tuple[Listener, ...] = ()
         self._version = 0
@@ -95,7 +97,7 @@ class Graph:
             if key in self._endpoints:
                 return
             self._endpoints[key] = endpoint
-            self._by_name.setdefault(endpoint.name, {})[key] = endpoint
+            self._by_name.setdefault((endpoint.name, endpoint.kind), {})[key] = endpoint
             self._by_node.setdefault(endpoint.node.key, {})[key] = endpoint
         self._notify(True, endpoint)
 
@@ -105,11 +107,8 @@ class Graph:
             endpoint = self._endpoints.pop(key, None)
             if endpoint is None:
                 return
-            for index, name in ((self._by_name, endpoint.name), (self._by_node, endpoint.node.key)):
-                members = index[name]
-                del members[key]
-                if not members:
-                    del index[name]
+            _remove(self._by_name, (endpoint.name, endpoint.kind), key)
+            _remove(self._by_node, endpoint.node.key, key)
         self._notify(False, endpoint)
 
     def listen(self, listener: Listener) -> Callable[[], None]:
@@ -167,8 +166,10 @@ class Graph:
     def endpoints(self, *kinds: EndpointKind, name: str | None = None) -> list[EndpointInfo]:
         """Return the endpoints of the given kinds (all if none is given), optionally only those of one name."""
         with self._changed:
-            members = self._endpoints if name is None else self._by_name.get(name, {})
-            found = list(members.values())
+            if name is not None:
+                groups = (self._by_name.get((name, kind)) for kind in kinds or EndpointKind)
+                return [endpoint for group in groups if group for endpoint in group.values()]
+            found = list(self._endpoints.values())
         return [endpoint for endpoint in found if not kinds or endpoint.kind in kinds]
 
     def endpoints_of(self, node: NodeInfo, *kinds: EndpointKind) -> list[EndpointInfo]:
@@ -176,6 +177,14 @@ class Graph:
         with self._changed:
             found = list(self._by_node.get(node.key, {}).values())
         return [endpoint for endpoint in found if not kinds or endpoint.kind in kinds]
+
+
+def _remove(index: dict[Group, dict[str, EndpointInfo]], group: Group, key: str) -> None:
+    """Remove an endpoint from its group of an index, and the group if it is empty then."""
+    members = index[group]
+    del members[key]
+    if not members:
+        del index[group]
 
 
 def names_and_types(endpoints: Iterable[EndpointInfo]) -> list[tuple[str, list[str]]]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import time
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Any
 
 from daidalos.interfaces.codec import Codec
@@ -31,7 +31,9 @@ class Publisher:
         self._type = codec.message_type
         self._gid = endpoint.gid
         self._next_sequence = itertools.count(1).__next__
+        self._matched: dict[Subscription, None] = {}
         self._targets: tuple[Subscription, ...] = ()
+        self._remote_subscriptions: set[bytes] = set()
         self._remote: BackendPublisher | None = None
         self._has_remote_subscribers = False
         qos = endpoint.qos
@@ -124,19 +126,39 @@ class Publisher:
     def attach(self, remote: BackendPublisher, undo: Callable[[], None]) -> None:
         """Connect to the middleware; `undo` disconnects."""
         self._remote, self._undo = remote, undo
-        if self._latched:
-            self._has_remote_subscribers = True  # the middleware keeps the samples for late subscriptions
+        self.update_remote()
 
-    def set_remote_subscribers(self, present: bool) -> None:
-        """Record whether other processes have matching subscriptions."""
-        self._has_remote_subscribers = present or self._latched
+    def add_remote_subscription(self, gid: bytes) -> None:
+        """Record a matching subscription of another process."""
+        self._remote_subscriptions.add(gid)
+        self.update_remote()
 
-    def set_targets(self, targets: tuple[Subscription, ...]) -> None:
-        """Set the subscriptions of this process that receive every sample."""
-        self._targets = targets
+    def remove_remote_subscription(self, gid: bytes) -> None:
+        """Remove a subscription of another process."""
+        self._remote_subscriptions.discard(gid)
+        self.update_remote()
+
+    def update_remote(self) -> None:
+        """Update whether messages are sent to other processes.
+
+        Where samples are latched, the middleware keeps them for late subscriptions.
+        """
+        self._has_remote_subscribers = bool(self._remote_subscriptions) or self._latched or self.wire_has_readers
+
+    def add_targets(self, subscriptions: Iterable[Subscription]) -> None:
+        """Add subscriptions of this process, which receive every sample."""
+        self._matched.update(dict.fromkeys(subscriptions))
+        self._targets = tuple(self._matched)
+
+    def remove_target(self, subscription: Subscription) -> None:
+        """Remove a subscription of this process, if it is a target."""
+        if subscription in self._matched:
+            del self._matched[subscription]
+            self._targets = tuple(self._matched)
 
     def detach(self) -> None:
         """Drop the middleware and all subscriptions."""
         remote, self._remote, self._has_remote_subscribers, self._targets = self._remote, None, False, ()
+        self._matched.clear()
         if remote:
             remote.close()

@@ -48,7 +48,7 @@ class Session:
         self._subscriptions: dict[str, set[Subscription]] = {}
         self._services: dict[str, list[Service]] = {}
         self._clients: dict[str, set[Client]] = {}
-        self._watchers: dict[str, list[Watcher]] = {}
+        self._watchers: dict[tuple[str, EndpointKind], dict[Watcher, None]] = {}
         self._own: set[bytes] = set()
         self._closed = False
         self._closing: list[_thread.LockType] = []  # changed without a lock, as `abandon` may interrupt its holder
@@ -122,7 +122,10 @@ class Session:
         remote.watch_readers(lambda: self._on_readers_change(publisher))
         with self._lock:
             self._publishers.setdefault(topic, set()).add(publisher)
-            self._match_topic(topic)
+            subscriptions = self._subscriptions.get(topic, ())
+            publisher.add_targets(other for other in subscriptions if _compatible(endpoint, other.endpoint))
+            for other in self.graph.endpoints(EndpointKind.SUBSCRIPTION, name=topic):
+                self._note_remote_subscription(publisher, other)
         self.graph.add_endpoint(key, endpoint)
         return publisher
 
@@ -132,13 +135,14 @@ class Session:
         """Create a subscription to messages of a class on a topic; `on_ready` is called when one was queued."""
         key, endpoint = self._endpoint(EndpointKind.SUBSCRIPTION, node, topic, message_type, qos)
         subscription = Subscription(endpoint, codec_of(message_type, self.backend.wide), on_ready)
-        self._refuse_incompatible(subscription)
         with self._lock:
             self._subscriptions.setdefault(topic, set()).add(subscription)
-            self._match_topic(topic)
-            if qos.transient_local:
-                for publisher in self._publishers.get(topic, ()):
-                    if _compatible(publisher.endpoint, endpoint):
+            for other in self.graph.endpoints(EndpointKind.PUBLISHER, name=topic):
+                _refuse_if_incompatible(subscription, other)
+            for publisher in self._publishers.get(topic, ()):
+                if _compatible(publisher.endpoint, endpoint):
+                    publisher.add_targets((subscription,))
+                    if qos.transient_local:
                         publisher.replay(subscription)
         remote = self.backend.declare_subscription(key, endpoint, subscription.accept)
         subscription.attach(remote, lambda: self._remove(key, self._subscriptions, subscription))
@@ -192,24 +196,27 @@ class Session:
         others = self.graph.endpoints(EndpointKind.PUBLISHER, name=endpoint.name)
         return [other for other in others if _compatible(other, endpoint)]
 
-    def watch(self, name: str, watcher: Watcher) -> Callable[[], None]:
+    def watch(self, name: str, watcher: Watcher, *kinds: EndpointKind) -> Callable[[], None]:
         """Call ``watcher(added, endpoint)`` when an endpoint of a topic or service is added or removed.
 
-        It is told of those that are there already, too. The result ends it.
+        It is told of those that are there already, too, and of the given kinds only (all if none is given). The
+        result ends it.
         """
+        groups = [(name, kind) for kind in kinds or EndpointKind]
         with self._lock:
-            self._watchers.setdefault(name, []).append(watcher)
-            present = self.graph.endpoints(name=name)
+            for group in groups:
+                self._watchers.setdefault(group, {})[watcher] = None
+            present = self.graph.endpoints(*kinds, name=name)
         for endpoint in present:
             watcher(True, endpoint)
 
         def stop() -> None:
             with self._lock:
-                watchers = self._watchers.get(name, [])
-                if watcher in watchers:
-                    watchers.remove(watcher)
-                if not watchers:
-                    self._watchers.pop(name, None)
+                for group in groups:
+                    watchers = self._watchers.get(group, {})
+                    watchers.pop(watcher, None)
+                    if not watchers:
+                        self._watchers.pop(group, None)
 
         return stop
 
@@ -229,22 +236,14 @@ class Session:
                 members.remove(member)
                 if not members:
                     del group[name]
-            if group is self._publishers or group is self._subscriptions:
-                self._match_topic(name)
-            else:
+            if group is self._subscriptions:
+                for publisher in self._publishers.get(name, ()):
+                    publisher.remove_target(member)
+            elif group is not self._publishers:
                 self._match_service(name)
         member.detach()
         self.graph.remove_endpoint(key)
         self._own.discard(member.endpoint.gid)
-
-    def _match_topic(self, topic: str) -> None:
-        """Match the publishers and subscriptions of a topic in this process, and update the remote subscribers."""
-        subscriptions = self._subscriptions.get(topic, ())
-        for publisher in self._publishers.get(topic, ()):
-            self._note_listeners(publisher)
-            publisher.set_targets(
-                tuple(other for other in subscriptions if _compatible(publisher.endpoint, other.endpoint))
-            )
 
     def _match_service(self, name: str) -> None:
         """Match the clients and the service in this process."""
@@ -259,34 +258,36 @@ class Session:
         with self._lock:
             if what.kind is EndpointKind.PUBLISHER:
                 for subscription in self._subscriptions.get(what.name, ()):
-                    self._refuse_incompatible(subscription)
+                    if added:
+                        _refuse_if_incompatible(subscription, what)
+                    else:
+                        subscription.admit(what.gid)
             elif what.kind is EndpointKind.SUBSCRIPTION and what.gid not in self._own:
                 for publisher in self._publishers.get(what.name, ()):
-                    self._note_listeners(publisher)
-            watchers = tuple(self._watchers.get(what.name, ()))
+                    if added:
+                        self._note_remote_subscription(publisher, what)
+                    else:
+                        publisher.remove_remote_subscription(what.gid)
+            watchers = tuple(self._watchers.get((what.name, what.kind), ()))
         for watcher in watchers:
             watcher(added, what)
 
     def _on_readers_change(self, publisher: Publisher) -> None:
         """Update a publisher of which the middleware itself has gained or lost readers."""
         with self._lock:
-            self._note_listeners(publisher)
+            publisher.update_remote()
         self.graph.notify()
 
-    def _note_listeners(self, publisher: Publisher) -> None:
-        """Update whether a publisher has remote subscribers, whose QoS may be laxer."""
-        mine = publisher.endpoint
-        subscriptions = self.graph.endpoints(EndpointKind.SUBSCRIPTION, name=mine.name)
-        publisher.set_remote_subscribers(
-            publisher.wire_has_readers
-            or any(other.gid not in self._own and _same_type(mine, other) for other in subscriptions)
-        )
+    def _note_remote_subscription(self, publisher: Publisher, other: EndpointInfo) -> None:
+        """Record a subscription of another process that has the publisher's type; its QoS may be laxer."""
+        if other.gid not in self._own and _same_type(publisher.endpoint, other):
+            publisher.add_remote_subscription(other.gid)
 
-    def _refuse_incompatible(self, subscription: Subscription) -> None:
-        """Reject samples of remote publishers with incompatible QoS; the middleware may not check it."""
-        mine = subscription.endpoint
-        publishers = self.graph.endpoints(EndpointKind.PUBLISHER, name=mine.name)
-        subscription.refuse(frozenset(one.gid for one in publishers if incompatibilities(one.qos, mine.qos)))
+
+def _refuse_if_incompatible(subscription: Subscription, publisher: EndpointInfo) -> None:
+    """Reject samples of a publisher with incompatible QoS; the middleware may not check it."""
+    if incompatibilities(publisher.qos, subscription.endpoint.qos):
+        subscription.refuse(publisher.gid)
 
 
 def _same_type(one: EndpointInfo, other: EndpointInfo) -> bool:

@@ -48,7 +48,7 @@ class Subscription:
         self._limit = endpoint.qos.limit if endpoint.qos.reliable else None
         self._remote: BackendSubscription | None = None
         self._undo: Callable[[], None] | None = None
-        self._refused: frozenset[bytes] = frozenset()
+        self._refused: set[bytes] = set()
         self._observers: tuple[Callable[[SampleInfo], None], ...] = ()
         self._last_take = 0
         self._take_interval = 0
@@ -171,9 +171,13 @@ class Subscription:
         """Connect to the middleware; `undo` disconnects."""
         self._remote, self._undo = remote, undo
 
-    def refuse(self, gids: frozenset[bytes]) -> None:
-        """Set the publishers with incompatible QoS, whose samples are rejected."""
-        self._refused = gids
+    def refuse(self, gid: bytes) -> None:
+        """Reject the samples of a publisher with incompatible QoS."""
+        self._refused.add(gid)
+
+    def admit(self, gid: bytes) -> None:
+        """Reject the samples of a publisher no longer."""
+        self._refused.discard(gid)
 
     def detach(self) -> None:
         """Drop the middleware and the queue."""

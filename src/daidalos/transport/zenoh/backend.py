@@ -35,10 +35,12 @@ from daidalos.transport.zenoh.endpoints import (
     ZenohSubscription,
 )
 from daidalos.transport.zenoh.entity_ids import EntityIds
+from daidalos.transport.zenoh.history_queries import HistoryQueries
 from daidalos.transport.zenoh.latched import Caches, LatchedPublisher, LatchedSubscription
 from daidalos.transport.zenoh.links import disable_linger
 from daidalos.transport.zenoh.pool import Pool
 from daidalos.transport.zenoh.threads import limit_threads, on_lasting_thread
+from daidalos.transport.zenoh.worker import Worker
 
 _SOCKET_PATH_LIMIT = 100
 """Longest path of a Unix socket that every system takes."""
@@ -91,7 +93,9 @@ class ZenohBackend(Backend):
         place = keys.answers(self._session_id)
         answer = Callback(on_lasting_thread(lambda query: _answer(query, place)), indirect=False)
         self._session.declare_queryable(place, answer, complete=True, allowed_origin=zenoh.Locality.REMOTE)
-        self._caches = Caches(self._session)
+        self._worker = Worker()
+        self._caches = Caches(self._session, self._worker)
+        self._histories = HistoryQueries(self._session, self._worker)
         graph.listen(self._on_graph_change)
         # Tokens arrive on a thread of their own: zenoh's must never wait for Python's lock while a peer goes away,
         # because undeclaring an advanced publisher waits for them while it holds that lock.
@@ -122,10 +126,17 @@ class ZenohBackend(Backend):
     def close(self) -> None:
         """Close the session with its tokens."""
         self._registry.unregister()
+        self._worker.close()
         self._session.close()
         self._reader.join(_CLOSING_S)
         self._registry.remove_socket(self._session_id)
-        del self._session, self._tokens, self._links, self._caches  # zenoh keeps files open as long as these live
+        del (
+            self._session,
+            self._tokens,
+            self._links,
+            self._caches,
+            self._histories,
+        )  # zenoh keeps files open as long as these live
 
     def settle(self, timeout_s: float) -> bool:
         """Wait until the sessions that were alive at startup are connected and have declared their tokens."""
@@ -238,7 +249,8 @@ class ZenohBackend(Backend):
         self, key: str, endpoint: EndpointInfo, on_sample: Callable[[Any], None]
     ) -> LatchedSubscription:
         """Declare a subscription that receives the history of all publishers, whichever is declared first."""
-        remote = LatchedSubscription(self._session, self._data_key(endpoint), endpoint, on_sample)
+        request = self._histories.request
+        remote = LatchedSubscription(self._session, self._data_key(endpoint), endpoint, on_sample, request)
         forget = self._closer(key, endpoint)
         with self._lock:
             self._latched.setdefault(endpoint.name, set()).add(remote)

@@ -22,11 +22,11 @@ from zenoh.handlers import Callback
 from daidalos.transport.graph import EndpointInfo
 from daidalos.transport.zenoh import attachment
 from daidalos.transport.zenoh.endpoints import ZenohPublisher, ZenohSubscription
+from daidalos.transport.zenoh.history_queries import Request
 from daidalos.transport.zenoh.pool import Pool
 from daidalos.transport.zenoh.threads import on_lasting_thread
+from daidalos.transport.zenoh.worker import Worker
 
-_TIMEOUT_S = 5.0
-"""Timeout of a session's answer; the query is repeated as long as the session is reachable."""
 _MAX_PUBLISHERS = 10_000
 """Maximum number of publishers whose last samples are remembered."""
 
@@ -39,8 +39,9 @@ Identity = tuple[int, int, bytes]
 class Caches:
     """Caches of a session, one for each topic."""
 
-    def __init__(self, session: zenoh.Session) -> None:
+    def __init__(self, session: zenoh.Session, worker: Worker) -> None:
         self._session = session
+        self._worker = worker
         self._lock = threading.Lock()
         self._caches: dict[str, Cache] = {}
 
@@ -49,7 +50,7 @@ class Caches:
         with self._lock:
             cache = self._caches.get(key)
             if cache is None:
-                cache = self._caches[key] = Cache(self._session, key)
+                cache = self._caches[key] = Cache(self._session, key, self._worker)
             cache.publishers[publisher] = None
             return cache
 
@@ -74,12 +75,13 @@ class Cache:
         Held while a sample is stamped and sent: receivers take one with an earlier stamp than the last for old.
     """
 
-    def __init__(self, session: zenoh.Session, key: str) -> None:
+    def __init__(self, session: zenoh.Session, key: str, worker: Worker) -> None:
         self.publishers: dict[LatchedPublisher, None] = {}
         self.order = threading.RLock()
         self._key = key
         name = f"{key}/@adv/pub/{session.zid()}/uhlc/_"
-        answer = Callback(on_lasting_thread(self._answer), indirect=False)
+        # Not on zenoh's thread, which reads what comes from the asker: it would wait for the asker to read.
+        answer = Callback(on_lasting_thread(lambda query: worker.submit(lambda: self._answer(query))), indirect=False)
         self._queryable: Any = session.declare_queryable(name, answer, allowed_origin=zenoh.Locality.REMOTE)
         self._token: Any = session.liveliness().declare_token(name)
 
@@ -135,9 +137,14 @@ class LatchedSubscription(ZenohSubscription):
     """Subscription that receives earlier samples first."""
 
     def __init__(
-        self, session: zenoh.Session, key: str, endpoint: EndpointInfo, on_sample: Callable[[Any], None]
+        self,
+        session: zenoh.Session,
+        key: str,
+        endpoint: EndpointInfo,
+        on_sample: Callable[[Any], None],
+        request: Request,
     ) -> None:
-        self._history = History(session, key, endpoint.qos.limit, on_sample)
+        self._history = History(request, key, endpoint.qos.limit, on_sample)
         super().__init__(session, key, endpoint, self._history.accept)
 
     def request_history(self, session: str) -> None:
@@ -156,9 +163,9 @@ class HistoryQuery:
     Attributes
     ----------
     samples
-        The answers so far, and what was received from the session meanwhile.
+        What was received from the session meanwhile.
     again
-        Whether to ask again: there is one more publisher, or not all answers came in time.
+        Whether to ask again: there is one more publisher.
     """
 
     def __init__(self) -> None:
@@ -171,7 +178,9 @@ class History:
 
     Parameters
     ----------
-    session, key
+    request
+        Called with `key`, a session and this history to query the session; the answers go to `merge`.
+    key
         Of the subscription.
     limit
         So many of each publisher's samples are asked for; all where None.
@@ -179,14 +188,11 @@ class History:
         Called with one sample after the other.
     """
 
-    def __init__(
-        self, session: zenoh.Session, key: str, limit: int | None, deliver: Callable[[zenoh.Sample], None]
-    ) -> None:
-        self._session = session
+    def __init__(self, request: Request, key: str, limit: int | None, deliver: Callable[[zenoh.Sample], None]) -> None:
+        self.limit = limit
+        self._request = request
         self._key = key
-        self._limit = limit
         self._begin_ns = time.time_ns()
-        self._parameters = "" if limit is None else f"?_max={limit}"
         self._deliver = deliver
         self._lock = threading.Lock()
         self._closed = False
@@ -203,25 +209,25 @@ class History:
             if history_query is not None:
                 history_query.again = True
                 return
-            history_query = self._queries[session] = HistoryQuery()
-        self._send(session, history_query)
+            self._queries[session] = HistoryQuery()
+        self._ask(session)
 
     def accept(self, sample: zenoh.Sample) -> None:
         """Receive a sample."""
         stamp = sample.timestamp
         session = str(stamp.get_id()) if stamp is not None else ""
-        unheard = None
         with self._lock:
-            if session and session not in self._queries:  # it is here before its publisher is in the graph
-                unheard = self._queries[session] = HistoryQuery()
+            unheard = bool(session) and session not in self._queries
+            if unheard:  # it is here before its publisher is in the graph
+                self._queries[session] = HistoryQuery()
             history_query = self._queries.get(session)
             if history_query is not None:
                 history_query.samples.append(sample)
             elif (identity := _identity(sample)) not in self._replied.get(session, ()):
                 self._note(identity)
                 self._waiting.append(sample)
-        if unheard is not None:
-            self._send(session, unheard)
+        if unheard:
+            self._ask(session)
         self._deliver_waiting()
 
     def close(self) -> None:
@@ -230,41 +236,35 @@ class History:
             self._closed = True
             self._waiting.clear()
 
-    def _send(self, session: str, history_query: HistoryQuery) -> None:
-        def on_reply(reply: zenoh.Reply) -> None:
-            if reply.ok is not None:
-                history_query.samples.append(reply.ok)
-            else:
-                history_query.again = True
+    def _ask(self, session: str) -> None:
+        if not self._closed:
+            self._request(self._key, session, self)
 
-        def on_end() -> None:
-            self._merge_answers(session, history_query)
+    def merge(self, session: str, samples: list[Any], complete: bool) -> None:
+        """Merge the answers of a session, and the samples that it sent meanwhile, in order.
 
-        if self._closed:
-            return
-        with contextlib.suppress(zenoh.ZError):  # the session may have been closed
-            self._session.get(
-                f"{self._key}/@adv/pub/{session}/**{self._parameters}",
-                Callback(on_reply, on_end, indirect=False),
-                target=zenoh.QueryTarget.ALL,
-                consolidation=zenoh.ConsolidationMode.NONE,
-                accept_replies=zenoh.ReplyKeyExpr.ANY,
-                timeout=_TIMEOUT_S,
-                allowed_destination=zenoh.Locality.REMOTE,
-            )
-
-    def _merge_answers(self, session: str, history_query: HistoryQuery) -> None:
-        """Merge the answers of a query, and the samples that arrived meanwhile, in order."""
+        Parameters
+        ----------
+        session
+            Whose answers.
+        samples
+            The kept samples.
+        complete
+            Whether all answers came in time.
+        """
         with self._lock:
-            samples = {_identity(sample): sample for sample in history_query.samples}
-            self._replied[session] = frozenset(samples)
-            for identity in self._wanted(filter(self._is_news, samples)):
+            history_query = self._queries[session]
+            assert history_query is not None
+            found = {_identity(sample): sample for sample in (*samples, *history_query.samples)}
+            self._replied[session] = frozenset(found)
+            for identity in self._wanted(filter(self._is_news, found)):
                 self._note(identity)
-                self._waiting.append(samples[identity])
-            following = self._queries[session] = HistoryQuery() if history_query.again else None
+                self._waiting.append(found[identity])
+            again = history_query.again or not complete
+            self._queries[session] = HistoryQuery() if again else None
         self._deliver_waiting()
-        if following is not None:
-            self._send(session, following)
+        if again:
+            self._ask(session)
 
     def _wanted(self, identities: Iterable[Identity]) -> list[Identity]:
         """Return samples in sending order, with at most as many from before the subscription as are kept.
@@ -276,7 +276,7 @@ class History:
         wanted = []
         for number, stamp, gid in ordered:
             later[gid] -= 1
-            if stamp >= self._begin_ns or self._limit is None or later[gid] < self._limit:
+            if stamp >= self._begin_ns or self.limit is None or later[gid] < self.limit:
                 wanted.append((number, stamp, gid))
         return wanted
 

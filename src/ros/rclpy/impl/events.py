@@ -91,16 +91,13 @@ class GraphSource(EventSource):
 
     def __init__(self, handle: TopicHandle, on_ready: Callable[[], None], status: Any) -> None:
         super().__init__(handle, on_ready, status)
-        self._stop = handle.node.session.watch(self._mine.name, weakly(self._on_change))
+        publishes = self._mine.kind is EndpointKind.PUBLISHER
+        opposite = EndpointKind.SUBSCRIPTION if publishes else EndpointKind.PUBLISHER
+        self._stop = handle.node.session.watch(self._mine.name, weakly(self._note), opposite)
 
     def close(self) -> None:
         """Stop watching."""
         self._stop()
-
-    def _on_change(self, added: bool, other: EndpointInfo) -> None:
-        opposite = EndpointKind.SUBSCRIPTION if self._mine.kind is EndpointKind.PUBLISHER else EndpointKind.PUBLISHER
-        if other.kind is opposite:
-            self._note(added, other)
 
     def _note(self, added: bool, other: EndpointInfo) -> None:
         """Count an endpoint of the other kind that came or went."""
