@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import trimesh
-from scipy.spatial import ConvexHull, Delaunay, cKDTree
+from scipy.spatial import ConvexHull, cKDTree
 
 from daidalos.description.meshes import TriangleMesh
 from daidalos.simulation.conversion.decomposition import MAX_PARTS, decompose, sample_surface
@@ -20,8 +20,8 @@ def ring(inner: float, outer: float, height: float, sections: int) -> trimesh.Tr
 def covered(parts: list[np.ndarray], points: np.ndarray) -> np.ndarray:
     inside = np.zeros(len(points), dtype=bool)
     for part in parts:
-        corners = part[ConvexHull(part, qhull_options="QJ").vertices]
-        inside |= Delaunay(corners, qhull_options="QJ").find_simplex(points) >= 0
+        planes = ConvexHull(part, qhull_options="QJ").equations
+        inside |= (points @ planes[:, :3].T + planes[:, 3] <= 1e-9).all(axis=1)
     return inside
 
 
