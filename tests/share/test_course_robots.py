@@ -94,6 +94,7 @@ def seen_by_the_humanoid():
     return simulation, {sample.topic: sample for sample in samples}
 
 
+@pytest.mark.slow
 def test_the_humanoid_sees_the_ball_where_it_lies():
     """The cloud, turned by the optical frame's transform, has the ball's points 10 cm around its centre."""
     simulation, samples = seen_by_the_humanoid()

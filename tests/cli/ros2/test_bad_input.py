@@ -61,6 +61,7 @@ def talker(beside, wait_for):
     wait_for("/talker/set_parameters")
 
 
+@pytest.mark.slow
 def test_mistakes_about_the_graph(env, talker):
     for words, status, lines in (
         (["topic", "echo", "/chater"], 1, ["Could not determine the type", "Did you mean '/chatter'?"]),

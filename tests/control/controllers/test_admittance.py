@@ -80,6 +80,7 @@ def test_axes_that_are_not_selected_stay() -> None:
     assert rows[:, 2] == pytest.approx(0.0)
 
 
+@pytest.mark.slow
 def test_references_are_followed_and_forces_push_away_from_them() -> None:
     parts = rig()
     take = parts[0].subscriptions["~/joint_references"].take

@@ -67,6 +67,7 @@ def test_concave_pieces_are_split_and_kept(own_cache, monkeypatch):
     assert [len(part.vertices) for part in again] == [len(part.vertices) for part in parts]
 
 
+@pytest.mark.slow
 def test_a_broken_cache_is_made_again(own_cache):
     corner = triangles_of(L_SHAPE)
     parts_of(corner)
@@ -85,6 +86,7 @@ def test_what_moves_gets_hulls():
     assert concave
 
 
+@pytest.mark.slow
 def test_a_hull_of_very_many_vertices_needs_little_memory():
     ball = triangles_of(Sphere(1), segments=300)
     tracemalloc.start()

@@ -67,6 +67,7 @@ def test_what_does_not_turn_about_its_own_axis_is_none(tmp_path, joint, pose):
     assert wheel_disc(AXLE_ALONG_Y, Collision(Box((0.1, 0.1, 0.1)))) is None
 
 
+@pytest.mark.slow
 def test_ten_turns_on_meshes_are_ten_turns_by_the_wheels(tmp_path):
     robot = turtlebot()
     mesh = wheel_mesh(tmp_path, 48)

@@ -49,6 +49,7 @@ def drive(robot, speed, turn, seconds, **options):
     return simulation, true, measured, odometry, start.inverse @ simulation.pose("robot")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["waffle", "burger"])
 def test_ten_metres_straight_within_5_mm(name):
     _, _, _, odometry, pose = drive(turtlebot(name), 0.26, 0.0, 39)
@@ -57,6 +58,7 @@ def test_ten_metres_straight_within_5_mm(name):
     assert odometry.linear == pytest.approx([0.26, 0, 0], abs=1e-4)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("turn", [1.5, -1.0])
 def test_ten_turns_on_the_spot_within_a_thousandth(turn):
     _, true, measured, _, pose = drive(turtlebot(), 0.0, turn, 21 * math.pi / abs(turn))
@@ -124,6 +126,7 @@ def test_what_it_says():
     assert np.diag(odometry.pose_covariance.reshape(6, 6)).tolist() == [1e-5, 1e-5, 1e12, 1e12, 1e12, 1e-3]
 
 
+@pytest.mark.slow
 def test_encoder_noise_and_slip_reach_the_odometry_and_not_the_robot():
     robot = turtlebot(noise=True)
     ends = [drive(robot, 0.25, 0.0, 8, seed=seed)[3:] for seed in range(4)]

@@ -97,6 +97,7 @@ def slipping(compliance, speed, push):
     return simulation.velocity("cart", "chassis")[0][0], last(samples, WheelSlipSample)
 
 
+@pytest.mark.slow
 def test_slip_grows_with_the_force():
     """Slip over rim speed is compliance times tangential over normal force."""
     speed, sample = slipping(1.0, 0.5, push=30.0)
