@@ -34,6 +34,22 @@ class LoudVerb:
         if args.topic == "worse":
             return "that is worse"
         print(args.topic.upper())
+
+
+from ros2launch.option import OptionExtension
+
+
+class NoiseOption(OptionExtension):
+    """Say when a launch begins and ends."""
+
+    def add_arguments(self, parser, cli_name, *, argv=None):
+        parser.add_argument("--noise")
+
+    def prestart(self, args):
+        print(f"{args.noise}: before", flush=True)
+
+    def postlaunch(self, launch_return_code, args):
+        print(f"{args.noise}: after {launch_return_code}", flush=True)
 '''
 
 UPSTREAM = '''
@@ -73,8 +89,14 @@ ENTRY_POINTS = """
 greet = greeting:GreetCommand
 census = census:CensusCommand
 
+[ros2cli.extension_point]
+ros2census.verb = ros2cli.verb:VerbExtension
+
 [ros2census.verb]
 nodes = census:NodesVerb
+
+[ros2launch.option]
+noise = greeting:NoiseOption
 
 [ros2topic.verb]
 loud = greeting:LoudVerb
@@ -124,6 +146,20 @@ def test_an_extension_written_for_ros2_runs_as_it_is(with_package):
     result = ros2("census", "nods", env=with_package)
     assert result.status == 2
     assert "Did you mean 'nodes'?" in result.err
+
+
+def test_a_declared_group_is_listed(with_package):
+    assert "ros2census.verb" in ros2("extension_points", env=with_package).out.splitlines()
+    assert "ros2census.verb\n  nodes: Count the nodes\n" in ros2("extensions", env=with_package).out
+
+
+def test_an_added_option_of_launch_acts(with_package, tmp_path):
+    file = tmp_path / "quiet.launch.py"
+    file.write_text("from launch import LaunchDescription\ndef generate_launch_description():\n"
+                    "    return LaunchDescription([])\n")  # fmt: skip
+    out = ros2("launch", "--noise", "boom", str(file), env=with_package).out
+    assert out.startswith("boom: before\n")
+    assert out.endswith("boom: after 0\n")
 
 
 @pytest.mark.parametrize("fits", [("0.1", "^0.1"), ("0.1.3", "^0.1.2"), ("1.4", "^1.2")])

@@ -24,8 +24,7 @@ def graph_view(args: argparse.Namespace) -> Iterator[Graph]:
         What `ros2cli.node.strategy.add_arguments` declared, as far as the verb did.
     """
     from rclpy.utilities import get_rmw_implementation_identifier
-
-    from daidalos.cli.ros2.daemon import client
+    from ros2cli.daemon import client
 
     if getattr(args, "no_daemon", False):
         with direct_node(args) as node:

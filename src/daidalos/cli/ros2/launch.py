@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import sys
 from argparse import ArgumentParser, Namespace
-from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -97,11 +96,18 @@ class LaunchCommand(Command):
             ),
             lambda prefix, parsed_args, **_: _complete_argument(prefix, parsed_args),
         )
+        self._options = _options()
+        for _, option in sorted(self._options.items()):
+            option.add_arguments(parser, cli_name)
 
     def main(self, *, parser: ArgumentParser, args: Namespace) -> Status:
         """Launch, or print what would be launched."""
+        from ros2launch.api import arguments_text, launch_source, parse_launch_arguments
+
+        from daidalos.nodes.asset_folders import record_named_files
+
         path, words = _file_and_arguments(args)
-        arguments = parse_arguments(words)
+        arguments = parse_launch_arguments(words)
         if args.show_all_subprocesses_output:
             os.environ["OVERRIDE_LAUNCH_PROCESS_OUTPUT"] = "both"  # read when a launch file makes its actions
         source, description = _load(path)
@@ -114,7 +120,26 @@ class LaunchCommand(Command):
             print(LaunchIntrospector().format_launch_description(description))
             return 0
         _warn_of_misspelt(arguments, description)
-        return _launch(args, source, arguments, words)
+        record_named_files([args.package_name, *words])
+        return launch_source(
+            source,
+            words,
+            noninteractive=args.noninteractive,
+            args=args,
+            option_extensions=self._options,
+            debug=args.debug,
+        )
+
+
+def _options() -> dict[str, Any]:
+    """Return the options of other packages by name."""
+    from importlib.metadata import entry_points
+
+    if not entry_points(group="ros2launch.option"):  # spares the import of launch
+        return {}
+    from ros2launch.option import get_option_extensions
+
+    return get_option_extensions()
 
 
 def _warn_of_misspelt(arguments: list[tuple[str, str]], description: LaunchDescription) -> None:
@@ -126,24 +151,6 @@ def _warn_of_misspelt(arguments: list[tuple[str, str]], description: LaunchDescr
         hint = "" if name in declared else did_you_mean(name, declared)
         if hint:
             print(f"The launch file does not declare the argument '{name}'{hint}", file=sys.stderr, flush=True)
-
-
-def _launch(
-    args: Namespace, source: LaunchDescriptionSource, arguments: list[tuple[str, str]], words: list[str]
-) -> int:
-    from launch import LaunchDescription, LaunchService
-    from launch.actions import IncludeLaunchDescription
-
-    from daidalos.nodes.asset_folders import record_named_files
-
-    record_named_files([args.package_name, *words])
-    options = {"launch-prefix": args.launch_prefix, "launch-prefix-filter": args.launch_prefix_filter}
-    arguments = [*arguments, *((name, value) for name, value in options.items() if value is not None)]
-    service = LaunchService(argv=words, noninteractive=args.noninteractive, debug=args.debug)
-    service.include_launch_description(
-        LaunchDescription([IncludeLaunchDescription(source, launch_arguments=arguments)])
-    )
-    return service.run()
 
 
 def _file_and_arguments(args: Namespace) -> tuple[Path, list[str]]:
@@ -215,17 +222,6 @@ def launch_files(package: str) -> list[Path]:
     return [path for path in sorted(share.rglob("*")) if path.name.endswith(_ENDINGS)]
 
 
-def parse_arguments(words: Iterable[str]) -> list[tuple[str, str]]:
-    """Return launch arguments as (name, value); CliError for one that is not ``<name>:=<value>``."""
-    arguments = {}
-    for word in words:
-        name, separator, value = word.partition(":=")
-        if not separator or not name:
-            raise CliError(f"malformed launch argument '{word}', expected format '<name>:=<value>'")
-        arguments[name] = value
-    return list(arguments.items())
-
-
 def _load(path: Path) -> tuple[LaunchDescriptionSource, LaunchDescription]:
     """Read a launch file; CliError, with file and line, on failure."""
     from launch import LaunchContext
@@ -238,18 +234,6 @@ def _load(path: Path) -> tuple[LaunchDescriptionSource, LaunchDescription]:
     # A launch file is a program: it may raise anything.
     except Exception as error:
         raise CliError(str(LaunchFileError.from_exception(error, str(path))), _FAULTY_FILE) from error
-
-
-def arguments_text(description: LaunchDescription) -> str:
-    """Return the arguments of a launch description as text."""
-    lines = ["Arguments (pass arguments as '<name>:=<value>'):"]
-    declared = description.get_launch_arguments()
-    for argument in declared:
-        lines += ["", f"    '{argument.name}':", f"        {argument.description}"]
-        if argument.default_value is not None:
-            default = " + ".join(part.describe() for part in argument.default_value)
-            lines.append(f"        (default: {default})")
-    return "\n".join(lines if declared else [*lines, "", "  No arguments."])
 
 
 def _complete_first(prefix: str, **_: Any) -> list[str]:

@@ -15,6 +15,9 @@ from ros2cli.node import NODE_NAME_PREFIX
 if TYPE_CHECKING:
     from rclpy.node import Node
 
+DEFAULT_TIMEOUT = 0.0
+"""How much longer to wait for the discovery of other machines, unless ``--spin-time`` says so [s]."""
+
 _DISCOVERY_TIMEOUT_S = 2.0
 """How long the discovery of the processes of this machine may take [s]."""
 
@@ -55,7 +58,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--spin-time",
         type=float,
-        default=None,
+        default=DEFAULT_TIMEOUT,
         help="Spin time in seconds to wait for discovery (only applies when not using an already running daemon)",
     )
     parser.add_argument("-s", "--use-sim-time", action="store_true", help="Enable ROS simulation time")

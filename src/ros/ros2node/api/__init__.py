@@ -5,12 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from typing import Any, NamedTuple
 
-from rclpy.action import (
-    get_action_client_names_and_types_by_node,
-    get_action_server_names_and_types_by_node,
-)
 from ros2cli.graph import NameCompleter, visible
-from ros2cli.node.strategy import NodeStrategy
 
 
 class NodeName(NamedTuple):
@@ -29,6 +24,11 @@ class TopicInfo(NamedTuple):
 
 
 _HIDDEN_PREFIX = "_"
+
+INFO_NONUNIQUE_WARNING_TEMPLATE = (
+    'There are {num_nodes} nodes in the graph with the exact name "{node_name}". '
+    "You are seeing information about only one of them."
+)
 
 
 def get_node_names(*, node: Any, include_hidden_nodes: bool = False) -> list[NodeName]:
@@ -141,7 +141,7 @@ def get_action_server_info(*, node: Any, remote_node_name: str, include_hidden: 
     """Return the actions that a node serves; see `get_topics`."""
     return get_topics(
         remote_node_name,
-        lambda name, namespace: get_action_server_names_and_types_by_node(_node(node), name, namespace),
+        lambda name, namespace: node.get_action_server_names_and_types_by_node(name, namespace),
         include_hidden_topics=include_hidden,
     )
 
@@ -150,7 +150,7 @@ def get_action_client_info(*, node: Any, remote_node_name: str, include_hidden: 
     """Return the actions that a node calls; see `get_topics`."""
     return get_topics(
         remote_node_name,
-        lambda name, namespace: get_action_client_names_and_types_by_node(_node(node), name, namespace),
+        lambda name, namespace: node.get_action_client_names_and_types_by_node(name, namespace),
         include_hidden_topics=include_hidden,
     )
 
@@ -170,8 +170,3 @@ class NodeNameCompleter(NameCompleter):
 
 def _full_names(node: Any, include_hidden: bool) -> list[str]:
     return [one.full_name for one in get_node_names(node=node, include_hidden_nodes=include_hidden)]
-
-
-def _node(node: Any) -> Any:
-    """Return the rclpy node behind a `NodeStrategy`."""
-    return node.node if isinstance(node, NodeStrategy) else node

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from ament_index_python.packages import PackageNotFoundError, get_package_prefix, get_packages_with_prefixes
+from ament_index_python.packages import get_packages_with_prefixes
+from ament_index_python.resources import has_resource
 
 
 class PackageNotFound(Exception):
@@ -28,10 +29,7 @@ def get_package_names() -> list[str]:
 
 def get_prefix_path(package_name: str) -> str | None:
     """Return the prefix of a package; None where there is no such package."""
-    try:
-        return get_package_prefix(package_name)
-    except PackageNotFoundError:
-        return None
+    return has_resource("packages", package_name) or None
 
 
 def package_name_completer(**kwargs: Any) -> list[str]:

@@ -11,6 +11,8 @@ from collections.abc import Callable
 from types import FrameType
 from typing import TYPE_CHECKING, Any, Self
 
+from ros2bag.api import check_not_negative_int, check_path_exists, check_positive_float
+
 from daidalos.bags.storage import SUFFIXES
 from daidalos.cli.ros2.errors import CliError
 
@@ -25,7 +27,7 @@ _SAME_PRESS_S = 0.5
 
 def add_bag_arguments(parser: ArgumentParser) -> None:
     """Declare the argument of the bag to read."""
-    parser.add_argument("bag_path", type=existing_bag, help="Bag to open: a folder, or one file of a bag")
+    parser.add_argument("bag_path", type=check_path_exists, help="Bag to open: a folder, or one file of a bag")
     _add_storage(parser)
 
 
@@ -41,7 +43,9 @@ def _add_storage(parser: ArgumentParser) -> None:
 
 def add_bags_arguments(parser: ArgumentParser) -> None:
     """Declare the arguments of the bags to play: one positional, or several by an option."""
-    parser.add_argument("bag_path", type=existing_bag, nargs="?", help="Bag to open: a folder, or one file of a bag")
+    parser.add_argument(
+        "bag_path", type=check_path_exists, nargs="?", help="Bag to open: a folder, or one file of a bag"
+    )
     _add_storage(parser)
     parser.add_argument(
         "-i",
@@ -89,7 +93,7 @@ def add_start_offset(parser: ArgumentParser) -> None:
     """Declare the argument of the start offset."""
     parser.add_argument(
         "--start-offset",
-        type=positive_float,
+        type=check_positive_float,
         default=0.0,
         metavar="SECONDS",
         help="Start so far into the bag",
@@ -141,13 +145,6 @@ def remapping_arguments(rules: list[str]) -> list[str]:
     return ["--ros-args", *words] if words else []
 
 
-def existing_bag(text: str) -> str:
-    """Return the path of an existing bag; argument type."""
-    if not os.path.exists(text):
-        raise ArgumentTypeError(f"Bag path '{text}' does not exist!")
-    return text
-
-
 def existing_file(text: str) -> str:
     """Return the path of an existing file; argument type."""
     if not os.path.isfile(text):
@@ -155,43 +152,9 @@ def existing_file(text: str) -> str:
     return text
 
 
-def positive_float(text: str) -> float:
-    """Return a number above 0; argument type."""
-    value = _float(text)
-    if not 0.0 < value < float("inf"):
-        raise ArgumentTypeError(f"{text} is not in the valid range (> 0.0)")
-    return value
-
-
-def not_negative_float(text: str) -> float:
-    """Return a number of at least 0; argument type."""
-    value = _float(text)
-    if not 0.0 <= value < float("inf"):
-        raise ArgumentTypeError(f"Value {text} is less than zero.")
-    return value
-
-
-def _float(text: str) -> float:
-    try:
-        return float(text)
-    except ValueError:
-        raise ArgumentTypeError(f"{text} is not the valid type (float)") from None
-
-
-def not_negative_int(text: str) -> int:
-    """Return an integer of at least 0; argument type."""
-    try:
-        value = int(text)
-    except ValueError:
-        raise ArgumentTypeError(f"{text} is not the valid type (int)") from None
-    if value < 0:
-        raise ArgumentTypeError(f"Value {text} is less than zero.")
-    return value
-
-
 def positive_int(text: str) -> int:
     """Return an integer above 0; argument type."""
-    value = not_negative_int(text)
+    value = check_not_negative_int(text)
     if value == 0:
         raise ArgumentTypeError(f"{text} is not in the valid range (> 0)")
     return value

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from argparse import ArgumentParser, Namespace
 
+from ros2bag.api import check_not_negative_int
+
 from daidalos.bags.errors import BagError
 from daidalos.cli.ros2.bag import arguments as common
 from daidalos.cli.ros2.bag.play import run
@@ -22,7 +24,7 @@ class BurstVerb(Verb):
         parser.add_argument(
             "-n",
             "--num-messages",
-            type=common.not_negative_int,
+            type=check_not_negative_int,
             default=0,
             metavar="N",
             help="Burst so many messages, then pause; 0 for all of them (default: %(default)s)",

@@ -5,6 +5,8 @@ from __future__ import annotations
 from argparse import ArgumentParser, Namespace
 from typing import TYPE_CHECKING
 
+from ros2bag.api import check_not_negative_int, check_positive_float
+
 from daidalos.bags.errors import BagError
 from daidalos.cli.ros2.bag import arguments as common
 from daidalos.cli.ros2.bag.qos_overrides import read_overrides
@@ -31,7 +33,7 @@ class PlayVerb(Verb):
         )
         parser.add_argument(
             "--wait-for-all-acked",
-            type=common.not_negative_int,
+            type=check_not_negative_int,
             default=-1,
             metavar="TIMEOUT",
             help="Wait at the end until all messages are acknowledged, for at most so many milliseconds (0: no limit)",
@@ -89,14 +91,14 @@ def _add_selection(parser: ArgumentParser) -> None:
 
 def _add_timing(parser: ArgumentParser) -> None:
     parser.add_argument(
-        "-r", "--rate", type=common.positive_float, default=1.0, help="How fast to play (default: %(default)s)"
+        "-r", "--rate", type=check_positive_float, default=1.0, help="How fast to play (default: %(default)s)"
     )
     parser.add_argument("-l", "--loop", action="store_true", help="Begin again at the end, until Ctrl-C")
     parser.add_argument("-p", "--start-paused", action="store_true", help="Start paused")
     parser.add_argument(
         "-d",
         "--delay",
-        type=common.positive_float,
+        type=check_positive_float,
         default=0.0,
         metavar="SECONDS",
         help="Wait so long before playing, each time where it loops",
@@ -129,7 +131,7 @@ def _add_timing(parser: ArgumentParser) -> None:
 def _add_clock(parser: ArgumentParser) -> None:
     parser.add_argument(
         "--clock",
-        type=common.positive_float,
+        type=check_positive_float,
         nargs="?",
         const=40,
         default=0,

@@ -8,6 +8,8 @@ from datetime import datetime, timedelta
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ros2bag.api import check_not_negative_float, check_not_negative_int
+
 from daidalos.bags.compression import FORMATS
 from daidalos.bags.errors import BagError
 from daidalos.bags.storage import DEFAULT, PROFILES
@@ -83,7 +85,7 @@ def _add_discovery(parser: ArgumentParser) -> None:
     add(
         "-p",
         "--polling-interval",
-        type=common.not_negative_int,
+        type=check_not_negative_int,
         default=100,
         metavar="MS",
         help="Has no effect: new topics are noticed when they appear",
@@ -103,7 +105,7 @@ def _add_files(parser: ArgumentParser) -> None:
     add(
         "-b",
         "--max-bag-size",
-        type=common.not_negative_int,
+        type=check_not_negative_int,
         default=0,
         metavar="BYTES",
         help="Size at which another file is begun; 0 for no limit (default: %(default)s)",
@@ -111,14 +113,14 @@ def _add_files(parser: ArgumentParser) -> None:
     add(
         "-d",
         "--max-bag-duration",
-        type=common.not_negative_float,
+        type=check_not_negative_float,
         default=0,
         metavar="SECONDS",
         help="Duration after which another file is begun; 0 for no limit (default: %(default)s)",
     )
     add(
         "--max-cache-size",
-        type=common.not_negative_int,
+        type=check_not_negative_int,
         default=_CACHE,
         metavar="BYTES",
         help="How much may wait to be written; 0 for no limit (default: %(default)s)",
@@ -168,14 +170,14 @@ def _add_compression(parser: ArgumentParser) -> None:
     add = parser.add_argument
     add(
         "--compression-queue-size",
-        type=common.not_negative_int,
+        type=check_not_negative_int,
         default=1,
         metavar="N",
         help="Has no effect: nothing is dropped while it waits for compression",
     )
     add(
         "--compression-threads",
-        type=common.not_negative_int,
+        type=check_not_negative_int,
         default=0,
         metavar="N",
         help="How many files may be compressed at the same time; 0: one for each processor",

@@ -12,7 +12,7 @@ from typing import Any
 
 from ros2cli.node.direct import direct_node
 
-from daidalos.cli.ros2.controllers import ControlVerb, ask, list_controllers
+from daidalos.cli.ros2.controllers import ControlVerb, ask
 from daidalos.cli.ros2.errors import CliError
 from daidalos.cli.ros2.extension import Status
 
@@ -22,23 +22,42 @@ class ViewControllerChainsVerb(ControlVerb):
 
     def main(self, *, args: Namespace) -> Status:
         """Write the diagram, as a PDF if Graphviz is installed, and print its path."""
-        from controller_manager_msgs.srv import ListHardwareInterfaces
+        from controller_manager_msgs.srv import ListControllers, ListHardwareInterfaces
 
         with direct_node(args) as node:
-            controllers = list_controllers(node, args)
+            controllers = ask(node, args, ListControllers)
             hardware = ask(node, args, ListHardwareInterfaces)
-        path = Path(tempfile.gettempdir()) / "controller_diagram.gv"
-        path.write_text(diagram(controllers, hardware), encoding="utf-8")
-        program = shutil.which("dot")
-        if program is None:
-            print(f"{path} (install Graphviz to have it drawn as a PDF)")
-            return 0
-        pdf = path.with_suffix(".gv.pdf")
-        drawn = subprocess.run([program, "-Tpdf", path, "-o", pdf], capture_output=True, text=True, check=False)
-        if drawn.returncode:
-            raise CliError(f"Graphviz cannot draw {path}: {drawn.stderr.strip()}")
-        print(pdf)
+        print(parse_response(controllers, hardware))
         return 0
+
+
+def parse_response(list_controllers_response: Any, list_hardware_response: Any, visualize: bool = True) -> str:
+    """Write the diagram of a controller manager's responses, and return where it is.
+
+    Parameters
+    ----------
+    list_controllers_response
+        `controller_manager_msgs/srv/ListControllers`, the response.
+    list_hardware_response
+        `controller_manager_msgs/srv/ListHardwareInterfaces`, the response.
+    visualize
+        Whether to draw it as a PDF if Graphviz is installed.
+
+    Raises
+    ------
+    CliError
+        When Graphviz cannot draw it.
+    """
+    path = Path(tempfile.gettempdir()) / "controller_diagram.gv"
+    path.write_text(diagram(list_controllers_response.controller, list_hardware_response), encoding="utf-8")
+    program = shutil.which("dot") if visualize else None
+    if program is None:
+        return f"{path} (install Graphviz to have it drawn as a PDF)"
+    pdf = path.with_suffix(".gv.pdf")
+    drawn = subprocess.run([program, "-Tpdf", path, "-o", pdf], capture_output=True, text=True, check=False)
+    if drawn.returncode:
+        raise CliError(f"Graphviz cannot draw {path}: {drawn.stderr.strip()}")
+    return str(pdf)
 
 
 def diagram(controllers: Iterable[Any], hardware: Any) -> str:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from argparse import Namespace
 
-from daidalos.cli.ros2.daemon import client
+from ros2cli.daemon import client
+
 from daidalos.cli.ros2.extension import Status, Verb
 
 

@@ -13,9 +13,9 @@ from typing import Any
 
 from ros2cli.node.direct import add_arguments as add_direct_arguments
 from ros2cli.node.direct import direct_node
+from ros2multicast.api import DEFAULT_GROUP, DEFAULT_PORT, hops, open_receiver, receive_from, send
 from ros2topic.api import positive_float
 
-from daidalos.cli.ros2 import datagrams
 from daidalos.cli.ros2.errors import CliError
 from daidalos.cli.ros2.extension import Status, Verb
 
@@ -47,7 +47,7 @@ class HelloVerb(Verb):
             default=1.0,
             help="Time period to print summary table (default: 1.0s)",
         )
-        parser.add_argument("--ttl", type=datagrams.hops, help="TTL for multicast send (default: None)")
+        parser.add_argument("--ttl", type=hops, help="TTL for multicast send (default: None)")
         parser.add_argument(
             "-1", "--once", action="store_true", help="Publish and multicast send for one emit period then exit."
         )
@@ -70,7 +70,7 @@ class HelloVerb(Verb):
                 text = f"hello, it's me {name}"
                 publisher.publish(String(data=text))
                 summary.published += 1
-                datagrams.send(text.encode(), args.ttl)
+                send(text.encode(), ttl=args.ttl)
                 summary.sent += 1
 
             _run(node, args, summary, receiver, greet)
@@ -91,7 +91,7 @@ class Summary:
         """Return the summary as text."""
         lines = ["MULTIMACHINE COMMUNICATION SUMMARY", f"Topic: {self.topic}, Published Msg Count: {self.published}"]
         lines += ["Subscribed from:", *_rows(self.subscribed)]
-        lines += [f"Multicast Group/Port: {datagrams.GROUP}/{datagrams.PORT}, Sent Msg Count: {self.sent}"]
+        lines += [f"Multicast Group/Port: {DEFAULT_GROUP}/{DEFAULT_PORT}, Sent Msg Count: {self.sent}"]
         lines += ["Received from:", *_rows(self.received)]
         return "\n".join(["", *lines, "-" * 60])
 
@@ -112,9 +112,9 @@ def _sender(text: str) -> str:
 
 def _receiver() -> socket.socket:
     try:
-        return datagrams.open_receiver()
+        return open_receiver()
     except OSError as error:
-        raise CliError(f"{datagrams.GROUP}:{datagrams.PORT} cannot be listened to: {error.strerror}") from None
+        raise CliError(f"{DEFAULT_GROUP}:{DEFAULT_PORT} cannot be listened to: {error.strerror}") from None
 
 
 def _run(node: Any, args: Namespace, summary: Summary, receiver: socket.socket, greet: Any) -> None:
@@ -133,7 +133,7 @@ def _run(node: Any, args: Namespace, summary: Summary, receiver: socket.socket, 
         while (left := emit_at - time.monotonic()) > 0:
             executor.spin_once(timeout_sec=min(left, 0.02))
             while select.select([receiver], [], [], 0)[0]:
-                data, _, _ = datagrams.receive(receiver)
+                data, _ = receive_from(receiver)
                 summary.received[_sender(data.decode(errors="replace"))] += 1
         if args.once or time.monotonic() >= print_at:
             print(summary.text())

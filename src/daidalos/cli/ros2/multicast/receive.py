@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from argparse import Namespace
 
-from daidalos.cli.ros2 import datagrams
+from ros2multicast.api import DEFAULT_GROUP, DEFAULT_PORT, open_receiver, receive_from
+
 from daidalos.cli.ros2.errors import CliError
 from daidalos.cli.ros2.extension import Status, Verb
 
@@ -16,9 +17,9 @@ class ReceiveVerb(Verb):
         """Wait for a packet and print it."""
         print("Waiting for UDP multicast datagram...")
         try:
-            with datagrams.open_receiver() as receiver:
-                data, host, port = datagrams.receive(receiver)
+            with open_receiver() as receiver:
+                data, (host, port) = receive_from(receiver)
         except OSError as error:
-            raise CliError(f"{datagrams.GROUP}:{datagrams.PORT} cannot be listened to: {error.strerror}") from None
+            raise CliError(f"{DEFAULT_GROUP}:{DEFAULT_PORT} cannot be listened to: {error.strerror}") from None
         print(f"Received from {host}:{port}: {data.decode(errors='replace')!r}")
         return 0

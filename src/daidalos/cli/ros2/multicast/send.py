@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from argparse import ArgumentParser, Namespace
 
-from daidalos.cli.ros2 import datagrams
+from ros2multicast.api import DEFAULT_GROUP, DEFAULT_PORT, hops, send
+
 from daidalos.cli.ros2.errors import CliError
 from daidalos.cli.ros2.extension import Status, Verb
 
@@ -14,13 +15,13 @@ class SendVerb(Verb):
 
     def add_arguments(self, parser: ArgumentParser, cli_name: str) -> None:
         """Declare the arguments."""
-        parser.add_argument("--ttl", type=datagrams.hops, help="The multicast TTL")
+        parser.add_argument("--ttl", type=hops, help="The multicast TTL")
 
     def main(self, *, args: Namespace) -> Status:
         """Send a packet."""
         print("Sending one UDP multicast datagram...")
         try:
-            datagrams.send(b"Hello World!", args.ttl)
+            send(b"Hello World!", ttl=args.ttl)
         except OSError as error:
-            raise CliError(f"It cannot be sent to {datagrams.GROUP}:{datagrams.PORT}: {error.strerror}") from None
+            raise CliError(f"It cannot be sent to {DEFAULT_GROUP}:{DEFAULT_PORT}: {error.strerror}") from None
         return 0

@@ -6,6 +6,7 @@ from argparse import ArgumentParser, Namespace
 
 from ros2cli.graph import NamesAndTypes, visible
 from ros2cli.node.strategy import add_arguments as add_graph_arguments
+from ros2node.api import INFO_NONUNIQUE_WARNING_TEMPLATE
 
 from daidalos.cli.ros2.completion import complete_nodes
 from daidalos.cli.ros2.extension import Status, Verb
@@ -39,10 +40,7 @@ class InfoVerb(Verb):
             hint = did_you_mean(full_name, (node.full_name for node in everyone))
             return f"Unable to find node '{args.node_name}'{hint}"
         if len(found) > 1:
-            print(
-                f'There are {len(found)} nodes in the graph with the exact name "{full_name}". '
-                "You are seeing information about only one of them."
-            )
+            print(INFO_NONUNIQUE_WARNING_TEMPLATE.format(num_nodes=len(found), node_name=full_name))
         print(full_name)
         for title, entries in sections.items():
             print(f"  {title}:")

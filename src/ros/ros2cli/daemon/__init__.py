@@ -1,0 +1,1 @@
+"""Background process that keeps the graph discovered for commands, and its client."""

@@ -1,0 +1,1 @@
+"""The package of `ros2 interface`; `api` is what other packages import."""
