@@ -18,6 +18,7 @@ from contextlib import AbstractContextManager
 from typing import Any
 
 from daidalos.workspaces.executables import interrupts_blocked, reporting_command
+from daidalos.workspaces.orphans import guard
 
 from ._programs import search_path, which
 
@@ -132,6 +133,7 @@ class ChildProcess(asyncio.SubprocessProtocol):
         for stream in self._streams:
             stream.close()
         self._transport.close()
+        guard.release(-self.pid)
 
     # Called by asyncio ----------------------------------------------------------------------------
 
@@ -212,6 +214,7 @@ async def start_process(
     finally:
         os.close(output[1])
         os.close(errors[1])
+    guard.watch(-child.pid)
     child._streams = [_Stream(1, output[0], on_output), _Stream(2, errors[0], on_output)]
     return child
 

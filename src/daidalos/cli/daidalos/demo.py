@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from daidalos.cli.daidalos.overlays import leave_overlays
+from daidalos.workspaces.orphans import guard
 
 if TYPE_CHECKING:
     from daidalos.nodes.daidalos_demo._measuring import Load
@@ -95,10 +96,12 @@ def _launched(seed: int) -> Iterator[tuple[subprocess.Popen[bytes], Path]]:
     command = [sys.executable, "-m", "daidalos.cli.ros2", "launch", *_LAUNCH, *chosen]
     with os.fdopen(handle, "wb") as output:
         process = subprocess.Popen(command, stdout=output, stderr=subprocess.STDOUT, start_new_session=True)
+    guard.watch(process.pid)
     try:
         yield process, Path(name)
     finally:
         _end(process)
+        guard.release(process.pid)
 
 
 def _end(process: subprocess.Popen[bytes]) -> None:

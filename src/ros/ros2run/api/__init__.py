@@ -18,6 +18,7 @@ from daidalos.workspaces.executables import (
     is_known,
     reporting_command,
 )
+from daidalos.workspaces.orphans import guard
 
 
 class MultipleExecutables(Exception):
@@ -79,12 +80,14 @@ def run_executable(*, path: str, argv: Sequence[str], prefix: str | Sequence[str
     command = reporting_command([*before, *_command(path), *argv])
     with interrupts_blocked(command):
         process = subprocess.Popen(command)
+    guard.watch(process.pid)
     while process.returncode is None:
         try:
             process.communicate()
         except KeyboardInterrupt:
             # It got the signal, too, and ends in its own time.
             continue
+    guard.release(process.pid)
     return process.returncode
 
 

@@ -30,10 +30,12 @@ class StandaloneVerb(Verb):
     def main(self, *, args: Namespace) -> Status:
         """Run the component in its own container until Ctrl-C."""
         from daidalos.workspaces.executables import find_executable
+        from daidalos.workspaces.orphans import guard
 
         rename = ["--ros-args", "-r", f"__node:={args.container_node_name}"]
         command = [*find_executable("rclcpp_components", "component_container"), *rename]
         process = subprocess.Popen(command)
+        guard.watch(process.pid)
         try:
             container = f"/{args.container_node_name}"
             with direct_node(args) as node:
@@ -44,6 +46,7 @@ class StandaloneVerb(Verb):
             return process.wait()
         finally:
             _end(process)
+            guard.release(process.pid)
 
 
 def _end(process: subprocess.Popen[bytes]) -> None:
