@@ -129,3 +129,79 @@ def test_a_mistake_leaves_nothing_behind(files):
 def test_missing_file(tmp_path):
     with pytest.raises(DescriptionError, match="no such file"):
         load_xacro(tmp_path / "no.xacro")
+
+
+HOSTILE = {
+    "power": '<a v="${9**9**9**9}"/>',
+    "escape": """<a v="${().__class__.__bases__[0].__subclasses__()}"/>""",
+    "format": """<a v="${'{0.__class__.__init__.__globals__}'.format(xacro.load_yaml)}"/>""",
+    "substitution": """<a v="$(eval ().__class__)"/>""",
+    "substituted power": """<a v="$(eval 9**9**9**9)"/>""",
+    "vars": """<a v="${python.vars(python.str)}"/>""",
+    "growing properties": "".join(
+        f'<xacro:property name="p{k + 1}" value="${{p{k}}}${{p{k}}}"/>' for k in range(60)
+    ).join(['<xacro:property name="p0" value="xx"/>', '<a v="${p60}"/>']),
+    "growing macros": "".join(
+        f'<xacro:macro name="m{k + 1}"><xacro:m{k}/><xacro:m{k}/></xacro:macro>' for k in range(60)
+    ).join(['<xacro:macro name="m0"><a/></xacro:macro>', "<xacro:m60/>"]),
+    "pattern": """<a v="${xacro.tokenize('a' * 40, ']|(a+)+$[')}"/><a v="${xacro.nothing}"/>""",
+    "file": """<a v="${xacro.load_yaml('/etc/passwd')}"/>""",
+    "file above": """<a v="${xacro.load_yaml('../outside.yaml')}"/>""",
+    "file behind a link": """<a v="${xacro.load_yaml('link.yaml')}"/>""",
+    "YAML bomb": """<a v="${xacro.load_yaml('bomb.yaml')}"/>""",
+}
+
+
+@pytest.mark.parametrize("body", HOSTILE.values(), ids=HOSTILE)
+def test_hostile_expressions_end_in_one_line(tmp_path, body):
+    package = tmp_path / "package"
+    package.mkdir()
+    (package / "package.xml").write_text("<package><name>package</name></package>")
+    (tmp_path / "outside.yaml").write_text("a: 1")
+    (package / "link.yaml").symlink_to(tmp_path / "outside.yaml")
+    lines = ["a0: &a0 [x]", *(f"a{k + 1}: &a{k + 1} [*a{k}, *a{k}]" for k in range(40))]
+    (package / "bomb.yaml").write_text("\n".join(lines))
+    file = package / "r.xacro"
+    file.write_text(f'<robot xmlns:xacro="http://www.ros.org/wiki/xacro">{body}</robot>')
+    with pytest.raises(DescriptionError) as caught:
+        load_xacro(file)
+    assert str(caught.value).startswith(str(file))
+    assert "\n" not in str(caught.value)
+    assert len(str(caught.value)) < 1000
+
+
+def test_yaml_of_packages_and_of_arguments_is_read(tmp_path):
+    for name, value in (("arm", 1), ("hand", 2)):
+        (tmp_path / name / "config").mkdir(parents=True)
+        (tmp_path / name / "urdf").mkdir()
+        (tmp_path / name / "package.xml").write_text(f"<package><name>{name}</name></package>")
+        (tmp_path / name / "config" / "a.yaml").write_text(
+            f"base: &b {{x: {value}}}\nother: {{angle: !degrees 180, y: *b}}"
+        )
+    (tmp_path / "own.yaml").write_text("x: 3")
+    file = tmp_path / "arm" / "urdf" / "r.xacro"
+    file.write_text("""<robot xmlns:xacro="http://www.ros.org/wiki/xacro">
+      <xacro:arg name="own" default=""/>
+      <xacro:property name="arm" value="${xacro.load_yaml('../config/a.yaml')}"/>
+      <xacro:property name="hand" value="${xacro.load_yaml('$(find hand)/config/a.yaml')}"/>
+      <xacro:property name="own" value="${xacro.load_yaml('$(arg own)')}"/>
+      <a v="${arm.base.x} ${hand['base']['x']} ${own.x} ${arm.other.angle} ${hand.other.y.x} ${'x' in own.keys()}"/>
+    </robot>""")
+    text = load_xacro(file, {"own": str(tmp_path / "own.yaml")}, lambda name: tmp_path / name)
+    assert f'v="1 2 3 {math.pi} 2 True"' in text
+
+
+def test_sources_behind_a_symlinked_installation_are_read(tmp_path):
+    source, share = tmp_path / "src" / "arm", tmp_path / "install" / "share" / "arm"
+    source.mkdir(parents=True)
+    share.mkdir(parents=True)
+    (source / "a.yaml").write_text("x: 5")
+    (source / "package.xml").write_text("<package><name>arm</name></package>")
+    for name in ("a.yaml", "package.xml"):
+        (share / name).symlink_to(source / name)
+    file = tmp_path / "r.xacro"
+    file.write_text(
+        """<robot xmlns:xacro="http://www.ros.org/wiki/xacro">
+        <a v="${xacro.load_yaml('$(find arm)/a.yaml').x}"/></robot>"""
+    )
+    assert 'v="5"' in load_xacro(file, {}, lambda name: share)

@@ -19,11 +19,14 @@ from xml.parsers import expat
 
 from daidalos.description.errors import DescriptionError
 from daidalos.description.markup import Element
+from daidalos.description.xacro_limits import ReadableFiles, limited
 
 if TYPE_CHECKING:
     from daidalos.description.resolve import PackageResolver
 
 _ORIGIN = "daidalos-origin"
+_MAX_SHOWN = 400
+"""Characters of an error: one within nested macros or properties repeats every step that led to it."""
 _LOCK = threading.Lock()  # xacro keeps its state in module variables
 
 
@@ -69,7 +72,7 @@ def expand(
         raise DescriptionError("no such file", str(path))
     import xacro
 
-    with _LOCK, _supplied(xacro, resolve, path.parent) as files:
+    with _LOCK, _supplied(xacro, resolve, path.parent) as files, limited(xacro, ReadableFiles(mappings)):
         xacro.init_stacks(str(path))
         try:
             document = xacro.parse(None, str(path))
@@ -169,6 +172,7 @@ def _error(problem: BaseException, xacro: Any, files: list[str]) -> DescriptionE
             words = f"{cause.strerror}: {cause.filename}"
         cause = getattr(cause, "exc", None)
     words = words[:1].lower() + words[1:] if words[:2].istitle() else words
+    words = words if len(words) <= _MAX_SHOWN else f"{words[:_MAX_SHOWN]}..."
     source, line = _innermost_origin(problem.__traceback__, files)
     stack = xacro.macrostack or []
     if isinstance(problem, RecursionError):

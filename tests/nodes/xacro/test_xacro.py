@@ -1,6 +1,7 @@
 """The command that expands descriptions."""
 
 import subprocess
+import sys
 
 import pytest
 
@@ -23,7 +24,7 @@ def run(tmp_path, monkeypatch, capsys):
         monkeypatch.chdir(tmp_path)
         (tmp_path / "r.xacro").write_text(text)
         monkeypatch.setattr("sys.argv", ["anything", *arguments])
-        status = xacro.main()
+        status = xacro.run()
         return status, *capsys.readouterr()
 
     return run_on
@@ -72,3 +73,30 @@ def test_help(run):
     status, printed, said = run(ROBOT, "--help")
     assert (status, said) == (0, "")
     assert printed.startswith("Usage: xacro [options] <input>")
+
+
+@pytest.mark.parametrize("expression", ["9**9**9**9", "().__class__.__bases__", "xacro.load_yaml('/etc/passwd')"])
+def test_a_hostile_expression_is_one_line(run, expression):
+    status, printed, said = run(ROBOT.replace('default="left"', f'default="${{{expression}}}"'), "r.xacro")
+    assert (status, printed) == (2, "")
+    assert said.startswith("error: r.xacro:2: ")
+
+
+def test_time_and_memory_are_bounded_in_a_process_of_its_own(tmp_path, monkeypatch, capsys):
+    if sys.platform == "win32":
+        pytest.skip("this system has no such limits")
+    script = (
+        "import sys, resource; from daidalos.nodes.xacro import xacro; xacro._MAX_CPU_S = 1;"
+        "xacro._expand = lambda: [0 for _ in iter(int, 1)]; sys.exit(xacro.main())"
+    )
+    ended = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False, timeout=60)
+    assert (ended.returncode, ended.stderr) == (2, "error: the description takes too much time or memory to expand\n")
+
+
+def test_ctrl_c_is_one_line(monkeypatch, capsys):
+    def interrupted():
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(xacro, "_expand", interrupted)
+    assert xacro.run() == 130
+    assert capsys.readouterr().err == "xacro: interrupted\n"
