@@ -225,7 +225,8 @@ class Evaluator:
 
     def _attribute(self, value: Any, name: str) -> Any:
         if isinstance(value, self._namespaces):
-            return value[name]
+            entries: Any = value
+            return entries[name]
         for kind, names in _ATTRIBUTES.items():
             if isinstance(value, kind) and name in names:
                 return getattr(value, name)
