@@ -1,70 +1,27 @@
-"""Command `daidalos` with its verbs, each imported when it is called."""
+"""The command `daidalos`.
+
+Ctrl-C may come while its modules are still being imported. Until they are, it has its quiet default (through the
+built-in module, as ``signal`` itself takes a while to import).
+"""
 
 from __future__ import annotations
 
-import sys
-from argparse import Action, ArgumentParser, Namespace
-from collections.abc import Sequence
-from typing import Any
-
-from ros2cli.extensions import Extensions, built_in
-from ros2cli.parser import Parser
-
-from daidalos.common.errors import UserError
-from daidalos.common.extensions import ExtensionError, Kind
-
-_DESCRIPTIONS = {
-    "demo": "A robot that maps an arena and drives where it is sent",
-    "extensions": "List what can be extended, and the extensions that are there",
-    "map": "Build a map from the log of a robot",
-    "sim": "Simulate a world",
-    "urdf": "Look at a robot, a model or a world: tree, masses, inertias, limits",
-}
-VERBS: Kind[Any] = Kind(
-    "daidalos_verb",
-    "daidalos.verbs",
-    "ros2cli.subcommand:Subcommand",
-    "a verb of the command `daidalos`",
-    lambda: built_in(_DESCRIPTIONS, __name__, "Verb"),
-)
+import _signal  # type: ignore[import-not-found]
 
 
-def main(argv: Sequence[str] | None = None) -> int:
-    """Run the command and return its exit status."""
-    parser = Parser(
-        prog="daidalos", description="ROS 2 without installing ROS. The graph's own commands are under `ros2`."
-    )
-    parser.add_argument("--version", action=_Version, nargs=0, help="print the version")
-    parser.add_subcommands("verbs", "daidalos", Extensions(VERBS), _complete)
-    name = "daidalos"
-    try:
-        args = parser.parse_args(sys.argv[1:] if argv is None else list(argv))
-        if not hasattr(args, "_main"):
-            parser.print_help()
-            return 0
-        name = args._name
-        return int(args._main(args) or 0)
-    except UserError as error:
-        print(f"{name}: {error}", file=sys.stderr)
-        return 1 if isinstance(error, ExtensionError) else 2
-    except KeyboardInterrupt:
-        return 130
-    except BrokenPipeError:
-        sys.stderr.close()
-        return 1
+def main(argv: list[str] | None = None) -> int:
+    """Run the command line; return the exit status, which is 130 after Ctrl-C.
 
+    Parameters
+    ----------
+    argv
+        The arguments. Those of the process where None: then Ctrl-C is handled, too.
+    """
+    is_process = argv is None and _signal.getsignal(_signal.SIGINT) is _signal.default_int_handler
+    if is_process:
+        _signal.signal(_signal.SIGINT, _signal.SIG_DFL)
+    from daidalos.cli.daidalos.program import run
 
-def _complete(verb: Any, parser: Parser, name: str) -> None:
-    """Complete the parser of a verb."""
-    parser.set_defaults(_main=lambda args: verb.main(args=args), _name=parser.prog)
-    verb.add_arguments(parser, name)
-
-
-class _Version(Action):
-    """Option that prints the version and exits."""
-
-    def __call__(self, parser: ArgumentParser, namespace: Namespace, values: Any, option_string: Any = None) -> None:
-        from daidalos import __version__
-
-        print(f"daidalos {__version__}")
-        parser.exit()
+    if is_process:
+        _signal.signal(_signal.SIGINT, _signal.default_int_handler)
+    return run(argv)

@@ -52,19 +52,19 @@ class DemoVerb:
 
 def _show(arguments: argparse.Namespace) -> int:
     """Launch everything in the foreground."""
-    from daidalos.cli.ros2 import main as ros2
+    from launch.actions import IncludeLaunchDescription
+    from launch.launch_description_sources import AnyLaunchDescriptionSource
 
-    return int(
-        ros2(
-            [
-                "launch",
-                *_LAUNCH,
-                f"seed:={arguments.seed}",
-                f"port:={arguments.port}",
-                f"open_browser:={str(not arguments.no_browser).lower()}",
-            ]
-        )
-    )
+    from daidalos.cli.daidalos.launching import run_launch
+    from daidalos.cli.ros2.launch import find_launch_file
+
+    settings = {
+        "seed": str(arguments.seed),
+        "port": str(arguments.port),
+        "open_browser": str(not arguments.no_browser).lower(),
+    }
+    source = AnyLaunchDescriptionSource(str(find_launch_file(*_LAUNCH)))
+    return run_launch(IncludeLaunchDescription(source, launch_arguments=list(settings.items())))
 
 
 def _try_out(arguments: argparse.Namespace) -> int:

@@ -55,7 +55,7 @@ def kinds() -> Iterator[Kind[Any]]:
     """Yield all types of extensions, those of the lowest layer first."""
     for module in _DECLARED_IN:
         yield from import_module(module).KINDS
-    from daidalos.cli.daidalos import VERBS
+    from daidalos.cli.daidalos.program import VERBS
     from daidalos.cli.ros2.groups import groups
 
     yield VERBS

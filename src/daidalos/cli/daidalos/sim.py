@@ -106,8 +106,9 @@ def _warn(line: str) -> None:
 
 def _launch(path: Path | None, args: argparse.Namespace) -> int:
     """Start the simulator, the spawners and the studio; stop them together."""
-    from launch import LaunchDescription, LaunchService
     from launch.actions import Shutdown
+
+    from daidalos.cli.daidalos.launching import run_launch
 
     for file in args.model:
         _read_model(Path(file))  # a fault is better told before anything runs
@@ -127,9 +128,7 @@ def _launch(path: Path | None, args: argparse.Namespace) -> int:
         "foxglove_bridge",
         parameters=[{"port": args.port, "open_browser": True, "front": "simulation"}],
     )
-    service = LaunchService()
-    service.include_launch_description(LaunchDescription([server, *spawners, *([] if args.headless else [studio])]))
-    return int(service.run())
+    return run_launch(server, *spawners, *([] if args.headless else [studio]))
 
 
 def _built_in_node(
