@@ -117,7 +117,10 @@ def test_every_client_gets_what_a_latched_topic_keeps(server, source):
         await client.subscribe("/kept", 1)
         got = [decode(STRING, (await client.expect("message"))["payload"]).data for _ in range(2)]
         assert got == ["a", "b"]
-        # A second subscription of the same client as well.
+        # A second subscription of the same client to a channel is refused, as by other servers of the protocol.
+        await client.subscribe("/kept", 2)
+        assert "subscribed to already" in (await client.expect("status", level=1))["message"]
+        await client.say("unsubscribe", subscriptionIds=[1])
         await client.subscribe("/kept", 2)
         assert decode(STRING, (await client.expect("message", subscription=2))["payload"]).data == "a"
 

@@ -13,19 +13,32 @@ from aiohttp import WSMsgType, web
 
 from daidalos.studio import frames, protocol
 from daidalos.studio.assets import AssetError, AssetResolver
+from daidalos.studio.connections import Connection, Connections
 from daidalos.studio.frames import Publish, ServiceRequest
 from daidalos.studio.hub import Hub
+from daidalos.studio.limits import (
+    MAX_ENTRIES,
+    MAX_ERROR_LENGTH,
+    MAX_ERRORS,
+    MAX_PENDING_REQUESTS,
+    MAX_PUBLICATIONS,
+    MAX_REASON_BYTES,
+    MAX_TEXT_BYTES,
+    MAX_WATCHED,
+    Turn,
+    Turns,
+)
 from daidalos.studio.outbox import Outbox
 from daidalos.studio.protocol import Level, ProtocolError
 from daidalos.studio.source import Graph, GraphSource, Handle, Parameter, Publication, SourceError
 
 _LOGGER = logging.getLogger(__name__)
 
-MAX_PENDING_REQUESTS = 256
-"""Service calls, parameter requests and assets of one client that have no answer yet."""
-
-MAX_ERROR_LENGTH = 500
-"""Characters of an error's text, which may repeat what a client sent."""
+_CLOSE_TIMEOUT_S = 0.5
+"""Timeout of the closing handshake with a client that is closed for what it did."""
+_POLICY_VIOLATION = 1008
+_ROOM_PERIOD_S = 0.1
+"""Period in which an asset that waits checks whether there is room for it."""
 
 
 class Client:
@@ -37,12 +50,28 @@ class Client:
         The prepared WebSocket.
     source, hub, assets
         The graph, the server's shared view of it, and the files that may be fetched.
+    connections, connection, turns
+        The server's connections, the client's own, and the shares of the event loop.
     """
 
     def __init__(
-        self, socket: web.WebSocketResponse, source: GraphSource, hub: Hub, assets: AssetResolver | None
+        self,
+        socket: web.WebSocketResponse,
+        source: GraphSource,
+        hub: Hub,
+        assets: AssetResolver | None,
+        connections: Connections,
+        connection: Connection,
+        turns: Turns,
     ) -> None:
         self._socket = socket
+        self._connections = connections
+        self._connection = connection
+        self._turn = Turn(turns)
+        self._asset_turn = asyncio.Lock()
+        self._drained = asyncio.Event()
+        self._errors = 0
+        self._closing: asyncio.Task[None] | None = None
         self._source = source
         self._hub = hub
         self._assets = assets
@@ -50,6 +79,7 @@ class Client:
         self._awake = asyncio.Event()
         self.outbox = Outbox(lambda: _wake(loop, self._awake))
         self._subscriptions: dict[int, tuple[int, Handle]] = {}  # number -> channel and handle
+        self._subscribed: dict[int, int] = {}  # channel -> number
         self._publications: dict[int, Publication] = {}
         self._watched: set[str] = set()
         self._watches_all = False
@@ -57,17 +87,25 @@ class Client:
         self._requests: set[asyncio.Task[None]] = set()
 
     async def run(self) -> None:
-        """Receive and send until the connection ends or the server stops."""
+        """Receive and send until the connection ends, a limit is passed or the server stops."""
+        self._connection.complete()
+        self._connection.stream = self
         sender = asyncio.create_task(self._send())
         try:
             async for message in self._socket:
+                self._turn.resume()
+                self._connection.complete()
                 if message.type is WSMsgType.TEXT:
-                    self._receive(self._receive_text, message.data)
+                    await self._receive(self._receive_text, message.data)
                 elif message.type is WSMsgType.BINARY:
-                    self._receive(self._receive_binary, message.data)
+                    await self._receive(self._receive_binary, message.data)
                 if self.outbox.overflowed:
-                    break  # it sends requests and does not read the responses
+                    self.stop("too many bytes of replies wait to be read")
+                if self._closing is not None:
+                    break
+                await self._turn.share()
         finally:
+            self._connection.stream = None
             sender.cancel()
             for request in self._requests:
                 request.cancel()
@@ -77,6 +115,29 @@ class Client:
                 publication.close()
             with contextlib.suppress(asyncio.CancelledError):
                 await sender
+            if self._closing is not None:
+                await self._closing
+
+    @property
+    def waiting_bytes(self) -> int:
+        """Bytes of replies that wait for the client."""
+        return self.outbox.reply_bytes
+
+    def stop(self, reason: str) -> None:
+        """Close the connection with a reason, for the client's developer and the log."""
+        if self._closing is None:
+            _LOGGER.warning("closed a client: %s", reason)
+            self._closing = asyncio.create_task(self._close(reason))
+
+    async def _close(self, reason: str) -> None:
+        with contextlib.suppress(TimeoutError, ConnectionError, RuntimeError):
+            async with asyncio.timeout(_CLOSE_TIMEOUT_S):
+                await self._socket.close(
+                    code=_POLICY_VIOLATION, message=reason.encode()[:MAX_REASON_BYTES], drain=False
+                )
+        transport = self._connection.transport
+        if transport is not None:
+            transport.abort()  # what it has not read it will not read
 
     def graph_changed(self, graph: Graph) -> None:
         """Send the changes of the graph, if the client asked for them."""
@@ -103,6 +164,7 @@ class Client:
             while True:
                 frame = self.outbox.take()
                 if frame is None:
+                    self._drained.set()
                     await self._awake.wait()
                     self._awake.clear()
                 elif isinstance(frame, str):
@@ -110,26 +172,33 @@ class Client:
                 else:
                     await self._socket.send_bytes(frame)
 
-    def _receive(self, handle: Callable[[Any], None], data: str | bytes) -> None:
+    async def _receive(self, handle: Callable[[Any], Coroutine[Any, Any, None]], data: str | bytes) -> None:
+        self._errors = 0
         try:
-            handle(data)
+            await handle(data)
         except (ProtocolError, SourceError) as error:
             self._send_error(str(error))
         except Exception as error:  # a fault of ours fails this request, and neither the client nor the server
             _LOGGER.exception("a client's request failed")
             self._send_error(f"the request failed: {type(error).__name__}")
 
-    def _send_error(self, text: str) -> None:
-        self.outbox.put_reply(protocol.status(Level.ERROR, text[:MAX_ERROR_LENGTH]))
+    def _send_error(self, text: str, level: Level = Level.ERROR) -> None:
+        """Send an error of the request under way; of many alike, the first ones."""
+        self._errors += 1
+        if self._errors <= MAX_ERRORS:
+            self.outbox.put_reply(protocol.status(level, text[:MAX_ERROR_LENGTH]))
 
-    def _receive_text(self, data: str) -> None:
-        match protocol.parse_text(data):
+    async def _receive_text(self, data: str) -> None:
+        if len(data) > MAX_TEXT_BYTES:
+            self.stop(f"a text frame of {len(data)} characters is longer than {MAX_TEXT_BYTES}")
+            return
+        match protocol.parse_text(data, MAX_ENTRIES):
             case protocol.Subscribe(subscriptions):
-                self._subscribe(subscriptions)
+                await self._subscribe(subscriptions)
             case protocol.Unsubscribe(numbers):
                 self._unsubscribe(numbers)
             case protocol.ClientAdvertise(channels):
-                self._advertise(channels)
+                await self._advertise(channels)
             case protocol.ClientUnadvertise(numbers):
                 self._unadvertise(numbers)
             case protocol.GetParameters(names, request):
@@ -137,6 +206,8 @@ class Client:
             case protocol.SetParameters(entries, request):
                 self._set_parameters(entries, request)
             case protocol.SubscribeParameterUpdates(names):
+                if len(self._watched) + len(names) > MAX_WATCHED:
+                    raise ProtocolError(f"more than {MAX_WATCHED} parameters are watched; name none to watch all")
                 self._watched.update(names)
                 self._watches_all = self._watches_all or not names
             case protocol.UnsubscribeParameterUpdates(names):
@@ -149,7 +220,7 @@ class Client:
             case protocol.FetchAsset(request_id, uri):
                 self._start(self._answer_asset(request_id, uri))
 
-    def _receive_binary(self, data: bytes) -> None:
+    async def _receive_binary(self, data: bytes) -> None:
         match frames.parse_binary(data):
             case Publish(channel, payload):
                 publication = self._publications.get(channel)
@@ -163,20 +234,23 @@ class Client:
 
     # Topics ----------------------------------------------------------------------------------------------
 
-    def _subscribe(self, subscriptions: Iterable[protocol.ChannelSubscription]) -> None:
+    async def _subscribe(self, subscriptions: Iterable[protocol.ChannelSubscription]) -> None:
         for wanted in subscriptions:
             number, channel = wanted.id, wanted.channel_id
             topic = self._hub.topics.get(channel)
             if number in self._subscriptions:
                 self._send_error(f"subscription {number} exists already")
+            elif channel in self._subscribed:
+                self._send_error(f"channel {channel} is subscribed to already", Level.WARNING)
             elif topic is None:
                 # A topic may vanish while the client asks for it: a warning, not an error.
-                text = f"channel {channel} does not exist"
-                self.outbox.put_reply(protocol.status(Level.WARNING, text))
+                self._send_error(f"channel {channel} does not exist", Level.WARNING)
             else:
                 self.outbox.open(number, topic.latched)
                 handle = self._hub.subscribe(channel, _deliver_to(self.outbox, number))
                 self._subscriptions[number] = (channel, handle)
+                self._subscribed[channel] = number
+            await self._turn.share()
 
     def _unsubscribe(self, numbers: Iterable[int]) -> None:
         for number in numbers:
@@ -184,12 +258,16 @@ class Client:
                 self._close_subscription(number)
 
     def _close_subscription(self, number: int) -> None:
-        _, handle = self._subscriptions.pop(number)
+        channel, handle = self._subscriptions.pop(number)
+        del self._subscribed[channel]
         handle.close()
         self.outbox.close(number)
 
-    def _advertise(self, channels: Iterable[protocol.ClientChannel]) -> None:
+    async def _advertise(self, channels: Iterable[protocol.ClientChannel]) -> None:
         for channel in channels:
+            await self._turn.share()
+            if len(self._publications) >= MAX_PUBLICATIONS:
+                raise ProtocolError(f"more than {MAX_PUBLICATIONS} channels are advertised")
             if channel.id in self._publications:
                 self._send_error(f"channel {channel.id} is advertised already")
             elif channel.encoding != protocol.ENCODING:
@@ -230,13 +308,22 @@ class Client:
         self.outbox.put_reply(protocol.ServiceCallFailure(request.service, request.call, reason).encode())
 
     async def _answer_asset(self, request: int, uri: str) -> None:
-        try:
-            if self._assets is None:
-                raise AssetError("this server has no assets")
-            frame = frames.asset_frame(request, await asyncio.to_thread(self._assets.read, uri))
-        except AssetError as error:
-            frame = frames.asset_error_frame(request, str(error))
-        self.outbox.put_reply(frame)
+        async with self._asset_turn:
+            await self._wait_until_read()
+            try:
+                if self._assets is None:
+                    raise AssetError("this server has no assets")
+                frame = frames.asset_frame(request, await asyncio.to_thread(self._assets.read, uri))
+            except AssetError as error:
+                frame = frames.asset_error_frame(request, str(error))
+            self.outbox.put_reply(frame)
+
+    async def _wait_until_read(self) -> None:
+        """Wait until the client has read its replies, and all clients enough of theirs."""
+        while self.outbox.reply_bytes or not self._connections.has_room():
+            self._drained.clear()
+            with contextlib.suppress(TimeoutError):
+                await asyncio.wait_for(self._drained.wait(), _ROOM_PERIOD_S)
 
     def _start(self, request: Coroutine[Any, Any, None]) -> None:
         if len(self._requests) >= MAX_PENDING_REQUESTS or self.outbox.overflowed:

@@ -22,8 +22,8 @@ LONG_BACKLOG = 1024
 publishers of /tf_static each send one at once."""
 MESSAGE_BYTES = 64 << 20
 """Bytes of messages that wait per client; beyond, the largest queue loses its oldest."""
-REPLY_BYTES = 64 << 20
-"""Bytes of replies that wait before a client that does not read them is disconnected."""
+REPLY_BYTES = 16 << 20
+"""Bytes of replies that wait, beside the last one, before a client that does not read them is disconnected."""
 
 
 class Outbox:
@@ -50,7 +50,14 @@ class Outbox:
     @property
     def overflowed(self) -> bool:
         """Whether too many bytes of replies wait: the client does not read them."""
-        return self._reply_bytes > REPLY_BYTES
+        with self._lock:
+            last = len(self._replies[-1]) if self._replies else 0
+            return self._reply_bytes - last > REPLY_BYTES
+
+    @property
+    def reply_bytes(self) -> int:
+        """Bytes of replies that wait."""
+        return self._reply_bytes
 
     def open(self, subscription: int, latched: bool) -> None:
         """Add the queue of a subscription."""

@@ -325,8 +325,8 @@ class FetchAsset(ClientMessage, op="fetchAsset"):
     uri: str
 
 
-def parse_text(frame: str) -> ClientMessage:
-    """Read a client's text frame: a JSON object with a string ``op``.
+def parse_text(frame: str, max_entries: int | None = None) -> ClientMessage:
+    """Read a client's text frame: a JSON object with a string ``op`` and lists of at most `max_entries`.
 
     Raises
     ------
@@ -341,6 +341,9 @@ def parse_text(frame: str) -> ClientMessage:
         raise ProtocolError(f"not JSON: {error}") from None
     if not isinstance(message, dict) or not isinstance(message.get("op"), str):
         raise ProtocolError('expected a JSON object with a string "op"')
+    for name, value in message.items():
+        if max_entries is not None and isinstance(value, list) and len(value) > max_entries:
+            raise ProtocolError(f"{name[:40]} has {len(value)} entries; at most {max_entries} are taken at once")
     kind = ClientMessage.kinds.get(message["op"])
     if kind is None:
         raise ProtocolError(f"unknown op {message['op']!r}")

@@ -28,8 +28,10 @@ from daidalos.studio.access import (
 from daidalos.studio.arrangement import Arrangement
 from daidalos.studio.assets import AssetResolver
 from daidalos.studio.client import Client
+from daidalos.studio.connections import Connections
 from daidalos.studio.files import STATIC
 from daidalos.studio.hub import Changes, Hub
+from daidalos.studio.limits import HANDSHAKE_S, Turns
 from daidalos.studio.local_users import is_of_another_user
 from daidalos.studio.pages import (
     ARRANGEMENT_KEY,
@@ -40,7 +42,7 @@ from daidalos.studio.pages import (
     extensions_of,
     page,
 )
-from daidalos.studio.ports import ANY_ADDRESS, is_loopback, open_port, outward_address
+from daidalos.studio.ports import ANY_ADDRESS, BACKLOG, is_loopback, open_port, outward_address
 from daidalos.studio.protocol import Level
 from daidalos.studio.source import GraphSource, Parameter, Topic
 
@@ -50,6 +52,7 @@ MAX_FRAME_BYTES = 64 << 20  # what a client may send at once; a published image 
 REFRESH_DELAY_S = 0.05  # a graph changes in bursts when nodes start
 TIME_PERIOD_S = 1 / 60  # a screen shows no more
 CLOSE_TIMEOUT_S = 0.3
+KEEP_ALIVE_S = 30.0
 
 
 class StudioServer:
@@ -112,6 +115,8 @@ class StudioServer:
         self._arrangement = arrangement
         self._session = uuid.uuid4().hex
         self._hub = Hub(source)
+        self._connections = Connections()
+        self._turns = Turns()
         self._clients: set[Client] = set()
         self._sockets: set[web.WebSocketResponse] = set()
         self._refresh_pending = False
@@ -236,12 +241,26 @@ class StudioServer:
         app.router.add_get("/extensions.json", extensions_of)
         app.router.add_get("/extensions/{kind}/{name}/{path:.*}", extension_module)
         app.router.add_get("/{path:.*}", page)
-        runner = web.AppRunner(app, access_log=None, handle_signals=False, shutdown_timeout=CLOSE_TIMEOUT_S)
+        runner = web.AppRunner(
+            app,
+            access_log=None,
+            handle_signals=False,
+            shutdown_timeout=CLOSE_TIMEOUT_S,
+            keepalive_timeout=KEEP_ALIVE_S,
+        )
         observing = None
+        listeners: list[asyncio.Server] = []
+        sweep = asyncio.create_task(self._connections.sweep())
         try:
             await runner.setup()
+            assert runner.server is not None
+            make_protocol = self._connections.wrap(runner.server)
+            timeout = None if self._tls is None else HANDSHAKE_S
             for opened in sockets:
-                await web.SockSite(runner, opened, ssl_context=self._tls).start()
+                listener = await self._loop.create_server(
+                    make_protocol, sock=opened, backlog=BACKLOG, ssl=self._tls, ssl_handshake_timeout=timeout
+                )
+                listeners.append(listener)
             self._time = self._source.time()
             observing = self._source.attach(self)
             self._hub.refresh()
@@ -250,6 +269,9 @@ class StudioServer:
         finally:
             if observing is not None:
                 observing.close()
+            sweep.cancel()
+            for listener in listeners:
+                listener.close()
             await self._close_connections()
             await runner.cleanup()
             self._loop = None
@@ -267,6 +289,9 @@ class StudioServer:
 
     @web.middleware
     async def _guard(self, request: web.Request, handler: Handler) -> web.StreamResponse:
+        connection = self._connections.of(request.protocol)
+        if connection is not None:
+            connection.complete()
         refusal = too_long(request) or self._access.refusal(identify(request, self._port)) or self._other_user(request)
         if refusal is not None:
             return web.Response(status=refusal.status, text=refusal.reason + "\n", headers=HEADERS)
@@ -297,7 +322,10 @@ class StudioServer:
             timeout=CLOSE_TIMEOUT_S,
         )
         await connection.prepare(request)
-        client = Client(connection, self._source, self._hub, self._assets)
+        link = self._connections.of(request.protocol)
+        if link is None:
+            return connection  # it was lost meanwhile
+        client = Client(connection, self._source, self._hub, self._assets, self._connections, link, self._turns)
         for frame in self._first_frames():
             client.outbox.put_reply(frame)
         if self._time is not None:

@@ -125,3 +125,17 @@ def test_a_request_for_impossible_parameters_fails_alone(node: Node, name: str) 
             with contextlib.suppress(SourceError):
                 request.result(5.0)
         assert [one.value for one in source.get_parameters(["/tested.speed"]).result(5.0)] == [1.5]
+
+
+def test_a_node_that_does_not_answer_delays_the_others_once_and_leaves_nothing(node: Node) -> None:  # noqa: F811
+    source = RosGraphSource(node)
+    node.declare_parameter("speed", 1.5)
+    idle = Node("idle", context=node.context)
+    with spinning(node):
+        for _ in range(3):
+            found = source.get_parameters([]).result(10.0)
+            assert [one.value for one in found if one.name == "/tested.speed"] == [1.5]
+        assert source.get_parameters(["/idle.use_sim_time"]).result(0.5) == []
+        idle.destroy_node()
+        source.get_parameters(["/tested.speed"]).result(5.0)
+        assert not [client for client in node.clients if client.srv_name.startswith("/idle/")]

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import time
+from collections.abc import Callable, Coroutine, Sequence
 from concurrent.futures import Future
 from typing import Any
 
@@ -10,11 +11,18 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter as RclpyParameter
 from rclpy.parameter import parameter_value_to_python
 from rclpy.parameter_client import AsyncParameterClient
+from rclpy.task import Future as RclpyFuture
+from rclpy.task import Task
 
 from daidalos.studio.source import Parameter, SourceError
+from daidalos.transport.steady_timers import STEADY_TIMERS
+
+Work = Callable[[AsyncParameterClient, str, list[str]], Coroutine[Any, Any, list[Parameter]]]
 
 _MAX_SHOWN = 300
 """Number of characters of a reason that a client gets."""
+_TIMEOUT_NS = 2_000_000_000
+"""Time in which nodes answer; one that does not spin is not asked again before it has answered."""
 
 
 class GraphParameters:
@@ -29,6 +37,7 @@ class GraphParameters:
     def __init__(self, node: Node) -> None:
         self._node = node
         self._clients: dict[str, AsyncParameterClient] = {}
+        self._silent: dict[str, Task] = {}  # nodes that did not answer in time, and what waits for their answer
 
     def get(self, names: Sequence[str]) -> Future[Sequence[Parameter]]:
         """Read parameters, named ``/node.parameter``; all of them where none is named."""
@@ -47,8 +56,8 @@ class GraphParameters:
 
         return self._gather(_by_node(list(values)), write)
 
-    def _gather(self, wanted: dict[str, list[str]], work: Callable[..., Any]) -> Future[Sequence[Parameter]]:
-        """Do some work with the parameters of every node, in the node's executor."""
+    def _gather(self, wanted: dict[str, list[str]], work: Work) -> Future[Sequence[Parameter]]:
+        """Do some work with the parameters of every node, in the node's executor; silent nodes are left out."""
         answer: Future[Sequence[Parameter]] = Future()
         executor = self._node.executor
         if executor is None:
@@ -59,11 +68,15 @@ class GraphParameters:
             found: list[Parameter] = []
             failure: SourceError | None = None
             try:
-                present = {node.full_name for node in self._node.handle.graph.nodes()}
-                for node in (name for name in wanted if name in present):
-                    client = self._client_of(node)
-                    if client.services_are_ready():
-                        found += await work(client, node, wanted[node])
+                tasks = {
+                    node: executor.create_task(self._ask, node, wanted[node], work) for node in self._asked(wanted)
+                }
+                await self._wait_for(list(tasks.values()))
+                for node, task in tasks.items():
+                    if task.done():
+                        found += task.result()
+                    else:
+                        self._silent[node] = task
             except Exception as error:  # what a client asks for fails this request only
                 failure = SourceError(f"parameters: {error}"[:_MAX_SHOWN])
             if not answer.set_running_or_notify_cancel():  # the client may be gone
@@ -75,6 +88,37 @@ class GraphParameters:
 
         executor.create_task(gather)
         return answer
+
+    def _asked(self, wanted: dict[str, list[str]]) -> list[str]:
+        """Return the wanted nodes that are in the graph and owe no answer; forget those that have left."""
+        present = {node.full_name for node in self._node.handle.graph.nodes()}
+        for node in [node for node in self._clients if node not in present]:
+            self._silent.pop(node, None)
+            for client in self._clients.pop(node)._clients.values():
+                self._node.destroy_client(client)
+        for node in [node for node, task in self._silent.items() if task.done()]:
+            del self._silent[node]
+        return [node for node in wanted if node in present and node not in self._silent]
+
+    async def _ask(self, node: str, names: list[str], work: Work) -> list[Parameter]:
+        client = self._client_of(node)
+        return await work(client, node, names) if client.services_are_ready() else []
+
+    async def _wait_for(self, tasks: list[Task]) -> None:
+        """Wait until all tasks have ended, but not longer than for `_TIMEOUT_NS`."""
+        ended = RclpyFuture(executor=self._node.executor)
+
+        def end() -> None:
+            if not ended.done():
+                ended.set_result(None)
+
+        if not tasks:
+            return
+        timeout = STEADY_TIMERS.at(time.monotonic_ns() + _TIMEOUT_NS, end)
+        for task in tasks:
+            task.add_done_callback(lambda _: end() if all(each.done() for each in tasks) else None)
+        await ended
+        timeout.cancel()
 
     def _client_of(self, node: str) -> AsyncParameterClient:
         if node not in self._clients:

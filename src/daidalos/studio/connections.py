@@ -1,0 +1,230 @@
+"""Connections of the server: how many there are, what they hold, and how long a request may take."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+from collections.abc import Callable
+from typing import Protocol, cast
+
+from daidalos.studio.limits import (
+    HANDSHAKE_S,
+    MAX_CONNECTIONS,
+    MAX_HELD_BYTES,
+    MAX_UNFINISHED_BYTES,
+    MESSAGE_S,
+    STALL_S,
+    SWEEP_PERIOD_S,
+)
+
+_MANY_BYTES = 64 << 10
+
+
+class Stream(Protocol):
+    """Client on a connection, for `Connections` to close."""
+
+    @property
+    def waiting_bytes(self) -> int:
+        """Bytes of replies that wait for the client, beside those in the connection's own buffer."""
+
+    def stop(self, reason: str) -> None:
+        """Close the connection with a reason."""
+
+
+class Connection(asyncio.Protocol):
+    """Connection of a client, between the socket and the HTTP protocol.
+
+    Attributes
+    ----------
+    unfinished
+        Bytes that were received of a request or message that is not complete.
+    stream
+        The client, once the connection is a WebSocket.
+    """
+
+    def __init__(self, connections: Connections, handler: asyncio.Protocol) -> None:
+        self._connections = connections
+        self.handler = handler
+        self.unfinished = 0
+        self.stream: Stream | None = None
+        self.transport: asyncio.Transport | None = None
+        self._loop = asyncio.get_running_loop()
+        self._begun: float | None = self._loop.time()
+        self._refusal: tuple[str, str] | None = None
+        self._held = 0
+        self._moved = self._begun
+
+    def connection_made(self, transport: asyncio.BaseTransport) -> None:
+        """Implement `asyncio.Protocol`."""
+        self.transport = cast(asyncio.Transport, transport)
+        self.handler.connection_made(transport)
+        if self._refusal is not None:
+            self.refuse(*self._refusal)
+
+    def connection_lost(self, error: Exception | None) -> None:
+        """Implement `asyncio.Protocol`."""
+        self._connections.remove(self)
+        self.handler.connection_lost(error)
+
+    def data_received(self, data: bytes) -> None:
+        """Implement `asyncio.Protocol`."""
+        if self._begun is None:
+            self._begun = self._loop.time()
+        self.unfinished += len(data)
+        self._connections.count(len(data))
+        self.handler.data_received(data)
+
+    def eof_received(self) -> bool | None:
+        """Implement `asyncio.Protocol`."""
+        return self.handler.eof_received()
+
+    def pause_writing(self) -> None:
+        """Implement `asyncio.Protocol`."""
+        self.handler.pause_writing()
+
+    def resume_writing(self) -> None:
+        """Implement `asyncio.Protocol`."""
+        self.handler.resume_writing()
+
+    def complete(self) -> None:
+        """Note that a request or message was received as a whole."""
+        self._connections.count(-self.unfinished)
+        self.unfinished = 0
+        self._begun = None
+
+    def age(self, now: float) -> float:
+        """Return for how long a request or message has been incomplete, in seconds."""
+        return 0.0 if self._begun is None else now - self._begun
+
+    @property
+    def has_asked(self) -> bool:
+        """Whether no request is incomplete."""
+        return self._begun is None or self.stream is not None
+
+    def held(self) -> int:
+        """Return the bytes that wait to be sent."""
+        buffered = self.transport.get_write_buffer_size() if self.transport is not None else 0
+        return buffered + (self.stream.waiting_bytes if self.stream is not None else 0)
+
+    def stall(self, now: float) -> float:
+        """Return for how long the client has read nothing of what waits for it, in seconds."""
+        buffered = self.transport.get_write_buffer_size() if self.transport is not None else 0
+        if not buffered or buffered != self._held:
+            self._held, self._moved = buffered, now
+        return now - self._moved
+
+    def refuse(self, status: str, reason: str) -> None:
+        """Close the connection with a reason: that of a WebSocket, or an HTTP response."""
+        if self.stream is not None:
+            self.stream.stop(reason)
+        elif self.transport is None:
+            self._refusal = (status, reason)
+        elif not self.transport.is_closing():
+            self.transport.write(_response(status, reason))
+            self.transport.close()
+
+
+class Connections:
+    """All connections of a server; lives in its event loop."""
+
+    def __init__(self) -> None:
+        self._open: dict[asyncio.Protocol, Connection] = {}
+        self._unfinished = 0
+
+    def wrap(self, make_handler: Callable[[], asyncio.Protocol]) -> Callable[[], asyncio.Protocol]:
+        """Return a function that makes the protocol of a new connection, given what makes that of HTTP."""
+
+        def make() -> asyncio.Protocol:
+            if len(self._open) >= MAX_CONNECTIONS and not self._make_room():
+                return _Refused(f"{MAX_CONNECTIONS} connections are open already")
+            connection = Connection(self, make_handler())
+            self.add(connection)  # now: many are accepted before the first one is connected
+            return connection
+
+        return make
+
+    def of(self, handler: object) -> Connection | None:
+        """Return the connection of an HTTP protocol."""
+        return self._open.get(cast(asyncio.Protocol, handler))
+
+    def add(self, connection: Connection) -> None:
+        """Count a connection that was accepted."""
+        self._open[connection.handler] = connection
+
+    def remove(self, connection: Connection) -> None:
+        """Count a connection no longer."""
+        connection.complete()
+        self._open.pop(connection.handler, None)
+
+    def count(self, received: int) -> None:
+        """Count the bytes of incomplete messages; beyond the limit, close the one that began first."""
+        self._unfinished += received
+        if self._unfinished <= MAX_UNFINISHED_BYTES or received < 0:
+            return
+        now = asyncio.get_running_loop().time()
+        large = [one for one in self._open.values() if one.unfinished > _MANY_BYTES]
+        if large:
+            oldest = max(large, key=lambda one: one.age(now))
+            oldest.refuse("413 Content Too Large", "too many bytes of incomplete messages wait in the server")
+            oldest.complete()
+
+    def has_room(self) -> bool:
+        """Return whether more may be kept for clients to read."""
+        return sum(one.held() for one in self._open.values()) < MAX_HELD_BYTES // 2
+
+    async def sweep(self) -> None:
+        """Close connections that take too long or hold too much, for as long as the server runs."""
+        while True:
+            await asyncio.sleep(SWEEP_PERIOD_S)
+            self.check(asyncio.get_running_loop().time())
+
+    def check(self, now: float) -> None:
+        """Close the connections that take too long or hold too much."""
+        held: list[tuple[float, int, Connection]] = []
+        for one in tuple(self._open.values()):
+            stall = one.stall(now)
+            if one.transport is None and one.age(now) > 2 * HANDSHAKE_S:
+                self.remove(one)  # its TLS handshake failed
+            elif not one.has_asked and one.age(now) > HANDSHAKE_S:
+                one.refuse("408 Request Timeout", f"no complete request in {HANDSHAKE_S:g} s")
+            elif one.stream is not None and one.age(now) > MESSAGE_S:
+                one.refuse("", f"a message was not complete after {MESSAGE_S:g} s")
+            elif one.stream is not None and stall > STALL_S:
+                one.refuse("", f"nothing was read for {STALL_S:g} s")
+            else:
+                held.append((stall, one.held(), one))
+        total = sum(size for _, size, _ in held)
+        for _, size, one in sorted(held, key=lambda entry: (entry[0] + SWEEP_PERIOD_S) * entry[1], reverse=True):
+            if total <= MAX_HELD_BYTES or not size:
+                break
+            one.refuse("", "too many bytes wait to be read")
+            total -= size
+
+    def _make_room(self) -> bool:
+        """Close the oldest connection without a complete request; return whether there was one."""
+        now = asyncio.get_running_loop().time()
+        waiting = [one for one in self._open.values() if not one.has_asked]
+        if not waiting:
+            return False
+        oldest = max(waiting, key=lambda one: one.age(now))
+        oldest.refuse("503 Service Unavailable", "too many connections are open")
+        self.remove(oldest)
+        return True
+
+
+class _Refused(asyncio.Protocol):
+    """Connection that is closed at once."""
+
+    def __init__(self, reason: str) -> None:
+        self._reason = reason
+
+    def connection_made(self, transport: asyncio.BaseTransport) -> None:
+        with contextlib.suppress(OSError):
+            cast(asyncio.Transport, transport).write(_response("503 Service Unavailable", self._reason))
+        transport.close()
+
+
+def _response(status: str, reason: str) -> bytes:
+    body = f"{reason}\n".encode()
+    head = f"HTTP/1.1 {status}\r\nContent-Type: text/plain\r\nContent-Length: {len(body)}\r\nConnection: close\r\n\r\n"
+    return head.encode() + body
