@@ -58,6 +58,11 @@ def test_near_names_are_suggested(tmp_path: Path, text: str, hint: str) -> None:
     assert hint in report
 
 
+def test_a_module_of_ros_1_is_named_with_todays(tmp_path: Path) -> None:
+    report = tracebacks.report(_raised(tmp_path, "import rospy\n"))
+    assert "No module named 'rospy'. 'rospy' belongs to ROS 1: use rclpy" in report
+
+
 def test_a_syntax_error_is_reported_with_its_own_position(tmp_path: Path) -> None:
     (tmp_path / "faulty.py").write_text("def f(:\n")
     error = _raised(tmp_path, f"import sys\nsys.path.insert(0, {str(tmp_path)!r})\nimport faulty\n")

@@ -11,6 +11,7 @@ pytestmark = pytest.mark.slow
 
 _PACKAGES = (
     "action_tutorials_py",
+    "composition",
     "demo_nodes_cpp",
     "demo_nodes_py",
     "examples_rclpy_minimal_action_client",
@@ -39,6 +40,7 @@ _PACKAGES = (
 )
 _EXPRESSION = ("/nobody", "/out", "std_msgs/Header", "{frame_id: m.data}", "-w")
 _ARGUMENTS = {
+    ("composition", "dlopen_composition"): ("lib/libtalker_component.so",),
     ("tf2_ros", "static_transform_publisher"): ("--frame-id", "a", "--child-frame-id", "b"),
     ("tf2_ros", "tf2_echo"): ("a", "b"),
     ("tf2_tools", "view_frames"): ("-t", "60"),

@@ -390,7 +390,9 @@ def test_a_package_of_ros_1_shares_what_it_holds(workspace, terminal):
             "CMakeLists.txt": """
                 cmake_minimum_required(VERSION 2.8.3)
                 project(beginner_tutorials)
-                find_package(catkin REQUIRED COMPONENTS rospy std_msgs message_generation)
+                find_package(catkin REQUIRED COMPONENTS roscpp rospy std_msgs message_generation)
+                add_executable(listener src/listener.cpp)
+                target_link_libraries(listener ${catkin_LIBRARIES})
                 add_message_files(FILES Num.msg)
                 generate_messages(DEPENDENCIES std_msgs)
                 catkin_package()
@@ -399,6 +401,7 @@ def test_a_package_of_ros_1_shares_what_it_holds(workspace, terminal):
             "msg/Num.msg": "int64 num\n",
             "launch/all.launch": "<launch/>\n",
             "scripts/say.py": "#!/usr/bin/env python3\nprint('said')\n",
+            "src/listener.cpp": "#include <ros/ros.h>\n",
             "src/hello.py": "#! /usr/bin/env python3\nprint('Hello world')\n",
         },
     )
@@ -410,6 +413,10 @@ def test_a_package_of_ros_1_shares_what_it_holds(workspace, terminal):
     assert one.run("ros2 interface show beginner_tutorials/msg/Num").strip() == "int64 num"
     assert one.run("ros2 run beginner_tutorials say.py").strip() == "said"
     assert one.run("ros2 run beginner_tutorials hello.py").strip() == "Hello world"
+    assert one.run("ros2 run beginner_tutorials listener").strip() == (
+        "No executable found: 'listener' is C++ and was left out of the build: "
+        "it needs roscpp, rospy, std_msgs, message_generation, of which only the Python side comes with Daidalos"
+    )
     assert (folder.parents[1] / "install/beginner_tutorials/share/beginner_tutorials/launch/all.launch").is_file()
 
 

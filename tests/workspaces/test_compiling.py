@@ -54,6 +54,14 @@ def test_a_library_without_a_name_is_that_of_the_packages_messages(compiler):
     assert "needs its own messages, Qt5, of which" in line
 
 
+def test_what_became_of_a_target_is_a_sentence(compiler):
+    (left_out,) = planned(target("talker", "a.cpp", links=["rclcpp"]))[1]
+    assert left_out.sentence == (
+        "'talker' is C++ and was left out of the build: "
+        "it needs rclcpp, of which only the Python side comes with Daidalos"
+    )
+
+
 def test_long_lists_are_cut(compiler):
     line = summary(planned(target("node", "a.cpp", links=["a", "b", "c", "d", "e"]))[1])
     assert "needs a, b, c, d and more, of which" in line

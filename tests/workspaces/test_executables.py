@@ -9,11 +9,13 @@ from pathlib import Path
 import pytest
 
 from daidalos.workspaces.executables import (
+    LEFT_OUT,
     ExecutableNotFound,
     executable_path,
     executables,
     find_executable,
     interrupts_blocked,
+    left_out,
 )
 
 
@@ -59,6 +61,20 @@ def test_what_is_not_there_is_told_with_what_is_near(package: str, executable: s
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no signal masks")
+def test_a_target_that_the_build_left_out_is_told_with_the_reason(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    index = tmp_path / "share" / "ament_index" / "resource_index"
+    for kind, text in (("packages", ""), (LEFT_OUT, "talker: 'talker' is C++\nlistener: 'listener' is C++\n")):
+        (index / kind).mkdir(parents=True)
+        (index / kind / "cpp_pubsub").write_text(text)
+    monkeypatch.setenv("AMENT_PREFIX_PATH", str(tmp_path))
+    with pytest.raises(ExecutableNotFound, match=r"^No executable 'talker' in .*: 'talker' is C\+\+$"):
+        find_executable("cpp_pubsub", "talker")
+    assert left_out("cpp_pubsub", "listener") == "'listener' is C++"
+    assert left_out("cpp_pubsub", "talke") == left_out("turtlesim", "talker") == ""
+
+
 def test_only_our_own_programs_are_started_with_interrupts_blocked() -> None:
     def blocked(command: list[str]) -> bool:
         with interrupts_blocked(command):

@@ -41,6 +41,12 @@ from . import packages
         ("teleop_twist_joy", Answer.HERE, ""),
         ("rviz_default_plugins", Answer.COMPILED, ""),
         ("compressed_image_transport", Answer.COMPILED, ""),
+        ("tf2_ros_py", Answer.HERE, ""),
+        ("navigation2", Answer.HERE, ""),
+        ("desktop_full", Answer.HERE, ""),
+        ("rviz_common", Answer.COMPILED, ""),
+        ("spdlog_vendor", Answer.COMPILED, ""),
+        ("pendulum_control", Answer.ABSENT, ""),
         ("no_such_package", Answer.UNKNOWN, ""),
     ],
 )
@@ -88,6 +94,16 @@ def test_all_that_is_there_is_well(source, capsys):
 def test_what_only_cpp_needs_is_said(source, capsys):
     assert rosdep.main(["install", "-i", "--from-path", "src", "-y", "--skip-keys", "python3-no-such-thing"]) == 0
     assert capsys.readouterr().out.splitlines()[0] == "#Only C++ needs rclcpp: it is left out of a build here"
+
+
+def test_packages_of_ros_2_that_are_not_here_are_named_and_stop_nothing(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    packages.python_package(tmp_path / "src", "one", {}, needs="rclpy pendulum_control")
+    for command in ("check", "install"):
+        assert rosdep.main([command, "--from-paths", "src", "-i"]) == 0
+        assert "#These packages of ROS 2 do not come with Daidalos: pendulum_control\n" in capsys.readouterr().out
+    assert rosdep.main(["resolve", "pendulum_control"]) == 0
+    assert "does not come with Daidalos" in capsys.readouterr().out
 
 
 def test_unknown_dependencies_are_told_by_package(source, capsys):

@@ -93,6 +93,7 @@ def _check(args: argparse.Namespace) -> int:
     if unknown := _unknown(needs):
         return _report_unknown(unknown)
     missing = _missing(needs)
+    _report_left_out(needs)
     if not missing:
         print("All system dependencies have been satisfied")
         return 0
@@ -115,13 +116,21 @@ def _install(args: argparse.Namespace) -> int:
         return 0
     if missing and not _run_installer(missing, args.yes):
         return 1
-    compiled = [key for key in _all_keys(needs) if resolve(key).answer is Answer.COMPILED]
-    if compiled and not args.quiet:
-        print(f"#Only C++ needs {', '.join(compiled)}: it is left out of a build here")
+    if not args.quiet:
+        _report_left_out(needs)
     if unknown:
         return _report_unknown(unknown)
     print("#All required rosdeps installed successfully")
     return 0
+
+
+def _report_left_out(needs: Sequence[PackageDependencies]) -> None:
+    """Print which dependencies are not here although nothing has to be installed for a build."""
+    keys = {answer: [key for key in _all_keys(needs) if resolve(key).answer is answer] for answer in Answer}
+    if keys[Answer.COMPILED]:
+        print(f"#Only C++ needs {', '.join(keys[Answer.COMPILED])}: it is left out of a build here")
+    if keys[Answer.ABSENT]:
+        print(f"#These packages of ROS 2 do not come with Daidalos: {', '.join(keys[Answer.ABSENT])}")
 
 
 def _resolve(args: argparse.Namespace) -> int:
@@ -140,9 +149,11 @@ def _resolve(args: argparse.Namespace) -> int:
 
 
 def _words(resolution: Resolution) -> str:
-    return (
-        "# left out of a build: only C++ needs it" if resolution.answer is Answer.COMPILED else "# comes with Daidalos"
-    )
+    words = {
+        Answer.COMPILED: "# left out of a build: only C++ needs it",
+        Answer.ABSENT: "# does not come with Daidalos; a build does not need it",
+    }
+    return words.get(resolution.answer, "# comes with Daidalos")
 
 
 def _nothing(args: argparse.Namespace) -> int:

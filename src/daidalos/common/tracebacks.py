@@ -12,6 +12,23 @@ from types import TracebackType
 VARIABLE = "DAIDALOS_TRACEBACK"
 """Environment variable; with the value ``full`` the frames of libraries are shown too."""
 
+_OF_ROS1 = {
+    "actionlib": "rclpy.action",
+    "actionlib_msgs": "action_msgs",
+    "dynamic_reconfigure": "parameters of rclpy's nodes",
+    "move_base_msgs": "nav2_msgs",
+    "nodelet": "rclcpp_components",
+    "rosbag": "rosbag2_py",
+    "roslaunch": "launch",
+    "roslib": "ament_index_python",
+    "rospkg": "ament_index_python",
+    "rospy": "rclpy",
+    "rostest": "launch_testing",
+    "rostopic": "ros2topic",
+    "tf": "tf2_ros",
+}
+"""Modules of ROS 1, and what stands for them today."""
+
 _SOURCE = Path(__file__).resolve().parents[2]
 _MORE = f"(set {VARIABLE}=full to see the whole traceback)"
 
@@ -74,7 +91,12 @@ def _one(error: BaseException) -> str:
 
 
 def _hint(error: BaseException) -> str:
-    """Return the near names of an unknown attribute or import, which Python before 3.12 keeps to its own traceback."""
+    """Return the name that a missing module of ROS 1 has today, or near names of an unknown attribute or import.
+
+    Python before 3.12 keeps the near names to its own traceback.
+    """
+    if isinstance(error, ModuleNotFoundError) and error.name in _OF_ROS1:
+        return f". '{error.name}' belongs to ROS 1: use {_OF_ROS1[error.name]}"
     if sys.version_info >= (3, 12):
         return ""
     from daidalos.common.suggestions import near

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import threading
-import traceback
 
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.node import Node
 
+from daidalos.common import tracebacks
 from daidalos.nodes.runner import fail
 
 
@@ -25,8 +25,8 @@ class NodeThread:
             self._executor.spin()
         except ExternalShutdownException:
             return
-        except Exception:
-            traceback.print_exc()
+        except Exception as error:
+            tracebacks.show(type(error), error, error.__traceback__)
             fail()
 
     def stop(self) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import shutil
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -33,6 +33,13 @@ class SkippedTarget:
     name: str
     why: str
     needs: tuple[str, ...] = ()
+
+    @property
+    def sentence(self) -> str:
+        """What became of the target, for whoever looks for it."""
+        if not self.needs:
+            return f"'{self.name}' was left out of the build: {self.why}"
+        return f"'{self.name}' is {self.why} and was left out of the build: it needs {_short(self.needs)}"
 
 
 def plan(targets: Mapping[str, Target], build: Path) -> tuple[list[Compilation], list[SkippedTarget]]:
@@ -77,8 +84,12 @@ def _reason(why: str, group: Iterable[SkippedTarget]) -> str:
     needs = list(dict.fromkeys(name for target in group for name in target.needs))
     if not needs:
         return why
+    return f"{why} that needs {_short(needs)}"
+
+
+def _short(needs: Sequence[str]) -> str:
     shown = ", ".join(needs[:_SHOWN]) + (" and more" if len(needs) > _SHOWN else "")
-    return f"{why} that needs {shown}, of which only the Python side comes with Daidalos"
+    return f"{shown}, of which only the Python side comes with Daidalos"
 
 
 def _parts(target: Target, targets: Mapping[str, Target]) -> list[Target]:

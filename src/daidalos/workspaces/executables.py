@@ -17,6 +17,9 @@ BUILT_IN = Path(__file__).resolve().parents[1] / "nodes"
 """Folder of the built-in packages, with a subfolder of modules for each."""
 
 _START = str(BUILT_IN / "start.py")
+LEFT_OUT = "left_out_of_the_build"
+"""Type of the resource that says, line by line, which targets of a package were not built, and why."""
+
 _RUN_SCRIPT = str(Path(__file__).with_name("run_script.py"))
 
 
@@ -43,6 +46,9 @@ def find_executable(package: str, executable: str) -> list[str]:
     known = executables(package)
     if not known and not is_known(package):
         raise ExecutableNotFound(f"Package '{package}' not found")
+    reason = left_out(package, executable)
+    if reason:
+        raise ExecutableNotFound(f"No executable '{executable}' in package '{package}': {reason}")
     raise ExecutableNotFound(f"No executable '{executable}' in package '{package}'{hint(executable, known)}")
 
 
@@ -88,6 +94,17 @@ def executable_path(package: str, executable: str) -> Path:
     """Return the file behind an executable; see `find_executable` for what it raises."""
     command = find_executable(package, executable)
     return Path(command[0]) if len(command) == 1 else BUILT_IN / package / f"{command[-1]}.py"
+
+
+def left_out(package: str, target: str) -> str:
+    """Return why the build of a package left out an executable or a library; empty for any other name."""
+    from ament_index_python.resources import get_resource
+
+    try:
+        text, _ = get_resource(LEFT_OUT, package)
+    except (LookupError, OSError, ValueError):
+        return ""
+    return next((line.partition(": ")[2] for line in text.splitlines() if line.startswith(f"{target}: ")), "")
 
 
 def is_known(package: str) -> bool:

@@ -12,6 +12,7 @@ from daidalos.workspaces.cmake.catkin import install_remaining
 from daidalos.workspaces.cmake.contents import Contents
 from daidalos.workspaces.cmake.reader import read_package
 from daidalos.workspaces.compiling import Compilation, SkippedTarget, plan
+from daidalos.workspaces.executables import LEFT_OUT
 from daidalos.workspaces.installation import Installation
 from daidalos.workspaces.interface_package import install_interfaces
 from daidalos.workspaces.package_tests import write_tests
@@ -84,6 +85,9 @@ def finish(
             installation.put(compilation.output, compilation.destination, executable=True)
     for resource in contents.resources:
         installation.write(f"{_INDEX}/{resource.type}/{resource.name}", resource.content)
+    if build.left_out:
+        sentences = (f"{target.name}: {target.sentence}\n" for target in build.left_out)
+        installation.write(f"{_INDEX}/{LEFT_OUT}/{name}", "".join(sentences))
     installation.put(place.source / "package.xml", f"share/{name}/package.xml")
     installation.write(f"{_INDEX}/packages/{name}", "")
     installation.write(f"{_INDEX}/package_run_dependencies/{name}", ";".join(run_dependencies))

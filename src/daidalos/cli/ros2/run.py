@@ -47,12 +47,15 @@ class RunCommand(Command):
 def _find(package: str, executable: str) -> list[str]:
     from daidalos.cli.ros2.packages import package_names
     from daidalos.cli.ros2.workspace_hints import unknown_executable, unknown_package
-    from daidalos.workspaces.executables import ExecutableNotFound, executables, find_executable, is_known
+    from daidalos.workspaces.executables import ExecutableNotFound, executables, find_executable, is_known, left_out
 
     try:
         return find_executable(package, executable)
     except ExecutableNotFound:
         if is_known(package):
+            reason = left_out(package, executable)
+            if reason:
+                raise CliError(f"No executable found: {reason}") from None
             hint = did_you_mean(executable, executables(package)) or unknown_executable(package, executable)
             raise CliError(f"No executable found{hint}") from None
         hint = unknown_package(package) or did_you_mean(package, package_names())

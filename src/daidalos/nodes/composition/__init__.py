@@ -1,3 +1,3 @@
 """Components of the tutorials on containers."""
 
-COMPONENTS = {name: f"_components:{name}" for name in ("Client", "Listener", "Server", "Talker")}
+COMPONENTS = {name: f"_components:{name}" for name in ("Talker", "Listener", "NodeLikeListener", "Server", "Client")}

@@ -26,6 +26,10 @@ class Listener(HelloListener):
         super().__init__("listener", "chatter", "I heard: [{}]", **kwargs)
 
 
+class NodeLikeListener(Listener):
+    """The same under the name of a component that in C++ only holds a node."""
+
+
 class Server(Adder):
     """Server of ``add_two_ints``."""
 

@@ -258,6 +258,8 @@ def _cmake_parse_arguments(run: Interpreter, call: Call) -> None:
 def _find_package(run: Interpreter, call: Call) -> None:
     for name in (call.values[0], call.values[0].upper()):
         run.variables[f"{name}_FOUND"] = "1"
+        for suffix in ("LIBRARIES", "LIBS", "TARGETS"):  # a target that links one of them needs the package
+            run.variables.setdefault(f"{name}_{suffix}", call.values[0])
 
 
 def _find_file(run: Interpreter, call: Call) -> None:

@@ -48,6 +48,8 @@ def _interface_files(run: Interpreter, call: Call) -> None:
 def _find_package(run: Interpreter, call: Call) -> None:
     BASICS["find_package"](run, call)
     if call.values[0] == "catkin":
+        components = keywords(call.values[1:], options=("REQUIRED",), many=("COMPONENTS",))[0].get("COMPONENTS", [])
+        run.variables["catkin_LIBRARIES"] = ";".join(components)
         run.variables.update(_destinations(run.contents.project, run.variables["PYTHON_INSTALL_DIR"]))
 
 

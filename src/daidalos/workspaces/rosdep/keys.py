@@ -6,14 +6,18 @@ import importlib.util
 import re
 from dataclasses import dataclass
 from enum import Enum
+from functools import cache
 from importlib import metadata
+from pathlib import Path
 
 _BUILD = re.compile(
     r"ament_.*|rosidl_.*|catkin|cmake|git|ros_environment|ros_workspace|python_cmake_module|"
     r"build-essential|pkg-config|colcon.*|rmw.*|rosidl|ros_(base|core)|ros_testing|desktop(_full)?|"
     r"ros2(cli|launch|run|topic|node|pkg|param|service|action|bag|interface|doctor|component|lifecycle|test|_control|_controllers).*|"
     r"launch_testing_.*|rosbag2.*|domain_coordinator|osrf_.*|python3(-dev)?|python3-setuptools.*|python3-catkin-pkg.*|"
-    r"message_(generation|runtime)|ros(bag|launch|lib|msg|node|param|service|test|topic|unit)"
+    r"message_(generation|runtime)|ros(bag|launch|lib|msg|node|param|service|test|topic|unit)|"
+    r"(common_interfaces|desktop|geometry2|image_common|navigation2|perception|rqt_common_plugins|simulation|sros2)|"
+    r"tf2_ros_py|plotjuggler_ros|ros2(multicast|plugin)|bond_core"
 )
 _COMPILED = re.compile(
     r"rclcpp.*|pluginlib|class_loader|rcl|rcl_.*|rcutils|rcpputils|libstatistics_collector|eigen3?|eigen3_cmake_module|"
@@ -22,7 +26,8 @@ _COMPILED = re.compile(
     r"rviz_(common|rendering|ogre_vendor|default_plugins|visual_tools)|gtest|"
     r"controller_interface|hardware_interface|transmission_interface|realtime_tools|control_toolbox|"
     r"nav2_(core|util|costmap_2d|rviz_plugins)|generate_parameter_library|behaviortree_cpp.*|gazebo(_dev)?|"
-    r"cv_bridge_cpp|ceres-solver"
+    r"cv_bridge_cpp|ceres-solver|.*_vendor|bondcpp|fast(cdr|rtps.*)|iceoryx_.*|(py)?tracetools.*|rttest|tlsf.*|smclib|filters|"
+    r"camera_calibration_parsers|rviz_.*|nav_?2d?_utils|realtime_tools|kinematics_interface.*|joint_limits"
 )
 _OF_ROS1 = {
     "actionlib": "rclpy",
@@ -78,6 +83,8 @@ class Answer(Enum):
     """Installed, or not needed by a build."""
     COMPILED = "compiled"
     """Only C++ needs it, which is left out of a build."""
+    ABSENT = "absent"
+    """A package of ROS 2 that does not come with Daidalos; a build does not need it."""
     PYTHON = "python"
     """Available in the Python package index."""
     UNKNOWN = "unknown"
@@ -104,7 +111,15 @@ def resolve(key: str) -> Resolution:
         return Resolution(Answer.PYTHON, distribution)
     if _COMPILED.fullmatch(key):
         return Resolution(Answer.COMPILED)
+    if key in _ros_packages():
+        return Resolution(Answer.ABSENT)
     return Resolution(Answer.UNKNOWN)
+
+
+@cache
+def _ros_packages() -> frozenset[str]:
+    """Return the packages of ROS 2's desktop installation and of the stacks that robots build on, as of Jazzy."""
+    return frozenset(Path(__file__).with_name("ros_packages.txt").read_text("utf-8").split())
 
 
 def _is_package(key: str) -> bool:
