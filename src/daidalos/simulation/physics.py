@@ -16,9 +16,9 @@ from daidalos.simulation.stage import Stage
 _log = logging.getLogger(__name__)
 
 _DIVERGED = (
-    mujoco.mjtWarning.mjWARN_BADQPOS,
-    mujoco.mjtWarning.mjWARN_BADQVEL,
-    mujoco.mjtWarning.mjWARN_BADQACC,
+    int(mujoco.mjtWarning.mjWARN_BADQPOS),
+    int(mujoco.mjtWarning.mjWARN_BADQVEL),
+    int(mujoco.mjtWarning.mjWARN_BADQACC),
 )
 
 
@@ -62,6 +62,7 @@ class Physics:
         self.has_subscribers = has_subscribers
         self.stage = stage
         self.forces = forces
+        self._warnings = data.warning.number  # a view
         self.changed()
 
     def step(self, count: int) -> None:
@@ -74,10 +75,10 @@ class Physics:
         """
         mujoco.mj_step(self.model, self.data, count)
         self.changed()
+        counts = self._warnings.tolist()
         for kind in _DIVERGED:
-            warning = self.data.warning[kind]
-            if warning.number:
-                dof = min(max(int(warning.lastinfo), 0), self.model.nv - 1)
+            if counts[kind]:
+                dof = min(max(int(self.data.warning[kind].lastinfo), 0), self.model.nv - 1)
                 body = self.model.body(self.model.dof_bodyid[dof]).name
                 raise SimulationError(
                     f"the physics diverged at {self.data.time:.3f} s, first in {body}; "

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
@@ -11,6 +12,8 @@ from daidalos.nodes.gazebo_ros._pacing import PacedSimulation
 from daidalos.nodes.warming import warm_up_in_background
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from daidalos.samples.sensors import Sample
     from daidalos.simulation import Simulation
 
@@ -37,6 +40,8 @@ class Connections:
         self._incoming: dict[str, Any] = {}
         self._offered: dict[str, Any] = {}
         self._warned: set[str] = set()
+        self._drawn: set[str] = set()
+        self._renderer_ready: threading.Event | None = None
 
     def warn_once(self, text: str) -> None:
         """Log a warning unless it was logged before."""
@@ -45,17 +50,33 @@ class Connections:
             self._node.get_logger().warning(text)
 
     def has_subscribers(self, topic: str) -> bool:
-        """Return whether anybody subscribes to a topic of the simulation."""
+        """Return whether anybody subscribes to a topic of the simulation, and it can be served.
+
+        Pictures can be once the renderer is ready, which it becomes in the background while the world runs by the
+        clock of the wall; otherwise the world waits for it.
+        """
         entry = self._outgoing.get(topic)
-        return entry is not None and entry[0].handle.has_subscribers
+        heard = entry is not None and entry[0].handle.has_subscribers
+        return heard and (topic not in self._drawn or self._can_draw())
+
+    def _can_draw(self) -> bool:
+        if self._renderer_ready is None:
+            self._renderer_ready = ready = threading.Event()
+            compiled = warm_up_in_background("daidalos.simulation.rendering", self._node.get_logger())
+            compiled.add_done_callback(lambda _: ready.set())
+        if self.paced.paused or self.paced.real_time_factor <= 0.0:
+            self._renderer_ready.wait()
+        return self._renderer_ready.is_set()
 
     def publish(self, samples: list[Sample]) -> None:
-        """Publish what was measured; transforms of the same step go into one message."""
+        """Publish what is listened to; transforms of the same step go into one message."""
         transforms = []
         for sample in samples:
+            if not self.has_subscribers(sample.topic):
+                continue
             if sample.topic == "/tf":
                 transforms.append(sample)
-            elif sample.topic in self._outgoing:
+            else:
                 publisher, convert = self._outgoing[sample.topic]
                 publisher.publish(convert(sample))
         if transforms:
@@ -71,7 +92,6 @@ class Connections:
     def follow(self, simulation: Simulation) -> None:
         """Make a publisher or subscription for every topic of the simulation, and remove those it lost."""
         from daidalos.samples.messages import MESSAGES, conversion_of
-        from daidalos.samples.sensors import ImageSample
 
         wanted = simulation.publications
         for topic in [topic for topic in self._outgoing if topic not in wanted]:
@@ -98,10 +118,8 @@ class Connections:
                 self._incoming[topic] = self._node.create_subscription(accepted.message_class, topic, take, 10)
                 self._node.get_logger().debug(f"listens to {topic}")
 
+        self._drawn = set(_pictures(simulation))
         self._connect_switches(simulation)
-        if ImageSample in wanted.values():
-            # The first picture should not stop the world for seconds.
-            warm_up_in_background("daidalos.simulation.rendering", self._node.get_logger())
 
     def _connect_switches(self, simulation: Simulation) -> None:
         """Offer the services of plugins."""
@@ -134,3 +152,14 @@ class Connections:
             self.paced.post(lambda: self.paced.simulation.command(topic, command))
 
         return take
+
+
+def _pictures(simulation: Simulation) -> Iterator[str]:
+    """Yield the topics for which cameras draw."""
+    from daidalos.simulation.sensors.camera import Camera
+
+    for name in simulation.models:
+        for camera in simulation.instance(name).components:
+            if isinstance(camera, Camera):
+                for output in camera.outputs:
+                    yield from (topic for topic in output.topics() if topic not in output.infos)

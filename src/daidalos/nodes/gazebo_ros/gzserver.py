@@ -164,7 +164,8 @@ class GzServer(Node):
     def _publish(self, now_ns: int, samples: list[Sample]) -> None:
         from rosgraph_msgs.msg import Clock
 
-        if self._clock_gate.is_due(now_ns) or self._paced.paused:
+        is_due = self._clock_gate.is_due(now_ns) or self._paced.paused
+        if is_due and self._clock_publisher.handle.has_subscribers:
             self._clock_publisher.publish(Clock(clock=time_message(now_ns)))
         self._connections.publish(samples)
         self._states.publish(self._paced.simulation, now_ns)

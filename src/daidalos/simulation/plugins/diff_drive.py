@@ -35,11 +35,11 @@ class Motion:
 
     Parameters
     ----------
-    command : array (2,)
+    command : tuple of 2 floats
         Commanded speed ahead [m/s] and turn rate [rad/s].
-    allowed : array (2,)
+    allowed : tuple of 2 floats
         The same within the limits.
-    rims : array (2,)
+    rims : tuple of 2 floats
         Speed of the left and right rims that the servos hold [m/s].
     angles : array (2 * pairs,)
         Wheel angles at the last update [rad].
@@ -49,9 +49,9 @@ class Motion:
         Of the last update.
     """
 
-    command: Array
-    allowed: Array
-    rims: Array
+    command: tuple[float, float]
+    allowed: tuple[float, float]
+    rims: tuple[float, float]
     angles: Array
     pose: Array
     stamp_ns: int
@@ -88,8 +88,10 @@ class DiffDrive(Plugin):
         """Find the wheels, their servos and the base."""
         settings = self.settings
         self._instance = instance
-        self._controls = [instance.actuator(servo) for servo in self._servos]
+        self._controls = np.array([instance.actuator(servo) for servo in self._servos], dtype=np.intp)
         self._wheels: list[JointView] = [instance.joint(j) for j in (*settings.left, *settings.right)]
+        self._qpos = np.array([wheel.qpos for wheel in self._wheels], dtype=np.intp)
+        self._dof = np.array([wheel.dof for wheel in self._wheels], dtype=np.intp)
         self._sides = np.repeat((0, 1), (len(settings.left), len(settings.right)))
         base = settings.base_frame if settings.base_frame in instance.build.bodies else None
         self._base: LinkView = instance.link(base or next(iter(instance.build.bodies)))
@@ -97,9 +99,9 @@ class DiffDrive(Plugin):
     def start(self) -> Motion:
         """Return the state at rest, at the origin of the odometry frame."""
         return Motion(
-            command=np.zeros(2),
-            allowed=np.zeros(2),
-            rims=np.zeros(2),
+            command=(0.0, 0.0),
+            allowed=(0.0, 0.0),
+            rims=(0.0, 0.0),
             angles=self._angles(),
             pose=np.zeros(3),
             stamp_ns=-1,
@@ -122,54 +124,59 @@ class DiffDrive(Plugin):
         return {self.settings.command_topic: Subscription(TwistCommand, self._command)}
 
     def update(self, now_ns: int) -> Iterable[Sample]:
-        """Measure the wheels, then set their velocities for the next period."""
-        motion = self.state
+        """Measure the wheels, then set their velocities for the next period; return what is listened to."""
+        settings, motion, heard = self.settings, self.state, self._instance.has_subscribers
         elapsed = self.period or self._instance.physics.model.opt.timestep
         if motion.stamp_ns >= 0:
             elapsed = (now_ns - motion.stamp_ns) * 1e-9
         motion.stamp_ns = now_ns
-        odometry = self._true_odometry(now_ns) if self.settings.truth else self._odometry(now_ns, elapsed)
+        travel = None if settings.truth else self._integrate()
+        wants_odometry = bool(settings.odometry_topic) and heard(settings.odometry_topic)
+        wants_tf = bool(settings.tf_topic) and heard(settings.tf_topic)
+        odometry = None
+        if wants_odometry or wants_tf:
+            odometry = self._true_odometry(now_ns) if travel is None else self._odometry(now_ns, elapsed, *travel)
         self._drive(elapsed)
-        if self.settings.odometry_topic:
+        if odometry is not None and wants_odometry:
             yield odometry
-        if self.settings.tf_topic:
-            yield transform_of(odometry, self.settings.tf_topic)
-            if self.settings.publish_wheels:
+        if odometry is not None and wants_tf:
+            yield transform_of(odometry, settings.tf_topic)
+            if settings.publish_wheels:
                 joints = [wheel.name for wheel in self._wheels]
-                frame = self.settings.base_frame
-                yield from link_transforms(self._instance, self._base, joints, now_ns, self.settings.tf_topic, frame)
-        if self.settings.joint_topic:
+                frame = settings.base_frame
+                yield from link_transforms(self._instance, self._base, joints, now_ns, settings.tf_topic, frame)
+        if settings.joint_topic and heard(settings.joint_topic):
             yield self._joint_states(now_ns)
 
     def _command(self, command: TwistCommand) -> None:
-        self.state.command = np.array((float(command.linear[0]), float(command.angular[2])))
+        self.state.command = float(command.linear[0]), float(command.angular[2])
 
     def _drive(self, elapsed: float) -> None:
         settings, motion = self.settings, self.state
-        motion.allowed = np.array(
-            (
-                settings.linear.apply(motion.command[0], motion.allowed[0], elapsed),
-                settings.angular.apply(motion.command[1], motion.allowed[1], elapsed),
-            )
-        )
-        speed, turn = motion.allowed
-        wanted = np.array((speed - turn * settings.separation / 2, speed + turn * settings.separation / 2))
+        speed = settings.linear.apply(motion.command[0], motion.allowed[0], elapsed)
+        turn = settings.angular.apply(motion.command[1], motion.allowed[1], elapsed)
+        motion.allowed = speed, turn
         reach = settings.wheel_acceleration * elapsed
-        motion.rims = motion.rims + np.clip(wanted - motion.rims, -reach, reach)
-        speeds = motion.rims[self._sides] / self._radii
-        self._instance.physics.data.ctrl[self._controls] = speeds
+        wanted = speed - turn * settings.separation / 2, speed + turn * settings.separation / 2
+        motion.rims = _nearer(motion.rims[0], wanted[0], reach), _nearer(motion.rims[1], wanted[1], reach)
+        self._instance.physics.data.ctrl[self._controls] = np.array(motion.rims)[self._sides] / self._radii
 
-    def _odometry(self, now_ns: int, elapsed: float) -> OdometrySample:
+    def _integrate(self) -> tuple[float, float]:
+        """Add the wheels' travel since the last update to the pose; return the travel ahead [m] and the turn [rad]."""
         settings, motion = self.settings, self.state
         angles = self._angles()
-        travel = (angles - motion.angles) * self._radii
+        travel = settings.encoder.measure((angles - motion.angles) * self._radii, self.random)
         motion.angles = angles
-        travel = settings.encoder.measure(travel, self.random)
-        left, right = travel[self._sides == 0].mean(), travel[self._sides == 1].mean()
-        forward, turn = float((left + right) / 2), float((right - left) / settings.separation)
+        count = len(settings.left)
+        left, right = sum(travel[:count].tolist()) / count, sum(travel[count:].tolist()) / (len(travel) - count)
+        forward, turn = (left + right) / 2, (right - left) / settings.separation
         motion.pose = move_along_arc(motion.pose, forward, turn)
+        return forward, turn
+
+    def _odometry(self, now_ns: int, elapsed: float, forward: float, turn: float) -> OdometrySample:
+        settings = self.settings
         frames, velocity = (settings.odometry_frame, settings.base_frame), (forward / elapsed, 0.0, turn / elapsed)
-        return wheel_odometry(now_ns, settings.odometry_topic, frames, motion.pose, velocity, settings.covariance)
+        return wheel_odometry(now_ns, settings.odometry_topic, frames, self.state.pose, velocity, settings.covariance)
 
     def _true_odometry(self, now_ns: int) -> OdometrySample:
         s = self.settings
@@ -182,9 +189,15 @@ class DiffDrive(Plugin):
             frame_id="",
             names=tuple(wheel.name for wheel in self._wheels),
             positions=self._angles(),
-            velocities=np.array([wheel.velocity for wheel in self._wheels]),
-            efforts=np.array([wheel.effort for wheel in self._wheels]),
+            velocities=np.array(self._instance.physics.data.qvel[self._dof]),
+            efforts=np.array(self._instance.physics.data.qfrc_actuator[self._dof]),
         )
 
     def _angles(self) -> Array:
-        return np.array([wheel.position for wheel in self._wheels])
+        angles: Array = self._instance.physics.data.qpos[self._qpos]
+        return angles
+
+
+def _nearer(value: float, wanted: float, reach: float) -> float:
+    """Return the value that is nearest to the wanted one within reach."""
+    return value + min(max(wanted - value, -reach), reach)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -49,13 +49,10 @@ class CameraRenderer:
     Parameters
     ----------
     settings : CameraRendererSettings
-    random : numpy Generator
-        Makes the table that noise is taken from.
     """
 
-    def __init__(self, settings: CameraRendererSettings, random: np.random.Generator) -> None:
+    def __init__(self, settings: CameraRendererSettings) -> None:
         self.settings = settings
-        self._random = random
         self._renderer = make_renderer(settings.pinhole.ideal, settings.near, settings.far, settings.mask)
         self._view: View | None = None
 
@@ -95,7 +92,8 @@ class CameraRenderer:
             distort(picture, pinhole.lookup, bent)
             picture = bent
         if self.settings.noise.stddev or self.settings.noise.mean:
-            add_noise(picture.reshape(-1), self._noise, start % _NOISE_TABLE)
+            table = _noise_table(self.settings.noise.mean, self.settings.noise.stddev)
+            add_noise(picture.reshape(-1), table, start % _NOISE_TABLE)
         return picture
 
     def depth(self, near: float = 0.0, far: float = np.inf) -> NDArray[np.float32]:
@@ -114,10 +112,11 @@ class CameraRenderer:
         pick(ideal, pinhole.lookup, bent)
         return bent
 
-    @cached_property
-    def _noise(self) -> NDArray[np.float32]:
-        noise = self.settings.noise
-        return self._random.normal(255 * noise.mean, 255 * noise.stddev, _NOISE_TABLE).astype(np.float32)
+
+@lru_cache(maxsize=4)
+def _noise_table(mean: float, stddev: float) -> NDArray[np.float32]:
+    """Return random numbers that cameras with the same noise share; each picture reads from a place of its own."""
+    return np.random.default_rng(0).normal(255 * mean, 255 * stddev, _NOISE_TABLE).astype(np.float32)
 
 
 def encode(picture: NDArray[np.uint8], encoding: str) -> NDArray[Any]:

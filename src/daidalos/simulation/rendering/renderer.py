@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import InitVar, dataclass, field
 from typing import Any
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -60,19 +61,33 @@ class View:
 
 @dataclass(eq=False)
 class _Buffers:
-    """Arrays that depend on the scene's size."""
+    """Arrays that depend on the scene's size, shared by all cameras that draw it, one after the other.
 
-    scene: Scene
+    Parameters
+    ----------
+    scene : Scene
+
+    Attributes
+    ----------
+    drawn_by : Renderer or None
+        Whose picture they hold.
+    """
+
+    scene: InitVar[Scene]
+    drawn_by: Renderer | None = field(default=None, init=False)
     placed: Array = field(init=False)
     projected: NDArray[np.float32] = field(init=False)
     edges: NDArray[np.float32] = field(init=False)
     flipped: NDArray[np.bool_] = field(init=False)
 
-    def __post_init__(self) -> None:
-        self.placed = np.zeros((len(self.scene.body), 3, 4))
-        self.projected = np.zeros((len(self.scene.vertices), PROJECTED), dtype=np.float32)
-        self.edges = np.zeros((len(self.scene.faces), EDGES), dtype=np.float32)
-        self.flipped = np.zeros(len(self.scene.faces), dtype=np.bool_)
+    def __post_init__(self, scene: Scene) -> None:
+        self.placed = np.zeros((len(scene.body), 3, 4))
+        self.projected = np.zeros((len(scene.vertices), PROJECTED), dtype=np.float32)
+        self.edges = np.zeros((len(scene.faces), EDGES), dtype=np.float32)
+        self.flipped = np.zeros(len(scene.faces), dtype=np.bool_)
+
+
+_buffers: WeakKeyDictionary[Scene, _Buffers] = WeakKeyDictionary()
 
 
 class Renderer:
@@ -97,7 +112,7 @@ class Renderer:
         self._triangles = np.empty(shape, dtype=np.int32)
         self._pool = Pool()
         self._glass: tuple[NDArray[np.float32], NDArray[np.int32]] | None = None
-        self._buffers: _Buffers | None = None
+        self._scene: Scene | None = None
         self._shadow_map: ShadowMap | None = None
 
     def render(self, scene: Scene, positions: Array, rotations: Array, pose: Pose) -> View:
@@ -111,10 +126,13 @@ class Renderer:
         pose : Pose
             The sensor's frame (x ahead, z up) in the world.
         """
-        if self._buffers is None or self._buffers.scene is not scene:
-            self._buffers = _Buffers(scene)
+        if self._scene is not scene:
+            self._scene = scene
+            self._buffers = _buffers.get(scene) or _buffers.setdefault(scene, _Buffers(scene))
+        self._pose = pose
         self._camera_pose = pose @ OPTICAL
         self._view = self._camera_pose.inverse.matrix[:3]
+        self._buffers.drawn_by = self
         place_parts(scene.body, scene.pose, positions, rotations, self._view, self._buffers.placed)
         self._inverse.fill(1.0 / self.far)
         self._triangles.fill(NOTHING)
@@ -125,8 +143,10 @@ class Renderer:
 
     def paint(self, positions: Array, rotations: Array, lighting: Lighting) -> NDArray[np.uint8]:
         """Return the colours (rows, columns, 3) of the last `render`, including transparent surfaces."""
-        assert self._buffers is not None
-        scene = self._buffers.scene
+        scene = self._scene
+        assert scene is not None
+        if self._buffers.drawn_by is not self:  # another camera drew since
+            self.render(scene, positions, rotations, self._pose)
         sun, lights = sort_lights(lighting)
         direction = np.array((0.0, 0.0, -1.0)) if sun is None else light_direction(*sun)
         shadow = self._shadow(scene, positions, rotations, direction, lighting, sun)
@@ -143,8 +163,8 @@ class Renderer:
         return picture
 
     def _draw(self, wanted: NDArray[np.bool_], inverse: NDArray[np.float32], triangles: NDArray[np.int32]) -> None:
-        assert self._buffers is not None
-        scene, buffers = self._buffers.scene, self._buffers
+        scene, buffers = self._scene, self._buffers
+        assert scene is not None
         draw(
             wanted, buffers.placed, scene.spheres, scene.face_ranges, scene.vertex_ranges, scene.two_sided,
             scene.vertices, scene.faces, scene.planes, self.pinhole.lens, self.near, self.far, buffers.projected,
@@ -181,8 +201,8 @@ class Renderer:
         picture: NDArray[np.uint8],
         blend: bool,
     ) -> None:
-        assert self._buffers is not None
-        scene, buffers, view = self._buffers.scene, self._buffers, self._view
+        scene, buffers, view = self._scene, self._buffers, self._view
+        assert scene is not None
         eye = self._camera_pose.matrix
         to_shadow = np.zeros((3, 4)) if shadow is None else shadow.to_map @ eye
         offset = np.zeros(2) if shadow is None else np.array((1.5, 1.0)) * shadow.texel

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -84,7 +85,7 @@ class ShadowMap:
         moved = self._aim(light, eye + ahead * 0.8 * reach, 1.2 * reach)
         if scene is not self._scene:
             self._scene, moved = scene, True
-            self._shapes = simplify(scene, self.texel)
+            self._shapes = _shapes_of(scene, self.texel)
             self._placed = np.empty((len(scene.body), 3, 4))
             self._scratch = np.empty(self._shapes.vertices.shape)
             self._poses = np.concatenate((positions, rotations), axis=1)
@@ -178,6 +179,17 @@ class Shapes:
     planes: NDArray[np.float32] = field(default_factory=lambda: np.zeros((0, 4), dtype=np.float32))
     face_ranges: NDArray[np.int64] = field(default_factory=lambda: np.zeros((0, 2), dtype=np.int64))
     vertex_ranges: NDArray[np.int64] = field(default_factory=lambda: np.zeros((0, 2), dtype=np.int64))
+
+
+_shapes: WeakKeyDictionary[Scene, dict[float, Shapes]] = WeakKeyDictionary()
+
+
+def _shapes_of(scene: Scene, cell: float) -> Shapes:
+    """Return the simplified triangles of a scene, which all cameras share; see `simplify`."""
+    known = _shapes.setdefault(scene, {})
+    if cell not in known:
+        known[cell] = simplify(scene, cell)
+    return known[cell]
 
 
 def simplify(scene: Scene, cell: float) -> Shapes:

@@ -274,7 +274,7 @@ class Camera(Sensor):
             for output in self.outputs:
                 s = output.settings
                 settings = CameraRendererSettings(s.pinhole, s.near, s.far, s.mask, s.noise)
-                self._renderers.append(CameraRenderer(settings, self.context.stream()))
+                self._renderers.append(CameraRenderer(settings))
         return self._renderers[number]
 
 

@@ -24,6 +24,7 @@ from daidalos.simulation.contracts import ComponentContext, Sensor
 from daidalos.simulation.conversion.geometry import RAY_GROUPS
 from daidalos.simulation.instance import Instance
 from daidalos.simulation.noise import read_noise
+from daidalos.simulation.sensors.ray_fan import RayFan
 
 MAX_RAYS = 1_000_000
 _TURN = 4 * math.pi
@@ -88,7 +89,7 @@ class Lidar(Sensor):
         self.noise = read_noise(settings.first("noise"))
         self.as_points = self.vertical.count > 1
         self.as_range = self.ultrasound = False
-        self._directions = _directions(self.horizontal.angles, self.vertical.angles)
+        self._fan = RayFan(self.horizontal.angles, self.vertical.angles)
 
     @property
     def publications(self) -> Mapping[str, type[Sample]]:
@@ -103,6 +104,7 @@ class Lidar(Sensor):
         """Find the link and the reflectance of each geom."""
         super().bind(instance)
         physics = instance.physics
+        self._fan.bind(physics.model)
         self._reflection = np.zeros(physics.model.ngeom + 1, dtype=np.float32)
         self._own = np.zeros(physics.model.ngeom + 1, dtype=bool)
         for geom, (model, info) in physics.geoms.items():
@@ -143,29 +145,12 @@ class Lidar(Sensor):
     def _cast(self) -> tuple[Array, NDArray[np.int32]]:
         """Return the true range of each ray and the geom that it hit (-1: none)."""
         mount = self.link.pose @ self.pose
-        physics = self.instance.physics
-        rays = np.ascontiguousarray(self._directions @ rotation_matrix(mount.orientation).T)
-        origin = np.array(mount.position)
-        count = len(rays)
-        ranges, geoms = np.empty(count), np.empty(count, dtype=np.int32)
-        mujoco.mj_multiRay(
-            physics.model,
-            physics.data,
-            origin,
-            rays.ravel(),
-            RAY_GROUPS,
-            True,
-            self.link.body,
-            geoms,
-            ranges,
-            None,
-            count,
-            self.range_max,
-        )
+        origin, rotation = np.array(mount.position), rotation_matrix(mount.orientation)
+        ranges, geoms = self._fan.cast(self.instance.physics, origin, rotation, self.link.body, self.range_max)
         ranges[geoms < 0] = np.inf
         for row in np.flatnonzero(ranges < self.range_min):
             if self._own[geoms[row]]:
-                ranges[row], geoms[row] = self._cast_past(origin, rays[row])
+                ranges[row], geoms[row] = self._cast_past(origin, rotation @ self._fan.directions[row])
             else:
                 ranges[row] = -np.inf
         ranges[ranges > self.range_max] = np.inf
@@ -204,7 +189,7 @@ class Lidar(Sensor):
     def _points(self, now_ns: int, ranges: Array, intensities: NDArray[np.float32], topic: str) -> PointCloudSample:
         shape = (self.vertical.count, self.horizontal.count)
         finite = np.where(np.isfinite(ranges), ranges, np.nan)
-        points = (self._directions * finite[:, None]).astype(np.float32)
+        points = (self._fan.directions * finite[:, None]).astype(np.float32)
         points[np.isnan(points)] = np.inf
         return PointCloudSample(
             stamp_ns=now_ns,
@@ -231,10 +216,3 @@ def _fan(element: Element | None, samples: int, scan: Element) -> Fan:
     if last < first:
         raise element.error(f"max_angle {last:g} is below min_angle {first:g}")
     return Fan(first, last, count)
-
-
-def _directions(yaw: Array, pitch: Array) -> Array:
-    """Return unit vectors (rings * columns, 3), ring by ring from the lowest."""
-    up, turn = np.meshgrid(pitch, yaw, indexing="ij")
-    vectors = np.stack((np.cos(up) * np.cos(turn), np.cos(up) * np.sin(turn), np.sin(up)), axis=-1)
-    return vectors.reshape(-1, 3)
