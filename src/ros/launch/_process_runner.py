@@ -94,7 +94,15 @@ class ProcessRunner:
         self._escalation: asyncio.Task[None] | None = None
         self._stopping: asyncio.Future[None] = context.running_loop.create_future()
         self.completed: asyncio.Future[None] = context.running_loop.create_future()
-        self.details: dict[str, Any] | None = None
+        program = self._program
+        #: `action`, `name`, `cmd`, `cwd` and `env`, and `pid` once there is a process.
+        self.details = {
+            "action": action,
+            "name": program.name,
+            "cmd": program.cmd,
+            "cwd": program.cwd,
+            "env": program.env,
+        }
         self.return_code: int | None = None
         self.stdout = TextOutput(keep=options.cached_output)
         self.stderr = TextOutput(keep=options.cached_output)
@@ -136,14 +144,7 @@ class ProcessRunner:
             command = " ".join(program.cmd)
             self._logger.error(f"process could not be started: {error}, cmd '{command}'")
             return False
-        self.details = details = {
-            "action": self._action,
-            "name": program.name,
-            "cmd": program.cmd,
-            "cwd": program.cwd,
-            "env": program.env,
-            "pid": self._child.pid,
-        }
+        self.details = details = {**self.details, "pid": self._child.pid}
         await self._context.emit_event(ProcessStarted(**details))
         self._logger.info(f"process started with pid [{self._child.pid}]")
         if self._stopping.done():
@@ -186,7 +187,7 @@ class ProcessRunner:
         output = self.stdout if fd == 1 else self.stderr
         self._log_lines(self._loggers[fd - 1], output.feed(data))
         # On Windows the first piece may come before the process is known to have started.
-        if self.details is not None:
+        if self._child is not None:
             event = (ProcessStdout if fd == 1 else ProcessStderr)(text=data, **self.details)
             if self._context.would_handle_event(event):
                 self._context.emit_event_sync(event)

@@ -15,7 +15,7 @@ class Condition:
     Parameters
     ----------
     predicate
-        Answers the question for a launch context. None means yes.
+        Answers the question for a launch context. Without one the answer is no.
     """
 
     def __init__(self, *, predicate: Callable[[LaunchContext], bool] | None = None) -> None:
@@ -27,4 +27,4 @@ class Condition:
 
     def evaluate(self, context: LaunchContext) -> bool:
         """Evaluate the condition."""
-        return True if self._predicate is None else self._predicate(context)
+        return self._predicate is not None and self._predicate(context)

@@ -24,7 +24,8 @@ class InvalidLaunchFileError(Exception):
     def __str__(self) -> str:
         if not self._likely_errors:
             return f"The launch file may have a syntax error, or its format [{self._extension}] is unknown"
-        if len(self._likely_errors) == 1:
-            return f"Caught exception when trying to load file of format [{self._extension}]: {self._likely_errors[0]}"
-        listed = "".join(f"\n - {type(error).__name__}: {error}" for error in self._likely_errors)
+        described = [f"{type(error).__name__}: {error}" for error in self._likely_errors]
+        if len(described) == 1:
+            return f"Caught exception when trying to load file of format [{self._extension}]: {described[0]}"
+        listed = "".join(f"\n - {text}" for text in described)
         return f"Caught multiple exceptions when trying to load file of format [{self._extension}]:{listed}"

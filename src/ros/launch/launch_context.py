@@ -206,6 +206,9 @@ class _Locals:
     def __init__(self, variables: dict[str, Any]) -> None:
         self.__dict__.update(variables)
 
+    def __setattr__(self, name: str, value: Any) -> None:
+        raise AttributeError(f"the local '{name}' is set by LaunchContext.extend_locals, not as an attribute")
+
     def __getattr__(self, name: str) -> Any:
         raise AttributeError(f"there is no '{name}' among the launch context's locals")
 

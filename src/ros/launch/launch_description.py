@@ -34,6 +34,10 @@ class LaunchDescription(LaunchDescriptionEntity):
         self.__entities = [] if initial_entities is None else list(initial_entities)
         self.__deprecated_reason = deprecated_reason
 
+    def describe(self) -> str:
+        """Return a short text that distinguishes this description from others."""
+        return repr(self)
+
     def visit(self, context: LaunchContext) -> list[LaunchDescriptionEntity] | None:
         """Yield the description's entities."""
         if self.deprecated:

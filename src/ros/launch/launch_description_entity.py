@@ -16,7 +16,7 @@ class LaunchDescriptionEntity:
 
     def describe(self) -> str:
         """Return a short text that distinguishes this entity from others."""
-        return repr(self)
+        raise NotImplementedError(f"{type(self).__name__} does not describe itself")
 
     def describe_sub_entities(self) -> list[LaunchDescriptionEntity]:
         """Return the entities that visiting this one always yields."""
@@ -29,6 +29,9 @@ class LaunchDescriptionEntity:
     def visit(self, context: LaunchContext) -> list[LaunchDescriptionEntity] | None:
         """Execute the entity and return the entities to visit next, or None."""
         return None
+
+    def _leave(self, context: LaunchContext) -> None:
+        """Undo, after the last entity that visiting this one yielded, what was only meant for those."""
 
     def get_asyncio_future(self) -> Future[None] | None:
         """Return a future that is done when the entity's work is, or None where nothing goes on."""

@@ -52,6 +52,8 @@ class LaunchService:
         self.__lock = threading.RLock()
         self.__loop: asyncio.AbstractEventLoop | None = None
         self.__task: asyncio.Task[int] | None = None
+        # An emitted shutdown is only handled after the events that were queued before it.
+        self.__shutdown_emitted = False
         self.__shutting_down = False
         self.__return_code = 0
         self.__interrupts = 0
@@ -155,7 +157,7 @@ class LaunchService:
             self.__task = asyncio.current_task()
         self.__context._set_asyncio_loop(loop)
         self.__context._set_is_shutdown(False)
-        self.__shutting_down = False
+        self.__shutdown_emitted = self.__shutting_down = False
         self.__return_code = 0
         self.__interrupts = 0
         self.__error = None
@@ -167,7 +169,7 @@ class LaunchService:
                 self.__loop = None
                 self.__task = None
             self.__context._set_asyncio_loop(None)
-            self.__shutting_down = False
+            self.__shutdown_emitted = self.__shutting_down = False
 
     @contextlib.contextmanager
     def __signals(self, loop: asyncio.AbstractEventLoop) -> Iterator[None]:
@@ -203,6 +205,8 @@ class LaunchService:
 
     def __process(self, event: Event) -> None:
         self.__logger.debug("processing event: '%s'", event)
+        if isinstance(event, Shutdown):
+            self.__shutdown_emitted = self.__shutting_down = True
         try:
             for handler in tuple(self.__context._event_handlers):
                 if handler.matches(event):
@@ -265,12 +269,11 @@ class LaunchService:
         return asyncio.sleep(0)
 
     def __emit_shutdown(self, reason: str, *, due_to_sigint: bool) -> None:
-        if not self.__shutting_down:
-            self.__shutting_down = True
+        if not self.__shutdown_emitted:
+            self.__shutdown_emitted = True
             self.__context.emit_event_sync(Shutdown(reason=reason, due_to_sigint=due_to_sigint))
 
     def __on_shutdown(self, event: Event, context: LaunchContext) -> None:
-        self.__shutting_down = True
         context._set_is_shutdown(True)
 
     def __interrupt(self, what: str, *, at_once: bool = False) -> None:

@@ -46,6 +46,15 @@ def test_process_that_ends_well(run_launch, python, capsys):
         assert line in printed
 
 
+def test_details_are_known_once_the_action_is_executed(run_launch, python):
+    seen = []
+    action = python("", name="early")
+    run_launch(action, OpaqueFunction(function=lambda context: seen.append(dict(action.process_details))))
+    assert seen[0]["cmd"][-1] == ""
+    assert "pid" not in seen[0]
+    assert set(action.process_details) == {*seen[0], "pid"}
+
+
 def test_process_that_ends_badly(run_launch, python, capsys):
     action = python("raise SystemExit(3)")
     run_launch(action)

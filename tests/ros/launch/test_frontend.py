@@ -248,9 +248,9 @@ def test_exposing():
     expose("function", register, "action")(function)
     with pytest.raises(RuntimeError, match="two actions are exposed as 'function'"):
         expose("function", register, "action")(lambda entity, parser: None)
-    with pytest.raises(RuntimeError, match="no method 'parse'"):
+    with pytest.raises(RuntimeError, match="without a method 'parse'"):
         expose("other", register, "action")(type("Other", (), {}))
-    with pytest.raises(RuntimeError, match="neither a class nor a function"):
+    with pytest.raises(RuntimeError, match="is not a callable or a class containing a parse method: 5"):
         expose("other", register, "action")(5)
 
 
@@ -375,7 +375,7 @@ def test_broken_extensions_are_left_out(monkeypatch):
         monkeypatch.setattr(Parser, attribute, False if attribute == "extensions_loaded" else None)
         found = Found(found=[BrokenEntryPoint()], group=group)
         monkeypatch.setattr(parser_module.importlib_metadata, "entry_points", lambda found=found: found)
-        with pytest.warns(UserWarning, match="failed to load the launch extension 'broken'"):
+        with pytest.warns(UserWarning, match="Failed to load the parser 'broken'"):
             load()
     assert Parser.is_extension_valid("launch.xml")
 

@@ -50,7 +50,7 @@ def test_conditions_are_made_of_substitutions():
 
 def test_predicates():
     context = LaunchContext()
-    assert Condition().evaluate(context) is True
+    assert Condition().evaluate(context) is False
     assert Condition(predicate=lambda given: given is context).evaluate(context)
     assert "Condition" in Condition().describe()
 
@@ -63,8 +63,9 @@ def test_configurations_compared(value, expected, equal):
     context = LaunchContext()
     if value is not None:
         context.launch_configurations["x"] = value
-    assert LaunchConfigurationEquals("x", expected).evaluate(context) is equal
-    assert LaunchConfigurationNotEquals("x", expected).evaluate(context) is not equal
+    for condition, holds in ((LaunchConfigurationEquals, equal), (LaunchConfigurationNotEquals, not equal)):
+        with pytest.warns(UserWarning, match=f"{condition.__name__} is deprecated"):
+            assert condition("x", expected).evaluate(context) is holds
 
 
 def test_an_action_is_executed_only_if_its_condition_holds():

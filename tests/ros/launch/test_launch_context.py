@@ -33,6 +33,8 @@ def test_locals_hide_globals_and_end_with_their_scope():
 def test_unknown_local_is_an_attribute_error():
     with pytest.raises(AttributeError, match="foo"):
         _ = LaunchContext().locals.foo
+    with pytest.raises(AttributeError, match="extend_locals"):
+        LaunchContext().locals.foo = 1
 
 
 @pytest.mark.parametrize("pop", ["_pop_locals", "_pop_environment", "_pop_launch_configurations"])

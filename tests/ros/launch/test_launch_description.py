@@ -20,7 +20,8 @@ from launch.substitutions import LaunchConfiguration, ThisLaunchFileDir
 
 def test_entity_defaults():
     entity = LaunchDescriptionEntity()
-    assert "LaunchDescriptionEntity" in entity.describe()
+    with pytest.raises(NotImplementedError, match="LaunchDescriptionEntity does not describe itself"):
+        entity.describe()
     assert entity.describe_sub_entities() == []
     assert entity.describe_conditional_sub_entities() == []
     assert entity.visit(LaunchContext()) is None

@@ -1,7 +1,7 @@
 """Events and their handlers."""
 
 import signal
-from unittest.mock import Mock
+from unittest.mock import Mock, NonCallableMock
 
 import pytest
 from launch import Event, EventHandler, LaunchContext, LaunchDescription, LaunchService
@@ -141,7 +141,7 @@ HANDLERS = [
 
 @pytest.mark.parametrize(("handler_class", "argument", "event_class", "action_class"), HANDLERS)
 def test_handlers_for_actions(handler_class, argument, event_class, action_class):
-    target, other = Mock(spec=action_class), Mock(spec=action_class)
+    target, other = NonCallableMock(spec=action_class), NonCallableMock(spec=action_class)
     event = Mock(spec=event_class, action=target)
     foreign = Mock(spec=event_class, action=other)
     context = Mock(spec=LaunchContext)
@@ -168,14 +168,14 @@ def test_handlers_for_actions(handler_class, argument, event_class, action_class
 
 @pytest.mark.parametrize(("handler_class", "argument"), [entry[:2] for entry in HANDLERS])
 def test_wrong_targets_and_reactions(handler_class, argument):
-    with pytest.raises(ValueError, match="an instance of"):
+    with pytest.raises(TypeError, match="an instance of"):
         handler_class(target_action="not an action", **{argument: LogInfo(msg="x")})
-    with pytest.raises(ValueError, match="function or entities"):
+    with pytest.raises(TypeError, match="function or entities"):
         handler_class(**{argument: "not an entity"})
 
 
 def test_processes_are_the_targets_of_process_events():
-    with pytest.raises(ValueError, match="ExecuteLocal"):
+    with pytest.raises(TypeError, match="ExecuteLocal"):
         OnProcessExit(target_action=LogInfo(msg="x"), on_exit=[])
 
 

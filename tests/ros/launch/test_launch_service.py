@@ -166,6 +166,26 @@ def test_shutdown_from_another_thread():
     assert results == [None]
 
 
+def test_shutdown_from_another_thread_reaches_its_handlers():
+    """The launch is idle when it is told to end; it must not end before the event is handled."""
+    for _ in range(20):
+        service, handled = LaunchService(), []
+        handler = OnShutdown(on_shutdown=lambda event, context, handled=handled: handled.append(event))
+        started = threading.Event()
+        service.include_launch_description(
+            LaunchDescription(
+                [RegisterEventHandler(handler), OpaqueFunction(function=lambda context, s=started: s.set())]
+            )
+        )
+        thread = threading.Thread(
+            target=lambda started=started, service=service: (started.wait(10), service.shutdown())
+        )
+        thread.start()
+        assert service.run(shutdown_when_idle=False) == 0
+        thread.join()
+        assert len(handled) == 1
+
+
 @pytest.mark.parametrize("force_sync", [True, False])
 def test_shutdown_inside_the_loop(force_sync):
     service = LaunchService()

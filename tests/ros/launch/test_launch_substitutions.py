@@ -142,7 +142,7 @@ def test_command_that_complains(context, on_stderr, capsys):
 
 
 def test_command_that_fails(context):
-    with pytest.raises(SubstitutionFailure, match="exit code 3"):
+    with pytest.raises(SubstitutionFailure, match="Exit code: 3"):
         Command(f"{sys.executable} -c 'raise SystemExit(3)'").perform(context)
     with pytest.raises(SubstitutionFailure, match="no-such-program"):
         Command("no-such-program --now").perform(context)
@@ -272,6 +272,10 @@ def test_if_else(context):
         (True, True, True),
         (True, False, False),
         (True, "TRUE", True),
+        (True, 1, True),
+        ("true", "0", False),
+        (False, "0", True),
+        (True, "10", False),
         (1, 1, True),
         (1, 1.0, True),
         (1, -1, False),

@@ -95,3 +95,11 @@ def test_the_walk_collects_futures():
     going = Going(function=lambda context: None)
     tree = GroupAction([going])
     assert visit_all_entities_and_collect_futures(tree, LaunchContext()) == [(going, going.future)]
+
+    class Outer(Going):
+        def execute(self, context):
+            return [going]
+
+    outer = Outer(function=lambda context: None)
+    pairs = visit_all_entities_and_collect_futures(outer, LaunchContext())
+    assert [entity for entity, _ in pairs] == [outer, going]

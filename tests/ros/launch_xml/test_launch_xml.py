@@ -380,3 +380,8 @@ def test_any_parser_reads_it():
     root, parser = AnyParser.load(io.StringIO("<launch/>"))
     assert isinstance(root, Entity)
     assert isinstance(parser, Parser)
+
+
+def test_a_file_can_be_deprecated():
+    root, parser = Parser.load(io.StringIO("<launch deprecated='use another'/>"))
+    assert parser.parse_description(root).deprecated_reason == "use another"

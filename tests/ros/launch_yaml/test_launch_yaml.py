@@ -196,7 +196,7 @@ def test_executable_attributes():
         - executable:
             cmd: ls -l
             launch-prefix: time
-            sigkill_timeout: '4.0'
+            sigkill_timeout: 4
             sigterm_timeout: '7.0'
             respawn: true
             respawn_max_retries: 2
@@ -212,6 +212,7 @@ def test_executable_attributes():
     assert action.shell is True
     assert action.emulate_tty is True
     assert perform_substitutions(context, action.sigterm_timeout) == "7.0"
+    assert perform_substitutions(context, action.sigkill_timeout) == "4.0"
     assert isinstance(action.get_sub_entities()[0], Shutdown)
 
 

@@ -68,8 +68,8 @@ class DeclareLaunchArgument(Action):
             raise RuntimeError(f"the choices for the launch argument '{self.__name}' are empty")
         if isinstance(default_value, str) and default_value not in self.__choices:
             raise RuntimeError(
-                f"the default value '{default_value}' of the launch argument '{self.__name}' is not one of "
-                f"its choices {self.__choices}"
+                f"the default value '{default_value}' of the launch argument '{self.__name}' is "
+                f"not in provided choices: {self.__choices}"
             )
 
     @classmethod

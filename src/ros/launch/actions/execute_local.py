@@ -139,7 +139,10 @@ class ExecuteLocal(Action):
 
     @property
     def process_details(self) -> dict[str, Any] | None:
-        """The process's `name`, `cmd`, `cwd`, `env`, `pid` and `action`; None before it is started."""
+        """The process's `name`, `cmd`, `cwd`, `env` and `action`, and its `pid` once it has started.
+
+        None before the action is executed.
+        """
         return None if self.__runner is None else self.__runner.details
 
     @property

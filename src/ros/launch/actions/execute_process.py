@@ -23,10 +23,14 @@ _TEXTS = {
     "name": "name",
     "launch-prefix": "prefix",
     "output": "output",
-    "sigkill_timeout": "sigkill_timeout",
-    "sigterm_timeout": "sigterm_timeout",
 }
-_TYPED = {"respawn": bool, "respawn_max_retries": int, "respawn_delay": float}
+_TYPED = {
+    "respawn": bool,
+    "respawn_max_retries": int,
+    "respawn_delay": float,
+    "sigkill_timeout": float,
+    "sigterm_timeout": float,
+}
 
 
 @expose_action("executable")

@@ -15,7 +15,6 @@ from ..launch_description_source import LaunchDescriptionSource
 from ..launch_file_error import add_location
 from ..some_substitutions_type import SomeSubstitutionsType
 from ..utilities import normalize_to_list_of_substitutions, perform_substitutions
-from .opaque_function import OpaqueFunction
 from .set_launch_configuration import SetLaunchConfiguration
 
 if TYPE_CHECKING:
@@ -53,6 +52,7 @@ class IncludeLaunchDescription(Action):
 
             launch_description_source = AnyLaunchDescriptionSource(launch_description_source)
         self.__source = launch_description_source
+        self.__outer_locals: dict[str, Any] | None = None
         self.__launch_arguments = () if launch_arguments is None else tuple(launch_arguments)
 
     @classmethod
@@ -93,7 +93,7 @@ class IncludeLaunchDescription(Action):
         """Load the description and yield it with its arguments set."""
         description = self.__source.get_launch_description(context)
         location = self.__source.location
-        before = {name: value for name, value in context.get_locals_as_dict().items() if name in _LOCALS}
+        self.__outer_locals = {name: value for name, value in context.get_locals_as_dict().items() if name in _LOCALS}
         path = os.path.abspath(location) if os.path.isfile(location) else location
         context.extend_locals(
             {"current_launch_file_path": path, "current_launch_file_directory": os.path.dirname(path)}
@@ -102,8 +102,16 @@ class IncludeLaunchDescription(Action):
         return [
             *(SetLaunchConfiguration(name, value) for name, value in self.launch_arguments),
             description,
-            OpaqueFunction(function=_restore_locals, args=[before]),
         ]
+
+    def _leave(self, context: LaunchContext) -> None:
+        """Restore the location of the launch file that includes this one."""
+        if self.__outer_locals is None:
+            return
+        for name in _LOCALS:
+            context._remove_local(name)
+        context.extend_locals(self.__outer_locals)
+        self.__outer_locals = None
 
     def __check_arguments(self, context: LaunchContext, description: LaunchDescription) -> None:
         passed = [
@@ -135,9 +143,3 @@ class IncludeLaunchDescription(Action):
             for name in names
             if all(isinstance(part, TextSubstitution) for part in name)
         }
-
-
-def _restore_locals(context: LaunchContext, before: dict[str, Any]) -> None:
-    for name in _LOCALS:
-        context._remove_local(name)
-    context.extend_locals(before)

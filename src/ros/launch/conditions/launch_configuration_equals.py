@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from typing import TYPE_CHECKING
 
 from ..condition import Condition
@@ -24,6 +25,11 @@ class LaunchConfigurationEquals(Condition):
     """
 
     def __init__(self, launch_configuration_name: str, expected_value: SomeSubstitutionsType | None) -> None:
+        warnings.warn(
+            f"{type(self).__name__} is deprecated: use IfCondition with EqualsSubstitution or NotEqualsSubstitution",
+            UserWarning,
+            stacklevel=2,
+        )
         self.__name = launch_configuration_name
         self.__expected_value = None if expected_value is None else normalize_to_list_of_substitutions(expected_value)
         super().__init__(predicate=self._predicate_func)

@@ -43,7 +43,7 @@ class OnActionEventBase(BaseEventHandler):
         **kwargs: Any,
     ) -> None:
         if not (action_matcher is None or callable(action_matcher) or is_a_subclass(action_matcher, target_action_cls)):
-            raise ValueError(
+            raise TypeError(
                 f"{type(self).__name__} is for an instance of {target_action_cls.__name__}, a function "
                 f"that picks some, or None for all, but it got {action_matcher!r}"
             )
@@ -59,7 +59,7 @@ class OnActionEventBase(BaseEventHandler):
             try:
                 self.__entities = normalize_to_list_of_entities(on_event)
             except TypeError as error:
-                raise ValueError(
+                raise TypeError(
                     f"{type(self).__name__} expects a function or entities for its event, but it got {on_event!r}"
                 ) from error
 
@@ -70,8 +70,7 @@ class OnActionEventBase(BaseEventHandler):
         if matcher is None:
             return True
         action = cast("Any", event).action
-        # An action of launch is never callable, but a stand-in for one may be.
-        if callable(matcher) and not is_a_subclass(matcher, self.__target_action_cls):
+        if callable(matcher):
             return bool(matcher(action))
         return bool(action == matcher)
 

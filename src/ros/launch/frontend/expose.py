@@ -77,14 +77,13 @@ def __expose_impl(name: str, parse_methods_map: dict[str, Callable[..., Any]], e
         if isinstance(exposed, type):
             parse = getattr(exposed, "parse", None)
             if not callable(parse):
-                raise RuntimeError(
-                    f"the {exposed_type} '{name}' cannot be exposed: the class {exposed.__name__} has no method 'parse'"
-                )
+                raise RuntimeError(f"Exposed {exposed_type} parser for {name} is a class without a method 'parse'")
         elif callable(exposed):
             parse = exposed
         else:
             raise RuntimeError(
-                f"the {exposed_type} '{name}' cannot be exposed: {exposed!r} is neither a class nor a function"
+                f"Exposed {exposed_type} parser for {name} is not a callable or a class containing a parse method: "
+                f"{exposed!r}"
             )
         known = parse_methods_map.setdefault(name, parse)
         if not _same(known, parse):

@@ -44,14 +44,14 @@ class Parser:
         """Import the packages that add actions and substitutions, so that these are exposed."""
         if Parser.extensions_loaded:
             return
-        _load_all("launch.frontend.launch_extension", _BUILT_IN_EXTENSIONS)
+        _load_all("launch.frontend.launch_extension", "launch extension", _BUILT_IN_EXTENSIONS)
         Parser.extensions_loaded = True
 
     @classmethod
     def load_parser_implementations(cls) -> None:
         """Find the parsers of all markup languages."""
         if Parser.frontend_parsers is None:
-            found = _load_all("launch.frontend.parser", _BUILT_IN_PARSERS)
+            found = _load_all("launch.frontend.parser", "parser", _BUILT_IN_PARSERS)
             Parser.frontend_parsers = {name: getattr(parser, "Parser", parser) for name, parser in found.items()}
 
     # From elements to actions ---------------------------------------------------------------------
@@ -95,7 +95,9 @@ class Parser:
             error = RuntimeError(f"Expected 'launch' as root element, got '{entity.type_name}'")
             add_location(error, *getattr(entity, "location", (None, None)))
             raise error
-        return LaunchDescription([self.parse_action(child) for child in entity.children])
+        deprecated = entity.get_attr("deprecated", optional=True)
+        actions = [self.parse_action(child) for child in entity.children]
+        return LaunchDescription(actions, deprecated_reason=deprecated)
 
     # From files to elements -----------------------------------------------------------------------
 
@@ -195,14 +197,14 @@ def _extension(filename: str) -> str:
     return os.path.splitext(filename)[1].lstrip(".")
 
 
-def _load_all(group: str, built_in: dict[str, str]) -> dict[str, Any]:
+def _load_all(group: str, kind: str, built_in: dict[str, str]) -> dict[str, Any]:
     """Import what is built in, and then what the entry points of a group name beyond that."""
     found: dict[str, Any] = {}
     for name, module in built_in.items():
         try:
             found[name] = importlib.import_module(module)
         except ImportError as error:
-            warnings.warn(f"failed to load the launch extension '{name}': {error}", stacklevel=3)
+            warnings.warn(f"Failed to load the {kind} '{name}': {error}", stacklevel=3)
     for entry_point in _entry_points(group):
         if entry_point.name in found:
             continue
@@ -210,7 +212,7 @@ def _load_all(group: str, built_in: dict[str, str]) -> dict[str, Any]:
             found[entry_point.name] = entry_point.load()
         # Somebody else's package must not keep launch files from being read.
         except Exception as error:
-            warnings.warn(f"failed to load the launch extension '{entry_point.name}': {error}", stacklevel=3)
+            warnings.warn(f"Failed to load the {kind} '{entry_point.name}': {error}", stacklevel=3)
     return found
 
 

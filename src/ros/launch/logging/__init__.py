@@ -14,7 +14,7 @@ from typing import Any, ClassVar
 
 from . import handlers
 from ._formats import Style, log_formatter, output_screen_formatter, screen_formatter
-from ._log_dir import create_log_dir, get_logging_directory
+from ._log_dir import create_log_dir, get_logging_directory, link_latest
 
 __all__ = [
     "LaunchConfig",
@@ -32,6 +32,10 @@ _get_logging_directory = get_logging_directory
 
 def _make_unique_log_dir(*, base_path: str) -> str:
     return create_log_dir(base_path)
+
+
+def _renew_latest_log_dir(*, log_dir: str) -> bool:
+    return link_latest(log_dir)
 
 
 _STANDARD_OUTPUTS: dict[str, dict[str, set[str]]] = {
@@ -75,6 +79,7 @@ class LaunchConfig:
         """The folder of the log files; it is made when first asked for."""
         if self._log_dir is None:
             self._log_dir = _make_unique_log_dir(base_path=get_logging_directory())
+            _renew_latest_log_dir(log_dir=self._log_dir)
         return self._log_dir
 
     @log_dir.setter

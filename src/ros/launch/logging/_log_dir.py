@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import datetime
 import os
 import socket
@@ -18,7 +17,7 @@ def get_logging_directory() -> str:
 
 
 def create_log_dir(base: str) -> str:
-    """Create the folder of this launch below `base` and the link `latest` to it, and return its path."""
+    """Create the folder of this launch below `base` and return its path."""
     now = datetime.datetime.now().strftime("%Y-%m-%d-%H-%M-%S-%f")
     name = f"{now}-{socket.gethostname()}-{os.getpid()}"
     folder = os.path.join(base, name)
@@ -30,16 +29,19 @@ def create_log_dir(base: str) -> str:
         except FileExistsError:
             number += 1
             folder = os.path.join(base, f"{name}-{number}")
-    # A convenience only: not every file system has links, and another launch may do the same right now.
-    with contextlib.suppress(OSError):
-        _link_latest(base, folder)
     return folder
 
 
-def _link_latest(base: str, folder: str) -> None:
-    link = os.path.join(base, "latest")
+def link_latest(folder: str) -> bool:
+    """Create the link `latest` to a launch's folder beside it, and return whether there is one."""
+    link = os.path.join(os.path.dirname(folder), "latest")
     if os.path.lexists(link) and not os.path.islink(link):
-        return
+        return False
     fresh = f"{link}-{os.getpid()}"
-    os.symlink(os.path.basename(folder), fresh, target_is_directory=True)
-    os.replace(fresh, link)
+    # A convenience only: not every file system has links, and another launch may do the same right now.
+    try:
+        os.symlink(os.path.basename(folder), fresh, target_is_directory=True)
+        os.replace(fresh, link)
+    except OSError:
+        return False
+    return True

@@ -81,8 +81,8 @@ class Command(Substitution):
         result = _run(arguments, dict(context.environment), line, merged=on_stderr == "capture")
         if result.returncode != 0:
             raise SubstitutionFailure(
-                f"executed command failed with exit code {result.returncode}. Command: {line}\n"
-                f"Captured stderr output: {without_frames(result.stderr or result.stdout)}"
+                f"executed command failed. Command: {line}\n"
+                f"Exit code: {result.returncode}. Captured stderr output: {without_frames(result.stderr or result.stdout)}"
             )
         if result.stderr and on_stderr in ("fail", "warn"):
             message = (

@@ -20,7 +20,8 @@ if TYPE_CHECKING:
 class EqualsSubstitution(PairSubstitution):
     """'true' if two values are equal, else 'false'.
 
-    Texts that mean true or false are compared as such in any case, numbers as numbers, all else as text.
+    Texts that mean true or false (`true`, `1`, `false` and `0` in any case) are compared as such, numbers as
+    numbers, all else as text.
     None is the same as no text.
 
     Parameters
@@ -51,9 +52,9 @@ def _as_substitutions(value: Any) -> list[Substitution]:
 
 
 def _equal(left: str, right: str) -> bool:
-    truths = ("true", "false")
+    truths = {"true": True, "1": True, "false": False, "0": False}
     if left.lower() in truths and right.lower() in truths:
-        return left.lower() == right.lower()
+        return truths[left.lower()] == truths[right.lower()]
     try:
         return math.isclose(float(left), float(right))
     except ValueError:

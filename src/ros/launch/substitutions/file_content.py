@@ -50,5 +50,7 @@ class FileContent(Substitution):
         try:
             with open(path, encoding="utf-8") as file:
                 return file.read()
+        except FileNotFoundError as error:
+            raise SubstitutionFailure(f"File not found: {path}") from error
         except (OSError, UnicodeDecodeError) as error:
             raise SubstitutionFailure(f"the file '{path}' cannot be read: {error}") from error

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from ..frontend.expose import expose_substitution
 from ..some_substitutions_type import SomeSubstitutionsType
 from ..substitution import Substitution
-from ..utilities import normalize_to_list_of_substitutions, perform_substitutions
+from ..utilities import normalize_to_list_of_substitutions
 from ._arguments import describe_text
 
 if TYPE_CHECKING:
@@ -49,7 +49,7 @@ class PathJoinSubstitution(Substitution):
 
     def perform(self, context: LaunchContext) -> str:
         """Join the parts."""
-        return os.path.join(*(perform_substitutions(context, part) for part in self.substitutions))
+        return os.path.join(*("".join(piece.perform(context) for piece in part) for part in self.substitutions))
 
 
 class PathSubstitution(PathJoinSubstitution):

@@ -54,7 +54,8 @@ class PythonExpression(Substitution):
 
     def describe(self) -> str:
         """Return the substitution in words."""
-        return f"PythonExpr({describe_text(self.expression)})"
+        modules = ", ".join(module.describe() for module in self.python_modules)
+        return f"PythonExpr({describe_text(self.expression)}, [{modules}])"
 
     def perform(self, context: LaunchContext) -> str:
         """Evaluate the expression."""

@@ -210,7 +210,7 @@ def _stderr(action: ExecuteProcess, validate: Validate) -> Callable[[], bool]:
 
 
 def _started(action: ExecuteProcess) -> Callable[[], bool]:
-    return lambda: action.process_details is not None
+    return lambda: "pid" in (action.process_details or {})
 
 
 def _exited(action: ExecuteProcess) -> Callable[[], bool]:

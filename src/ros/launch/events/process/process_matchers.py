@@ -14,7 +14,7 @@ def matches_pid(pid: int) -> Callable[[ExecuteProcess], bool]:
 
     def matcher(action: ExecuteProcess) -> bool:
         details = action.process_details
-        return details is not None and details["pid"] == pid
+        return details is not None and details.get("pid") == pid
 
     return matcher
 
