@@ -16,3 +16,4 @@ from .parametrize import parametrize as parametrize
 from .proc_info_handler import ActiveProcInfoHandler as ActiveProcInfoHandler
 from .proc_info_handler import ProcInfoHandler as ProcInfoHandler
 from .ready_aggregator import ReadyAggregator as ReadyAggregator
+from .ready_to_test_action_timeout import ready_to_test_action_timeout as ready_to_test_action_timeout

@@ -19,6 +19,7 @@ class IoHandler:
     def __init__(self) -> None:
         self._sequence: list[ProcessIO] = []
         self._by_name: dict[str, list[ProcessIO]] = {}
+        self._by_action: dict[ExecuteProcess, list[ProcessIO]] = {}
 
     def track(self, process_name: str) -> None:
         """Register a process, which may never print anything."""
@@ -28,13 +29,14 @@ class IoHandler:
         """Add a piece of output."""
         self._sequence.append(process_io)
         self._by_name.setdefault(process_io.process_name, []).append(process_io)
+        self._by_action.setdefault(process_io.action, []).append(process_io)
 
     def __iter__(self) -> Iterator[ProcessIO]:
         return iter(list(self._sequence))
 
     def processes(self) -> Iterable[ExecuteProcess]:
         """Return the actions whose processes printed something."""
-        return list(dict.fromkeys(piece.action for piece in self._sequence))
+        return list(self._by_action)
 
     def process_names(self) -> Iterable[str]:
         """Return the names of all known processes."""
@@ -42,8 +44,11 @@ class IoHandler:
 
     def __getitem__(self, key: str | ExecuteProcess) -> list[ProcessIO]:
         """Return the output of a process, given its name or action."""
-        name = key if isinstance(key, str) else process_details(key)["name"]
-        return list(self._by_name[name])
+        if isinstance(key, str):
+            return list(self._by_name[key])
+        if key in self._by_action:
+            return list(self._by_action[key])
+        return list(self._by_name[process_details(key)["name"]])
 
 
 class ActiveIoHandler:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import unittest
 import xml.etree.ElementTree as ET
 from typing import Any
+from unittest.util import strclass
 
 
 def unittestResultsToXml(*, name: str = "launch_test", test_results: dict[str, Any] | None = None) -> ET.ElementTree:
@@ -45,7 +46,7 @@ def unittestResultToXml(name: str, test_result: Any) -> ET.Element:
 def unittestCaseToXml(test_result: Any, test_case: unittest.TestCase) -> ET.Element:
     """Return one test case with its result as an element."""
     element = ET.Element("testcase")
-    element.set("classname", type(test_case).__name__)
+    element.set("classname", strclass(type(test_case)))
     element.set("name", getattr(test_case, "_testMethodName_in_run", test_case._testMethodName))
     element.set("time", f"{test_result.testTimes.get(test_case, 0.0):.3f}")
     for tag, outcomes in (

@@ -65,17 +65,17 @@ def run(
         os.environ["OVERRIDE_LAUNCH_PROCESS_OUTPUT"] = "both"
     package = getattr(args, "package_name", None)
     module = _load(path)
-    name = os.path.basename(path)
-    runs = LoadTestsFromPythonModule(module, name=f"{package}.{name}" if package else name)
+    name = os.path.splitext(os.path.basename(path))[0]
+    runs = LoadTestsFromPythonModule(module, name=f"{package or name}.{name}.launch_tests")
     runner = test_runner_cls(runs, args.launch_arguments, debug=args.verbose)
     try:
         runner.validate()
+        if args.show_args:
+            print_arguments_of_launch_description(launch_description=runs[0].get_launch_description())
+            return 0
+        results = runner.run()
     except Exception as error:
         parser.error(f"{args.launch_test_file}: {error}")
-    if args.show_args:
-        print_arguments_of_launch_description(launch_description=runs[0].get_launch_description())
-        return 0
-    results = runner.run()
     if args.junit_xml:
         tree = unittestResultsToXml(
             name=package or "launch_test", test_results={str(run): result for run, result in results.items()}

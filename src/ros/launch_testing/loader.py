@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import inspect
 import unittest
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from types import ModuleType
 from typing import Any
 
@@ -99,12 +99,17 @@ class TestRun:
         Raises
         ------
         RuntimeError
-            If there is no such action.
+            If there is no such action, or if the test description returns something else.
         """
         function = self.test_description_function
         takes_ready_fn = "ready_fn" in inspect.signature(function).parameters
         result = function(ready_fn=ready_fn) if takes_ready_fn else function()
         description, context = result if isinstance(result, tuple) else (result, {})
+        if not (isinstance(description, LaunchDescription) and isinstance(context, dict)):
+            raise RuntimeError(
+                "a test description must return a LaunchDescription, or it with a dictionary, "
+                f"but it returned {description!r} and {context!r}"
+            )
         if not takes_ready_fn:
             actions = list(dict.fromkeys(_ready_to_test_actions([description])))
             if not actions:
@@ -178,7 +183,7 @@ class _Loader(unittest.TestLoader):
 
 
 def _flatten(tests: Any) -> Iterator[unittest.TestCase]:
-    if isinstance(tests, unittest.TestSuite):
+    if isinstance(tests, Iterable):
         for test in tests:
             yield from _flatten(test)
     elif tests is not None:

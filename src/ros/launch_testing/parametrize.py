@@ -17,11 +17,11 @@ def parametrize(
     argnames
         The names of the arguments; as text with commas between them, or several.
     argvalues
-        For each launch a value, or as many values as there are names.
+        For each launch a value, or a tuple of as many values as there are names.
     """
     names = [name.strip() for name in argnames.split(",")] if isinstance(argnames, str) else list(argnames)
     names = [name for name in names if name]
-    sets = [tuple(values) if len(names) > 1 else (values,) for values in argvalues]
+    sets = [tuple(values) if len(names) > 1 or isinstance(values, tuple) else (values,) for values in argvalues]
 
     def decorator(
         function: Callable[..., Any],

@@ -73,23 +73,17 @@ class LaunchTestRunner:
         Raises
         ------
         RuntimeError
-            If a test description takes arguments that it does not get, or returns what it should not.
+            If a test description takes arguments that it does not get, or does not take those that it gets.
         """
         for run in self._test_runs:
             function = run.test_description_function
             wanted = set(inspect.signature(function).parameters)
-            unknown = wanted - {"ready_fn"} - set(run.param_args)
-            if unknown:
-                raise RuntimeError(f"the test description takes unknown arguments: {', '.join(sorted(unknown))}")
-            try:
-                description, context = run.normalized_test_description(ready_fn=lambda: None)
-            except unittest.case.SkipTest:
-                continue
-            if not (isinstance(description, LaunchDescription) and isinstance(context, dict)):
+            for name in sorted(set(run.param_args) - wanted):
                 raise RuntimeError(
-                    "a test description must return a LaunchDescription, or it with a dictionary, "
-                    f"but it returned {description!r} and {context!r}"
+                    f"Could not find an argument in generate_test_description matching the parameter '{name}'"
                 )
+            for name in sorted(wanted - {"ready_fn"} - set(run.param_args)):
+                raise RuntimeError(f"generate_test_description has unexpected extra argument '{name}'")
 
 
 class _RunnerWorker:
@@ -115,7 +109,7 @@ class _RunnerWorker:
         self._bind(context)
         self._launch_service.include_launch_description(self._wrap(description))
 
-        test_thread = threading.Thread(target=self._run_pre_shutdown_tests)
+        test_thread = threading.Thread(target=self._run_test)
         test_thread.start()
         try:
             self._launch_service.run()
@@ -187,7 +181,7 @@ class _RunnerWorker:
 
     _launch_ended = False
 
-    def _run_pre_shutdown_tests(self) -> None:
+    def _run_test(self) -> None:
         try:
             ready = self._processes_launched.wait(self._timeout)
             if self._launch_ended:

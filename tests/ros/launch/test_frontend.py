@@ -375,7 +375,7 @@ def test_broken_extensions_are_left_out(monkeypatch):
         monkeypatch.setattr(Parser, attribute, False if attribute == "extensions_loaded" else None)
         found = Found(found=[BrokenEntryPoint()], group=group)
         monkeypatch.setattr(parser_module.importlib_metadata, "entry_points", lambda found=found: found)
-        with pytest.warns(UserWarning, match="Failed to load the parser 'broken'"):
+        with pytest.warns(UserWarning, match="Failed to load the (parser|launch extension) 'broken'"):
             load()
     assert Parser.is_extension_valid("launch.xml")
 

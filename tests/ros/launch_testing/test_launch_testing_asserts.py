@@ -5,8 +5,10 @@ import threading
 from types import SimpleNamespace
 
 import pytest
-from launch.actions import ExecuteProcess
+from launch.actions import ExecuteLocal, ExecuteProcess
+from launch.descriptions import Executable
 from launch.events.process import ProcessExited, ProcessStarted, ProcessStderr, ProcessStdout
+from launch.substitutions import LaunchConfiguration
 from launch_testing import ActiveIoHandler, ActiveProcInfoHandler, IoHandler, ProcInfoHandler, ReadyAggregator
 from launch_testing.asserts import (
     EXIT_OK,
@@ -92,8 +94,8 @@ def info(request):
         ({"process": TALKER}, [TALKER]),
         ({"process": "listener", "strict_proc_matching": False}, [LISTENER, LISTENER_2]),
         ({"process": "listener", "cmd_args": "--loud"}, [LISTENER]),
-        ({"cmd_args": "-x"}, [LISTENER_2]),
-        ({"cmd_args": NO_CMD_ARGS}, [TALKER]),
+        ({"process": "listener", "cmd_args": ["-x"]}, [LISTENER_2]),
+        ({"process": "e", "cmd_args": NO_CMD_ARGS}, [TALKER]),
     ],
 )
 def test_lookup(output, kwargs, found):
@@ -109,7 +111,36 @@ def test_failed_lookup(output):
         resolveProcesses(output, process="listener")
     with pytest.raises(TypeError):
         resolveProcesses(output, process=5)
-    assert resolveProcesses(IoHandler()) == []
+    with pytest.raises(NoMatchingProcessException, match="No data recorded for any process"):
+        resolveProcesses(IoHandler())
+
+
+@pytest.mark.parametrize("cmd_args", ["--lou", ["--loud", "-x"]])
+def test_arguments_are_looked_up_whole(output, cmd_args):
+    with pytest.raises(NoMatchingProcessException, match=r"Procs: listener-1 --loud, listener_2-1 -x, talker-1"):
+        resolveProcesses(output, process="listener", cmd_args=cmd_args)
+
+
+@pytest.mark.parametrize(
+    ("cmd", "described"),
+    [(["ls", "-l"], "process ls -l"), ([LaunchConfiguration("program"), "-l"], "Unknown - Process not launched yet")],
+)
+def test_looking_up_what_was_not_started(output, cmd, described):
+    for action in (ExecuteProcess(cmd=cmd), ExecuteLocal(process_description=Executable(cmd=cmd))):
+        with pytest.raises(NoMatchingProcessException, match=described):
+            resolveProcesses(output, process=action)
+
+
+def test_exit_codes_of_all_processes_need_no_details():
+    class Recorded:
+        def processes(self):
+            return ["somebody"]
+
+        def __getitem__(self, key):
+            return exited(TALKER, 1)
+
+    with pytest.raises(AssertionError, match="talker-1 exited with code 1"):
+        assertExitCodes(Recorded())
 
 
 def test_output_handlers(output):
@@ -165,7 +196,7 @@ def test_order_of_output(output):
         checker.assertInText("last")
         with pytest.raises(AssertionError, match="came earlier"):
             checker.assertInStdout("hello")
-        assert any("last line" in line or line == " line" for line in checker.get_nearby_lines())
+        assert "last line" in checker.get_nearby_lines()
     with pytest.raises(LookupError), assertSequentialStdout(output, "listener"):
         pass
     with pytest.raises(LookupError), assertSequentialStdout(output, None):
@@ -300,6 +331,7 @@ def test_expectations(tmp_path):
 def test_filters():
     text = "pid 5\nhello\nnoise 7\n"
     assert basic_output_filter()(text) == "hello\nnoise 7\n"
+    assert basic_output_filter()("no newline") == "no newline"
     assert basic_output_filter(filtered_prefixes=[], filtered_patterns=[r"noise \d"])(text) == "pid 5\nhello\n"
     assert basic_output_filter(filtered_prefixes=["h", "n", "p"])(text) == ""
     assert normalize_lineseps(["a\r\n"]) == ["a\n"]

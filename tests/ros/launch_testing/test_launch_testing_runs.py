@@ -7,9 +7,11 @@ import textwrap
 import threading
 import xml.etree.ElementTree as ET
 
+import launch_testing
 import pytest
 from launch import LaunchDescription, LaunchService
-from launch.actions import ExecuteProcess, OpaqueCoroutine, Shutdown
+from launch.actions import ExecuteProcess, OpaqueCoroutine, OpaqueFunction, RegisterEventHandler, Shutdown
+from launch.event_handlers import OnProcessExit, OnProcessIO, OnProcessStart
 from launch_testing import ActiveIoHandler, ActiveProcInfoHandler, LaunchTestService, launch_test
 from launch_testing.actions import GTest, PyTest, ReadyToTest
 from launch_testing.tools import launch_process
@@ -87,7 +89,7 @@ def run(path, *arguments, expected=0):
 def test_good(tmp_path, capsys):
     report = tmp_path / "report.xml"
     run(write(tmp_path / "a.test.py", GOOD), "--junit-xml", str(report), "--package-name", "pkg")
-    assert "Starting test run 1 of 1: pkg.a.test.py" in capsys.readouterr().out
+    assert "Starting test run 1 of 1: pkg.a.test.launch_tests" in capsys.readouterr().out
     suites = ET.parse(report).getroot()
     assert (suites.get("name"), suites.get("tests"), suites.get("failures")) == ("pkg", "3", "0")
     names = [case.get("name") for case in suites.iter("testcase")]
@@ -118,7 +120,7 @@ def test_parameters(tmp_path, capsys):
     run(write(tmp_path / "a.test.py", body), "--junit-xml", str(report))
     names = [case.get("name") for case in ET.parse(report).getroot().iter("testcase")]
     assert names == ["test_word[word=a, number=1]", "test_word[word=b, number=2]"]
-    assert "run 2 of 2: a.test.py[word=b, number=2]" in capsys.readouterr().out
+    assert "run 2 of 2: a.test.a.test.launch_tests[word=b, number=2]" in capsys.readouterr().out
 
 
 def test_launch_arguments(tmp_path, capsys):
@@ -248,7 +250,7 @@ def test_skipped(tmp_path):
             "def generate_test_description():\n    return launch.LaunchDescription([])",
             "containing a ReadyToTest action",
         ),
-        ("def generate_test_description(unknown):\n    pass", "unknown arguments: unknown"),
+        ("def generate_test_description(unknown):\n    pass", "unexpected extra argument 'unknown'"),
         ("def generate_test_description(ready_fn):\n    return 5", "must return a LaunchDescription"),
     ],
 )
@@ -348,13 +350,22 @@ def test_processes_in_the_hands_of_a_test():
     info, output = ActiveProcInfoHandler(), ActiveIoHandler()
     thread = threading.Thread(target=service.run, kwargs={"shutdown_when_idle": False})
     started = threading.Event()
-    from launch.actions import OpaqueFunction
-
-    service.include_launch_description(LaunchDescription([OpaqueFunction(function=lambda context: started.set())]))
+    record_info, record_output = (lambda event, context: info.append(event)), output.append
+    handlers = [
+        OnProcessStart(on_start=record_info),
+        OnProcessExit(on_exit=record_info),
+        OnProcessIO(on_stdout=record_output, on_stderr=record_output),
+    ]
+    service.include_launch_description(
+        LaunchDescription(
+            [*map(RegisterEventHandler, handlers), OpaqueFunction(function=lambda context: started.set())]
+        )
+    )
     thread.start()
     assert started.wait(10)
     try:
         with launch_process(service, other, info, output) as sleeper:
+            info.assertWaitForStartup(process=other)
             assert sleeper.running
             with launch_process(service, action, info, output, output_filter=str.upper) as process:
                 assert process.target_process_action is action
@@ -441,3 +452,24 @@ def test_legacy_output_ends_the_launch():
     launch = LaunchService()
     launch.include_launch_description(description)
     assert service.run(launch) == 0
+
+
+# Decorators and collection ----------------------------------------------------------------------------
+
+
+def test_decorators_of_descriptions_combine():
+    def describe(value):
+        return value
+
+    inside = launch_testing.parametrize("value", [(1,), (2,)])(launch_testing.ready_to_test_action_timeout(3)(describe))
+    outside = launch_testing.ready_to_test_action_timeout(3)(launch_testing.parametrize("value", [1, 2])(describe))
+    for decorated in (inside, outside):
+        assert decorated.__ready_to_test_action_timeout__ == 3
+        assert [function() for function, _ in decorated()] == [1, 2]
+
+
+def test_a_broken_file_does_not_keep_those_beside_it_from_being_tested(pytester):
+    head = "import pytest, nowhere_to_be_found\n\n@pytest.mark.launch_test\ndef generate_test_description(): pass\n"
+    pytester.makepyfile(test_broken=head, test_whole="def test_it(): pass\n")
+    pytester.runpytest_inprocess("test_whole.py").assert_outcomes(passed=1)
+    pytester.runpytest_inprocess().assert_outcomes(errors=1)

@@ -33,18 +33,17 @@ class SequentialTextChecker:
         found = self._text.find(msg, self._position)
         if found < 0:
             before = " (it came earlier)" if msg in self._text else ""
-            nearby = "\n".join(self.get_nearby_lines())
-            raise AssertionError(f"'{msg}' not found in the output after:{before}\n{nearby}")
+            raise AssertionError(f"'{msg}' not found in the output after:{before}\n{self.get_nearby_lines()}")
         self._position = found + len(msg)
 
     def assertInStdout(self, msg: str) -> None:
         """Assert that a text comes after those found before; see `assertInText`."""
         self.assertInText(msg)
 
-    def get_nearby_lines(self) -> list[str]:
-        """Return the lines around the place where the next search begins."""
-        before = self._text[: self._position].splitlines()[-3:]
-        return [*before, *self._text[self._position :].splitlines()[:3]]
+    def get_nearby_lines(self) -> str:
+        """Return the line in which the next search begins, with two lines before and after it."""
+        current = self._text[: self._position + 1].count("\n")
+        return "\n".join(self._text.splitlines()[max(0, current - 2) : current + 3])
 
 
 @contextmanager

@@ -8,6 +8,7 @@ import pathlib
 from typing import TYPE_CHECKING, Any, Self
 
 import pytest
+from _pytest.outcomes import OutcomeException
 
 if TYPE_CHECKING:
     from launch_testing.loader import TestRun
@@ -166,7 +167,12 @@ def find_launch_test_entrypoint(path: pathlib.Path, config: pytest.Config | None
     except (OSError, SyntaxError, UnicodeDecodeError):
         # pytest itself reports what is wrong with the file.
         return None
-    function = getattr(_import(path, config), _ENTRYPOINT, None)
+    try:
+        module = _import(path, config)
+    # The file may fail to be imported for any reason, or ask to be skipped; pytest reports that of this file alone.
+    except (Exception, OutcomeException):
+        return None
+    function = getattr(module, _ENTRYPOINT, None)
     return function if getattr(function, "pytestmark", []) else None
 
 

@@ -41,11 +41,10 @@ def basic_output_filter(
     ]
 
     def keep(line: str) -> bool:
-        return not line.startswith(prefixes) and not any(pattern.match(line) for pattern in patterns)
+        return not line.startswith(prefixes) and not any(pattern.match(line.rstrip("\r\n")) for pattern in patterns)
 
     def output_filter(output: str) -> str:
-        kept = [line for line in output.splitlines() if keep(line)]
-        return "\n".join(kept) + ("\n" if kept else "")
+        return "".join(line for line in output.splitlines(keepends=True) if keep(line))
 
     return output_filter
 

@@ -7,8 +7,7 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 from launch import LaunchService
-from launch.actions import EmitEvent, ExecuteProcess, RegisterEventHandler
-from launch.event_handlers import OnProcessExit, OnProcessIO, OnProcessStart
+from launch.actions import EmitEvent, ExecuteProcess
 from launch.events import matches_action
 from launch.events.process import ProcessExited, ShutdownProcess
 from launch.launch_description import LaunchDescription
@@ -72,12 +71,10 @@ class ProcessProxy:
         return self.__text(lambda piece: True)
 
     def __text(self, wanted: Callable[[Any], bool]) -> str:
-        if self._process_action.process_details is None:
-            return ""
         try:
             pieces = self._proc_output[self._process_action]
-        except KeyError:
-            return ""
+        except (KeyError, RuntimeError):
+            return ""  # it has not been started yet
         text = "".join(piece.text.decode(errors="replace") for piece in pieces if wanted(piece))
         return text if self._output_filter is None else self._output_filter(text)
 
@@ -117,18 +114,11 @@ def launch_process(
     process_action
         The action.
     proc_info, proc_output
-        The active handlers that are to know of the process.
+        The active handlers that know of the service's processes; those of a launch test know of all.
     **kwargs
         As for `ProcessProxy`.
     """
-    handlers = [
-        OnProcessStart(target_action=process_action, on_start=lambda event, context: proc_info.append(event)),
-        OnProcessExit(target_action=process_action, on_exit=lambda event, context: proc_info.append(event)),
-        OnProcessIO(target_action=process_action, on_stdout=proc_output.append, on_stderr=proc_output.append),
-    ]
-    registered = [RegisterEventHandler(handler) for handler in handlers]
-    launch_service.include_launch_description(LaunchDescription([*registered, process_action]))
-    proc_info.assertWaitForStartup(process=process_action, timeout=5)
+    launch_service.include_launch_description(LaunchDescription([process_action]))
     proxy = ProcessProxy(process_action, proc_info, proc_output, **kwargs)
     try:
         yield proxy
@@ -136,4 +126,4 @@ def launch_process(
         if not proxy.terminated:
             stop = ShutdownProcess(process_matcher=matches_action(process_action))
             launch_service.include_launch_description(LaunchDescription([EmitEvent(event=stop)]))
-            proc_info.assertWaitForShutdown(process=process_action, timeout=30)
+            proxy.wait_for_shutdown(timeout=30)

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any
 
-from launch.actions import ExecuteProcess
+from launch.actions import ExecuteLocal, ExecuteProcess
+from launch.substitutions import TextSubstitution
 
 #: For `cmd_args`: only processes without arguments.
 NO_CMD_ARGS = object()
@@ -17,7 +19,7 @@ class NoMatchingProcessException(Exception):
 def resolveProcesses(
     info_obj: Any,
     *,
-    process: ExecuteProcess | str | None = None,
+    process: ExecuteLocal | str | None = None,
     cmd_args: Any = None,
     strict_proc_matching: bool = True,
 ) -> list[ExecuteProcess]:
@@ -30,7 +32,8 @@ def resolveProcesses(
     process
         The action, or a part of the process's name; None for all processes.
     cmd_args
-        A text that is among the arguments, or NO_CMD_ARGS for no arguments at all; None for any.
+        Of processes found by their name only those that have this argument, or all of these arguments;
+        NO_CMD_ARGS for those without arguments, None for any.
     strict_proc_matching
         Whether several processes that fit a name are an error.
 
@@ -40,29 +43,33 @@ def resolveProcesses(
         If there is none.
     LookupError
         If there are several, but only one may be.
+    TypeError
+        If `process` is something else.
     """
     known = list(info_obj.processes())
     if process is None:
-        found = known
-    elif isinstance(process, str):
-        found = [action for action in known if process in process_details(action)["name"]]
-    elif isinstance(process, ExecuteProcess):
-        found = [action for action in known if action is process]
-    else:
+        if not known:
+            raise NoMatchingProcessException("No data recorded for any process")
+        return known
+    if isinstance(process, ExecuteLocal):
+        if process not in known:
+            raise NoMatchingProcessException(f"No data recorded for the process {_command_line(process)}")
+        return [action for action in known if action is process]
+    if not isinstance(process, str):
         raise TypeError(f"a process is given by its name or its action, but this is {process!r}")
-    found = [action for action in found if _has_arguments(action, cmd_args)]
-    if not found and not (process is None and cmd_args is None):
-        names = ", ".join(process_details(action)["name"] for action in known) or "none"
-        raise NoMatchingProcessException(
-            f"Did not find any process matching name '{process}' and args '{cmd_args}'. Procs: {names}"
-        )
-    if isinstance(process, str) and strict_proc_matching and len(found) > 1:
-        names = ", ".join(process_details(action)["name"] for action in found)
-        raise LookupError(f"Found multiple processes matching name '{process}' and cmd_args '{cmd_args}': {names}")
-    return found
+    wanted = [cmd_args] if isinstance(cmd_args, str) else cmd_args
+    found = [
+        action for action in known if process in process_details(action)["name"] and _has_arguments(action, wanted)
+    ]
+    if found and not (strict_proc_matching and len(found) > 1):
+        return found
+    described = f"name '{process}' and args '{wanted}'. Procs: {', '.join(sorted(map(_command_line, known))) or 'none'}"
+    if found:
+        raise LookupError(f"Found multiple processes matching {described}")
+    raise NoMatchingProcessException(f"Did not find any processes matching {described}")
 
 
-def process_details(action: ExecuteProcess) -> dict[str, Any]:
+def process_details(action: ExecuteLocal) -> dict[str, Any]:
     """Return the details of an action's process.
 
     Parameters
@@ -73,7 +80,7 @@ def process_details(action: ExecuteProcess) -> dict[str, Any]:
     Raises
     ------
     RuntimeError
-        Before the process is started.
+        Before the action is executed.
     """
     details = action.process_details
     if details is None:
@@ -81,10 +88,19 @@ def process_details(action: ExecuteProcess) -> dict[str, Any]:
     return details
 
 
-def _has_arguments(action: ExecuteProcess, cmd_args: Any) -> bool:
+def _has_arguments(action: ExecuteProcess, wanted: Iterable[str] | object | None) -> bool:
     arguments = process_details(action)["cmd"][1:]
-    if cmd_args is None:
-        return True
-    if cmd_args is NO_CMD_ARGS:
+    if wanted is NO_CMD_ARGS:
         return not arguments
-    return cmd_args in " ".join(arguments) if isinstance(cmd_args, str) else False
+    return not isinstance(wanted, Iterable) or all(argument in arguments for argument in wanted)
+
+
+def _command_line(action: ExecuteLocal) -> str:
+    """Return a process's name and arguments; before it is executed its command line, where that is plain text."""
+    details = action.process_details
+    if details is not None:
+        return " ".join([details["name"], *details["cmd"][1:]])
+    words = action.process_description.cmd
+    if not all(isinstance(part, TextSubstitution) for word in words for part in word):
+        return "Unknown - Process not launched yet"
+    return " ".join("".join(part.text for part in word if isinstance(part, TextSubstitution)) for word in words)
