@@ -137,7 +137,7 @@ class LaunchService:
         while True:
             # What has just ended may have something to say about it.
             await asyncio.sleep(0)
-            if self.__is_idle():
+            if self._is_idle():
                 if self.__shutting_down:
                     return
                 if shutdown_when_idle:
@@ -185,7 +185,8 @@ class LaunchService:
                 manager.handle(signal.SIGQUIT, lambda signum: self.__interrupt("ctrl-\\ (SIGQUIT)", at_once=True))
             yield
 
-    def __is_idle(self) -> bool:
+    def _is_idle(self) -> bool:
+        """Return whether nothing is going on and no event waits, as tests of launches ask."""
         futures = self.__context._completion_futures
         futures[:] = [future for future in futures if not self.__has_ended(future)]
         self.__entity_future_pairs = [

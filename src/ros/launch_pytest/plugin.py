@@ -87,7 +87,10 @@ def _launch(loop: Any, service: Any, description: Any, shutdown_when_idle: bool,
     from launch import LaunchDescription
 
     if not isinstance(description, LaunchDescription):
-        raise RuntimeError(f"{eprefix}: it must return a LaunchDescription, but it returned {description!r}")
+        raise RuntimeError(
+            f"{eprefix}: the returned value must be either a launch description or a sequence that begins with one, "
+            f"but it is {description!r}"
+        )
     if service.task is not None:
         raise RuntimeError(f"{eprefix}: its launch service already runs the launch of another fixture")
     ready = loop.create_future()
@@ -124,7 +127,7 @@ def get_ready_to_test_action(launch_description: Any) -> Any:
 
     actions = list(iterate_ready_to_test_actions(launch_description.entities))
     if len(actions) > 1:
-        raise RuntimeError("There is more than one ReadyToTest action in the launch description")
+        raise RuntimeError("There can be only one ReadyToTest action in the launch description")
     if actions:
         return actions[0]
     action = ReadyToTest()
@@ -253,7 +256,7 @@ def pytest_pyfunc_call(pyfuncitem: Any) -> bool | None:
         return None
     error = getattr(pyfuncitem, "_launch_pytest_error", None)
     if error is not None:
-        pytest.fail(error, pytrace=False)
+        pytest.skip(error)
     loop = pyfuncitem.funcargs["event_loop"]
     service = pyfuncitem.funcargs["launch_service"]
     shut_down = functools.partial(finalize_launch_service, service, eprefix=f"When running test {pyfuncitem.name}")

@@ -80,9 +80,10 @@ class Command(Substitution):
             raise SubstitutionFailure("the command line is empty")
         result = _run(arguments, dict(context.environment), line, merged=on_stderr == "capture")
         if result.returncode != 0:
+            captured = without_frames(result.stderr or result.stdout)
             raise SubstitutionFailure(
                 f"executed command failed. Command: {line}\n"
-                f"Exit code: {result.returncode}. Captured stderr output: {without_frames(result.stderr or result.stdout)}"
+                f"Exit code: {result.returncode}. Captured stderr output: {captured}"
             )
         if result.stderr and on_stderr in ("fail", "warn"):
             message = (
