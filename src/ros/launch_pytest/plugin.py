@@ -229,7 +229,7 @@ def _invalid_items(collector: Any, name: str, obj: Any) -> list[Any]:
     items = _functions(collector, name, obj)
     for item in items:
         item.warn(LaunchTestWarning(message))
-        item._launch_pytest_error = message
+        item.add_marker(pytest.mark.skip(message))
     return items
 
 
@@ -256,7 +256,7 @@ def pytest_pyfunc_call(pyfuncitem: Any) -> bool | None:
         return None
     error = getattr(pyfuncitem, "_launch_pytest_error", None)
     if error is not None:
-        pytest.skip(error)
+        pytest.fail(error, pytrace=False)
     loop = pyfuncitem.funcargs["event_loop"]
     service = pyfuncitem.funcargs["launch_service"]
     shut_down = functools.partial(finalize_launch_service, service, eprefix=f"When running test {pyfuncitem.name}")

@@ -118,7 +118,7 @@ def test_a_yield_that_is_never_reached(pytester, prefix):
 
 def test_a_mark_without_fixture(pytester):
     result = run(pytester, "@pytest.mark.launch\ndef test_it(): pass\n")
-    result.assert_outcomes(failed=1, warnings=1)
+    result.assert_outcomes(skipped=1, warnings=1)
     result.stdout.fnmatch_lines(['*LaunchTestWarning: "fixture" keyword argument is required*'])
 
 
@@ -206,9 +206,9 @@ def test_it(with_parameter, launch_context, request):
         (
             "    ready = [launch_pytest.actions.ReadyToTest(), launch_pytest.actions.ReadyToTest()]\n"
             "    return launch.LaunchDescription(ready)",
-            "There is more than one ReadyToTest action",
+            "There can be only one ReadyToTest action",
         ),
-        ("    return 5", "must return a LaunchDescription"),
+        ("    return 5", "must be either a launch description"),
         (
             "    def fail(context): raise ValueError('broken')\n"
             "    return launch.LaunchDescription([launch.actions.OpaqueFunction(function=fail),\n"
@@ -320,7 +320,7 @@ def test_the_ready_action_of_a_description():
     assert get_ready_to_test_action(description) is added
     inner = ReadyToTest()
     assert get_ready_to_test_action(LaunchDescription([GroupAction([inner])])) is inner
-    with pytest.raises(RuntimeError, match="more than one ReadyToTest"):
+    with pytest.raises(RuntimeError, match="only one ReadyToTest"):
         get_ready_to_test_action(LaunchDescription([inner, ReadyToTest()]))
 
 
