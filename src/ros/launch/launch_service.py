@@ -51,6 +51,7 @@ class LaunchService:
         self.__entity_future_pairs: list[tuple[LaunchDescriptionEntity, asyncio.Future[Any]]] = []
         self.__lock = threading.RLock()
         self.__loop: asyncio.AbstractEventLoop | None = None
+        self.__thread: int | None = None
         self.__task: asyncio.Task[int] | None = None
         # An emitted shutdown is only handled after the events that were queued before it.
         self.__shutdown_emitted = False
@@ -154,6 +155,7 @@ class LaunchService:
             if self.__loop is not None:
                 raise RuntimeError("LaunchService is already running")
             self.__loop = loop
+            self.__thread = threading.get_ident()
             self.__task = asyncio.current_task()
         self.__context._set_asyncio_loop(loop)
         self.__context._set_is_shutdown(False)
@@ -258,14 +260,15 @@ class LaunchService:
 
         Returns
         -------
-            Inside the launch's event loop a coroutine to await, elsewhere None.
+            In the thread of the launch's event loop a coroutine to await, whether or not the loop runs at the
+            moment; elsewhere None.
         """
         with self.__lock:
             loop = self.__loop
             if loop is None:
                 return None
             self.__emit_shutdown("LaunchService.shutdown() called", due_to_sigint=False)
-        if force_sync or not _is_running_here(loop):
+        if force_sync or threading.get_ident() != self.__thread:
             return None
         return asyncio.sleep(0)
 
@@ -306,10 +309,3 @@ def _event_loop() -> Iterator[asyncio.AbstractEventLoop]:
     # Entities of a launch may ask asyncio for the loop that they are in.
     asyncio.set_event_loop(_main_loop)
     yield _main_loop
-
-
-def _is_running_here(loop: asyncio.AbstractEventLoop) -> bool:
-    try:
-        return asyncio.get_running_loop() is loop
-    except RuntimeError:
-        return False

@@ -202,6 +202,17 @@ def test_shutdown_inside_the_loop(force_sync):
     assert results == [not force_sync]
 
 
+def test_shutdown_between_two_runs_of_the_loop():
+    service, loop = LaunchService(), asyncio.new_event_loop()
+    task = loop.create_task(service.run_async(shutdown_when_idle=False))
+    loop.run_until_complete(asyncio.sleep(0))
+    assert not task.done()
+    stopping = loop.create_task(service.shutdown())
+    assert loop.run_until_complete(task) == 0
+    loop.run_until_complete(stopping)
+    loop.close()
+
+
 def test_run_async():
     seen = []
     service = LaunchService()

@@ -439,7 +439,7 @@ def test_yaml(show_arguments, run_text, capsys):
         launch:
         - push_ros_namespace: {namespace: pushed}
         - set_parameters_from_file: {filename: /no/such/file.yaml}
-        - set_ros_log_dir: {dir: /tmp}
+        - set_ros_log_dir: {new_log_dir: /tmp}
         - node:
             pkg: pkg
             exec: exe
@@ -483,3 +483,14 @@ def test_mistakes_in_markup(show_arguments, tmp_path, inside, reason):
     service = run(IncludeLaunchDescription(str(path)), expected=1)
     assert (service.error.file, service.error.line) == (str(path), 2)
     assert reason in service.error.reason
+
+
+def test_an_executable_without_a_package(run_text, capsys):
+    run_text(f"<launch><node exec='{sys.executable}' args=\"-c 'print(5 * 7)'\" output='screen'/></launch>")
+    assert "] 35" in capsys.readouterr().out
+
+
+def test_a_relative_log_folder_is_below_the_present_one(context, monkeypatch, tmp_path):
+    monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path))
+    SetROSLogDir("inner").visit(context)
+    assert context.environment["ROS_LOG_DIR"] == str(tmp_path / "inner")

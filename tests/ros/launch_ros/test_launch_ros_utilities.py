@@ -309,6 +309,15 @@ def test_parameters_as_messages(context, tmp_path, name, namespace, expected):
     assert values["s"].string_value == "x"
 
 
+def test_flat_parameter_files(context, tmp_path):
+    path = tmp_path / "flat.yaml"
+    path.write_text("a: 1\ndeep: {b: two}\n")
+    messages = to_parameters_list(context, "node", "/", [path])
+    assert {message.name: message.value.type for message in messages} == {"a": 2, "deep.b": 4}
+    path.write_text("other: {ros__parameters: {a: 1}}\n")
+    assert to_parameters_list(context, "node", "/", [path]) == []
+
+
 def test_versions():
     assert get_upper_bound_caret_version("1.2.3") == "2.0.0"
     assert get_upper_bound_caret_version("0.2.3") == "0.3.0"

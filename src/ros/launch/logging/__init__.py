@@ -20,6 +20,7 @@ __all__ = [
     "LaunchConfig",
     "LaunchLogger",
     "get_logger",
+    "get_logging_directory",
     "get_output_loggers",
     "handlers",
     "launch_config",

@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from daidalos.common.tracebacks import without_frames
-from daidalos.workspaces.executables import built_in_command
 
 from .._programs import search_path, which
 from ..frontend.expose import expose_substitution
@@ -107,6 +106,9 @@ def _run(
         raise SubstitutionFailure(f"file not found: '{arguments[0]}', in the command: {line}")
     own_xacro = Path(program) == Path(sys.executable).with_name("xacro")
     # Ours names the file and the line of a mistake; the one of the package `xacro` may stand there.
+    # Only commands that are run pay for it.
+    from daidalos.workspaces.executables import built_in_command
+
     beginning = built_in_command("xacro", "xacro") if own_xacro else [program]
     try:
         return subprocess.run(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Any
 
@@ -67,7 +68,7 @@ class LifecycleTransition(Action):
 
     Raises
     ------
-    RuntimeError
+    ValueError
         If no nodes or no transitions are given.
     """
 
@@ -85,9 +86,9 @@ class LifecycleTransition(Action):
             for number in transition_ids
         ]
         if not self.__names:
-            raise RuntimeError("No lifecycle_node_names provided.")
+            raise ValueError("No lifecycle_node_names provided.")
         if not self.__transitions:
-            raise RuntimeError("No transition_ids provided.")
+            raise ValueError("No transition_ids provided.")
 
     @classmethod
     def bringup(cls, node_name: str) -> LifecycleTransition:
@@ -113,20 +114,21 @@ class LifecycleTransition(Action):
         handlers: list[EventHandler] = []
 
         def give_up(context: LaunchContext) -> None:
-            logger.error(f"a transition of {node_name} failed; the transitions after it are left out")
+            logger.error(f"a transition of {node_name} failed; transitions after it are left out")
             for handler in handlers:
                 if handler in context._event_handlers:
                     context.unregister_event_handler(handler)
 
-        for number, following in zip(transitions, requests[1:], strict=False):
+        for number, following in itertools.zip_longest(transitions, requests[1:]):
             start, through, goal = _STATES[number]
-            handlers.append(
-                OnStateTransition(
-                    matcher=match_node_name_start_goal(node_name, through, goal),
-                    entities=[following],
-                    handle_once=True,
+            if following is not None:
+                handlers.append(
+                    OnStateTransition(
+                        matcher=match_node_name_start_goal(node_name, through, goal),
+                        entities=[following],
+                        handle_once=True,
+                    )
                 )
-            )
             handlers.append(
                 OnStateTransition(
                     matcher=match_node_name_start_goal(node_name, through, start),

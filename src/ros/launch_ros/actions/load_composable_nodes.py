@@ -55,8 +55,8 @@ class LoadComposableNodes(Action):
         super().__init__(**kwargs)
         from .node import Node
 
-        self.__descriptions = list(composable_node_descriptions)
-        self.__container: Node | list[Substitution] = (
+        self.__composable_node_descriptions = list(composable_node_descriptions)
+        self.__target_container: Node | list[Substitution] = (
             target_container
             if isinstance(target_container, Node)
             else normalize_to_list_of_substitutions(target_container)
@@ -84,7 +84,7 @@ class LoadComposableNodes(Action):
         """Start loading the nodes."""
         wanted = [
             description
-            for description in self.__descriptions
+            for description in self.__composable_node_descriptions
             if description.condition is None or description.condition.evaluate(context)
         ]
         if not wanted:
@@ -110,10 +110,10 @@ class LoadComposableNodes(Action):
         return [_bringup(request, context) for request in autostarted] or None
 
     def __full_container_name(self, context: LaunchContext) -> str:
-        if isinstance(self.__container, list):
-            return make_namespace_absolute(perform_substitutions(context, self.__container))
-        name = self.__container.node_name
-        if self.__container.UNSPECIFIED_NODE_NAMESPACE in name:
+        if isinstance(self.__target_container, list):
+            return make_namespace_absolute(perform_substitutions(context, self.__target_container))
+        name = self.__target_container.node_name
+        if self.__target_container.UNSPECIFIED_NODE_NAMESPACE in name:
             return make_namespace_absolute(name.rpartition("/")[2])
         return name
 

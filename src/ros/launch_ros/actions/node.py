@@ -101,6 +101,7 @@ class Node(ExecuteProcess):
         self.__parameters = [] if parameters is None else list(normalize_parameters(parameters))
         self.__remappings = [] if remappings is None else list(normalize_remap_rules(remappings))
         self.__ros_arguments = [] if ros_arguments is None else list(ros_arguments)
+        self.__arguments = [] if arguments is None else list(arguments)
 
         self.__expanded_node_name = self.UNSPECIFIED_NODE_NAME
         self.__expanded_node_namespace = self.UNSPECIFIED_NODE_NAMESPACE
@@ -109,7 +110,7 @@ class Node(ExecuteProcess):
         self.__final_node_name: str | None = None
         self.__substitutions_performed = False
 
-        cmd: list[SomeSubstitutionsType] = [self.__node_executable, *(arguments or [])]
+        cmd: list[SomeSubstitutionsType] = [self.__node_executable, *self.__arguments]
         if self.__ros_arguments:
             cmd += ["--ros-args", *self.__ros_arguments, "--"]
         super().__init__(cmd=cmd, name=exec_name, **kwargs)
@@ -123,9 +124,9 @@ class Node(ExecuteProcess):
         """Read an element `node`."""
         # The command line is the node's own business, and `name` is that of the node, not of the process.
         _, kwargs = super().parse(entity, parser, ["cmd", "name"])
-        kwargs["package"] = parser.parse_substitution(entity.get_attr("pkg"))
         kwargs["executable"] = parser.parse_substitution(entity.get_attr("exec"))
         for attribute, argument in (
+            ("pkg", "package"),
             ("name", "name"),
             ("exec_name", "exec_name"),
             ("ns", "namespace"),

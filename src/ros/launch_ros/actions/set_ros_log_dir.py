@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import os
 from typing import TYPE_CHECKING, Any
 
 from launch import Action
 from launch.frontend.expose import expose_action
+from launch.logging import get_logging_directory
 from launch.some_substitutions_type import SomeSubstitutionsType
 from launch.substitution import Substitution
 from launch.utilities import normalize_to_list_of_substitutions, perform_substitutions
@@ -22,7 +24,7 @@ class SetROSLogDir(Action):
     Parameters
     ----------
     new_log_dir
-        The folder.
+        The folder; a relative path is below the present one.
     **kwargs
         As for `Action`.
     """
@@ -35,7 +37,7 @@ class SetROSLogDir(Action):
     def parse(cls, entity: Entity, parser: Parser) -> tuple[type[SetROSLogDir], dict[str, Any]]:
         """Read an element `set_ros_log_dir`."""
         _, kwargs = super().parse(entity, parser)
-        kwargs["new_log_dir"] = parser.parse_substitution(entity.get_attr("dir"))
+        kwargs["new_log_dir"] = parser.parse_substitution(entity.get_attr("new_log_dir"))
         return cls, kwargs
 
     @property
@@ -45,4 +47,5 @@ class SetROSLogDir(Action):
 
     def execute(self, context: LaunchContext) -> None:
         """Set the environment variable that nodes go by."""
-        context.environment["ROS_LOG_DIR"] = perform_substitutions(context, self.log_dir)
+        new = perform_substitutions(context, self.log_dir)
+        context.environment["ROS_LOG_DIR"] = os.path.join(get_logging_directory(), new)

@@ -52,8 +52,11 @@ def _read_file(path: pathlib.Path, node_name: str | None, namespace: str | None)
     with open(path, encoding="utf-8") as file:
         content = yaml.safe_load(file) or {}
     full_name = make_namespace_absolute(prefix_namespace(namespace, node_name) or "")
+    sections = list(_sections(content, ""))
+    if not sections:
+        return _flatten(content, "")  # a file of names and values, whatever the node
     found: dict[str, Any] = {}
-    for pattern, parameters in _sections(content, ""):
+    for pattern, parameters in sections:
         if _matches(pattern, full_name):
             found.update(_flatten(parameters, ""))
     return found

@@ -22,7 +22,7 @@ def resolveProcesses(
     process: ExecuteLocal | str | None = None,
     cmd_args: Any = None,
     strict_proc_matching: bool = True,
-) -> list[ExecuteProcess]:
+) -> list[Any]:
     """Return the actions of processes that fit a description.
 
     Parameters
@@ -46,7 +46,7 @@ def resolveProcesses(
     TypeError
         If `process` is something else.
     """
-    known = list(info_obj.processes())
+    known: list[ExecuteProcess] = list(info_obj.processes())
     if process is None:
         if not known:
             raise NoMatchingProcessException("No data recorded for any process")
