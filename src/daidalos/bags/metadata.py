@@ -11,6 +11,7 @@ from typing import Any
 from daidalos.bags.errors import BagError
 from daidalos.bags.message import Topic
 from daidalos.bags.qos import parse_profiles, profile_values
+from daidalos.common.documents import DocumentError, parse_yaml
 
 VERSION = 9
 """Version that is written, that of ROS 2 Jazzy; older ones can be read."""
@@ -165,14 +166,10 @@ def parse_metadata(text: str, path: str | Path) -> BagMetadata:
     BagError
         When it is no description of a bag, or one of a version that is not known.
     """
-    import yaml
-
     try:
-        document = yaml.load(text, getattr(yaml, "CSafeLoader", yaml.SafeLoader))
-    except yaml.YAMLError as error:
-        mark = getattr(error, "problem_mark", None)
-        where = f"line {mark.line + 1}, column {mark.column + 1}: " if mark else ""
-        raise BagError(path, f"not valid YAML: {where}{getattr(error, 'problem', None) or error}") from None
+        document = parse_yaml(text)
+    except DocumentError as error:
+        raise BagError(path, f"not valid YAML: {error.described}") from None
     reader = _Values(path, document).part(_ROOT)
     version = reader.get("version", int)
     if not 1 <= version <= VERSION:

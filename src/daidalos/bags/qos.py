@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from enum import IntEnum
 from typing import Any, TypeVar
 
+from daidalos.common.documents import DocumentError, parse_yaml
 from daidalos.transport.qos import INFINITE_NS, Durability, History, Liveliness, Qos, Reliability
 
 _SECOND = 1_000_000_000
@@ -50,12 +51,10 @@ def parse_profiles(value: Any) -> tuple[Qos, ...]:
         When it is something else.
     """
     if isinstance(value, str):
-        import yaml
-
         try:
-            value = yaml.safe_load(value)
-        except yaml.YAMLError as error:
-            raise ValueError(f"not valid YAML: {' '.join(str(error).split())}") from None
+            value = parse_yaml(value)
+        except DocumentError as error:
+            raise ValueError(f"not valid YAML: {error.described}") from None
     if value in (None, ""):
         return ()
     if not isinstance(value, list) or not all(isinstance(one, dict) for one in value):

@@ -10,6 +10,7 @@ from pathlib import Path
 from daidalos.bags.errors import BagError
 from daidalos.bags.message import BagMessage, Topic
 from daidalos.bags.metadata import BagFile, TopicCount
+from daidalos.common.documents import DocumentError, read_yaml
 
 MCAP, SQLITE3 = "mcap", "sqlite3"
 SUFFIXES = {MCAP: ".mcap", SQLITE3: ".db3"}
@@ -139,12 +140,12 @@ def settings(config: Path) -> dict[str, object]:
     BagError
         When it cannot be read or is no mapping.
     """
-    import yaml
-
     try:
-        values = yaml.safe_load(config.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
+        values = read_yaml(config)
+    except OSError as error:
         raise BagError(config, f"cannot be read: {' '.join(str(error).split())}") from None
+    except DocumentError as error:
+        raise BagError(config, f"cannot be read: {error.described}") from None
     if values is None:
         return {}
     if not isinstance(values, dict):

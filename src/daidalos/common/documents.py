@@ -16,9 +16,36 @@ MAX_DEPTH = 100
 MAX_NODES = 1_000_000
 """Values of a document, counted as often as they occur once aliases are replaced by what they stand for."""
 
+_TOO_DEEP = f"more than {MAX_DEPTH} levels within each other"
+_LONG = 1 << 16
+"""Characters from which on the reader in C is used, whose messages are terser."""
+
 
 class DocumentError(UserError, ValueError):
-    """A document that cannot be read."""
+    """A document that cannot be read.
+
+    Parameters
+    ----------
+    problem : str
+        What is wrong.
+    source : str, optional
+        The file.
+    line, column : int, optional
+        Where, from 1.
+    """
+
+    def __init__(
+        self, problem: str, source: str | None = None, line: int | None = None, column: int | None = None
+    ) -> None:
+        super().__init__(problem, Location(source, line))
+        self.problem = problem
+        self.line = line
+        self.column = column
+
+    @property
+    def described(self) -> str:
+        """The problem with its line and column, without the file's name."""
+        return self.problem if self.line is None else f"line {self.line}, column {self.column or 1}: {self.problem}"
 
 
 def read_text(path: Path | str) -> str:
@@ -34,12 +61,13 @@ def read_text(path: Path | str) -> str:
     with open(path, "rb") as file:
         data = file.read(MAX_BYTES + 1)
     if len(data) > MAX_BYTES:
-        raise DocumentError(f"is larger than {MAX_BYTES >> 20} MiB", Location(str(path)))
+        raise DocumentError(f"is larger than {MAX_BYTES >> 20} MiB", str(path))
     try:
         return data.decode("utf-8")
     except UnicodeDecodeError as error:
         line = data.count(b"\n", 0, error.start) + 1
-        raise DocumentError("is not valid UTF-8", Location(str(path), line)) from None
+        column = error.start - data.rfind(b"\n", 0, error.start)
+        raise DocumentError("is not valid UTF-8", str(path), line, column) from None
 
 
 def read_yaml(path: Path | str) -> Any:
@@ -55,7 +83,7 @@ def parse_yaml(text: str, source: str | None = None, loader: Any = None) -> Any:
     text : str
     source : str, optional
         The file's name for errors.
-    loader : yaml loader class, optional
+    loader : yaml loader class, or function that makes one of a text, optional
         PyYAML's safe loader where None.
 
     Raises
@@ -66,38 +94,26 @@ def parse_yaml(text: str, source: str | None = None, loader: Any = None) -> Any:
     import yaml
 
     fast = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+    chosen: Any = loader or (fast if len(text) > _LONG else yaml.SafeLoader)
     try:
-        _check_events(yaml.parse(text, fast), yaml, source)
-        return yaml.load(text, loader or fast)
+        _check_events(yaml.parse(text, fast if chosen is fast else yaml.SafeLoader), yaml, source)
+        return yaml.load(text, chosen)
     except yaml.reader.ReaderError as error:
+        character: Any = error.character
+        number = character if isinstance(character, int) else ord(character)
         line = text.count("\n", 0, max(error.position, 0)) + 1
-        raise DocumentError(
-            f"the character #x{ord_of(error.character):04x} is not allowed", Location(source, line)
-        ) from None
+        column = error.position - text.rfind("\n", 0, max(error.position, 0))
+        raise DocumentError(f"the character #x{number:04x} is not allowed", source, line, column) from None
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
-        problem = " ".join(str(part) for part in (error.context, error.problem) if part) or "is not valid YAML"
-        raise DocumentError(" ".join(problem.split()), Location(source, mark.line + 1 if mark else None)) from None
+        problem = " ".join((error.problem or error.context or "is not valid YAML").split())
+        raise DocumentError(problem, source, *((mark.line + 1, mark.column + 1) if mark else ())) from None
     except DocumentError:
         raise
     except RecursionError:
-        raise _too_deep(source, None) from None
-    except (
-        yaml.YAMLError,
-        ValueError,
-        TypeError,
-        OverflowError,
-    ) as error:  # such as a month 13, or a key that is a list
-        raise DocumentError(" ".join(str(error).split()) or "is not valid YAML", Location(source)) from None
-
-
-def ord_of(character: Any) -> int:
-    """Return the number of a character, which PyYAML gives as such or as a number."""
-    return character if isinstance(character, int) else ord(character)
-
-
-def _too_deep(source: str | None, line: int | None) -> DocumentError:
-    return DocumentError(f"more than {MAX_DEPTH} levels within each other", Location(source, line))
+        raise DocumentError(_TOO_DEEP, source) from None
+    except (yaml.YAMLError, ValueError, TypeError, ArithmeticError) as error:  # such as a month 13, a list as a key
+        raise DocumentError(" ".join(str(error).split()) or "is not valid YAML", source) from None
 
 
 def _check_events(events: Iterable[Any], yaml: Any, source: str | None) -> None:
@@ -106,11 +122,11 @@ def _check_events(events: Iterable[Any], yaml: Any, source: str | None) -> None:
     stack: list[tuple[str | None, int]] = []
     total = 0
     for event in events:
+        problem = None
         if isinstance(event, yaml.MappingStartEvent | yaml.SequenceStartEvent):
             stack.append((event.anchor, total))
             total += 1
-            if len(stack) > MAX_DEPTH:
-                raise _too_deep(source, event.start_mark.line + 1)
+            problem = _TOO_DEEP if len(stack) > MAX_DEPTH else None
         elif isinstance(event, yaml.MappingEndEvent | yaml.SequenceEndEvent):
             anchor, before = stack.pop()
             if anchor is not None:
@@ -120,12 +136,11 @@ def _check_events(events: Iterable[Any], yaml: Any, source: str | None) -> None:
             if event.anchor is not None:
                 sizes[event.anchor] = 1
         elif isinstance(event, yaml.AliasEvent):
-            if event.anchor in {anchor for anchor, _ in stack}:
-                raise DocumentError(f"the alias '*{event.anchor}' is within itself", _location(source, event))
             total += sizes.get(event.anchor, 1)
+            if any(anchor == event.anchor for anchor, _ in stack):
+                problem = f"the alias '*{event.anchor}' is within itself"
         if total > MAX_NODES:
-            raise DocumentError(f"expands to more than {MAX_NODES} values", _location(source, event))
-
-
-def _location(source: str | None, event: Any) -> Location:
-    return Location(source, event.start_mark.line + 1)
+            problem = f"expands to more than {MAX_NODES} values"
+        if problem is not None:
+            mark = event.start_mark
+            raise DocumentError(problem, source, mark.line + 1, mark.column + 1)

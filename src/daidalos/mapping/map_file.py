@@ -8,6 +8,7 @@ from typing import Any, Literal, get_args
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.common.documents import DocumentError, read_yaml
 from daidalos.mapping.errors import MapFileError
 from daidalos.mapping.grid import FREE, OCCUPIED, UNKNOWN, OccupancyGrid
 from daidalos.mapping.map_image import Format, Image, encode_image, read_image
@@ -165,14 +166,12 @@ def _unknown_grey(occupied: float, free: float) -> int:
 
 
 def _read_fields(path: Path) -> dict[str, Any]:
-    import yaml
-
     try:
-        content = yaml.safe_load(path.read_text(encoding="utf-8"))
+        content = read_yaml(path)
     except OSError as error:
         raise MapFileError(path, None, error.strerror or str(error)) from error
-    except (yaml.YAMLError, UnicodeDecodeError) as error:
-        raise MapFileError(path, None, "not a YAML file: " + " ".join(str(error).split())) from error
+    except DocumentError as error:
+        raise MapFileError(path, None, f"not a YAML file: {error.described}") from error
     if not isinstance(content, dict):
         raise MapFileError(path, None, "expected a mapping with image, resolution, origin, ...")
     return content

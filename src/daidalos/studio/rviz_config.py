@@ -7,8 +7,7 @@ from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-import yaml
-
+from daidalos.common.documents import DocumentError, read_yaml
 from daidalos.studio.arrangement import Arrangement, ArrangementError, Display, Value, View
 
 _FIELD_OF_VIEW = math.radians(45)
@@ -30,12 +29,9 @@ def read_rviz(path: Path) -> Arrangement:
         When it cannot be read.
     """
     try:
-        document = yaml.safe_load(path.read_text(encoding="utf-8"))
-    except UnicodeDecodeError:
-        raise ArrangementError(path, None, "not a text file") from None
-    except yaml.MarkedYAMLError as error:
-        line = None if error.problem_mark is None else error.problem_mark.line + 1
-        raise ArrangementError(path, line, f"not YAML: {error.problem or error.context}") from None
+        document = read_yaml(path)
+    except DocumentError as error:
+        raise ArrangementError(path, error.line, f"not YAML: {error.problem}") from None
     manager = document.get("Visualization Manager") if isinstance(document, Mapping) else None
     if not isinstance(manager, Mapping):
         raise ArrangementError(path, None, "not a display configuration: 'Visualization Manager' is missing")

@@ -22,6 +22,8 @@ from launch.utilities.type_utils import (
 )
 from launch.utilities.typing_file_path import FilePath
 
+from daidalos.common.documents import DocumentError, parse_yaml, read_text
+
 if TYPE_CHECKING:
     from launch import LaunchContext
 
@@ -152,15 +154,12 @@ class ParameterFile:
         return path
 
     def __replace_substitutions(self, context: LaunchContext, path: pathlib.Path) -> pathlib.Path:
-        # Only such files pay for YAML.
-        import yaml
-
-        text = perform_substitutions(context, parse_substitution(path.read_text(encoding="utf-8")))
         try:
-            yaml.safe_load(text)
-        except yaml.YAMLError as error:
+            text = perform_substitutions(context, parse_substitution(read_text(path)))
+            parse_yaml(text)
+        except DocumentError as error:
             raise SubstitutionFailure(
-                f"the parameter file {path} is not YAML after its substitutions were performed: {error}"
+                f"the parameter file {path} is not YAML after its substitutions were performed: {error.described}"
             ) from error
         with tempfile.NamedTemporaryFile(
             "w", prefix="launch_params_", suffix=".yaml", delete=False, encoding="utf-8"

@@ -7,6 +7,8 @@ from typing import Any
 import yaml
 from launch.launch_file_error import LaunchFileError
 
+from daidalos.common.documents import DocumentError, parse_yaml
+
 _Location = tuple[str | None, int | None]
 
 
@@ -62,15 +64,13 @@ def read_yaml(text: str, filename: str | None) -> Any:
     LaunchFileError
         If it is malformed.
     """
-    loader = _Loader(text)
-    loader.filename = filename
+
+    def located(stream: str) -> _Loader:
+        loader = _Loader(stream)
+        loader.filename = filename
+        return loader
+
     try:
-        return loader.get_single_data()
-    except yaml.MarkedYAMLError as error:
-        mark = error.problem_mark or error.context_mark
-        reason = f"malformed YAML: {error.problem or error.context}"
-        raise LaunchFileError(filename, None if mark is None else mark.line + 1, reason) from error
-    except yaml.YAMLError as error:
-        raise LaunchFileError(filename, None, f"malformed YAML: {' '.join(str(error).split())}") from error
-    finally:
-        loader.dispose()
+        return parse_yaml(text, filename, located)
+    except DocumentError as error:
+        raise LaunchFileError(filename, error.line, f"malformed YAML: {error.problem}") from error

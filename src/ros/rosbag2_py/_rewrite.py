@@ -10,6 +10,7 @@ from daidalos.bags.compression import FORMATS
 from daidalos.bags.convert import Output, convert
 from daidalos.bags.errors import BagError
 from daidalos.bags.storage import FOREVER_NS
+from daidalos.common.documents import DocumentError, read_yaml
 from rosbag2_py._options import RecordOptions
 from rosbag2_py._storage import StorageOptions
 
@@ -91,16 +92,12 @@ def bag_rewrite(
 
 
 def _outputs(path: Path) -> list[Output]:
-    import yaml
-
     try:
-        document = yaml.safe_load(path.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError) as error:
+        document = read_yaml(path)
+    except OSError as error:
         raise BagError(path, f"cannot be read: {error}") from None
-    except yaml.YAMLError as error:
-        mark = getattr(error, "problem_mark", None)
-        where = f"line {mark.line + 1}, column {mark.column + 1}: " if mark else ""
-        raise BagError(path, f"not valid YAML: {where}{getattr(error, 'problem', None) or error}") from None
+    except DocumentError as error:
+        raise BagError(path, f"not valid YAML: {error.described}") from None
     bags = document.get("output_bags") if isinstance(document, dict) else None
     if not isinstance(bags, list) or not bags or not all(isinstance(one, dict) for one in bags):
         raise BagError(path, "expected a list 'output_bags' with a mapping for every bag")

@@ -8,6 +8,7 @@ from typing import Any
 from ros2cli.interfaces import interface_names
 
 from daidalos.cli.ros2.errors import CliError
+from daidalos.common import documents
 from daidalos.common.suggestions import did_you_mean, near
 
 
@@ -63,20 +64,10 @@ def parse_values(text: str) -> dict[str, Any]:
 
 def parse_yaml(text: str) -> Any:
     """Return the value of YAML on the command line; CliError, with the position, if it is malformed."""
-    import yaml
-
     try:
-        return yaml.load(text, getattr(yaml, "CSafeLoader", yaml.SafeLoader))
-    except yaml.YAMLError as error:
-        raise CliError(f"The passed value is not valid YAML: {_yaml_error(error)}") from None
-
-
-def _yaml_error(error: Exception) -> str:
-    mark = getattr(error, "problem_mark", None)
-    problem = getattr(error, "problem", None) or str(error)
-    context = getattr(error, "context", None)
-    what = f"{context}, {problem}" if context else problem
-    return f"line {mark.line + 1}, column {mark.column + 1}: {what}" if mark else what.replace("\n", " ")
+        return documents.parse_yaml(text)
+    except documents.DocumentError as error:
+        raise CliError(f"The passed value is not valid YAML: {error.described}") from None
 
 
 def fill(

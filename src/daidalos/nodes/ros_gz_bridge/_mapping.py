@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from daidalos.common.documents import DocumentError, read_yaml
 from daidalos.common.suggestions import hint
 
 _NAMES = {
@@ -104,16 +105,12 @@ def read_file(path: Path) -> tuple[list[Bridge], list[str]]:
     ------
     MappingError
     """
-    import yaml
-
     try:
-        entries = yaml.safe_load(path.read_text(encoding="utf-8")) or []
+        entries = read_yaml(path) or []
     except OSError as error:
         raise MappingError(f"cannot read '{path}': {error.strerror}") from None
-    except (yaml.YAMLError, UnicodeDecodeError) as error:
-        mark = getattr(error, "problem_mark", None)
-        line = f":{mark.line + 1}" if mark is not None else ""
-        raise MappingError(f"{path}{line}: {getattr(error, 'problem', None) or error}") from None
+    except DocumentError as error:
+        raise MappingError(str(error)) from None
     if not isinstance(entries, list):
         raise MappingError(f"{path}: expected a list of bridges")
     bridges, services = [], []
@@ -142,7 +139,8 @@ def _entry(entry: dict[str, Any], where: str) -> Bridge:
             raise MappingError(f"{where}: <{key}> is missing")
     if direction not in _DIRECTIONS.values():
         raise MappingError(f"{where}: direction is {direction!r}, expected one of {', '.join(_DIRECTIONS.values())}")
-    return _checked(Bridge(str(ros), str(gz), entry["ros_type_name"], entry["gz_type_name"], direction), where)
+    kinds = str(entry["ros_type_name"]), str(entry["gz_type_name"])
+    return _checked(Bridge(str(ros), str(gz), *kinds, direction), where)
 
 
 def _checked(bridge: Bridge, where: str) -> Bridge:

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-import yaml
-
+from daidalos.common.documents import DocumentError, parse_yaml
 from daidalos.nodes.runner import UserError
 from daidalos.nodes.topic_tools._expressions import evaluate, parse, parser, run_expression
 
@@ -35,9 +34,9 @@ def main() -> int:
 
         output = kind()
         try:
-            template = yaml.safe_load(arguments.expression)
-        except yaml.YAMLError as error:
-            raise UserError(f"the fields are not valid YAML: {' '.join(str(error).split())}") from None
+            template = parse_yaml(arguments.expression)
+        except DocumentError as error:
+            raise UserError(f"the fields are not valid YAML: {error.described}") from None
         try:
             set_message_fields(output, fill(template, message))
         except (AttributeError, TypeError, ValueError, AssertionError) as error:

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from daidalos.common.documents import DocumentError, read_yaml
 from daidalos.description.link import Plugin as Description
 from daidalos.description.markup import Element
 from daidalos.description.ros2_control import ComponentInfo, read_hardware
@@ -175,13 +176,11 @@ def _file(element: Element) -> Path:
 
 def _update_rate(files: Iterable[Path], manager: str) -> float:
     """Return a manager's rate [Hz] from its parameter files, by its full name or else without namespace."""
-    import yaml
-
     rates = {"named": math.nan, "bare": math.nan}
     for file in files:
         try:
-            content = yaml.safe_load(file.read_text(encoding="utf-8"))
-        except (yaml.YAMLError, UnicodeDecodeError):
+            content = read_yaml(file)
+        except DocumentError:
             continue  # errors are reported where all parameters are read
         for name, section in _sections(content):
             value = section.get("update_rate")

@@ -6,6 +6,8 @@ import inspect
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
+from daidalos.common.documents import DocumentError, parse_yaml
+
 from ..action import Action
 from ..frontend.expose import expose_action
 from ..launch_description_entity import LaunchDescriptionEntity
@@ -78,16 +80,13 @@ class ForEach(Action):
         return _collect(self.function, self._read_sets(context))
 
     def _read_sets(self, context: LaunchContext) -> list[dict[str, Any]]:
-        # Only loops pay for YAML.
-        import yaml
-
         text = perform_substitutions(context, self.input_values)
         sets = []
         for document in text.split(self.SEPARATOR) if text.strip() else []:
             try:
-                values = yaml.safe_load(document)
-            except yaml.YAMLError as error:
-                raise ValueError(f"'{document}' is not YAML: {error}") from error
+                values = parse_yaml(document)
+            except DocumentError as error:
+                raise ValueError(f"'{document}' is not YAML: {error.described}") from error
             if not isinstance(values, dict):
                 raise ValueError(f"'{document}' is not a mapping like {{name: 'a', id: 1}}")
             sets.append(values)

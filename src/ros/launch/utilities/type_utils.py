@@ -20,6 +20,8 @@ from typing import (  # noqa: UP035 - callers pass typing.List
     overload,
 )
 
+from daidalos.common.documents import DocumentError, parse_yaml
+
 from ..some_substitutions_type import SomeSubstitutionsType
 from ..substitution import Substitution
 from .ensure_argument_type_impl import ensure_argument_type
@@ -188,14 +190,11 @@ def _as_float(value: Any) -> Any:
 
 
 def _load_yaml(value: str, data_type: AllowedTypesType | None) -> Any:
-    # Only files that have typed values pay for YAML.
-    import yaml
-
     try:
-        return yaml.safe_load(value)
-    except yaml.YAMLError as error:
-        problem = " ".join(str(error).split())
-        raise ValueError(f"failed to convert '{value}' to {_name(data_type)}: it is not YAML: {problem}") from error
+        return parse_yaml(value)
+    except DocumentError as error:
+        problem = f"it is not YAML: {error.described}"
+        raise ValueError(f"failed to convert '{value}' to {_name(data_type)}: {problem}") from error
 
 
 def _name(data_type: AllowedTypesType | None) -> str:

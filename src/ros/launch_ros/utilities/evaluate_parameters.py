@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 from launch.substitution import Substitution
 from launch.utilities import ensure_argument_type, perform_substitutions
 
+from daidalos.common.documents import DocumentError, parse_yaml
+
 from ..parameter_descriptions import Parameter, ParameterFile, ParameterValue
 from ..parameters_type import EvaluatedParameters, EvaluatedParameterValue, Parameters, ParametersDict
 from .normalize_parameters import StringSubstitution
@@ -93,12 +95,9 @@ def _from_substitutions(context: LaunchContext, name: str, value: Sequence[Subst
 
 
 def _load(name: str, text: str) -> Any:
-    # Only nodes with parameters pay for YAML.
-    import yaml
-
     try:
-        value = yaml.safe_load(text)
-    except yaml.YAMLError as error:
+        value = parse_yaml(text)
+    except DocumentError as error:
         raise TypeError(f"Unable to parse the value of parameter {name} as yaml. {_STRING_HINT}") from error
     if value is None and not text.strip():
         return ""

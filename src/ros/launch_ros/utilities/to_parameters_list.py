@@ -6,6 +6,8 @@ import pathlib
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
+from daidalos.common.documents import DocumentError, read_yaml
+
 from ..parameter_descriptions import Parameter
 from .namespace_utils import make_namespace_absolute, prefix_namespace
 
@@ -47,10 +49,9 @@ def to_parameters_list(
 
 
 def _read_file(path: pathlib.Path, node_name: str | None, namespace: str | None) -> dict[str, Any]:
-    import yaml
-
-    with open(path, encoding="utf-8") as file:
-        content = yaml.safe_load(file) or {}
+    content = read_yaml(path) or {}
+    if not isinstance(content, dict):
+        raise DocumentError("expected node names at the top, each with 'ros__parameters' below", str(path))
     full_name = make_namespace_absolute(prefix_namespace(namespace, node_name) or "")
     sections = list(_sections(content, ""))
     if not sections:

@@ -15,6 +15,8 @@ from launch.substitutions import SubstitutionFailure
 from launch.utilities import normalize_to_list_of_substitutions, perform_substitutions
 from launch_ros.parameter_descriptions import ParameterFile
 
+from daidalos.common.documents import DocumentError, parse_yaml
+
 if TYPE_CHECKING:
     from launch import LaunchContext
 
@@ -68,24 +70,23 @@ class Ros1Parameters(ParameterFile):
         SubstitutionFailure
             If the file cannot be read, or is not YAML.
         """
-        import yaml
-
         source = "the element 'rosparam'"
         text = perform_substitutions(context, self.__text)
         if self.__file is not None:
             source = perform_substitutions(context, self.__file)
             try:
                 text = pathlib.Path(source).read_text(encoding="utf-8")
-            except OSError as error:
-                raise SubstitutionFailure(f"the parameter file {source} cannot be read: {error.strerror}") from error
+            except (OSError, UnicodeDecodeError) as error:
+                reason = error.strerror if isinstance(error, OSError) else "is not valid UTF-8"
+                raise SubstitutionFailure(f"the parameter file {source} cannot be read: {reason}") from error
             if self.__substitutes:
                 from .translation import translate_text
 
                 text = perform_substitutions(context, parse_substitution(translate_text(text)))
         try:
-            content = yaml.safe_load(text)
-        except yaml.YAMLError as error:
-            raise SubstitutionFailure(f"{source} is not YAML: {' '.join(str(error).split())}") from error
+            content = parse_yaml(text)
+        except DocumentError as error:
+            raise SubstitutionFailure(f"{source} is not YAML: {error.described}") from error
         namespace = perform_substitutions(context, self.__namespace).replace("/", ".")
         return _flatten(content, namespace, source)
 

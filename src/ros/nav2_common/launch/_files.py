@@ -12,6 +12,8 @@ from launch import LaunchContext, SomeSubstitutionsType, Substitution
 from launch.substitutions import SubstitutionFailure
 from launch.utilities import perform_substitutions
 
+from daidalos.common.documents import DocumentError, parse_yaml
+
 
 def read_text(context: LaunchContext, source_file: list[Substitution]) -> tuple[str, str]:
     """Return the path and the text of a file.
@@ -37,14 +39,11 @@ def read_yaml(context: LaunchContext, source_file: list[Substitution]) -> Any:
     SubstitutionFailure
         If it cannot be read or is not YAML.
     """
-    # Only launches with such files pay for YAML.
-    import yaml
-
     path, text = read_text(context, source_file)
     try:
-        return yaml.safe_load(text)
-    except yaml.YAMLError as error:
-        raise SubstitutionFailure(f"the parameter file '{path}' is not YAML: {error}") from error
+        return parse_yaml(text)
+    except DocumentError as error:
+        raise SubstitutionFailure(f"the parameter file '{path}' is not YAML: {error.described}") from error
 
 
 def write_temporary(text: str) -> str:

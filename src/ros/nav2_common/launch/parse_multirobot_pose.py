@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import sys
 
+from daidalos.common.documents import parse_yaml
+
 _KEYS = ("x", "y", "z", "roll", "pitch", "yaw")
 
 
@@ -36,16 +38,13 @@ class ParseMultiRobotPose:
         return dict(self.__read(robot) for robot in robots if robot)
 
     def __read(self, robot: str) -> tuple[str, dict[str, float]]:
-        # Only launches with such an argument pay for YAML.
-        import yaml
-
         name, equals, text = robot.partition("=")
         try:
-            pose = yaml.safe_load(text)
+            pose = parse_yaml(text)
             if not (name.strip() and equals and isinstance(pose, dict) and pose.keys() <= set(_KEYS)):
                 raise ValueError
             return name.strip(), {key: float(pose.get(key, 0.0)) for key in _KEYS}
-        except (yaml.YAMLError, TypeError, ValueError):
+        except (TypeError, ValueError):
             raise ValueError(
                 f"the launch argument '{self.__argument}' has '{robot}', but a robot looks like "
                 f"name={{x: 1.0, y: 2.0, yaw: 0.5}}, with {', '.join(_KEYS)}"
