@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+import sys
+from pathlib import Path
 
 DISTRIBUTION = "jazzy"
 
@@ -14,3 +16,9 @@ def complete_environment() -> None:
     """Set what is not set in this process's environment, for it and for those that it starts."""
     for name, value in ENVIRONMENT.items():
         os.environ.setdefault(name, value)
+
+
+def complete_prefix_path() -> None:
+    """Set ``AMENT_PREFIX_PATH`` to the Python environment and the built-in packages if it is not set."""
+    if not os.environ.get("AMENT_PREFIX_PATH"):
+        os.environ["AMENT_PREFIX_PATH"] = os.pathsep.join((sys.prefix, str(Path(__file__).parent)))

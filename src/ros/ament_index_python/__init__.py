@@ -1,5 +1,8 @@
 """Find installed packages and what they register, without running anything of theirs."""
 
+from daidalos.distribution import complete_environment as _complete_environment
+from daidalos.distribution import complete_prefix_path as _complete_prefix_path
+
 from .constants import AMENT_PREFIX_PATH_ENV_VAR as AMENT_PREFIX_PATH_ENV_VAR
 from .constants import RESOURCE_INDEX_SUBFOLDER as RESOURCE_INDEX_SUBFOLDER
 from .packages import PackageNotFoundError as PackageNotFoundError
@@ -14,3 +17,7 @@ from .resources import get_resource_types as get_resource_types
 from .resources import get_resources as get_resources
 from .resources import has_resource as has_resource
 from .search_paths import get_search_paths as get_search_paths
+
+# A program that was started without a setup file finds what the setup file of a ROS 2 installation sets.
+_complete_environment()
+_complete_prefix_path()

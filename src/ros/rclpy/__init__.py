@@ -11,6 +11,8 @@ from importlib import import_module
 from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
 
+from daidalos.distribution import complete_environment as _complete_environment
+from daidalos.distribution import complete_prefix_path as _complete_prefix_path
 from rclpy.context import Context
 from rclpy.parameter import Parameter
 from rclpy.signals import (
@@ -46,6 +48,10 @@ __all__ = [
     "spin_until_future_complete",
     "try_shutdown",
 ]
+
+# A program that was started without a setup file finds what the setup file of a ROS 2 installation sets.
+_complete_environment()
+_complete_prefix_path()
 
 __executor: Executor | None = None
 
