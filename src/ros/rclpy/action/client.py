@@ -310,6 +310,8 @@ status_sub_qos_profile
 
     def wait_for_server(self, timeout_sec: float | None = None) -> bool:
         """Wait until the action is served; False when `timeout_sec` seconds pass, or at a shutdown."""
+        if self.server_is_ready():
+            return True
         graph = self._goal_end.node.graph
         context = self._action_node.context
         limit = None if timeout_sec is None or timeout_sec < 0 else timeout_sec
