@@ -31,6 +31,7 @@ ALLOWED = {
     "nodes/topic_tools/delay.py": "real time where the parameter use_wall_clock asks for it",
     "nodes/topic_tools/throttle.py": "real time where the parameter use_wall_clock asks for it",
     "nodes/warming.py": "how long a person waits for the compiler",
+    "simulation/conversion/preparation.py": "how long a person waits for a world to be loaded",
 }
 """Files under `src/daidalos` that may read another clock, and what for."""
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any
 
 import mujoco
@@ -16,6 +16,7 @@ from daidalos.simulation.conversion.assets import Assets
 from daidalos.simulation.conversion.build import add_model
 from daidalos.simulation.conversion.couplings import close_loop
 from daidalos.simulation.conversion.options import set_options
+from daidalos.simulation.conversion.preparation import Progress
 from daidalos.simulation.errors import SimulationError
 from daidalos.simulation.forces import Forces
 from daidalos.simulation.instance import Instance
@@ -74,6 +75,10 @@ class Compilation:
         if self._physics is None:
             raise SimulationError("the world is not compiled yet")
         return self._physics
+
+    def prepare(self, models: Iterable[Model], progress: Progress | None = None) -> None:
+        """Prepare the collision meshes of models that are about to be added, in parallel; see `prepare_meshes`."""
+        self._assets.prepare(models, progress)
 
     def add(self, model: Model, pose: Pose, namespace: str, components: list[Component]) -> Instance:
         """Add a model, whose name must be free, with its components.

@@ -24,6 +24,7 @@ from daidalos.simulation.compilation import Compilation
 from daidalos.simulation.contacts import ContactMonitor, read_contacts
 from daidalos.simulation.contracts import Component, ComponentContext, Switch
 from daidalos.simulation.conversion.options import physics_step
+from daidalos.simulation.conversion.preparation import Progress
 from daidalos.simulation.errors import NameTakenError, SimulationError, UnknownNameError
 from daidalos.simulation.forces import Forces
 from daidalos.simulation.instance import Instance
@@ -48,6 +49,7 @@ class Engine:
         seed: int = 0,
         has_subscribers: Callable[[str], bool] | None = None,
         warn: Callable[[str], None] | None = None,
+        progress: Progress | None = None,
     ) -> None:
         self.world = World() if world is None else world
         self.seed = seed
@@ -63,7 +65,7 @@ class Engine:
         for line in self.world.warnings:
             self._warn(line)
         check_world_plugins(self.world, self._warn)
-        self._populate()
+        self._populate(progress)
 
     @property
     def physics(self) -> Physics:
@@ -246,7 +248,8 @@ class Engine:
 
     # Inside
 
-    def _populate(self) -> None:
+    def _populate(self, progress: Progress | None) -> None:
+        self._compilation.prepare((*self.world.models, *(actor.model for actor in self.world.actors)), progress)
         for model in self.world.models:
             self._add(model, model.pose, "")
         for actor in self.world.actors:

@@ -40,6 +40,9 @@ class Simulation(Engine):
     warn : callable or None
         Called with a line for each thing that was left out or changed; None logs them. All lines are kept in
         `warnings`.
+    progress : callable or None
+        Called with the number of collision meshes that are ready, and of all of them, every two seconds while
+        the world is loaded.
 
     Raises
     ------
@@ -82,6 +85,7 @@ class Simulation(Engine):
         """
         model = model_from_robot(description) if isinstance(description, Robot) else description
         name = name or model.name
+        self._compilation.prepare((model,))
         instance = self._add(replace(model, name=name), pose or model.pose, namespace)
         try:
             self._recompile()

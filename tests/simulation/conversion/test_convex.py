@@ -112,3 +112,16 @@ def test_flat_things_get_a_thickness(vertices):
     (part,), _ = parts_of(flat)
     assert 0 < volume(part) < 0.01
     np.testing.assert_allclose(np.ptp(part.vertices, axis=0), np.ptp(flat.vertices, axis=0), atol=0.01)
+
+
+def test_a_damaged_cache_does_not_count(own_cache):
+    corner = triangles_of(L_SHAPE)
+    expected = [part.vertices.tolist() for part in parts_of(corner)[0]]
+    (file,) = (own_cache / "convex").iterdir()
+    whole = file.read_bytes()
+    middle = len(whole) // 2
+    for damaged in (b"", whole[:9], whole[:middle], whole[:-9], whole[:middle] + b"\xff" * 9 + whole[middle + 9 :]):
+        file.write_bytes(damaged)
+        assert [part.vertices.tolist() for part in parts_of(corner)[0]] == expected
+        assert file.read_bytes() == whole
+    assert list((own_cache / "convex").iterdir()) == [file]

@@ -53,6 +53,8 @@ class SimVerb:
         except (DescriptionError, SimulationError, OSError) as error:
             print(f"error: {error}", file=sys.stderr)
             return 2
+        except KeyboardInterrupt:
+            return 130
 
 
 def _find_world(name: str) -> Path | None:
@@ -79,7 +81,9 @@ def _run_offline(path: Path | None, args: argparse.Namespace) -> int:
     from daidalos.nodes.gazebo_ros._descriptions import read_world
     from daidalos.simulation import Simulation
 
-    simulation = Simulation(read_world(path), args.seed, has_subscribers=lambda topic: False, warn=_warn)
+    simulation = Simulation(
+        read_world(path), args.seed, has_subscribers=lambda topic: False, warn=_warn, progress=_report_loading
+    )
     for file in args.model:
         simulation.spawn(_read_model(Path(file)))
     begun = time.perf_counter()
@@ -98,6 +102,10 @@ def _read_model(path: Path) -> "Robot | Model":
     from daidalos.nodes.packages import package_share
 
     return sdf.load_model(path, package_share) if path.suffix == ".sdf" else urdf.load(path, resolve=package_share)
+
+
+def _report_loading(done: int, count: int) -> None:
+    print(f"preparing the meshes of collisions, kept for the next start: {done} of {count}", file=sys.stderr)
 
 
 def _warn(line: str) -> None:

@@ -117,7 +117,11 @@ class GzServer(Node):
 
         def make(description: World) -> Simulation:
             return Simulation(
-                description, seed=settings.seed, has_subscribers=connections.has_subscribers, warn=self._warn
+                description,
+                seed=settings.seed,
+                has_subscribers=connections.has_subscribers,
+                warn=self._warn,
+                progress=self._report_loading,
             )
 
         simulation = make(described)
@@ -146,6 +150,9 @@ class GzServer(Node):
 
     def _warn(self, text: str) -> None:
         self.get_logger().warning(text)
+
+    def _report_loading(self, done: int, count: int) -> None:
+        self.get_logger().info(f"preparing the meshes of collisions, kept for the next start: {done} of {count}")
 
     def _create_services(self) -> None:
         from daidalos.nodes.gazebo_ros._editing_services import EditingServices

@@ -14,7 +14,9 @@ from numpy.typing import NDArray
 
 from daidalos.common.pose3 import Vector
 from daidalos.description.meshes import TriangleMesh
+from daidalos.description.world import Model
 from daidalos.simulation.conversion.convex import content_key, convex_parts
+from daidalos.simulation.conversion.preparation import Parts, Progress, prepare_meshes
 
 MAX_HULL_VERTICES = 64
 _TERRAIN_THICKNESS = 1.0
@@ -48,6 +50,11 @@ class Assets:
         self._spec = spec
         self._users: Counter[str] = Counter()
         self._taken: list[str] = []
+        self._prepared: dict[tuple[str, bool], Parts] = {}
+
+    def prepare(self, models: Iterable[Model], progress: Progress | None = None) -> None:
+        """Prepare the collision meshes of models that are about to be added; see `prepare_meshes`."""
+        self._prepared = prepare_meshes(models, progress)
 
     def solid(self, mesh: TriangleMesh, decompose: bool) -> Solid:
         """Return the names of a mesh's convex parts and, where it differs from them, its surface.
@@ -59,7 +66,7 @@ class Assets:
             Split what is not convex; otherwise its hull stands for it.
         """
         key = content_key(mesh)
-        parts, concave = convex_parts(mesh, key, decompose)
+        parts, concave = self._prepared.get((key, decompose)) or convex_parts(mesh, key, decompose)
         kind = "part" if decompose else "hull"
         names = tuple(self._take(f"{key}:{kind}{i}", part) for i, part in enumerate(parts))
         return Solid(names, self._take(key, mesh) if concave else "")

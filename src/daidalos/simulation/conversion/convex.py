@@ -9,6 +9,8 @@ import os
 import sys
 import tempfile
 import zipfile
+import zlib
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -26,7 +28,9 @@ MAX_HULLS = 24
 _log = logging.getLogger(__name__)
 
 
-def convex_parts(mesh: TriangleMesh, key: str, decompose: bool) -> tuple[list[TriangleMesh], bool]:
+def convex_parts(
+    mesh: TriangleMesh, key: str, decompose: bool, is_cancelled: Callable[[], bool] = lambda: False
+) -> tuple[list[TriangleMesh], bool]:
     """Split a mesh into convex parts.
 
     Parameters
@@ -37,6 +41,8 @@ def convex_parts(mesh: TriangleMesh, key: str, decompose: bool) -> tuple[list[Tr
     decompose : bool
         Split pieces that are not convex by `decomposition`; otherwise
         each piece gets its convex hull.
+    is_cancelled : callable
+        Asked often; see `decomposition.Cancelled`.
 
     Returns
     -------
@@ -57,7 +63,7 @@ def convex_parts(mesh: TriangleMesh, key: str, decompose: bool) -> tuple[list[Tr
         _log.info("splitting a mesh of %d triangles into convex parts; the result is kept", len(mesh.faces))
         parts = []
         for piece, hull, is_convex in zip(pieces, hulls, convex, strict=True):
-            parts += [hull] if is_convex else [_hull(points) for points in decomposition.decompose(piece)]
+            parts += [hull] if is_convex else [_hull(points) for points in decomposition.decompose(piece, is_cancelled)]
         _save(file, parts)
     return parts, True
 
@@ -144,18 +150,21 @@ def _load(file: Path) -> list[TriangleMesh] | None:
         with np.load(file) as arrays:
             count = len(arrays.files) // 2
             return [TriangleMesh(arrays[f"vertices{i}"], arrays[f"faces{i}"]) for i in range(count)]
-    except (OSError, ValueError, KeyError, zipfile.BadZipFile):
+    except (OSError, EOFError, ValueError, KeyError, zlib.error, zipfile.BadZipFile):
         return None
 
 
 def _save(file: Path, parts: list[TriangleMesh]) -> None:
-    """Write the parts atomically; an unwritable folder is ignored."""
+    """Write the parts atomically; an unwritable folder and a full disk are ignored."""
     arrays: dict[str, Any] = {f"vertices{i}": part.vertices for i, part in enumerate(parts)}
     arrays |= {f"faces{i}": part.faces for i, part in enumerate(parts)}
+    name = ""
     try:
         file.parent.mkdir(parents=True, exist_ok=True)
-        with tempfile.NamedTemporaryFile(dir=file.parent, suffix=".npz", delete=False) as draft:
+        with tempfile.NamedTemporaryFile(dir=file.parent, suffix=".tmp", delete=False) as draft:
+            name = draft.name
             np.savez_compressed(draft, **arrays)
-        os.replace(draft.name, file)
+        os.replace(name, file)
     except OSError:
-        return
+        if name:
+            Path(name).unlink(missing_ok=True)

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import heapq
 import itertools
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -49,18 +50,28 @@ class _Part:
     """Largest distance [m] from the hull to the solid."""
 
 
-def decompose(mesh: TriangleMesh) -> list[Points]:
+class Cancelled(Exception):
+    """Decomposition that was ended before its result."""
+
+
+def decompose(mesh: TriangleMesh, is_cancelled: Callable[[], bool] = lambda: False) -> list[Points]:
     """Return sets of points whose convex hulls together approximate a surface.
 
     Parameters
     ----------
     mesh : TriangleMesh
         A surface, open or closed; lengths in metres.
+    is_cancelled : callable
+        Asked before each cut.
 
     Returns
     -------
     list of (n, 3) arrays
         At most `MAX_PARTS`, in an order that depends on the mesh alone.
+
+    Raises
+    ------
+    Cancelled
     """
     extent = float(np.ptp(mesh.vertices, axis=0).max())
     least, share, most = _TOLERANCE
@@ -73,6 +84,8 @@ def decompose(mesh: TriangleMesh) -> list[Points]:
     heap = [_entry(points, tolerance, order)]
     done: list[Points] = []
     while heap and len(heap) + len(done) < MAX_PARTS:
+        if is_cancelled():
+            raise Cancelled
         part = heapq.heappop(heap)[2]
         plane = _find_cut(part.points, planes, overlap) if part.concavity > tolerance else None
         if plane is None:
@@ -97,7 +110,9 @@ def sample_surface(mesh: TriangleMesh, spacing: float) -> Points:
         samples.append(np.einsum("wk,fkd->fwd", weights, corners[steps == count]).reshape(-1, 3))
     points = np.concatenate(samples)
     cells = np.floor((points - points.min(axis=0)) / spacing).astype(np.int64)
-    _, first = np.unique(cells, axis=0, return_index=True)
+    # One number for each cell: rows take ten times as long to sort.
+    _, columns, layers = cells.max(axis=0) + 1
+    _, first = np.unique((cells[:, 0] * columns + cells[:, 1]) * layers + cells[:, 2], return_index=True)
     vertices = np.arange(len(samples[0])) if len(samples[0]) <= _MAX_SAMPLES else np.empty(0, dtype=int)
     return points[np.union1d(first, vertices)]
 

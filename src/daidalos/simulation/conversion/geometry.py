@@ -32,6 +32,7 @@ from daidalos.description.geometry import (
 from daidalos.description.images import read_grey
 from daidalos.description.meshes import triangles_of
 from daidalos.simulation.conversion.assets import Assets, Solid
+from daidalos.simulation.conversion.preparation import is_decomposed
 
 SOLID, SEEN, TOUCHED = 0, 1, 3
 RAY_GROUPS = np.array([1, 1, 0, 0, 0, 0], dtype=np.uint8)
@@ -69,9 +70,7 @@ def add_geoms(body: Any, geometry: Geometry, pose: Pose, assets: Assets, static:
         return []
     require_size(geometry)
     if isinstance(geometry, Mesh | Cone | Polyline):
-        optimization = getattr(geometry, "optimization", "")
-        decompose = optimization == "convex_decomposition" or (static and optimization != "convex_hull")
-        return _add_solid(body, assets.solid(triangles_of(geometry), decompose), pose)
+        return _add_solid(body, assets.solid(triangles_of(geometry), is_decomposed(geometry, static)), pose)
     if isinstance(geometry, Heightmap):
         if not static:
             raise DescriptionError("a heightmap cannot move", geometry.where)

@@ -1,0 +1,100 @@
+"""Preparation of the collision meshes of models: read and split into convex parts in parallel threads."""
+
+from __future__ import annotations
+
+import os
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import Future, ThreadPoolExecutor, wait
+
+from daidalos.description.errors import DescriptionError
+from daidalos.description.geometry import Cone, Geometry, Mesh, Polyline
+from daidalos.description.meshes import TriangleMesh, triangles_of
+from daidalos.description.world import Model
+from daidalos.simulation.conversion.convex import content_key, convex_parts
+
+MAX_THREADS = 8
+REPORT_DELAY = 1.0
+"""Time [s] until the first report of progress."""
+REPORT_PERIOD = 2.0
+"""Time [s] between two reports."""
+_CHECK_PERIOD = 0.1
+
+Progress = Callable[[int, int], None]
+"""Called with the number of meshes that are ready and of all of them."""
+
+Parts = tuple[list[TriangleMesh], bool]
+"""What `convex_parts` returns."""
+
+
+def is_decomposed(shape: Mesh | Cone | Polyline, static: bool) -> bool:
+    """Return whether a shape is split into convex parts: a static one is, unless the description wishes otherwise."""
+    optimization = getattr(shape, "optimization", "")
+    return optimization == "convex_decomposition" or (static and optimization != "convex_hull")
+
+
+def prepare_meshes(models: Iterable[Model], progress: Progress | None = None) -> dict[tuple[str, bool], Parts]:
+    """Return the convex parts of all collision meshes of models.
+
+    The work is done in threads, since most of it is sorting, hulls and searches in compiled code; the calling thread
+    only waits, and can be interrupted.
+
+    Parameters
+    ----------
+    models : iterable of Model
+    progress : callable or None
+        Called in this thread after a second, and then every two seconds.
+
+    Returns
+    -------
+    dict
+        From the mesh's `content_key` and whether it was to be decomposed. Meshes that can not be read are not in it.
+    """
+    shapes = list(dict.fromkeys(_shapes(models)))
+    if not shapes:
+        return {}
+    cancelled = threading.Event()
+    pool = ThreadPoolExecutor(min(_cores(), MAX_THREADS, len(shapes)), "meshes")
+    try:
+        futures = [pool.submit(_prepare, shape, decompose, cancelled) for shape, decompose in shapes]
+        _wait(futures, progress)
+        return dict(result for future in futures if (result := future.result()) is not None)
+    finally:
+        cancelled.set()
+        pool.shutdown(wait=True, cancel_futures=True)
+
+
+def _cores() -> int:
+    """Return the number of cores that this process may use."""
+    return len(os.sched_getaffinity(0)) if sys.platform == "linux" else os.cpu_count() or 1
+
+
+def _shapes(models: Iterable[Model]) -> Iterator[tuple[Geometry, bool]]:
+    for model in models:
+        for link in model.links.values():
+            for collision in link.collisions:
+                if isinstance(collision.geometry, Mesh):
+                    yield collision.geometry, is_decomposed(collision.geometry, model.static)
+
+
+def _prepare(shape: Geometry, decompose: bool, cancelled: threading.Event) -> tuple[tuple[str, bool], Parts] | None:
+    if cancelled.is_set():
+        return None
+    try:
+        mesh = triangles_of(shape)
+    except DescriptionError:
+        return None  # reported where the collision is added
+    key = content_key(mesh)
+    return (key, decompose), convex_parts(mesh, key, decompose, cancelled.is_set)
+
+
+def _wait(futures: list[Future[tuple[tuple[str, bool], Parts] | None]], progress: Progress | None) -> None:
+    due = time.monotonic() + REPORT_DELAY
+    waiting: set[Future[tuple[tuple[str, bool], Parts] | None]] = set(futures)
+    while waiting:
+        waiting = wait(waiting, _CHECK_PERIOD).not_done
+        if progress is not None and waiting and time.monotonic() >= due:
+            progress(len(futures) - len(waiting), len(futures))
+            due += REPORT_PERIOD

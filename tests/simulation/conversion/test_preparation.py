@@ -1,0 +1,63 @@
+import pytest
+import trimesh
+
+from daidalos.description import sdf
+from daidalos.description.geometry import Mesh
+from daidalos.description.meshes import load_mesh
+from daidalos.simulation import Simulation
+from daidalos.simulation.conversion import preparation
+from daidalos.simulation.conversion.convex import content_key, convex_parts
+from daidalos.simulation.conversion.preparation import prepare_meshes
+
+
+@pytest.fixture
+def rings(tmp_path, monkeypatch):
+    """World of three static rings of different sizes, a broken mesh, and an empty cache."""
+    monkeypatch.setenv("DAIDALOS_CACHE", str(tmp_path / "cache"))
+    trimesh.creation.torus(1.0, 0.2, 16, 8).export(tmp_path / "ring.stl")
+    (tmp_path / "broken.stl").write_text("nothing")
+    shapes = [f"ring.stl</uri><scale>{s} {s} {s}</scale>" for s in (1, 2, 3)] + ["broken.stl</uri>"]
+    models = "".join(
+        f"<model name='m{i}'><static>1</static><link name='l'><collision name='c'><geometry><mesh><uri>{shape}</mesh>"
+        "</geometry></collision></link></model>"
+        for i, shape in enumerate(shapes)
+    )
+    return sdf.parse(f"<sdf version='1.9'><world name='w'>{models}</world></sdf>", str(tmp_path / "w.sdf"))
+
+
+def test_what_is_prepared_is_what_is_used(rings, monkeypatch):
+    prepared = prepare_meshes(rings.models)
+    shape = rings.models[1].links["l"].collisions[0].geometry
+    assert isinstance(shape, Mesh)
+    mesh = load_mesh(shape)
+    parts, concave = prepared[content_key(mesh), True]
+    assert concave
+    assert [part.vertices.tolist() for part in parts] == [
+        part.vertices.tolist() for part in convex_parts(mesh, content_key(mesh), True)[0]
+    ]
+    assert len(prepared) == 3
+    monkeypatch.setattr("daidalos.simulation.conversion.assets.convex_parts", None)
+    simulation = Simulation(rings, warn=lambda line: None)
+    assert simulation.physics.model.ngeom == sum(len(parts) + 1 for parts, _ in prepared.values())
+    assert "broken.stl" in simulation.warnings[0]
+
+
+def test_progress_is_reported(rings, monkeypatch):
+    monkeypatch.setattr(preparation, "REPORT_DELAY", 0.0)
+    monkeypatch.setattr(preparation, "_CHECK_PERIOD", 1e-3)
+    reports = []
+    prepare_meshes(rings.models, lambda *report: reports.append(report))
+    assert reports[0] == (0, 4)
+    assert reports == sorted(reports)
+
+
+def test_an_interrupt_ends_the_work(rings, monkeypatch, tmp_path):
+    monkeypatch.setattr(preparation, "REPORT_DELAY", 0.0)
+    monkeypatch.setattr(preparation, "_CHECK_PERIOD", 1e-3)
+
+    def interrupt(done, count):
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        prepare_meshes(rings.models, interrupt)
+    assert not list((tmp_path / "cache").rglob("*.*"))
