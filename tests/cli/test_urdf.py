@@ -173,12 +173,22 @@ def test_xacro_may_make_sdf(tmp_path, capsys):
     assert "should be a number, got 'x'" in capsys.readouterr().err
 
 
+def test_a_model_that_is_not_found_is_a_warning_as_in_the_simulator(tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    address = "https://fuel.gazebosim.org/1.0/OpenRobotics/models/Nothing"
+    written(tmp_path / "m.sdf", WORLD.format(model=f"<include><uri>{address}</uri></include>"))
+    for check in ([], ["--check"]):
+        assert main(["urdf", "m.sdf", *check]) == 0
+        said = capsys.readouterr().err
+        assert said.startswith(f"warning: m.sdf:5: <include>: {address} not found; ")
+        assert said.count("\n") == 1
+
+
 @pytest.mark.parametrize(
     ("body", "words"),
     [
         (MODEL.format(radius="ten"), "m.sdf:5: <radius>"),
         (WORLD.format(model=MODEL.format(radius=1).replace("<child>b", "<child>c")), "m.sdf:8: <child>"),
-        (WORLD.format(model="<include><uri>model://nothing</uri></include>"), "m.sdf:5: <include>"),
         ("<world", "m.sdf:3: not well-formed XML"),
     ],
 )

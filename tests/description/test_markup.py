@@ -1,3 +1,5 @@
+import contextlib
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -65,6 +67,38 @@ def test_malformed_documents_name_the_line(text, line, words):
     assert (caught.value.source, caught.value.line) == ("x.urdf", line)
 
 
+@pytest.mark.parametrize(
+    ("text", "equal"),
+    [
+        ("<a><!-- x -- y --->\n<b/></a>", "<a>\n<b/></a>"),
+        ("<a>\n<b c=3 d='4' e=f/></a>", "<a>\n<b c='3' d='4' e='f'/></a>"),
+        ("<a b='1' b='2'>\n<c/></a>", "<a b='1'>\n<c/></a>"),
+        ("<a b='x<y & z'>\np & q<c/></a>", "<a b='x&lt;y &amp; z'>\np &amp; q<c/></a>"),
+        (b"<a b='\xfc'>\n<c/></a>", "<a b='\u00fc'>\n<c/></a>"),
+        ("<a\n b=1\n>\n<![CDATA[<x y=1>]]><c d=2/></a>", "<a\n b='1'\n>\n&lt;x y=1&gt;<c d='2'/></a>"),
+    ],
+)
+def test_what_tinyxml_tolerates_is_read(text, equal):
+    found, expected = parse_markup(text), parse_markup(equal)
+    assert as_tuple(found) == as_tuple(expected)
+    assert [one.line for one in found.walk()] == [one.line for one in expected.walk()]
+
+
+@given(st.text(alphabet="<>ab='\"/!-& \n[]?", max_size=40))
+def test_any_text_is_a_tree_or_a_descriptions_error(text):
+    with contextlib.suppress(DescriptionError):
+        assert parse_markup(f"<r>{text}</r>").tag == "r"
+
+
+def test_hexadecimal_and_odd_numbers():
+    root = parse_markup("<a><x>0x1F</x><y>-0xff</y><z>1_0</z><c>1, 2, 3</c></a>", "w.sdf")
+    assert (root.number_of("x", default=0), root.number_of("y", default=0)) == (31, -255)
+    with pytest.raises(DescriptionError, match="should be a number, got '1_0'"):
+        root.number_of("z", default=0)
+    with pytest.raises(DescriptionError, match=r"^w\.sdf:1: <c>: the text should be a number, got '1,'"):
+        root.vector_of("c", size=3, default=(0, 0, 0))
+
+
 def test_errors_read_as_one_line():
     element = parse_markup("<robot>\n<joint name='elbow'/></robot>", "arm.urdf").require("joint")
     assert str(element.error("needs <limit>")) == 'arm.urdf:2: <joint name="elbow">: needs <limit>'
@@ -77,7 +111,7 @@ def test_a_number_must_be_one(text):
 
 
 def test_numbers_vectors_and_flags():
-    root = parse_markup("<a><x> 1.5 </x><v>1, 2  3</v><y>True</y><n> 0 </n><e/></a>")
+    root = parse_markup("<a><x> 1.5 </x><v>1 2\n 3</v><y>True</y><n> 0 </n><e/></a>")
     assert root.number_of("x", default=0) == 1.5
     assert root.number_of("missing", "x", default=0) == 1.5
     assert root.vector_of("v", size=3, default=(0, 0, 0)) == (1, 2, 3)

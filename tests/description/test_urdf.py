@@ -169,7 +169,6 @@ def test_a_material_that_nobody_defines_is_noted():
     [
         ("<sdf/>", "expected <robot>"),
         ("<robot name='r'/>", "no link"),
-        ("<robot><link name='a'/></robot>", "missing"),
     ],
 )
 def test_what_is_no_robot(text, words):
@@ -224,3 +223,33 @@ def test_damaged_robots_give_robots_or_descriptions_errors(data):
         element.attributes[key] = data.draw(st.text(st.characters(codec="ascii", categories=["L", "N", "P"])))
     problem = problem_of(lambda: urdf.read_robot(root))
     assert problem is None or re.match(r"arm.urdf:\d+: <", problem)
+
+
+def test_rests_of_xacro_in_a_urdf_are_ignored_with_a_warning(tmp_path):
+    file = tmp_path / "robot.urdf"
+    file.write_text(
+        '<robot name="r" xmlns:xacro="http://ros.org/wiki/xacro">\n<link name="base">\n<xacro:grey/></link>'
+        "<xacro:sensors/></robot>"
+    )
+    robot = urdf.load(file)
+    assert list(robot.links) == ["base"]
+    assert robot.warnings[0].startswith(f"{file}:3: <xacro:grey>: xacro can not expand it")
+    file.rename(tmp_path / "robot.urdf.xacro")
+    with pytest.raises(DescriptionError, match="unknown macro name: xacro:grey"):
+        urdf.load(tmp_path / "robot.urdf.xacro")
+
+
+def test_part_of_a_robot_may_hang_on_a_link_that_is_elsewhere():
+    joint = '<joint name="{0}" type="fixed"><parent link="{1}"/><child link="{2}"/></joint>'
+    links = '<robot name="r"><link name="a"/><link name="b"/>\n'
+    robot = urdf.parse(links + joint.format("i", "hand", "a") + joint.format("j", "a", "b") + "</robot>", "r.urdf")
+    assert robot.root == "hand"
+    assert "r.urdf:2: link 'hand' does not exist and was added" in robot.warnings[0]
+    with pytest.raises(DescriptionError, match=r"r\.urdf:2: .*its parent link 'aa' does not exist"):
+        urdf.parse(links + joint.format("j", "aa", "b") + "</robot>", "r.urdf")
+
+
+def test_a_robot_without_name_is_noted():
+    robot = urdf.parse("<robot>\n<link name='a'/></robot>", "r.urdf")
+    assert robot.name == "robot"
+    assert "r.urdf:1: <robot> has no name" in robot.warnings[0]

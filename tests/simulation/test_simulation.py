@@ -166,18 +166,25 @@ def test_many_models_come_and_go_without_a_trace():
 @pytest.mark.parametrize("heading", [0.0, 1.0])
 def test_a_failed_spawn_leaves_the_world_as_it_was(heading):
     simulation = Simulation(world(box("a", f"0 0 3 0 0 {heading}")))
-    bad = "<gazebo><plugin name='d' filename='libgazebo_ros_diff_drive.so'>{}</plugin></gazebo></robot>"
     fixed = "<robot name='r'><link name='a'/><link name='b'/><joint name='j' type='fixed'><parent link='a'/>"
-    fixed += "<child link='b'/></joint>"
-    wheels = "<left_joint>j</left_joint><right_joint>{}</right_joint>"
-    with pytest.raises(DescriptionError, match="<left_joint> and <right_joint> are needed"):
-        simulation.spawn(urdf.parse(fixed + bad.format("")))
-    with pytest.raises(DescriptionError, match="no joint 'k'; known are j"):
-        simulation.spawn(urdf.parse(fixed + bad.format(wheels.format("k"))))
-    with pytest.raises(SimulationError, match="no movable joint 'j'"):
-        simulation.spawn(urdf.parse(fixed + bad.format(wheels.format("j"))))
+    fixed += "<child link='b'/></joint>{}</robot>"
+    narrow = "<gazebo><plugin name='d' filename='libgazebo_ros_p3d.so'><update_rate>x</update_rate></plugin></gazebo>"
+    with pytest.raises(DescriptionError, match="should be a number, got 'x'"):
+        simulation.spawn(urdf.parse(fixed.format(narrow)))
+    loose = "<gazebo><plugin name='d' filename='libgazebo_ros_diff_drive.so'>{}</plugin></gazebo>"
+    wheels = "<left_joint>{0}</left_joint><right_joint>{0}</right_joint>"
+    for number, (parameters, words) in enumerate(
+        (
+            ("", "<left_joint> is missing"),
+            (wheels.format("k"), "there is no joint 'k'"),
+            (wheels.format("j"), "joint 'j' is fixed, expected one with an axis"),
+        )
+    ):
+        simulation.spawn(urdf.parse(fixed.format(loose.format(parameters))), f"r{number}")
+        assert words in simulation.warnings[-1]
+        simulation.delete(f"r{number}")
     assert simulation.models == ("ground_plane", "a")
-    simulation.spawn(urdf.parse(fixed + "</robot>"))
+    simulation.spawn(urdf.parse(fixed.format("")))
     simulation.advance(SECOND // 10)
 
 

@@ -10,10 +10,12 @@ from xml.sax.saxutils import escape, quoteattr
 
 from daidalos.common.errors import Location
 from daidalos.description.errors import DescriptionError
+from daidalos.description.markup_repair import repair
 
 _TRUE = frozenset({"true", "1", "yes", "on"})
 _FALSE = frozenset({"false", "0", "no", "off"})
 
+_HEXADECIMAL = re.compile(r"[+-]?0[xX][0-9a-fA-F]+")
 _DECLARATION = re.compile(rb"((?:<!--.*?-->\s*)*)(<\?xml\b(\s+version\b)?[^>\n]*\?>)", re.DOTALL)
 
 
@@ -23,8 +25,8 @@ def parse_markup(text: str | bytes, source: str = "") -> Element:
     Parameters
     ----------
     text : str or bytes
-        The document. White space and comments before the XML declaration, one without a version, and zeros at
-        the end are tolerated, as by ROS's own parsers.
+        The document. White space and comments before the XML declaration, one without a version, zeros at
+        the end and what `repair` lists are tolerated, as by ROS's own parsers.
     source : str
         Where it came from; errors name it.
 
@@ -49,7 +51,15 @@ def parse_markup(text: str | bytes, source: str = "") -> Element:
     if not body:
         raise DescriptionError("the document is empty, expected XML", source)
     skipped_lines = text[: len(text) - len(body)].count(b"\n")
-    return _TreeBuilder(source, skipped_lines, encoding).build(_without_odd_declaration(body))
+    body = _without_odd_declaration(body)
+    try:
+        return _TreeBuilder(source, skipped_lines, encoding).build(body)
+    except DescriptionError as error:
+        # The error of the text as written is the one to report.
+        try:
+            return _TreeBuilder(source, skipped_lines, encoding).build(repair(body))
+        except DescriptionError:
+            raise error from None
 
 
 def _without_odd_declaration(body: bytes) -> bytes:
@@ -200,8 +210,11 @@ class Element:
     # This element's own text
 
     def number(self) -> float:
-        """Return this element's text as a number."""
-        return self._number(self.text, "the text", finite=False)
+        """Return this element's text as a number, decimal or hexadecimal (``0xFF``)."""
+        text = self.text.strip()
+        if _HEXADECIMAL.fullmatch(text):
+            return float(int(text, 16))
+        return self._number(text, "the text", finite=False)
 
     def vector(self, size: int) -> tuple[float, ...]:
         """Return this element's text as `size` numbers."""
@@ -230,7 +243,7 @@ class Element:
 
     def _number(self, text: str, what: str, finite: bool = True) -> float:
         try:
-            value = float(text)
+            value = float(text if "_" not in text else "")  # Python's digit groups are no part of the format
         except ValueError:
             raise self.error(f"{what} should be a number, got {text.strip()!r}") from None
         if math.isnan(value) or (finite and math.isinf(value)):
@@ -238,8 +251,8 @@ class Element:
         return value
 
     def _vector(self, text: str, size: int, what: str) -> tuple[float, ...]:
-        words = re.split(r"[\s,]+", text.strip())
-        if words == [""] or len(words) != size:
+        words = text.split()
+        if len(words) != size:
             raise self.error(f"{what} should be {size} numbers, got {text.strip()!r}")
         return tuple(self._number(word, what) for word in words)
 

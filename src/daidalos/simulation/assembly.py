@@ -13,6 +13,7 @@ from daidalos.description.link import Sensor as SensorDescription
 from daidalos.description.world import Model, World
 from daidalos.simulation.contracts import Component, ComponentContext, LibraryPlugin, Plugin, Sensor, SensorPlugin
 from daidalos.simulation.directional_friction import DirectionalFriction, directed_surfaces
+from daidalos.simulation.errors import AbsentPartError
 from daidalos.simulation.extensions import PLUGINS, SENSORS
 from daidalos.simulation.libraries import is_built_in, library_of
 from daidalos.simulation.persistent_forces import PersistentForces, check_persistent_forces, persistent_forces
@@ -80,7 +81,11 @@ def _plugin(plugin: PluginDescription, context: ComponentContext) -> Iterator[Co
         context.warn(f"{plugin.element.where}: plugin {plugin.name!r} belongs inside a <sensor>, left out")
     else:
         element = ReadElement(plugin.element)
-        yield from cls.make(replace(plugin, element=element), context)
+        try:
+            yield from cls.make(replace(plugin, element=element), context)
+        except AbsentPartError as problem:
+            context.warn(f"{problem}; the plugin is left out")
+            return
         _warn_of_unread(plugin, element, cls, context)
 
 

@@ -18,12 +18,14 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from daidalos.common.pose3 import Pose
+from daidalos.common.suggestions import hint
 from daidalos.description.link import Plugin as PluginDescription
 from daidalos.description.link import Sensor as SensorDescription
 from daidalos.description.markup import Element
 from daidalos.description.world import Model, World
 from daidalos.samples.endpoint import Endpoint
 from daidalos.samples.sensors import Sample
+from daidalos.simulation.errors import AbsentPartError
 from daidalos.simulation.plugin_parameters import PluginParameters
 from daidalos.simulation.topics import absolute_topic
 
@@ -62,6 +64,42 @@ class ComponentContext:
     warn: Callable[[str], None]
     link: str = ""
     joint: str = ""
+
+    def require_joint(self, name: str, element: Element) -> str:
+        """Return the name of a joint that moves.
+
+        Parameters
+        ----------
+        name : str
+            In the model.
+        element : Element
+            What names it.
+
+        Raises
+        ------
+        AbsentPartError
+            When the model has no such joint, or it can not move.
+        """
+        joint = self.model.joints.get(name)
+        if joint is None:
+            raise AbsentPartError(f"there is no joint {name!r}{hint(name, self.model.joints)}", element)
+        if self.model.static:
+            raise AbsentPartError(f"joint {name!r} can not move, as model {self.model.name!r} is static", element)
+        if not joint.axes:
+            raise AbsentPartError(f"joint {name!r} is {joint.type}, expected one with an axis", element)
+        return name
+
+    def require_link(self, name: str, element: Element) -> str:
+        """Return the name of a link.
+
+        Raises
+        ------
+        AbsentPartError
+            When the model has no such link.
+        """
+        if name not in self.model.links:
+            raise AbsentPartError(f"there is no link {name!r}{hint(name, self.model.links)}", element)
+        return name
 
 
 @dataclass(frozen=True)

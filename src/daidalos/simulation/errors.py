@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from daidalos.common.errors import UserError
+from daidalos.description.errors import DescriptionError
+from daidalos.description.markup import Element
 
 
 class SimulationError(UserError):
@@ -27,6 +29,20 @@ class UnknownNameError(SimulationError):
         self.name = name
         self.known = tuple(known)
         super().__init__(f"there is no {kind} {name!r}; known are {', '.join(self.known) or 'none'}")
+
+
+class AbsentPartError(DescriptionError):
+    """Reference of a plugin to a part of its model that is absent or unsuitable; the plugin is left out, as in Gazebo.
+
+    Parameters
+    ----------
+    message : str
+    element : Element
+        What names the part.
+    """
+
+    def __init__(self, message: str, element: Element) -> None:
+        super().__init__(message, element.source, element.line, element.label)
 
 
 class NameTakenError(SimulationError):

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from daidalos.common.suggestions import near
 from daidalos.description.link import Plugin as Description
 from daidalos.description.markup import Element
+from daidalos.simulation.errors import AbsentPartError
 from daidalos.simulation.libraries import library_of
 from daidalos.simulation.topics import absolute_topic, join_namespaces
 
@@ -62,6 +63,7 @@ class PluginParameters:
 
     def __init__(self, description: Description, context: ComponentContext) -> None:
         self.element: Element = description.element
+        self.context = context
         self.library = library_of(description)
         self.scope = description.scope
         ros = self.element.first("ros") or Element("ros")
@@ -92,3 +94,35 @@ class PluginParameters:
     def scoped(self, name: str) -> str:
         """Return the model's name of a link or joint that a nested model's plugin refers to."""
         return f"{self.scope}::{name}" if self.scope and name else name
+
+    def require_joint(self, *tags: str, default: str = "") -> str:
+        """Return the model's name of the moving joint that a parameter names.
+
+        Raises
+        ------
+        AbsentPartError
+            When the model has no such joint, or it can not move.
+        """
+        element = self.element.first(*tags) or self.element
+        name = self.element.text_of(*tags, default=default)
+        if not name:
+            raise AbsentPartError(f"<{tags[-1]}> is missing", element)
+        return self.context.require_joint(self.scoped(name), element)
+
+    def require_joints(self, *tags: str) -> tuple[str, ...]:
+        """Return the model's names of the moving joints that repeated parameters name, at least one."""
+        elements = self.element.all(*tags)
+        if not elements:
+            raise AbsentPartError(f"<{tags[-1]}> is missing", self.element)
+        return tuple(self.context.require_joint(self.scoped(e.text.strip()), e) for e in elements)
+
+    def require_link(self, *tags: str, default: str = "") -> str:
+        """Return the model's name of the link that a parameter names.
+
+        Raises
+        ------
+        AbsentPartError
+            When the model has no such link.
+        """
+        name = self.scoped(self.element.text_of(*tags, default=default))
+        return self.context.require_link(name, self.element.first(*tags) or self.element)

@@ -451,7 +451,7 @@ def test_a_joint_may_be_called_as_a_link():
 @pytest.mark.parametrize(
     ("old", "new", "words"),
     [
-        ("<world name", "<word name", "expected <world> or <model>"),
+        ("<world name", "<word name", "expected <world>, <model>, <light> or <actor>"),
         ("<mass>3</mass>", "<mass>-3</mass>", "mass should not be negative"),
         ("<radius>2</radius>", "<radius>big</radius>", r"w.sdf:\d+: <radius>: the text should be a number"),
         ("<child>wheel</child>", "<child>weel</child>", "there is no link 'weel'"),
@@ -506,3 +506,76 @@ def test_damaged_worlds_give_worlds_or_descriptions_errors(data):
     problem = problem_of(lambda: sdf.parse(root.to_text(), "w.sdf"))
     assert problem is None or problem.startswith(("w.sdf", str(BUILT_IN_MODELS)))
     assert problem is None or "\n" not in problem
+
+
+def one_model(inside, version="1.9", attributes=""):
+    return sdf.parse(
+        f"<sdf version='{version}'>\n<world name='w'><model name='m' {attributes}>{inside}</model></world></sdf>",
+        "w.sdf",
+    )
+
+
+@pytest.mark.parametrize(
+    ("document", "line", "words"),
+    [
+        ("<sdf version='99.1'><world name='w'/></sdf>", 1, "version 99.1 is newer than"),
+        ("<sdf version='two'><world name='w'/></sdf>", 1, "version 'two' is not like"),
+        ("<sdf><world name='w'/></sdf>", 1, 'attribute "version" is missing'),
+        ("<sdf version='1.9'>\n<world/></sdf>", 2, 'attribute "name" is missing'),
+        ("<sdf version='1.9'><world name='w'/>\n<world name='x'/></sdf>", 2, "only the first world counts"),
+    ],
+)
+def test_what_gazebo_complains_of_is_warned_of(document, line, words):
+    (warning,) = sdf.parse(document, "w.sdf").warnings
+    assert warning.startswith(f"w.sdf:{line}: ")
+    assert words in warning
+
+
+def test_the_frame_of_a_nested_model_and_its_own_place_it():
+    nested = "<model name='n' {}><pose>1 0 0 0 0 0</pose><link name='l'/></model>"
+    frame = "<frame name='f' attached_to='n::__model__'><pose>0 2 0 0 0 0</pose></frame>"
+    joint = "<joint name='j' type='fixed'><parent>a</parent><child>n::__model__</child></joint>"
+    world = one_model("<link name='a'/>" + nested.format("placement_frame='__model__'") + frame + joint)
+    (model,) = world.models
+    assert model.frames["f"].position == (1, 2, 0)
+    assert model.joints["j"].child == "n::l"
+
+
+def test_the_second_axis_of_a_universal_joint_has_a_default():
+    links = "<link name='a'/><link name='b'/>"
+    ends = "<parent>a</parent><child>b</child>"
+    joint = "<joint name='j' type='universal'>{}<axis><xyz>{}</xyz></axis></joint>"
+    for first, second in (("0 0 1", (0, 1, 0)), ("0 1 0", (1, 0, 0))):
+        (model,) = one_model(links + joint.format(ends, first)).models
+        assert model.joints["j"].axes[1].xyz == second
+
+
+def test_a_shape_without_geometry_is_empty():
+    world = one_model("<link name='a'>\n<visual name='v'/><collision name='c'/></link>")
+    assert world.models[0].links["a"].visuals[0].geometry == Empty()
+    assert [warning.split(": ")[0] for warning in world.warnings] == ["w.sdf:3", "w.sdf:3"]
+
+
+def test_a_frame_may_be_called_as_a_model_before_sdf_1_7():
+    inside = "<model name='g'><link name='l'/></model>\n<frame name='g'><pose>0 0 3 0 0 0</pose></frame>"
+    old = sdf.parse(f"<sdf version='1.6'><world name='w'>{inside}</world></sdf>", "w.sdf")
+    assert old.frames["g_frame"].position == (0, 0, 3)
+    with pytest.raises(DescriptionError, match=r"w\.sdf:2: .*the name 'g' is used before"):
+        sdf.parse(f"<sdf version='1.7'><world name='w'>{inside}</world></sdf>", "w.sdf")
+
+
+def test_an_unknown_canonical_link_is_named():
+    with pytest.raises(DescriptionError, match=r"w\.sdf:2: .*canonical_link 'b' is not in the model"):
+        one_model("<link name='a'/>", attributes="canonical_link='b'")
+
+
+def test_frames_inside_a_model_that_is_not_found_are_where_it_is():
+    world = sdf.parse(
+        "<sdf version='1.9'><world name='w'><include><uri>model://nowhere</uri><name>n</name><pose>1 0 0 0 0 0</pose>"
+        "</include><model name='m'><pose relative_to='n::a::b'>0 2 0 0 0 0</pose><link name='l'/></model></world>"
+        "</sdf>",
+        "w.sdf",
+        model_path=(),
+        strict=False,
+    )
+    assert world.models[0].pose.position == (1, 2, 0)

@@ -3,8 +3,7 @@ import math
 import numpy as np
 import pytest
 
-from daidalos.description.errors import DescriptionError
-from daidalos.samples.commands import TwistCommand
+from daidalos.samples.commands import NumberCommand, TwistCommand
 from daidalos.samples.sensors import OdometrySample
 from daidalos.simulation import Simulation
 from simulation.models import world
@@ -65,6 +64,24 @@ def test_the_steering_has_a_limit():
     assert radius == pytest.approx(math.hypot(0.6 / math.tan(0.6), 0.3), rel=0.03)
 
 
-def test_a_missing_joint_is_named():
-    with pytest.raises(DescriptionError, match="there is no joint 'nose'"):
-        Simulation(world(four_wheels(GZ.replace("fl_steer", "nose"), steered=True)))
+def test_a_missing_joint_is_named_and_the_rest_runs():
+    simulation = Simulation(world(four_wheels(GZ.replace("fl_steer", "nose"), steered=True)), warn=lambda line: None)
+    assert "there is no joint 'nose'" in simulation.warnings[0]
+    assert simulation.models == ("ground_plane", "cart")
+    assert not simulation.subscriptions
+
+
+def test_a_drive_may_steer_only():
+    steering = (
+        "<plugin name='a' filename='gz-sim-ackermann-steering-system'><steering_only>true</steering_only>"
+        "<left_steering_joint>fl_steer</left_steering_joint><right_steering_joint>fr_steer</right_steering_joint>"
+        "<wheel_separation>0.5</wheel_separation><wheel_base>0.6</wheel_base><steering_limit>0.7</steering_limit>"
+        "</plugin>"
+    )
+    simulation = Simulation(world(four_wheels(steering, steered=True)))
+    assert not simulation.publications
+    assert simulation.command("/model/cart/steer_angle", NumberCommand(0.4)) == 1
+    simulation.advance(SECOND)
+    inner, outer = (math.atan(0.6 / (0.6 / math.tan(0.4) - offset)) for offset in (0.25, -0.25))
+    assert simulation.joint("cart", "fl_steer").position == pytest.approx(inner, abs=0.01)
+    assert simulation.joint("cart", "fr_steer").position == pytest.approx(outer, abs=0.01)

@@ -268,11 +268,6 @@ def test_wheel_transforms_and_silence():
             ROS2 + "<wheel_diameter>0.3</wheel_diameter>",
             "expected one <wheel_diameter>, or one above zero for each pair",
         ),
-        ("", "<left_joint> and <right_joint> are needed"),
-        (
-            ROS2.replace("left_joint<", "lft_joint<"),
-            "no joint 'lft_joint'; known are left_joint, right_joint",
-        ),
         (ROS2.replace("0.4", "-1"), "<wheel_separation> should be positive"),
         (ROS2.replace("0.4", "wide"), "should be a number, got 'wide'"),
         (ROS2 + "<encoder_noise>-1</encoder_noise>", "<encoderNoise> should not be negative"),
@@ -281,6 +276,19 @@ def test_wheel_transforms_and_silence():
 def test_mistakes(parameters, words):
     with pytest.raises(DescriptionError, match=words):
         spawned("libgazebo_ros_diff_drive.so", parameters)
+
+
+@pytest.mark.parametrize(
+    ("parameters", "words"),
+    [
+        ("", "<left_joint> is missing"),
+        (ROS2.replace("left_joint<", "lft_joint<"), "no joint 'lft_joint'; did you mean 'left_joint'"),
+    ],
+)
+def test_without_its_joints_it_is_left_out(parameters, words):
+    simulation = spawned("libgazebo_ros_diff_drive.so", parameters, warn=lambda line: None)
+    assert words in simulation.warnings[0]
+    assert "r" in simulation.models
 
 
 def test_limits():

@@ -159,9 +159,7 @@ def test_a_mimic_plugin_ties_joints():
 @pytest.mark.parametrize(
     ("file", "parameters", "words"),
     [
-        ("gz-sim-apply-joint-force-system", "<joint_name>nose</joint_name>", "<joint_name> is 'nose', expected one of"),
         ("gz-sim-thruster-system", "<joint_name>fl_j</joint_name><min_thrust_cmd>9e9</min_thrust_cmd>", "is above"),
-        ("gz-sim-detachable-joint-system", "<parent_link>nose</parent_link>", "'nose', expected one of the links"),
         (
             "gz-sim-detachable-joint-system",
             "<parent_link>fl</parent_link>",
@@ -169,9 +167,32 @@ def test_a_mimic_plugin_ties_joints():
         ),
         ("gz-sim-touchplugin-system", "<namespace>a</namespace>", "<target> is needed"),
         ("gz-sim-linearbatteryplugin-system", "", "<battery_name> is needed"),
-        ("gz-sim-mecanum-drive-system", "", "<front_left_joint> is '', expected one of the joints"),
     ],
 )
 def test_wrong_parameters_are_named(file, parameters, words):
     with pytest.raises(DescriptionError, match=f"^w.sdf:1: .*{words}"):
         Simulation(world(with_plugin(four_wheels(""), file, parameters)))
+
+
+@pytest.mark.parametrize(
+    ("file", "parameters", "words"),
+    [
+        ("gz-sim-apply-joint-force-system", "<joint_name>nose</joint_name>", "there is no joint 'nose'"),
+        ("gz-sim-detachable-joint-system", "<parent_link>nose</parent_link>", "there is no link 'nose'"),
+        ("gz-sim-mecanum-drive-system", "", "<front_left_joint> is missing"),
+        ("gz-sim-joint-controller-system", "<joint_name>fl_jj</joint_name>", "did you mean 'fl_j'"),
+    ],
+)
+def test_a_plugin_for_an_absent_part_is_left_out(file, parameters, words):
+    simulation = Simulation(world(with_plugin(four_wheels(""), file, parameters)), warn=lambda line: None)
+    assert words in simulation.warnings[0]
+    assert simulation.warnings[0].startswith("w.sdf:1: ")
+    assert simulation.warnings[0].endswith("; the plugin is left out")
+    simulation.step(10)
+
+
+def test_a_drive_of_a_static_model_is_left_out():
+    drive = "<left_joint>fl_j</left_joint><right_joint>fr_j</right_joint>"
+    cart = with_plugin(four_wheels(""), "gz-sim-diff-drive-system", drive).replace(">", "><static>1</static>", 1)
+    simulation = Simulation(world(cart), warn=lambda line: None)
+    assert "joint 'fl_j' can not move, as model 'cart' is static" in simulation.warnings[0]

@@ -1,6 +1,5 @@
 import pytest
 
-from daidalos.description.errors import DescriptionError
 from daidalos.simulation import Simulation
 from simulation.models import world
 
@@ -35,7 +34,11 @@ def test_dialects(filename, parameters, topic, rate):
     assert samples[-1].velocities.tolist() == [hinge.velocity]
 
 
-def test_unknown_joint():
-    parameters = "<joint_name>elbow</joint_name>"
-    with pytest.raises(DescriptionError, match="no joint 'elbow'; known are to_world, hinge"):
-        Simulation(world(PENDULUM.format("libgazebo_ros_joint_state_publisher.so", parameters)))
+def test_joints_that_do_not_exist_or_do_not_move_are_not_published():
+    parameters = "".join(f"\n<joint_name>{name}</joint_name>" for name in ("elbow", "to_world", "hinge"))
+    pendulum = PENDULUM.format("libgazebo_ros_joint_state_publisher.so", parameters)
+    simulation = Simulation(world(pendulum), warn=lambda line: None)
+    assert [line.split(": ")[0] for line in simulation.warnings] == ["w.sdf:7", "w.sdf:8"]
+    assert "no joint 'elbow'" in simulation.warnings[0]
+    assert "'to_world' is fixed" in simulation.warnings[1]
+    assert simulation.advance(100_000_000)[0].names == ("hinge",)

@@ -455,11 +455,7 @@ def test_a_parameter_that_nobody_reads_is_named_once():
             f"{LEFT}{RIGHT}<wheel_radius>-1</wheel_radius>",
             "<wheel_radius> should be positive",
         ),
-        ("libgazebo_ros_p3d.so", "<body_name>nose</body_name>", "'nose', expected one of the links chassis"),
         ("libgazebo_ros_p3d.so", "<xyz_offset>1 2</xyz_offset>", "<xyz_offset>: .* 3 numbers"),
-        ("libgazebo_ros_ft_sensor.so", "<joint_name>nose</joint_name>", "'nose', expected one of the joints"),
-        ("libgazebo_ros_ft_sensor.so", "<body_name>chassis</body_name>", "'chassis', expected a link that hangs"),
-        ("libgazebo_ros_ackermann_drive.so", STEER, "there is no joint ''"),
         ("libgazebo_ros_planar_move.so", "<publish_odom>perhaps</publish_odom>", "<publish_odom>: .*'perhaps'"),
         ("libhector_gazebo_ros_imu.so", "<rateOffset>1 2</rateOffset>", "<rateOffset>: .* 3 numbers"),
     ],
@@ -467,6 +463,21 @@ def test_a_parameter_that_nobody_reads_is_named_once():
 def test_a_wrong_value_is_an_error_with_its_place(file, parameters, words):
     with pytest.raises(DescriptionError, match=f"^w.sdf:1: .*{words}"):
         Simulation(world(four_wheels(plugin(file, parameters))))
+
+
+@pytest.mark.parametrize(
+    ("file", "parameters", "words"),
+    [
+        ("libgazebo_ros_p3d.so", "<body_name>nose</body_name>", "there is no link 'nose'"),
+        ("libgazebo_ros_ft_sensor.so", "<joint_name>nose</joint_name>", "there is no joint 'nose'"),
+        ("libgazebo_ros_ft_sensor.so", "<body_name>chassis</body_name>", "'chassis', expected a link that hangs"),
+        ("libgazebo_ros_ackermann_drive.so", STEER, "<front_left_joint> is missing"),
+    ],
+)
+def test_a_plugin_of_an_absent_part_is_left_out(file, parameters, words):
+    simulation = Simulation(world(four_wheels(plugin(file, parameters))), warn=lambda line: None)
+    assert simulation.warnings[0].startswith("w.sdf:1: ")
+    assert words in simulation.warnings[0]
 
 
 def test_a_plugin_of_a_model_does_nothing_in_a_world():

@@ -103,10 +103,13 @@ def test_the_base_may_be_the_fork():
     assert {s.child_frame_id for s in samples if s.frame_id == "fork"} == {"front", "left", "right"}
 
 
+def test_without_a_joint_it_is_left_out():
+    assert "<steering_joint> is missing; the plugin is left out" in tricycle(SIZES).warnings[0]
+
+
 @pytest.mark.parametrize(
     ("parameters", "words"),
     [
-        (SIZES, "<steering_joint> is '', expected one of the joints steer"),
         (JOINTS + "<wheel_separation>0</wheel_separation>", "<wheel_separation> should be positive, got 0"),
     ],
 )

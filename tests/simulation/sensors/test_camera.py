@@ -288,3 +288,12 @@ def test_pictures_of_the_same_seed_are_alike():
     first, second, other = (image(samples(camera(extra=noise, size=(32, 24)), seed=s)).pixels for s in (1, 1, 2))
     assert np.array_equal(first, second)
     assert not np.array_equal(first, other)
+
+
+def test_a_field_of_view_of_a_whole_turn_is_drawn_as_far_as_a_pinhole_sees():
+    eye = camera().replace("1.047", "6.283")
+    simulation = Simulation(world(eye), warn=lambda line: None)
+    assert "<horizontal_fov> is 6.283, a pinhole shows 2.79 rad of it" in simulation.warnings[0]
+    assert image(simulation.advance(FRAME)).pixels.shape[:2] == (480, 640)
+    with pytest.raises(DescriptionError, match=r"above 0 and at most 2 pi, got 6\.3"):
+        Simulation(world(camera().replace("1.047", "6.3")))

@@ -84,7 +84,7 @@ def _load_sdf(path: Path, mappings: dict[str, str]) -> "Model | World":
         text: str | bytes = load_xacro(path, mappings, package_share)
     else:
         text = path.read_bytes()
-    return sdf.parse_any(text, str(path), package_share)
+    return sdf.parse_any(text, str(path), package_share, strict=False)
 
 
 def _simulated(description: "Robot | Model | World") -> list[str]:

@@ -50,6 +50,7 @@ class FrameGraph:
         self.root = root
         self._placed: dict[str, tuple[RelativePose, str, Element]] = {}
         self._resolved: dict[str, Pose] = {root: Pose()}
+        self._stand_ins: set[str] = set()
 
     def __contains__(self, name: str) -> bool:
         return name == self.root or name in self._placed
@@ -66,6 +67,11 @@ class FrameGraph:
             raise element.error(f"the name {name!r} is used before in the same scope")
         self._placed[name] = (pose, pose.relative_to or default, element)
 
+    def add_stand_in(self, name: str, pose: RelativePose, element: Element) -> None:
+        """Add a frame for a model that was not found; frames inside it are taken to be where it is."""
+        self.add(name, pose, self.root, element)
+        self._stand_ins.add(name)
+
     def pose(self, name: str, element: Element) -> Pose:
         """Return the pose of a frame in the root.
 
@@ -75,6 +81,7 @@ class FrameGraph:
             When there is no such frame or frames are placed in a circle; `element` asked for it.
         """
         chain: list[str] = []
+        name = self._stand_in(name) or name
         while name not in self._resolved:
             if name in chain:
                 circle = " -> ".join([*chain[chain.index(name) :], name])
@@ -84,10 +91,16 @@ class FrameGraph:
                 raise asker.error(f"there is no frame {name!r}; known are {', '.join(self.names())}")
             chain.append(name)
             name = self._placed[name][1]
+            name = self._stand_in(name) or name
         for child in reversed(chain):
             relative, parent, _ = self._placed[child]
-            self._resolved[child] = self._resolved[parent] @ relative.pose
+            self._resolved[child] = self._resolved[self._stand_in(parent) or parent] @ relative.pose
         return self._resolved[chain[0] if chain else name]
+
+    def _stand_in(self, name: str) -> str:
+        """Return the stand-in for the model that a frame is in; empty for a known frame."""
+        model = name.partition("::")[0]
+        return model if name not in self._placed and model in self._stand_ins else ""
 
     def place(self, relative: RelativePose, default: str, element: Element) -> Pose:
         """Return a pose, relative to any frame, in the frame `default`."""

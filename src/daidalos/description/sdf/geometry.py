@@ -26,7 +26,8 @@ def read_geometry(parent: Element, context: Context) -> Geometry:
     """Read the shape of a ``<visual>`` or ``<collision>``."""
     element = parent.first("geometry")
     if element is None:
-        raise parent.error("<geometry> is missing")
+        context.warn(parent, "<geometry> is missing, which leaves it without a shape")
+        return Empty()
     shapes = [_SHAPES[shape.tag](shape, context) for shape in element.children if shape.tag in _SHAPES]
     outlines = [shape for shape in shapes if isinstance(shape, Polyline)]
     if outlines:  # several of them are one shape with holes

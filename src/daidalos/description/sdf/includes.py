@@ -17,7 +17,8 @@ from daidalos.description.sdf.frames import FrameGraph, RelativePose, read_pose
 from daidalos.description.sdf.links import labelled, read_label, read_light, read_plugin
 from daidalos.description.world import Actor, Model
 
-NEWEST = (1, 11)
+NEWEST = (1, 12)
+_UNVERSIONED = f'attribute "version" is missing, read as {NEWEST[0]}.{NEWEST[1]}'
 
 
 @dataclass(frozen=True)
@@ -88,7 +89,7 @@ def resolve_missing(
     """
     gone = {name: place for name, place in missing.items() if name not in graph}
     for name, (pose, element) in gone.items():
-        graph.add(name, pose, graph.root, element)
+        graph.add_stand_in(name, pose, element)
     merged = any(element.attribute("merge", "false") in ("true", "1") for _, element in gone.values())
     kept = []
     for joint in joints:
@@ -119,6 +120,16 @@ def model_file(found: Path, element: Element) -> Path:
     if not file.is_file():
         raise best.error(f"no such file {file}")
     return file
+
+
+def check_version(root: Element, context: Context) -> None:
+    """Warn of a document whose version is missing, malformed or newer than what is known."""
+    text = root.attribute("version", "")
+    newest = ".".join(map(str, NEWEST))
+    if not re.fullmatch(r"\d+\.\d+", text):
+        context.warn(root, f"version {text!r} is not like '{newest}', read as {newest}" if text else _UNVERSIONED)
+    elif read_version(root) > NEWEST:
+        context.warn(root, f"version {text} is newer than {newest}, the newest known; read as {newest}")
 
 
 def read_version(element: Element) -> tuple[int, int]:

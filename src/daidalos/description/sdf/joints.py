@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 
-from daidalos.common.pose3 import Pose, rotate
+from daidalos.common.pose3 import Pose, Vector, rotate
 from daidalos.description.joint import Axis, Joint, JointType, Mimic
 from daidalos.description.markup import Element
 from daidalos.description.sdf.context import Context
@@ -14,6 +14,7 @@ from daidalos.description.sdf.frames import read_pose
 from daidalos.description.sdf.links import read_sensor
 
 _UNLIMITED = 1e16
+_PARALLEL = 0.9
 _AXES = {
     JointType.REVOLUTE: 1,
     JointType.CONTINUOUS: 1,
@@ -99,14 +100,14 @@ def _end(element: Element, end: str, link_of: LinkResolver) -> str:
 def _axes(
     element: Element, kind: JointType, here: Pose, frame: FramePose, context: Context, root: str
 ) -> tuple[Axis, ...]:
-    axes = []
+    axes: list[Axis] = []
     for tag in ("axis", "axis2")[: _AXES.get(kind, 0)]:
         child = element.first(tag)
         if child is None:
-            if tag == "axis2":
-                raise element.error(f"a {kind} joint needs <axis2>")
             child = Element(tag, source=element.source, line=element.line)
         axis = _axis(child, here, frame, context, root)
+        if tag == "axis2" and child.first("xyz") is None:
+            axis = replace(axis, xyz=_across(axes[0].xyz))
         if kind is JointType.CONTINUOUS:
             axis = replace(axis, lower=-math.inf, upper=math.inf)
         axes.append(axis)
@@ -140,6 +141,11 @@ def _axis(element: Element, here: Pose, frame: FramePose, context: Context, root
         spring_stiffness=dynamics.number_of("spring_stiffness", default=0.0),
         spring_reference=dynamics.number_of("spring_reference", default=0.0),
     )
+
+
+def _across(first: Vector) -> Vector:
+    """Return the default second axis: y of the joint's frame, or x where the first axis is y."""
+    return (0.0, 1.0, 0.0) if abs(first[1]) < _PARALLEL else (1.0, 0.0, 0.0)
 
 
 def _limit(value: float) -> float:

@@ -45,7 +45,7 @@ def read_link(element: Element, context: Context, pose: Pose, place: PoseResolve
     decay = element.first("velocity_decay") or Element("velocity_decay")
     self_collide = element.first("self_collide")
     automatic = inertial is not None and inertial.attribute("auto", "false") in ("true", "1")
-    _warn_of_unused(element, context)
+    _warn_of_faults(element, context)
     link = Link(
         name=element.name(),
         pose=pose,
@@ -169,8 +169,15 @@ def _visual(element: Element, context: Context, place: PoseResolver) -> Visual:
     )
 
 
-def _warn_of_unused(element: Element, context: Context) -> None:
-    """Warn about elements of a link that have no effect here."""
+def _warn_of_faults(element: Element, context: Context) -> None:
+    """Warn about elements of a link that have no effect here, and of names that are taken."""
+    for tag in ("visual", "collision"):
+        names: set[str] = set()
+        for child in element.all(tag):
+            name = child.attribute("name", "")
+            if name in names and name:
+                context.warn(child, f"the link has another {tag} of this name, which SDF does not permit")
+            names.add(name)
     for child in element.all(*_UNUSED):
         context.warn(child, "has no effect, left out")
     for visual in element.all("visual"):

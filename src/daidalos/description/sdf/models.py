@@ -31,12 +31,13 @@ def read_model(element: Element, context: Context) -> Model:
 
 def place_nested(graph: FrameGraph, model: Model, pose: RelativePose, element: Element) -> None:
     """Add a model and its named elements to the frames of the outer scope."""
-    if model.placement_frame:
+    if model.placement_frame not in ("", ROOT):
         if model.placement_frame not in model.frames:
             raise element.error(f"placement_frame {model.placement_frame!r} is not in the model")
         placed = model.frames[model.placement_frame]
         pose = RelativePose(pose.pose @ placed.inverse, pose.relative_to)
     graph.add(model.name, pose, graph.root, element)
+    graph.add(f"{model.name}::{ROOT}", RelativePose(), model.name, element)
     for name, frame in model.frames.items():
         graph.add(f"{model.name}::{name}", RelativePose(frame), model.name, element)
 
@@ -53,7 +54,8 @@ def link_names(model: Model, prefix: str) -> dict[str, str]:
     carriers = {name: name for name in model.links} | dict(model.carriers)
     named = {f"{prefix}{name}": f"{prefix}{link}" for name, link in carriers.items() if name != ROOT}
     canonical = carriers.get(ROOT, next(iter(model.links), ""))
-    return named | ({model.name: f"{prefix}{canonical}"} if canonical else {})
+    aliases = (model.name, f"{model.name}::{ROOT}") if canonical else ()
+    return named | dict.fromkeys(aliases, f"{prefix}{canonical}")
 
 
 class _ModelReader:
@@ -136,6 +138,8 @@ class _ModelReader:
         first = next((name for name, target in self._attached.items() if name == target), "")
         own = [child.name() for child in self._element.all("link")]
         canonical = self._element.attribute("canonical_link", "") or (own[0] if own else first)
+        if canonical and canonical not in self._attached:
+            raise self._element.error(f"canonical_link {canonical!r} is not in the model")
         if canonical:
             self._attached[ROOT] = canonical
 

@@ -10,7 +10,7 @@ from daidalos.description.errors import DescriptionError
 from daidalos.description.markup import Element, parse_markup
 from daidalos.description.resolve import PackageResolver, default_model_path
 from daidalos.description.sdf.context import Context
-from daidalos.description.sdf.includes import model_file, read_version
+from daidalos.description.sdf.includes import check_version, model_file, read_version
 from daidalos.description.sdf.models import read_model
 from daidalos.description.sdf.worlds import read_world
 from daidalos.description.world import Model, World
@@ -59,10 +59,12 @@ def parse(
     """Read a world from text; relative paths start at the folder of `source`. See `load`."""
     root, context = _open(text, source, resolve, model_path, strict)
     element = root.first("world")
+    for other in root.all("world")[1:]:
+        context.warn(other, "only the first world counts, left out")
     if element is not None:
         return read_world(element, context)
-    if root.first("model", "include", "light") is None:
-        raise root.error("expected <world> or <model>")
+    if root.first("model", "include", "light", "actor") is None:
+        raise root.error("expected <world>, <model>, <light> or <actor>")
     return read_world(Element("world", {"name": "default"}, children=root.children, source=source), context)
 
 
@@ -81,9 +83,10 @@ def parse_model(
     source: str = "model",
     resolve: PackageResolver | None = None,
     model_path: Sequence[Path] | None = None,
+    strict: bool = True,
 ) -> Model:
     """Read a model from text; relative paths start at the folder of `source`. See `load`."""
-    root, context = _open(text, source, resolve, model_path)
+    root, context = _open(text, source, resolve, model_path, strict)
     element = root.first("model")
     if element is None:
         raise root.error("expected <model>")
@@ -95,12 +98,13 @@ def parse_any(
     source: str = "description",
     resolve: PackageResolver | None = None,
     model_path: Sequence[Path] | None = None,
+    strict: bool = True,
 ) -> Model | World:
     """Read a model from a document with a single model, else a world. See `load`."""
     tags = [child.tag for child in parse_markup(text, source).children]
     if tags == ["model"]:
-        return parse_model(text, source, resolve, model_path)
-    return parse(text, source, resolve, model_path, strict=True)
+        return parse_model(text, source, resolve, model_path, strict)
+    return parse(text, source, resolve, model_path, strict)
 
 
 def _read(path: Path) -> bytes:
@@ -130,4 +134,5 @@ def _open(
         strict=strict,
         including=(Path(source),),
     )
+    check_version(root, context)
     return root, context

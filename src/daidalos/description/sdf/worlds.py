@@ -62,7 +62,7 @@ class _WorldReader:
         self._read_contents()
         physics = _default_physics(element)
         return World(
-            name=element.attribute("name", base.name),
+            name=_name(element, self._context),
             models=tuple(self._placed()),
             lights=tuple(
                 replace(light, pose=self._graph.place(pose, ROOT, child)) for light, pose, child in self._lights
@@ -103,14 +103,20 @@ class _WorldReader:
             elif child.tag == "road":
                 self._context.warn(child, "has no effect, left out")
             elif child.tag == "frame":
-                default = child.attribute("attached_to", "") or ROOT
-                self._graph.add(child.name(), read_pose(child), default, child)
-                self._attached[child.name()] = default
+                self._add_frame(child)
         joints = self._element.all("joint")
         self._joints = resolve_missing(self._missing, self._graph, joints, self._context)
         for child in self._joints:
             self._graph.add(child.name(), read_pose(child), child.text_of("child"), child)
             self._attached[child.name()] = child.text_of("child")
+
+    def _add_frame(self, element: Element) -> None:
+        name, attached_to = element.name(), element.attribute("attached_to", "") or ROOT
+        if self._context.version < (1, 7) and any(model.name() == name for model in self._element.all("model")):
+            self._context.warn(element, f"a model is called {name!r} as well, the frame is called {name}_frame")
+            name = f"{name}_frame"
+        self._graph.add(name, read_pose(element), attached_to, element)
+        self._attached[name] = attached_to
 
     def _add_included(self, element: Element) -> None:
         included = read_include(element, self._context, read_model)
@@ -175,6 +181,13 @@ class _WorldReader:
         if name == ROOT:
             return ROOT
         raise element.error(f"there is no link {name!r}; expected a model, or model::link")
+
+
+def _name(element: Element, context: Context) -> str:
+    name = element.attribute("name", "")
+    if not name:
+        context.warn(element, f'attribute "name" is missing, the world is called {World().name!r}')
+    return name or World().name
 
 
 def _saved_poses(state: Element | None) -> dict[str, RelativePose]:

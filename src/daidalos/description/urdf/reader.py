@@ -1,13 +1,14 @@
 """Reader of URDF robots from text or files, through xacro for xacro files.
 
 The elements and their rules are those of the ROS documentation's URDF/XML pages; what the reference
-parser refuses is refused here, except what only controllers need, an inertial without mass, a joint to the
-world without a link ``world``, and what Bullet adds to the language: those are warned of.
+parser refuses is refused here, except what only controllers need, an inertial without mass, a robot without name,
+a missing root link, rests of xacro in a ``.urdf``, and what Bullet adds to the language: those are warned of.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from pathlib import Path
 
 from daidalos.description.errors import DescriptionError
@@ -51,11 +52,16 @@ def load(
         text = path.read_bytes()
     except OSError as problem:
         raise DescriptionError(_file_problem(problem), str(path)) from None
-    if path.suffix == ".xacro" or _is_xacro(text):
-        from daidalos.description.xacro import expand
+    if path.suffix != ".xacro" and not _is_xacro(text):
+        return read_robot(parse_markup(text, str(path)), resolve)
+    from daidalos.description.xacro import expand
 
+    try:
         return read_robot(expand(path, mappings, resolve), resolve)
-    return read_robot(parse_markup(text, str(path)), resolve)
+    except DescriptionError as error:
+        if path.suffix != ".urdf":
+            raise
+        return _read_unexpanded(text, path, resolve, error)
 
 
 def parse(text: str | bytes, source: str = "robot_description", resolve: PackageResolver | None = None) -> Robot:
@@ -90,9 +96,9 @@ def read_robot(root: Element, resolve: PackageResolver | None = None) -> Robot:
     materials = read_materials(root, resolve)
     links = read_links(root, materials, resolve, warnings)
     joints = read_joints(root, warnings)
-    links |= _world(links, joints, warnings)
+    links |= _missing_root(links, joints, warnings)
     return Robot(
-        name=root.name(),
+        name=_name(root, warnings),
         links=links,
         joints=joints,
         root=_check_tree(root, links, joints),
@@ -105,13 +111,39 @@ def read_robot(root: Element, resolve: PackageResolver | None = None) -> Robot:
     )
 
 
-def _world(links: Mapping[str, Link], joints: Mapping[str, Joint], warnings: list[str]) -> dict[str, Link]:
-    """Return the implicit link ``world`` if joints refer to it, as some simulators allow."""
-    first = next((joint for joint in joints.values() if joint.parent == "world"), None)
-    if first is None or "world" in links:
+def _read_unexpanded(text: bytes, path: Path, resolve: PackageResolver | None, error: DescriptionError) -> Robot:
+    """Return the robot of a URDF with rests of xacro, which ROS's parser ignores; raise `error` if it is none."""
+    try:
+        root = parse_markup(text, str(path))
+        robot = read_robot(root, resolve)
+    except DescriptionError:
+        raise error from None
+    rests = [element for element in root.walk() if element.tag.startswith("xacro:")]
+    ignored = f"{rests[0].where}: {rests[0].label}: " if rests else f"{path}: "
+    more = f" and {len(rests) - 1} more such elements are" if len(rests) > 1 else " is"
+    return replace(
+        robot, warnings=(f"{ignored}xacro can not expand it ({error.message}); it{more} ignored", *robot.warnings)
+    )
+
+
+def _name(root: Element, warnings: list[str]) -> str:
+    name = root.attribute("name", "")
+    if not name:
+        warnings.append(f"{root.where}: <robot> has no name, which ROS itself does not accept; called 'robot'")
+    return name or "robot"
+
+
+def _missing_root(links: Mapping[str, Link], joints: Mapping[str, Joint], warnings: list[str]) -> dict[str, Link]:
+    """Return the implicit root link: ``world``, or the one missing link on which the whole robot hangs."""
+    children = {joint.child for joint in joints.values()}
+    missing = {joint.parent: joint for joint in reversed(list(joints.values())) if joint.parent not in links}
+    if len(missing) > 1:
+        missing = {name: joint for name, joint in missing.items() if name == "world"}
+    if not missing or (not missing.keys() & {"world"} and not links.keys() <= children):
         return {}
-    warnings.append(f"{first.where}: link 'world' does not exist and was added, which ROS itself does not do")
-    return {"world": Link("world", where=first.where)}
+    (name, first) = next(iter(missing.items()))
+    warnings.append(f"{first.where}: link {name!r} does not exist and was added, which ROS itself does not do")
+    return {name: Link(name, where=first.where)}
 
 
 def _check_tree(root: Element, links: Mapping[str, Link], joints: Mapping[str, Joint]) -> str:

@@ -13,7 +13,7 @@ from daidalos.common.pose2 import move_along_arc
 from daidalos.description.geometry import Cylinder, Sphere
 from daidalos.description.link import Plugin as Description
 from daidalos.description.world import Model
-from daidalos.samples.commands import TwistCommand
+from daidalos.samples.commands import NumberCommand, TwistCommand
 from daidalos.samples.endpoint import Subscription
 from daidalos.samples.odometry import transform_of, wheel_odometry
 from daidalos.samples.sensors import (
@@ -70,7 +70,7 @@ class AckermannDrive(Plugin):
         s = self.settings
         mass = sum(link.inertial.mass for link in build.model.links.values() if link.inertial)
         wheels = [joint for joint in (*s.left, *s.right) if joint]
-        driven = mass * s.wheel_radius**2 / len(wheels)
+        driven = mass * s.wheel_radius**2 / max(len(wheels), 1)
         infinite = float("inf")
         self._wheel_servos = [
             build.add_velocity_servo(joint, 2 * driven / _SERVO_TIME, infinite, rotor=driven) for joint in wheels
@@ -108,7 +108,9 @@ class AckermannDrive(Plugin):
 
     @property
     def subscriptions(self) -> Mapping[str, Subscription]:
-        """Topic of the commanded velocity."""
+        """Topic of the commanded velocity, or of the steering angle."""
+        if self.settings.steers_only:
+            return {self.settings.command_topic: Subscription(NumberCommand, self._command_angle)}
         return {self.settings.command_topic: Subscription(TwistCommand, self._command)}
 
     def update(self, now_ns: int) -> Iterable[Sample]:
@@ -117,8 +119,10 @@ class AckermannDrive(Plugin):
         step = self.period or self._instance.physics.model.opt.timestep
         elapsed = step if motion.stamp_ns < 0 else (now_ns - motion.stamp_ns) * 1e-9
         motion.stamp_ns = now_ns
-        odometry = self._odometry(now_ns, elapsed)
+        odometry = None if s.steers_only else self._odometry(now_ns, elapsed)
         self._drive(elapsed)
+        if odometry is None:
+            return
         if s.odometry_topic:
             yield odometry
         if s.tf_topic:
@@ -136,11 +140,16 @@ class AckermannDrive(Plugin):
     def _command(self, command: TwistCommand) -> None:
         self.state.command = np.array((float(command.linear[0]), float(command.angular[2])))
 
+    def _command_angle(self, command: NumberCommand) -> None:
+        self.state.command = np.array((0.0, command.value))
+
     def _drive(self, elapsed: float) -> None:
         s, motion = self.settings, self.state
         speed, turn = motion.command.tolist()
         motion.speed = s.linear.apply(speed, motion.speed, elapsed)
-        if s.steers_by_angle:
+        if s.steers_only:
+            steering = turn
+        elif s.steers_by_angle:
             steering = math.copysign(turn, turn * speed) if speed else turn
         else:
             steering = math.atan(turn * s.wheel_base / speed) if speed else 0.0
@@ -151,7 +160,8 @@ class AckermannDrive(Plugin):
         right = math.atan2(slope, 1 + curvature * s.track / 2)
         ctrl = self._instance.physics.data.ctrl
         ctrl[self._steers] = (left, right, motion.steering * s.steering_wheel_ratio)[: len(self._steers)]
-        ctrl[self._drives] = motion.speed / s.wheel_radius * self._factors(curvature)
+        if self._drives:
+            ctrl[self._drives] = motion.speed / s.wheel_radius * self._factors(curvature)
 
     def _factors(self, curvature: float) -> Array:
         """Return each wheel's speed relative to the base in a curve; steered wheels travel the longer way."""
@@ -187,6 +197,8 @@ class AckermannDrive(Plugin):
 
 def _measured(settings: Settings, model: Model) -> Settings:
     """Return the settings with missing values measured from the model: radius, wheel base and tracks."""
+    if settings.steers_only:
+        return settings
     joints = model.joints
 
     def place(joint: str) -> Array:

@@ -32,6 +32,8 @@ class Settings:
         [rad], [m/s].
     steers_by_angle : bool
         The command's angular z is the steering angle, rather than the turn rate.
+    steers_only : bool
+        The command is a steering angle alone; nothing is driven and there is no odometry.
     truth : bool
         Odometry from the true pose instead of from the wheels.
     publish_wheels : bool
@@ -59,6 +61,7 @@ class Settings:
     steering_limit: float = math.inf
     linear: Limits = field(default_factory=Limits)
     steers_by_angle: bool = False
+    steers_only: bool = False
     truth: bool = False
     publish_wheels: bool = False
     distance_topic: str = ""
@@ -69,25 +72,17 @@ def read_settings(parameters: PluginParameters, context: ComponentContext) -> Se
 
     Raises
     ------
-    DescriptionError
-        When a joint is missing.
+    AbsentPartError
+        When a joint is absent or can not move.
     """
     read = _read_gz if parameters.library.startswith("gz-sim-") else _read_classic
-    settings = read(parameters, context)
-    joints = (*settings.left, *settings.right, settings.left_steering, settings.right_steering)
-    for joint in (*joints, *filter(None, (settings.steering_wheel,))):
-        if joint not in context.model.joints:
-            known = ", ".join(context.model.joints) or "none"
-            raise parameters.element.error(f"there is no joint {joint!r}; known are {known}")
-    return settings
+    return read(parameters, context)
 
 
 def _read_classic(parameters: PluginParameters, context: ComponentContext) -> Settings:
     element = parameters.element
 
-    def joint(tag: str) -> str:
-        return parameters.scoped(element.text_of(tag))
-
+    joint = parameters.require_joint
     driven = {side: (joint(f"front_{side}_joint"), joint(f"rear_{side}_joint")) for side in ("left", "right")}
     steering = element.number_of("max_steer", default=0.6)
     top = element.number_of("max_speed", default=20.0)
@@ -99,7 +94,7 @@ def _read_classic(parameters: PluginParameters, context: ComponentContext) -> Se
         right=driven["right"],
         left_steering=joint("left_steering_joint"),
         right_steering=joint("right_steering_joint"),
-        steering_wheel=parameters.scoped(wheel) if wheel else "",
+        steering_wheel=joint("steering_wheel_joint") if wheel else "",
         steering_wheel_ratio=element.number_of("max_steering_angle", default=7.85) / steering,
         wheel_radius=0.0,
         period=1.0 / rate if rate > 0 else 0.0,
@@ -120,32 +115,34 @@ def _read_classic(parameters: PluginParameters, context: ComponentContext) -> Se
 def _read_gz(parameters: PluginParameters, context: ComponentContext) -> Settings:
     element, name = parameters.element, context.model_name
 
-    def joints(tag: str) -> tuple[str, ...]:
-        return tuple(parameters.scoped(e.text.strip()) for e in element.all(tag))
-
-    if not joints("left_joint") or not joints("right_joint"):
-        raise element.error("<left_joint> and <right_joint> are needed")
+    by_actuators = element.flag_of("use_actuator_msg", default=False)
+    steers_only = by_actuators or element.flag_of("steering_only", default=False)
     rate = element.number_of("odom_publish_frequency", default=50.0)
     base = next(iter(context.model.links), "base_link")
-    default = {"topic": "cmd_vel", "odom_topic": "odometry", "tf_topic": "tf"}
+    command = element.text_of("sub_topic", default="steer_angle" if steers_only else "cmd_vel")
+    default = {"topic": command, "odom_topic": "odometry", "tf_topic": "tf"}
     topics = {
         tag: absolute_topic(element.text_of(tag, default=f"/model/{name}/{word}"), context.namespace)
         for tag, word in default.items()
     }
-    track = element.number_of("kingpin_width", default=0.8)
+    if by_actuators:
+        context.warn(f"{element.where}: <use_actuator_msg> has no effect, angles are taken from {topics['topic']}")
+    rear_track = element.number_of("wheel_separation", default=1.0)
+    track = rear_track if steers_only else element.number_of("kingpin_width", default=0.8)
     return Settings(
-        left=joints("left_joint"),
-        right=joints("right_joint"),
-        left_steering=parameters.scoped(element.text_of("left_steering_joint")),
-        right_steering=parameters.scoped(element.text_of("right_steering_joint")),
+        left=() if steers_only else parameters.require_joints("left_joint"),
+        right=() if steers_only else parameters.require_joints("right_joint"),
+        left_steering=parameters.require_joint("left_steering_joint"),
+        right_steering=parameters.require_joint("right_steering_joint"),
         wheel_radius=element.number_of("wheel_radius", default=0.2),
         wheel_base=element.number_of("wheel_base", default=1.0),
         track=track,
-        rear_track=element.number_of("wheel_separation", default=1.0),
+        rear_track=rear_track,
         period=1.0 / rate if rate > 0 else 0.0,
         command_topic=topics["topic"],
-        odometry_topic=topics["odom_topic"],
-        tf_topic=topics["tf_topic"],
+        odometry_topic="" if steers_only else topics["odom_topic"],
+        tf_topic="" if steers_only else topics["tf_topic"],
+        steers_only=steers_only,
         odometry_frame=frame(element.text_of("frame_id", default=f"{name}/odom")),
         base_frame=frame(element.text_of("child_frame_id", default=f"{name}/{base}")),
         steering_limit=element.number_of("steering_limit", default=0.5),

@@ -36,10 +36,8 @@ class DetachableJoint(Plugin):
 
     def __init__(self, description: Description, context: ComponentContext) -> None:
         super().__init__(description, context)
-        element, links = description.element, context.model.links
-        self.parent = self.parameters.scoped(element.text_of("parent_link"))
-        if self.parent not in links:
-            raise element.error(f"<parent_link> is {self.parent!r}, expected one of the links {', '.join(links)}")
+        element = description.element
+        self.parent = self.parameters.require_link("parent_link")
         self.child = element.text_of("child_model"), element.text_of("child_link")
         if not all(self.child):
             raise element.error("<child_model> and <child_link> are needed")

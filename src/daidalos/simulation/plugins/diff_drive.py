@@ -67,10 +67,6 @@ class DiffDrive(Plugin):
     def __init__(self, description: Description, context: ComponentContext) -> None:
         super().__init__(description, context)
         self.settings = read_settings(self.parameters, context)
-        for joint in (*self.settings.left, *self.settings.right):
-            if joint not in context.model.joints:
-                known = ", ".join(context.model.joints) or "none"
-                raise description.element.error(f"there is no joint {joint!r}; known are {known}")
         self.period = self.settings.period
 
     def prepare(self, build: ModelBuild) -> None:

@@ -97,10 +97,8 @@ def read_settings(parameters: PluginParameters, context: ComponentContext) -> Se
 def _read_classic(parameters: PluginParameters, context: ComponentContext) -> Settings:
     """Read the parameters of Gazebo classic's plugin, in ROS 1's or ROS 2's names."""
     element = parameters.element
-    left = [e.text.strip() for e in element.all("leftJoint", "left_joint")]
-    right = [e.text.strip() for e in element.all("rightJoint", "right_joint")]
-    if not left or not right:
-        raise element.error("<left_joint> and <right_joint> are needed")
+    left = parameters.require_joints("leftJoint", "left_joint")
+    right = parameters.require_joints("rightJoint", "right_joint")
     # ROS 1's plugin swaps the sides unless it is told that the robot is described the right way round.
     is_ros1 = element.first("leftJoint") is not None
     if is_ros1 and element.flag_of("legacyMode", default=True):
@@ -115,8 +113,8 @@ def _read_classic(parameters: PluginParameters, context: ComponentContext) -> Se
     acceleration = element.number_of("wheelAcceleration", "max_wheel_acceleration", default=0.0)
     rate = element.number_of("updateRate", "update_rate", default=100.0)
     return Settings(
-        left=tuple(parameters.scoped(name) for name in left),
-        right=tuple(parameters.scoped(name) for name in right),
+        left=left,
+        right=right,
         separation=_positive(parameters, 0.34, "wheelSeparation", "wheel_separation"),
         diameters=_diameters(parameters, 0.15, len(left), len(right)),
         torque=_positive(parameters, 5.0, "wheelTorque", "torque", "max_wheel_torque"),
@@ -143,7 +141,7 @@ def _read_skid_steer(parameters: PluginParameters) -> Settings:
     """Read the parameters of ROS 1's skid steer drive, whose odometry is the true pose because its wheels slip."""
     element = parameters.element
     joints = {
-        place: element.text_of(f"{place}Joint", default=f"{words}_joint")
+        place: parameters.require_joint(f"{place}Joint", default=f"{words}_joint")
         for place, words in (
             *(("leftFront", "left_front"), ("leftRear", "left_rear")),
             *(("rightFront", "right_front"), ("rightRear", "right_rear")),
@@ -152,8 +150,8 @@ def _read_skid_steer(parameters: PluginParameters) -> Settings:
     rate = element.number_of("updateRate", default=100.0)
     publishes_tf = element.flag_of("broadcastTF", default=True)
     return Settings(
-        left=tuple(parameters.scoped(joints[place]) for place in ("leftFront", "leftRear")),
-        right=tuple(parameters.scoped(joints[place]) for place in ("rightFront", "rightRear")),
+        left=(joints["leftFront"], joints["leftRear"]),
+        right=(joints["rightFront"], joints["rightRear"]),
         separation=_positive(parameters, 0.4, "wheelSeparation"),
         diameters=(_positive(parameters, 0.15, "wheelDiameter"),),
         torque=_positive(parameters, 5.0, "torque"),
@@ -176,10 +174,8 @@ def _read_skid_steer(parameters: PluginParameters) -> Settings:
 def _read_gz(parameters: PluginParameters, context: ComponentContext) -> Settings:
     """Read the parameters of gz's system."""
     element, name = parameters.element, context.model_name
-    left = [parameters.scoped(e.text.strip()) for e in element.all("left_joint")]
-    right = [parameters.scoped(e.text.strip()) for e in element.all("right_joint")]
-    if not left or not right:
-        raise element.error("<left_joint> and <right_joint> are needed")
+    left = parameters.require_joints("left_joint")
+    right = parameters.require_joints("right_joint")
     rate = element.number_of("odom_publish_frequency", default=50.0)
     base = next(iter(context.model.links), "base_link")
     default = {"topic": "cmd_vel", "odom_topic": "odometry", "tf_topic": "tf"}
@@ -188,8 +184,8 @@ def _read_gz(parameters: PluginParameters, context: ComponentContext) -> Setting
         for tag, word in default.items()
     }
     return Settings(
-        left=tuple(left),
-        right=tuple(right),
+        left=left,
+        right=right,
         separation=_positive(parameters, 1.0, "wheel_separation"),
         diameters=(2 * _positive(parameters, 0.2, "wheel_radius"),),
         torque=math.inf,

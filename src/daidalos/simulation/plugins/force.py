@@ -23,10 +23,8 @@ class Force(Plugin):
 
     def __init__(self, description: Description, context: ComponentContext) -> None:
         super().__init__(description, context)
-        element, links = description.element, context.model.links
-        self.link = self.parameters.scoped(element.text_of("bodyName", "body_name", "link_name"))
-        if self.link not in links:
-            raise element.error(f"<link_name> is {self.link!r}, expected one of the links {', '.join(links)}")
+        element = description.element
+        self.link = self.parameters.require_link("bodyName", "body_name", "link_name")
         self.topic = self.parameters.topic(element.text_of("topicName", "topic_name", default="gazebo_ros_force"))
         self.follows = element.text_of("force_frame", default="world") in ("link", "body")
         self._key = f"{context.model_name}::{description.name}"

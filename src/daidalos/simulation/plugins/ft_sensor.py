@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import replace
 
+from daidalos.common.suggestions import hint
 from daidalos.description.link import Plugin as PluginDescription
 from daidalos.description.link import Sensor as SensorDescription
 from daidalos.description.markup import Element
 from daidalos.simulation.contracts import Component, ComponentContext, Plugin
+from daidalos.simulation.errors import AbsentPartError
 from daidalos.simulation.noise import Noise
 from daidalos.simulation.plugin_parameters import PluginParameters
 from daidalos.simulation.sensors.force_torque import ForceTorque
@@ -50,9 +52,8 @@ def _joint(parameters: PluginParameters, context: ComponentContext) -> str:
     if named in joints:
         return named
     if named or not body:
-        known = ", ".join(joints) or "none"
-        raise element.error(f"<joint_name> is {named!r}, expected one of the joints {known}")
+        raise AbsentPartError(f"there is no joint {named!r}{hint(named, joints)}", element)
     above = next((joint.name for joint in joints.values() if joint.child == body), "")
     if not above:
-        raise element.error(f"<body_name> is {body!r}, expected a link that hangs on a joint")
+        raise AbsentPartError(f"<body_name> is {body!r}, expected a link that hangs on a joint", element)
     return above

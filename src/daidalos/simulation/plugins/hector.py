@@ -106,11 +106,8 @@ def _carrier(
     description: PluginDescription, context: ComponentContext, kind: str, rate: float = 0.0, pose: Pose | None = None
 ) -> tuple[SensorDescription, ComponentContext]:
     """Return the description and the context of a sensor on the link ``bodyName``, by default the first link."""
-    element, links = description.element, context.model.links
-    scoped = PluginParameters(description, context).scoped
-    link = scoped(element.text_of("bodyName", "body_name", default=next(iter(links), "")))
-    if link not in links:
-        raise element.error(f"<bodyName> is {link!r}, expected one of the links {', '.join(links)}")
+    element, parameters = description.element, PluginParameters(description, context)
+    link = parameters.require_link("bodyName", "body_name", default=next(iter(context.model.links), ""))
     rate = element.number_of("updateRate", "update_rate", default=rate)
     sensor = SensorDescription(description.name, kind, element, pose=pose or Pose(), update_rate=rate)
     return sensor, replace(context, link=link)

@@ -27,10 +27,7 @@ class ImuOfModel(Plugin):
         """Yield the sensor."""
         parameters = PluginParameters(description, context)
         element = description.element
-        link = parameters.scoped(element.text_of("bodyName", "body_name", "link_name"))
-        if link not in context.model.links:
-            known = ", ".join(context.model.links)
-            raise element.error(f"<bodyName> is {link!r}, expected one of the links {known}")
+        link = parameters.require_link("bodyName", "body_name", "link_name")
         sensor = Imu(
             SensorDescription(
                 name=description.name,

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from daidalos.common.suggestions import hint
 from daidalos.description.joint import JointType
 from daidalos.description.link import Plugin as Description
 from daidalos.description.markup import Element
@@ -15,6 +16,7 @@ from daidalos.samples.endpoint import Subscription
 from daidalos.samples.sensors import Sample
 from daidalos.simulation.contracts import ComponentContext, Plugin
 from daidalos.simulation.conversion.model_build import ModelBuild
+from daidalos.simulation.errors import AbsentPartError
 from daidalos.simulation.instance import Instance
 from daidalos.simulation.topics import absolute_topic
 from daidalos.simulation.trajectory_follower import ActiveTrajectory, place_joints
@@ -94,7 +96,7 @@ class JointPoseTrajectory(Plugin):
         positions = [child.number() for child in element.all("initial_position")]
         unknown = [name for name in names if name not in movable]
         if unknown:
-            raise element.error(f"<joint_name> is {unknown[0]!r}, expected one of the joints {', '.join(movable)}")
+            raise AbsentPartError(f"there is no movable joint {unknown[0]!r}{hint(unknown[0], movable)}", element)
         if len(positions) > len(names):
             raise element.error(f"expected at most {len(names)} <initial_position>, got {len(positions)}")
         if not positions:
@@ -127,12 +129,8 @@ class JointController(Plugin):
 
     def __init__(self, description: Description, context: ComponentContext) -> None:
         super().__init__(description, context)
-        element, joints = description.element, context.model.joints
-        self.joints = [self.parameters.scoped(child.text.strip()) for child in element.all("joint_name")]
-        for joint in self.joints or [""]:
-            if joint not in joints:
-                known = ", ".join(joints) or "none"
-                raise element.error(f"<joint_name> is {joint!r}, expected one of the joints {known}")
+        element = description.element
+        self.joints = self.parameters.require_joints("joint_name")
         self.holds_position = "position" in self.parameters.library
         model = f"/model/{context.model_name}"
         axis = element.integer_of("joint_index", default=0)

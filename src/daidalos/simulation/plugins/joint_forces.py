@@ -25,7 +25,7 @@ class ApplyJointForce(Plugin):
 
     def __init__(self, description: Description, context: ComponentContext) -> None:
         super().__init__(description, context)
-        self.joint = joint_of(self, "joint_name")
+        self.joint = self.parameters.require_joint("joint_name")
         default = f"/model/{context.model_name}/joint/{self.joint}/cmd_force"
         self.topic = absolute_topic(description.element.text_of("topic", default=default), context.namespace)
 
@@ -70,7 +70,7 @@ class Thruster(Plugin):
     def __init__(self, description: Description, context: ComponentContext) -> None:
         super().__init__(description, context)
         element = description.element
-        self.joint = joint_of(self, "joint_name")
+        self.joint = self.parameters.require_joint("joint_name")
         diameter = element.number_of("propeller_diameter", default=0.02)
         self.factor = element.number_of("thrust_coefficient", default=1.0) * diameter**4
         self.factor *= element.number_of("fluid_density", default=1000.0)
@@ -113,12 +113,3 @@ class Thruster(Plugin):
         value = command.value
         thrust = self.factor * value * abs(value) if self.takes_speeds else value
         self.state = min(max(thrust, self.limits[0]), self.limits[1])
-
-
-def joint_of(plugin: Plugin, tag: str) -> str:
-    """Return the joint that a parameter names; raise an error if the model does not have it."""
-    element, joints = plugin.description.element, plugin.context.model.joints
-    name = plugin.parameters.scoped(element.text_of(tag))
-    if name not in joints:
-        raise element.error(f"<{tag}> is {name!r}, expected one of the joints {', '.join(joints) or 'none'}")
-    return name

@@ -10,6 +10,7 @@ import numpy as np
 from daidalos.description.link import Plugin as Description
 from daidalos.samples.sensors import JointStateSample, Sample
 from daidalos.simulation.contracts import ComponentContext, Plugin
+from daidalos.simulation.errors import AbsentPartError
 from daidalos.simulation.instance import Instance
 from daidalos.simulation.topics import absolute_topic
 
@@ -23,12 +24,7 @@ class JointStatePublisher(Plugin):
     def __init__(self, description: Description, context: ComponentContext) -> None:
         super().__init__(description, context)
         element, parameters = description.element, self.parameters
-        words = " ".join(child.text for child in element.all("jointName", "joint_name"))
-        self.joints = tuple(parameters.scoped(name) for name in re.split(r"[\s,]+", words) if name)
-        for joint in self.joints:
-            if joint not in context.model.joints:
-                known = ", ".join(context.model.joints) or "none"
-                raise element.error(f"there is no joint {joint!r}; known are {known}")
+        self.joints = self._named_joints()
         if parameters.library.startswith("gz-sim-"):
             topic = f"/world/{context.world.name}/model/{context.model_name}/joint_state"
             self.topic = absolute_topic(element.text_of("topic", default=topic), context.namespace)
@@ -38,10 +34,23 @@ class JointStatePublisher(Plugin):
             rate = element.number_of("updateRate", "update_rate", default=100.0)
         self.period = 1.0 / rate if rate > 0 else 0.0
 
+    def _named_joints(self) -> tuple[str, ...] | None:
+        """Return the named joints that move; None where none is named, which means all."""
+        elements = self.parameters.element.all("jointName", "joint_name")
+        named = [(name, child) for child in elements for name in re.split(r"[\s,]+", child.text) if name]
+        joints = []
+        for name, child in named:
+            try:
+                joints.append(self.context.require_joint(self.parameters.scoped(name), child))
+            except AbsentPartError as problem:
+                self.context.warn(f"{problem}; not published")
+        return tuple(joints) if named else None
+
     def bind(self, instance: Instance) -> None:
         """Find the joints; without names all that move."""
         self._instance = instance
-        names = self.joints or tuple(name for name, added in instance.build.joints.items() if added)
+        moving = tuple(name for name, added in instance.build.joints.items() if added)
+        names = moving if self.joints is None else self.joints
         joints = [instance.joint(name) for name in names]
         self._names = names
         self._qpos = np.array([joint.qpos for joint in joints], dtype=np.intp)

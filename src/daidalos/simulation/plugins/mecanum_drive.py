@@ -20,7 +20,6 @@ from daidalos.simulation.conversion.model_build import ModelBuild
 from daidalos.simulation.instance import Instance
 from daidalos.simulation.plugins.diff_drive import SERVO_TIME
 from daidalos.simulation.plugins.diff_drive_settings import Limits
-from daidalos.simulation.plugins.joint_forces import joint_of
 from daidalos.simulation.topics import absolute_topic, frame
 
 _WHEELS = ("front_left_joint", "front_right_joint", "back_left_joint", "back_right_joint")
@@ -48,7 +47,7 @@ class MecanumDrive(Plugin):
     def __init__(self, description: Description, context: ComponentContext) -> None:
         super().__init__(description, context)
         element, name = description.element, context.model_name
-        self.joints = tuple(joint_of(self, tag) for tag in _WHEELS)
+        self.joints = tuple(self.parameters.require_joint(tag) for tag in _WHEELS)
         sizes = {"wheel_separation": 1.0, "wheelbase": 1.0, "wheel_radius": 0.2}
         given = {tag: element.number_of(tag, default=size) for tag, size in sizes.items()}
         for tag, size in given.items():

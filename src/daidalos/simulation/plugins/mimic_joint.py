@@ -9,7 +9,6 @@ from daidalos.samples.sensors import Sample
 from daidalos.simulation.contracts import ComponentContext, Plugin
 from daidalos.simulation.conversion.couplings import couple
 from daidalos.simulation.conversion.model_build import ModelBuild
-from daidalos.simulation.plugins.joint_forces import joint_of
 
 
 class MimicJoint(Plugin):
@@ -23,7 +22,7 @@ class MimicJoint(Plugin):
 
     def __init__(self, description: Description, context: ComponentContext) -> None:
         super().__init__(description, context)
-        self.leader, self.follower = joint_of(self, "joint"), joint_of(self, "mimicJoint")
+        self.leader, self.follower = self.parameters.require_joint("joint"), self.parameters.require_joint("mimicJoint")
         self.multiplier = description.element.number_of("multiplier", default=1.0)
         self.offset = description.element.number_of("offset", default=0.0)
 

@@ -27,10 +27,7 @@ class P3d(Plugin):
     def __init__(self, description: Description, context: ComponentContext) -> None:
         super().__init__(description, context)
         element, parameters = description.element, self.parameters
-        links = context.model.links
-        self.link = parameters.scoped(element.text_of("bodyName", "body_name", default=next(iter(links), "")))
-        if self.link not in links:
-            raise element.error(f"<body_name> is {self.link!r}, expected one of the links {', '.join(links)}")
+        self.link = parameters.require_link("bodyName", "body_name", default=next(iter(context.model.links), ""))
         self.frame_id = frame(element.text_of("frameName", "frame_name", default="world"))
         self.topic = parameters.topic(element.text_of("topicName", "topic_name", default="odom"))
         self.offset = _read_offset(element)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable, Iterable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +15,7 @@ from numpy.typing import NDArray
 from daidalos.common.documents import DocumentError, read_yaml
 from daidalos.description.link import Plugin as Description
 from daidalos.description.markup import Element
-from daidalos.description.ros2_control import ComponentInfo, read_hardware
+from daidalos.description.ros2_control import ComponentInfo, HardwareInfo, read_hardware
 from daidalos.samples.sensors import (
     ImuSample,
     RangeSample,
@@ -25,6 +26,8 @@ from daidalos.simulation.contracts import Component, ComponentContext, Plugin
 from daidalos.simulation.conversion.model_build import ModelBuild
 from daidalos.simulation.instance import Instance
 from daidalos.simulation.joint_drives import DriveState, JointDrives
+from daidalos.simulation.libraries import library_of
+from daidalos.simulation.plugin_parameters import PluginParameters
 
 DEFAULT_RATE = 100.0
 _KINEMATIC = "gazebo_ros2_control/GazeboSystem"
@@ -61,7 +64,7 @@ class Ros2Control(Plugin):
     def __init__(self, description: Description, context: ComponentContext) -> None:
         super().__init__(description, context)
         element = description.element
-        self.hardware = read_hardware(context.model)
+        self.hardware = _own_hardware(description, context)
         self.files = tuple(_file(child) for child in element.all("parameters"))
         self.manager_name = element.text_of(
             "controller_manager_name", "controller_manager_node_name", default="controller_manager"
@@ -81,12 +84,14 @@ class Ros2Control(Plugin):
     @classmethod
     def make(cls, description: Description, context: ComponentContext) -> Iterable[Component]:
         """Yield the plugin if the robot has hardware to control."""
-        if read_hardware(context.model):
+        if any(info.components for info in _own_hardware(description, context)):
             return super().make(description, context)
-        context.warn(
-            f"{description.element.where}: the robot has no <ros2_control> element that says what to control; "
-            f"plugin {description.name!r} is left out"
+        missing = (
+            "other plugins control all of its joints"
+            if read_hardware(context.model)
+            else "the robot has no <ros2_control> element that says what to control"
         )
+        context.warn(f"{description.element.where}: {missing}; plugin {description.name!r} is left out")
         return ()
 
     def prepare(self, build: ModelBuild) -> None:
@@ -125,6 +130,40 @@ class Ros2Control(Plugin):
         component: Any = self._components.get(sensor)
         samples = () if component is None else component.measure(now_ns)
         return {name: value for sample in samples for name, value in _values(sample).items()}
+
+
+def _own_hardware(description: Description, context: ComponentContext) -> tuple[HardwareInfo, ...]:
+    """Return the hardware of one of a robot's plugins of this kind, of which each joint has only one.
+
+    A plugin whose namespace begins the names of joints has these; the others are the first one's of those
+    without such joints.
+    """
+    hardware = read_hardware(context.model)
+    rivals = [plugin for plugin in context.model.plugins if library_of(plugin) in Ros2Control.names]
+    if len(rivals) < 2:
+        return hardware
+    names = [joint.name for info in hardware for joint in info.joints]
+    prefixes = [PluginParameters(plugin, context).namespace.rpartition("/")[2] for plugin in rivals]
+    owners: dict[str, int] = {}
+    for number, prefix in enumerate(prefixes):
+        if prefix:
+            owners |= {name: number for name in names if name.startswith(prefix) and name not in owners}
+    rest = next((number for number in range(len(rivals)) if number not in owners.values()), 0)
+    places = [number for number, plugin in enumerate(rivals) if _is_same(plugin, description)]
+    mine = {name for name in names if owners.get(name, rest) in places[:1]}
+    return tuple(
+        replace(info, components=tuple(c for c in info.components if c.name in mine or c.name not in names))
+        for info in hardware
+        if not info.joints or any(joint.name in mine for joint in info.joints)
+    )
+
+
+def _is_same(plugin: Description, other: Description) -> bool:
+    return (plugin.element.line, plugin.element.source, plugin.name) == (
+        other.element.line,
+        other.element.source,
+        other.name,
+    )
 
 
 def _values(sample: Sample) -> dict[str, float]:

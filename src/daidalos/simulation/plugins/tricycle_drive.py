@@ -55,8 +55,14 @@ class TricycleDrive(Plugin):
     def __init__(self, description: Description, context: ComponentContext) -> None:
         super().__init__(description, context)
         element, p = description.element, self.parameters
-        self.steering, self.driven = self._joint("steering_joint"), self._joint("actuated_wheel_joint")
-        self.encoders = self._joint("encoder_wheel_left_joint"), self._joint("encoder_wheel_right_joint")
+        self.steering, self.driven = (
+            self.parameters.require_joint("steering_joint"),
+            self.parameters.require_joint("actuated_wheel_joint"),
+        )
+        self.encoders = (
+            self.parameters.require_joint("encoder_wheel_left_joint"),
+            self.parameters.require_joint("encoder_wheel_right_joint"),
+        )
         self.separation = self._positive("wheel_separation", 0.34)
         self.driven_radius = self._positive("actuated_wheel_diameter", 0.15) / 2
         self.encoder_radius = self._positive("encoder_wheel_diameter", 0.15) / 2
@@ -169,13 +175,6 @@ class TricycleDrive(Plugin):
 
     def _turns(self) -> Array:
         return np.array([joint.position for joint in self._moved[2:]])
-
-    def _joint(self, tag: str) -> str:
-        joints = self.context.model.joints
-        name = self.parameters.scoped(self.parameters.element.text_of(tag))
-        if name not in joints:
-            raise self.parameters.element.error(f"<{tag}> is {name!r}, expected one of the joints {', '.join(joints)}")
-        return name
 
     def _positive(self, tag: str, default: float) -> float:
         value = self.parameters.element.number_of(tag, default=default)

@@ -40,10 +40,8 @@ class VacuumGripper(Plugin):
 
     def __init__(self, description: Description, context: ComponentContext) -> None:
         super().__init__(description, context)
-        element, parameters, links = description.element, self.parameters, context.model.links
-        self.link = parameters.scoped(element.text_of("bodyName", "link_name", "body_name"))
-        if self.link not in links:
-            raise element.error(f"<link_name> is {self.link!r}, expected one of the links {', '.join(links)}")
+        element, parameters = description.element, self.parameters
+        self.link = parameters.require_link("bodyName", "link_name", "body_name")
         self.reach = element.number_of("maxDistance", "max_distance", default=0.05)
         self.fixed = frozenset(child.text.strip() for child in element.all("fixed"))
         self.is_ros1 = element.first("topicName") is not None or element.first("bodyName") is not None

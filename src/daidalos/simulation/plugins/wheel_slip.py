@@ -17,6 +17,7 @@ from daidalos.samples.sensors import Sample, WheelSlipSample
 from daidalos.simulation.contracts import ComponentContext, Plugin
 from daidalos.simulation.conversion.contact import DEFAULT_FRICTION, set_friction
 from daidalos.simulation.conversion.model_build import ModelBuild
+from daidalos.simulation.errors import AbsentPartError
 from daidalos.simulation.instance import Instance
 from daidalos.simulation.last_step import cross, velocities
 
@@ -142,17 +143,17 @@ class WheelSlip(Plugin):
 
     def _wheel(self, element: Element) -> Wheel:
         model = self.context.model
-        link = self.parameters.scoped(element.attribute("link_name"))
+        link = self.context.require_link(self.parameters.scoped(element.attribute("link_name")), element)
         joint = next((joint for joint in model.joints.values() if joint.child == link), None)
         if joint is None:
-            raise element.error(f"link_name is {link!r}, expected a link that a joint holds")
+            raise AbsentPartError(f"link_name is {link!r}, expected a link that a joint holds", element)
         force, radius = element.number_of("wheel_normal_force", default=0.0), _radius(model.links[link], element)
         if not force > 0:
             raise element.error("<wheel_normal_force> should be positive")
         frictions = [c.surface.mu for c in model.links[link].collisions if c.surface.mu is not None]
         return Wheel(
             link=link,
-            joint=joint.name,
+            joint=self.context.require_joint(joint.name, element),
             radius=radius,
             lateral=element.number_of("slip_compliance_lateral", default=1.0),
             longitudinal=element.number_of("slip_compliance_longitudinal", default=1.0),

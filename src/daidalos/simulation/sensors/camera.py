@@ -21,7 +21,7 @@ from daidalos.samples.sensors import (
 )
 from daidalos.simulation.contracts import ComponentContext, Sensor
 from daidalos.simulation.rendering.pool import Pool
-from daidalos.simulation.sensors.camera_settings import CameraSettings, read_camera
+from daidalos.simulation.sensors.camera_settings import WIDEST, CameraSettings, read_camera
 from daidalos.simulation.topics import absolute_topic
 
 if TYPE_CHECKING:
@@ -101,6 +101,9 @@ class Camera(Sensor):
         if self.kind == "wideanglecamera":
             context.warn(f"{description.element.where}: sensor {self.name!r}: its lens is drawn as a pinhole")
         elements = description.element.all("camera") or [Element("camera")]
+        for element in elements:
+            if (angle := element.number_of("horizontal_fov", default=0.0)) > WIDEST:
+                context.warn(f"{element.where}: <horizontal_fov> is {angle:g}, a pinhole shows {WIDEST:.3g} rad of it")
         self.outputs = [self._output(element, several=len(elements) > 1) for element in elements]
         for output in self.outputs[1:]:
             # To the right of the first camera, as a stereo pair's projection matrices tell it.

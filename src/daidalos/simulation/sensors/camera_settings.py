@@ -32,6 +32,9 @@ ENCODINGS = {
     "R_FLOAT32": "rgb8",
 }
 _MAX_PIXELS = 1 << 26
+_TURN = 2 * math.pi + 1e-3  # files write 6.2832
+WIDEST = math.radians(160.0)
+"""Widest horizontal field of view [rad] of a pinhole; Gazebo permits up to a whole turn, for its lenses."""
 
 
 @dataclass(frozen=True)
@@ -126,9 +129,9 @@ def read_camera(element: Element) -> CameraSettings:
 
 def _pinhole(element: Element, width: int, height: int) -> Pinhole:
     angle = element.number_of("horizontal_fov", default=1.047)
-    if not 0 < angle < math.pi:
-        raise element.error(f"<horizontal_fov> should be between 0 and pi, got {angle:g}")
-    ideal = Pinhole.from_field_of_view(width, height, angle)
+    if not 0 < angle <= _TURN:
+        raise element.error(f"<horizontal_fov> should be above 0 and at most 2 pi, got {angle:g}")
+    ideal = Pinhole.from_field_of_view(width, height, min(angle, WIDEST))
     lens = element.first("lens") or _empty("lens", element)
     intrinsics = lens.first("intrinsics") or _empty("intrinsics", element)
     bent = element.first("distortion") or _empty("distortion", element)

@@ -32,7 +32,7 @@ _TURN = 4 * math.pi
 
 @dataclass(frozen=True)
 class Fan:
-    """Angles of rays in one direction [rad], evenly spaced from the first to the last."""
+    """Angles of rays in one direction [rad], evenly spaced from the first to the last, which may be the lower."""
 
     first: float
     last: float
@@ -165,7 +165,7 @@ class Lidar(Sensor):
         return (math.inf, -1) if distance < 0 else (distance + self.range_min, int(geom[0]))
 
     def _nearest(self, now_ns: int, ranges: Array) -> RangeSample:
-        angle = max(self.horizontal.last - self.horizontal.first, self.vertical.last - self.vertical.first)
+        angle = max(abs(fan.last - fan.first) for fan in (self.horizontal, self.vertical))
         limits = self.range_min, self.range_max
         nearest = float(ranges.min())
         return RangeSample(now_ns, self.topic, self.frame_id, angle, *limits, nearest, self.ultrasound)
@@ -213,6 +213,4 @@ def _fan(element: Element | None, samples: int, scan: Element) -> Fan:
     last = element.number_of("max_angle", default=0.0)
     if not -_TURN <= first <= _TURN or not -_TURN <= last <= _TURN:
         raise element.error(f"expected angles within two turns, got {first:g} and {last:g}")
-    if last < first:
-        raise element.error(f"max_angle {last:g} is below min_angle {first:g}")
     return Fan(first, last, count)
