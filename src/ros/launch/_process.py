@@ -197,7 +197,8 @@ async def start_process(
     """
     if cwd is not None and not os.path.isdir(cwd):
         raise NotADirectoryError(f"the working directory '{cwd}' does not exist")
-    env = {**env, "PATH": search_path(env)}
+    # A program that waits for another one of the launch can tell by the number whether the launch is still alive.
+    env = {**env, "PATH": search_path(env), "DAIDALOS_LAUNCH_PID": str(os.getpid())}
     child = ChildProcess(on_output)
     options: dict[str, Any] = {"cwd": cwd, "env": env, "stdin": asyncio.subprocess.PIPE}
     if not _POSIX:

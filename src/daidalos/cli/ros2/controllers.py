@@ -2,27 +2,26 @@
 
 from __future__ import annotations
 
+import sys
 from argparse import ArgumentParser, Namespace
 from typing import TYPE_CHECKING, Any
 
 from ros2cli.node.direct import add_arguments as add_direct_arguments
 from ros2cli.node.direct import direct_node
-from ros2cli.services import call
 
 from daidalos.cli.ros2.completion import complete
 from daidalos.cli.ros2.errors import CliError
 from daidalos.cli.ros2.extension import Verb
+from daidalos.common.errors import UserError
 from daidalos.common.names import snake_case
 from daidalos.common.suggestions import did_you_mean
-from daidalos.transport.graph import EndpointKind
 
 if TYPE_CHECKING:
     from rclpy.node import Node
 
 DEFAULT_MANAGER = "controller_manager"
-_LIST = "/list_controllers"
-_READY_S = 10.0
-_ANSWER_S = 30.0
+_COMPLETION_S = 1.0
+"""How long the completion of names may wait for the manager [s]."""
 
 
 class ControlVerb(Verb):
@@ -48,36 +47,43 @@ def _add_manager_arguments(parser: ArgumentParser) -> None:
     parser.add_argument("--include-hidden-nodes", action="store_true", help="Consider hidden nodes as well")
 
 
-def ask(node: Node, args: Namespace, service_type: Any, **request: Any) -> Any:
+def ask(node: Node, args: Namespace, service_type: Any, *, coming_s: float | None = None, **request: Any) -> Any:
     """Return the response of one of the manager's services, such as ``list_controllers`` of type ``ListControllers``.
+
+    It waits while something is alive that may bring the manager, and at most `coming_s` where that is given.
 
     Raises
     ------
     CliError
         When there is no such manager or it does not answer.
     """
-    manager, service = args.controller_manager, snake_case(service_type.__name__)
-    name = node.resolve_service_name(f"{manager}/{service}")
-    graph = node.handle.graph
-    if not graph.wait_for(lambda: bool(graph.endpoints(EndpointKind.SERVICE, name=name)), _READY_S):
-        managers = [one.name.removesuffix(_LIST) for one in graph.endpoints() if one.name.endswith(_LIST)]
-        hint = did_you_mean(name.removesuffix(f"/{service}"), managers)
-        raise CliError(f"Could not contact service {name}{hint}")
-    return call(node, service_type, name, service_type.Request(**request), answer_s=_ANSWER_S)
+    from daidalos.nodes.manager_calls import call_manager
+
+    service = snake_case(service_type.__name__)
+    manager = node.resolve_service_name(f"{args.controller_manager}/{service}").removesuffix(f"/{service}")
+    message = service_type.Request(**request)
+    try:
+        return call_manager(node, service_type, manager, service, message, _report, coming_s=coming_s)
+    except UserError as error:
+        raise CliError(str(error)) from None
 
 
-def list_controllers(node: Node, args: Namespace) -> list[Any]:
-    """Return the controllers: `controller_manager_msgs/msg/ControllerState`."""
+def _report(text: str) -> None:
+    print(text, file=sys.stderr, flush=True)
+
+
+def list_controllers(node: Node, args: Namespace, coming_s: float | None = None) -> list[Any]:
+    """Return the controllers: `controller_manager_msgs/msg/ControllerState`; `coming_s` as in `ask`."""
     from controller_manager_msgs.srv import ListControllers
 
-    return list(ask(node, args, ListControllers).controller)
+    return list(ask(node, args, ListControllers, coming_s=coming_s).controller)
 
 
-def list_components(node: Node, args: Namespace) -> list[Any]:
-    """Return the hardware components: `controller_manager_msgs/msg/HardwareComponentState`."""
+def list_components(node: Node, args: Namespace, coming_s: float | None = None) -> list[Any]:
+    """Return the hardware components: `controller_manager_msgs/msg/HardwareComponentState`; `coming_s` as in `ask`."""
     from controller_manager_msgs.srv import ListHardwareComponents
 
-    return list(ask(node, args, ListHardwareComponents).component)
+    return list(ask(node, args, ListHardwareComponents, coming_s=coming_s).component)
 
 
 def find_controller(node: Node, args: Namespace, name: str) -> Any:
@@ -139,7 +145,7 @@ def add_controller_argument(parser: ArgumentParser, text: str, name: str = "cont
 
     def names(parsed_args: Namespace, **_: Any) -> list[str]:
         with direct_node(parsed_args) as node:
-            return [one.name for one in list_controllers(node, parsed_args)]
+            return [one.name for one in list_controllers(node, parsed_args, _COMPLETION_S)]
 
     complete(parser.add_argument(name, help=text, **options), names)
 
@@ -149,7 +155,7 @@ def add_component_argument(parser: ArgumentParser, text: str) -> None:
 
     def names(parsed_args: Namespace, **_: Any) -> list[str]:
         with direct_node(parsed_args) as node:
-            return [one.name for one in list_components(node, parsed_args)]
+            return [one.name for one in list_components(node, parsed_args, _COMPLETION_S)]
 
     complete(parser.add_argument("hardware_component_name", help=text), names)
 

@@ -6,9 +6,9 @@ import argparse
 from collections.abc import Sequence
 from typing import Any
 
-from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 
+from daidalos.nodes.manager_calls import call_manager
 from daidalos.nodes.runner import UserError
 
 
@@ -26,7 +26,10 @@ def add_manager_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--switch-timeout", type=float, default=5.0, metavar="S", help="how long switching may take")
     parser.add_argument(
-        "--service-call-timeout", type=float, default=10.0, metavar="S", help="how long an answer may take"
+        "--service-call-timeout",
+        type=float,
+        metavar="S",
+        help="how long an answer may take; as long as the controller manager is alive where it is not given",
     )
 
 
@@ -55,27 +58,17 @@ class ManagerClient:
         UserError
             When it is not there or does not answer.
         """
-        client = self._node.create_client(kind, f"{self.name}/{service}")
-        try:
-            self._wait(client)
-            response = client.call(kind.Request(**request), self._call_s)
-        except TimeoutError:
-            response = None
-        finally:
-            self._node.destroy_client(client)
-        if response is None:
-            raise UserError(f"{self.name}/{service} did not answer within {self._call_s:g} s")
-        return response
-
-    def _wait(self, client: Any) -> None:
-        if client.wait_for_service(self._wait_s or 10.0):
-            return
-        if self._wait_s:
-            raise UserError(f"there was no controller manager '{self.name}' within {self._wait_s:g} s")
-        while not client.wait_for_service(10.0):
-            if not self._node.context.ok():
-                raise ExternalShutdownException
-            self._node.get_logger().warning(f"waiting for '{self.name}'")
+        return call_manager(
+            self._node,
+            kind,
+            self.name,
+            service,
+            kind.Request(**request),
+            self._node.get_logger().warning,
+            coming_s=self._wait_s or None,
+            answer_s=self._call_s,
+            for_ever=True,
+        )
 
     def controllers(self) -> dict[str, Any]:
         """Return the loaded controllers by name."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +15,10 @@ from rclpy.duration import Duration
 from daidalos.nodes.description_files import read_description
 from daidalos.nodes.gazebo_ros._command_line import bind_numbers
 from daidalos.nodes.runner import UserError, program_arguments, run_program
+from daidalos.nodes.waiting import answer, wait_in_launch
+
+_TIMEOUT_S = 30.0
+"""How long to wait outside of a launch, as in ROS 2 [s]."""
 
 
 def parse(words: Sequence[str], prog: str) -> argparse.Namespace:
@@ -29,11 +33,16 @@ def parse(words: Sequence[str], prog: str) -> argparse.Namespace:
     parser.add_argument("-reference_frame", default="", metavar="NAME", help="entity that the pose is relative to")
     parser.add_argument("-gazebo_namespace", default="", metavar="NAMESPACE", help="namespace of the simulator")
     parser.add_argument("-robot_namespace", default="", metavar="NAMESPACE", help="namespace of the entity's topics")
-    parser.add_argument("-timeout", type=float, default=30.0, metavar="SECONDS", help="how long to wait")
+    parser.add_argument(
+        "-timeout",
+        type=float,
+        metavar="SECONDS",
+        help=f"how long to wait (default: {_TIMEOUT_S:g}, and in a launch as long as it is running)",
+    )
     parser.add_argument("-unpause", action="store_true", help="let time go on after spawning")
     parser.add_argument("-wait", metavar="NAME", help="wait for this entity before spawning")
     parser.add_argument(
-        "-spawn_service_timeout", type=float, default=None, metavar="SECONDS", help="old name of -timeout"
+        "-spawn_service_timeout", dest="timeout", type=float, metavar="SECONDS", help="old name of -timeout"
     )
     parser.add_argument("-package_to_model", action="store_true", help="accepted: package:// addresses are understood")
     parser.add_argument("-b", dest="bond", action="store_true", help="delete the entity when this program ends")
@@ -47,7 +56,7 @@ def _description(arguments: argparse.Namespace, node: Any) -> str:
     if arguments.stdin:
         return sys.stdin.read()
     if arguments.topic:
-        return _from_topic(node, arguments.topic, arguments.timeout)
+        return _from_topic(node, arguments.topic, arguments)
     path = _model_file(arguments.database) if arguments.database else Path(arguments.file)
     return read_description(path)
 
@@ -61,17 +70,36 @@ def _model_file(name: str) -> Path:
     return folder / "model.sdf"
 
 
-def _from_topic(node: Any, topic: str, timeout: float) -> str:
+def _comes(ready: Callable[[float], bool], arguments: argparse.Namespace, what: str, node: Any) -> bool:
+    """Return whether something comes in time: within `arguments.timeout`, or while the launch is running."""
+    if arguments.timeout is not None:
+        return ready(arguments.timeout)
+    return wait_in_launch(
+        ready, _TIMEOUT_S, lambda: node.get_logger().warning(f"waiting for {what}, as the launch is running")
+    )
+
+
+def _from_topic(node: Any, topic: str, arguments: argparse.Namespace) -> str:
     from rclpy.qos import DurabilityPolicy, QoSProfile
     from rclpy.wait_for_message import wait_for_message
     from std_msgs.msg import String
 
     latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
     node.get_logger().info(f"Waiting for entity xml on {topic}")
-    found, message = wait_for_message(String, node, topic, qos_profile=latched, time_to_wait=timeout)
-    if not found:
-        raise UserError(f"nothing came on '{topic}' within {timeout:g} s")
-    return str(message.data)
+    texts: list[str] = []
+
+    def ready(limit_s: float) -> bool:
+        found, message = wait_for_message(String, node, topic, qos_profile=latched, time_to_wait=limit_s)
+        texts.extend([str(message.data)] if found else [])
+        return found
+
+    if not _comes(ready, arguments, f"a description on '{topic}'", node):
+        raise UserError(f"nothing came on '{topic}' within {_limit(arguments):g} s")
+    return texts[0]
+
+
+def _limit(arguments: argparse.Namespace) -> float:
+    return _TIMEOUT_S if arguments.timeout is None else float(arguments.timeout)
 
 
 def _request(arguments: argparse.Namespace, text: str) -> Any:
@@ -95,17 +123,15 @@ def _spawn(arguments: argparse.Namespace, node: Any) -> None:
     from std_srvs.srv import Empty
 
     base = arguments.gazebo_namespace
-    timeout = arguments.spawn_service_timeout or arguments.timeout
+    timeout = _limit(arguments)
     text = _description(arguments, node)
     if arguments.wait:
-        _wait_for(arguments.wait, node, base, timeout)
+        _wait_for(arguments, node, base)
     client = node.create_client(SpawnEntity, f"{base}/spawn_entity")
     node.get_logger().info(f"Waiting for service {base}/spawn_entity, timeout = {timeout:g}")
-    if not client.wait_for_service(timeout):
+    if not _comes(client.wait_for_service, arguments, f"{base}/spawn_entity", node):
         raise UserError(f"the service {base}/spawn_entity is not there; was the simulator started?")
-    response = client.call(_request(arguments, text), timeout)
-    if response is None:
-        raise UserError(f"the simulator did not answer within {timeout:g} s")
+    response = answer(client, _request(arguments, text), node.get_logger().warning, arguments.timeout)
     if not response.success:
         raise UserError(f"spawning '{arguments.entity}' failed: {response.status_message}")
     node.get_logger().info(response.status_message)
@@ -115,23 +141,29 @@ def _spawn(arguments: argparse.Namespace, node: Any) -> None:
             unpause.call(Empty.Request(), timeout)
 
 
-def _wait_for(entity: str, node: Any, base: str, timeout: float) -> None:
+def _wait_for(arguments: argparse.Namespace, node: Any, base: str) -> None:
     """Wait until an entity is in the simulation."""
     from gazebo_msgs.srv import GetModelList
     from rclpy.executors import ExternalShutdownException
 
+    entity = arguments.wait
     node.get_logger().info(f"Waiting for entity {entity}")
     client = node.create_client(GetModelList, f"{base}/get_model_list")
     clock = Clock(clock_type=ClockType.STEADY_TIME)
-    end = clock.now() + Duration(seconds=timeout)
-    # Requested by a service, since a paused simulation publishes nothing.
-    while client.wait_for_service(max(0.0, (end - clock.now()).nanoseconds * 1e-9)):
-        response = client.call(GetModelList.Request(), timeout)
-        if response is not None and entity in response.model_names:
-            return
-        if not clock.sleep_for(Duration(seconds=0.2)):
-            raise ExternalShutdownException
-    raise UserError(f"there was no entity '{entity}' within {timeout:g} s")
+
+    def ready(limit_s: float) -> bool:
+        end = clock.now() + Duration(seconds=limit_s)
+        # Requested by a service, since a paused simulation publishes nothing.
+        while client.wait_for_service(max(0.0, (end - clock.now()).nanoseconds * 1e-9)):
+            response = client.call(GetModelList.Request(), limit_s)
+            if response is not None and entity in response.model_names:
+                return True
+            if not clock.sleep_for(Duration(seconds=0.2)):
+                raise ExternalShutdownException
+        return False
+
+    if not _comes(ready, arguments, f"entity '{entity}'", node):
+        raise UserError(f"there was no entity '{entity}' within {_limit(arguments):g} s")
 
 
 def _place_joints(joints: Mapping[str, float], arguments: argparse.Namespace, node: Any) -> None:
@@ -141,7 +173,8 @@ def _place_joints(joints: Mapping[str, float], arguments: argparse.Namespace, no
     request = SetModelConfiguration.Request(
         model_name=arguments.entity, joint_names=list(joints), joint_positions=list(joints.values())
     )
-    response = client.call(request, arguments.timeout) if client.wait_for_service(arguments.timeout) else None
+    limit_s = _limit(arguments)
+    response = client.call(request, limit_s) if client.wait_for_service(limit_s) else None
     if response is None or not response.success:
         raise UserError(f"joints could not be placed: {'no answer' if response is None else response.status_message}")
 

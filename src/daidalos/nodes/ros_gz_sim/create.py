@@ -13,6 +13,7 @@ from daidalos.common.parameters import Parameters, parameter, values_of
 from daidalos.nodes.gazebo_ros._command_line import bind_numbers
 from daidalos.nodes.parameters import declare, declare_given
 from daidalos.nodes.runner import UserError, program_arguments, run_program
+from daidalos.nodes.waiting import answer, wait_in_launch
 
 _TIMEOUT = 30.0
 _NUMBERS = ("x", "y", "z", "R", "P", "Y")
@@ -90,15 +91,23 @@ def find_service(node: Any, world: str, name: str, kind: str, timeout: float = _
     from rclpy.executors import ExternalShutdownException
 
     clock = Clock(clock_type=ClockType.STEADY_TIME)
-    end = clock.now() + Duration(seconds=timeout)
-    while clock.now() < end:
-        for service, kinds in node.get_service_names_and_types():
-            parts = service.split("/")
-            if kind in kinds and len(parts) == 4 and parts[3] == name and world in ("", parts[2]):
-                return str(service)
-        if not clock.sleep_for(Duration(seconds=0.1)):
-            raise ExternalShutdownException
-    raise UserError(f"no simulator offers /world/{world or '<name>'}/{name}; was it started?")
+    found: list[str] = []
+
+    def ready(limit_s: float) -> bool:
+        end = clock.now() + Duration(seconds=limit_s)
+        while clock.now() < end and not found:
+            for service, kinds in node.get_service_names_and_types():
+                parts = service.split("/")
+                if kind in kinds and len(parts) == 4 and parts[3] == name and world in ("", parts[2]):
+                    found.append(service)
+            if not found and not clock.sleep_for(Duration(seconds=0.1)):
+                raise ExternalShutdownException
+        return bool(found)
+
+    wanted = f"/world/{world or '<name>'}/{name}"
+    if not wait_in_launch(ready, timeout, lambda: node.get_logger().warning(f"waiting for {wanted}")):
+        raise UserError(f"no simulator offers {wanted}; was it started?")
+    return found[0]
 
 
 def _description(arguments: argparse.Namespace, node: Any) -> str:
@@ -121,10 +130,16 @@ def _from_topic(node: Any, topic: str) -> str:
     from std_msgs.msg import String
 
     latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-    found, message = wait_for_message(String, node, topic, qos_profile=latched, time_to_wait=_TIMEOUT)
-    if not found:
+    texts: list[str] = []
+
+    def ready(limit_s: float) -> bool:
+        found, message = wait_for_message(String, node, topic, qos_profile=latched, time_to_wait=limit_s)
+        texts.extend([str(message.data)] if found else [])
+        return found
+
+    if not wait_in_launch(ready, _TIMEOUT, lambda: node.get_logger().warning(f"waiting for '{topic}'")):
         raise UserError(f"nothing came on '{topic}' within {_TIMEOUT:g} s")
-    return str(message.data)
+    return texts[0]
 
 
 def _from_file(name: str) -> str:
@@ -162,8 +177,9 @@ def _create(arguments: argparse.Namespace) -> None:
         ),
     )
     service = find_service(node, arguments.world, "create", "ros_gz_interfaces/srv/SpawnEntity")
-    response = node.create_client(SpawnEntity, service).call(SpawnEntity.Request(entity_factory=factory), _TIMEOUT)
-    if response is None or not response.success:
+    client = node.create_client(SpawnEntity, service)
+    response = answer(client, SpawnEntity.Request(entity_factory=factory), node.get_logger().warning)
+    if not response.success:
         raise UserError(f"the entity '{arguments.name}' was not created; the simulator says why")
     node.get_logger().info("Entity creation successful.")
     node.destroy_node()
