@@ -393,3 +393,54 @@ def test_a_divergence_writes_no_file(tmp_path, monkeypatch):
     with pytest.raises(SimulationError, match="diverged"):
         simulation.advance(1_000_000_000)
     assert not list(tmp_path.iterdir())
+
+
+def simple(name, mass=1.0):
+    return sdf.parse_model(f"<sdf version='1.9'>{box(name, mass=mass)}</sdf>")
+
+
+def test_simple_models_are_compiled_together_when_the_world_is_used():
+    simulation = Simulation(world())
+    simulation.step(10)
+    compiled = simulation._compilation.number
+    for number in range(5):
+        simulation.spawn(simple(f"b{number}"), f"b{number}", Pose((2.0 * number, 0.0, 3.0)))
+    assert simulation._compilation.number == compiled
+    assert simulation.models[-5:] == ("b0", "b1", "b2", "b3", "b4")
+    simulation.delete("b1")
+    simulation.step(100)
+    assert simulation.pose("b4").position[:2] == pytest.approx((8.0, 0.0))
+    assert simulation.pose("b4").position[2] == pytest.approx(3.0 - 9.8 / 2 * 0.1**2, abs=1e-3)
+    with pytest.raises(UnknownNameError):
+        simulation.instance("b1")
+
+
+def test_it_is_the_same_whether_models_are_compiled_together_or_one_by_one():
+    poses = []
+    for together in (True, False):
+        simulation = Simulation(world(), seed=1)
+        for number in range(3):
+            simulation.spawn(simple(f"b{number}"), f"b{number}", Pose((0.3 * number, 0.0, 1.0 + 1.5 * number)))
+            if not together:
+                assert simulation.pose(f"b{number}").position[0] == pytest.approx(0.3 * number)
+        simulation.step(1000)
+        poses.append([simulation.pose(f"b{number}") for number in range(3)])
+    assert poses[0] == poses[1]
+
+
+def test_a_state_from_before_waiting_models_is_refused():
+    simulation = Simulation(world())
+    state = simulation.save()
+    simulation.spawn(simple("b"), "b")
+    with pytest.raises(SimulationError, match="models were added"):
+        simulation.restore(state)
+
+
+def test_a_simple_model_that_can_not_be_simulated_is_refused_at_once():
+    simulation = Simulation(world())
+    simulation.spawn(simple("b"), "b")
+    with pytest.raises(SimulationError, match="'light' cannot be simulated"):
+        simulation.spawn(simple("light", mass=1e-17), "light")
+    simulation.step(10)
+    assert "light" not in simulation.models
+    assert simulation.pose("b").position[2] == pytest.approx(0.5, abs=1e-3)

@@ -9,6 +9,7 @@ import mujoco
 import numpy as np
 
 from daidalos.common.pose3 import Pose
+from daidalos.description.geometry import Heightmap, Mesh
 from daidalos.description.joint import Joint
 from daidalos.description.world import Model, World
 from daidalos.simulation.contracts import Component
@@ -58,6 +59,7 @@ class Compilation:
         self, world: World, timestep: float, has_subscribers: Callable[[str], bool], warn: Callable[[str], None]
     ) -> None:
         self.spec: Any = mujoco.MjSpec()
+        self._world = world
         self.instances: dict[str, Instance] = {}
         self.stage = Stage(world, warn)
         self.forces = Forces()
@@ -117,6 +119,29 @@ class Compilation:
         del self.instances[instance.name]
         instance.build.remove()
         self._assets.release(instance.build.assets)
+
+    def compiles_alone(self, instance: Instance) -> bool:
+        """Return whether a model is simple and compiles in a world of its own, so that it does in this one as well.
+
+        Simple are models without sensors, plugins and meshes.
+
+        Raises
+        ------
+        SimulationError
+            With MuJoCo's words, in one line.
+        """
+        model = instance.model
+        shapes = (collision.geometry for link in model.links.values() for collision in link.collisions)
+        if instance.components or any(isinstance(shape, Mesh | Heightmap) for shape in shapes):
+            return False
+        spec: Any = mujoco.MjSpec()
+        set_options(spec, self._world, float(self.spec.option.timestep))
+        add_model(spec, Assets(spec), model, model.name, Pose(), lambda line: None)
+        try:
+            spec.compile()
+        except ValueError as problem:
+            raise SimulationError(_one_line(problem)) from None
+        return True
 
     def compile(self) -> None:
         """Compile for the first time.

@@ -59,6 +59,7 @@ class Engine:
         self._warn_user = _log.warning if warn is None else warn
         self._schedule = Schedule()
         self._monitors: list[ContactMonitor] = []
+        self._waiting: dict[str, Instance] = {}
         self._goal_ns = 0
         self.step_ns, self._substeps = physics_step(self.world.physics)
         self._compilation = Compilation(self.world, self._timestep, self._has_subscribers, self._warn)
@@ -70,12 +71,14 @@ class Engine:
     @property
     def physics(self) -> Physics:
         """MuJoCo's model and data, replaced whenever models are added or removed."""
+        if self._waiting:
+            self._add_waiting()
         return self._compilation.physics
 
     @property
     def stage(self) -> Stage:
         """Visible content for cameras: models, lights and sky."""
-        return self._compilation.stage
+        return self.physics.stage
 
     @property
     def forces(self) -> Forces:
@@ -94,10 +97,18 @@ class Engine:
         ------
         UnknownNameError
         """
+        if name in self._waiting:
+            self._add_waiting()
         try:
             return self._compilation.instances[name]
         except KeyError:
             raise UnknownNameError("model", name, self._compilation.instances) from None
+
+    @property
+    def components(self) -> list[Component]:
+        """Sensors and plugins of all models."""
+        instances = self._compilation.instances.values()
+        return [component for instance in instances for component in instance.components]
 
     # Time
 
@@ -157,7 +168,7 @@ class Engine:
         TypeError
             When a subscriber wants another class of command.
         """
-        takers = [sub for c in self._components() for name, sub in c.subscriptions.items() if name == topic]
+        takers = [sub for c in self.components for name, sub in c.subscriptions.items() if name == topic]
         for taker in takers:
             if not isinstance(command, taker.type):
                 raise TypeError(f"{topic} takes {taker.type.__name__}, got {type(command).__name__}")
@@ -167,17 +178,17 @@ class Engine:
     @property
     def publications(self) -> dict[str, type[Sample]]:
         """Topics of samples, with their classes."""
-        return {topic: cls for c in self._components() for topic, cls in c.publications.items()}
+        return {topic: cls for c in self.components for topic, cls in c.publications.items()}
 
     @property
     def subscriptions(self) -> dict[str, type]:
         """Topics of commands, with their classes."""
-        return {topic: sub.type for c in self._components() for topic, sub in c.subscriptions.items()}
+        return {topic: sub.type for c in self.components for topic, sub in c.subscriptions.items()}
 
     @property
     def switches(self) -> dict[str, Switch]:
         """Services of plugins."""
-        return {name: switch for c in self._components() for name, switch in c.switches.items()}
+        return {name: switch for c in self.components for name, switch in c.switches.items()}
 
     # State
 
@@ -201,7 +212,7 @@ class Engine:
 
     def save(self) -> State:
         """Return the state; it can be restored as long as the same models exist."""
-        component_states = copy_states(self._components())
+        component_states = copy_states(self.components)
         # All of MuJoCo's data, since sleeping models are no part of its smaller states.
         physics = copy.copy(self.physics.data)
         return State(
@@ -216,10 +227,10 @@ class Engine:
         SimulationError
             When models came or went since.
         """
-        if state.compilation != self._compilation.number:
+        if self._waiting or state.compilation != self._compilation.number:
             raise SimulationError("models were added or removed since the state was saved")
         mujoco.mj_copyData(self.physics.data, self.physics.model, state.physics)
-        restore_states(self._components(), state.component_states)
+        restore_states(self.components, state.component_states)
         self._schedule.restore(dict(state.clocks))
         self.time_ns = self._goal_ns = state.time_ns
         self.forces.clear(keep=state.pushes)
@@ -277,8 +288,31 @@ class Engine:
     def _recompile(self) -> None:
         """Compile after models were added or removed; all others keep their state."""
         self._compilation.recompile()
+        waiting, self._waiting = self._waiting, {}
+        for instance in waiting.values():
+            instance.place_joints()
         for monitor in self._monitors:
             monitor.bind(self.physics)
+
+    def _insert(self, instance: Instance) -> None:
+        """Compile the world with a new model, or leave that to the next use of the world where the model is simple."""
+        if self._compilation.compiles_alone(instance):
+            self._waiting[instance.name] = instance
+        else:
+            self._recompile()
+            self._start(instance)
+
+    def _add_waiting(self) -> None:
+        """Compile the world with the models that wait for it."""
+        waiting = dict(self._waiting)
+        try:
+            self._recompile()
+        except SimulationError as problem:
+            for instance in waiting.values():
+                self._drop(instance)
+            self._recompile()
+            names = ", ".join(waiting)
+            raise SimulationError(f"{names} cannot be simulated and are removed: {problem}") from None
 
     def _start(self, instance: Instance) -> None:
         instance.place_joints()
@@ -295,13 +329,10 @@ class Engine:
         self._begin(component)
 
     def _drop(self, instance: Instance) -> None:
+        self._waiting.pop(instance.name, None)
         self._compilation.remove(instance)
         self._schedule.remove(instance.components)
         self._monitors = [monitor for monitor in self._monitors if monitor.instance is not instance]
-
-    def _components(self) -> list[Component]:
-        instances = self._compilation.instances.values()
-        return [component for instance in instances for component in instance.components]
 
     @property
     def _timestep(self) -> float:

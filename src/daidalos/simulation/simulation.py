@@ -88,8 +88,7 @@ class Simulation(Engine):
         self._compilation.prepare((model,))
         instance = self._add(replace(model, name=name), pose or model.pose, namespace)
         try:
-            self._recompile()
-            self._start(instance)
+            self._insert(instance)
         except (ValueError, SimulationError) as problem:
             self._drop(instance)
             self._recompile()

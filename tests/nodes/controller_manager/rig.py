@@ -58,6 +58,8 @@ URDF = f"""<robot name="all"><link name="base"/>
   {joint("finger", ("position", "effort"))}{"".join(joint(name, ("velocity",)) for name in WHEELS)}
   {joint("s1", ("position",))}{joint("s2", ("position",))}
   {sensor("imu", *IMU)}{sensor("wrist", *WRENCH)}{sensor("sonar", "range")}{sensor("tracker", *POSE)}
+  <gpio name="valves"><command_interface name="left"/><state_interface name="left"/>
+  <state_interface name="right"><param name="initial_value">0.5</param></state_interface></gpio>
   </ros2_control></robot>"""  # noqa: E501
 
 

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from builtin_interfaces.msg import Duration
 from control_msgs.action import FollowJointTrajectory, GripperCommand
+from control_msgs.msg import DynamicInterfaceGroupValues, InterfaceValue
 from controller_manager_msgs import srv
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from lifecycle_msgs.msg import State
@@ -264,6 +265,11 @@ CASES: dict[str, tuple[str, dict[str, Any], tuple[str, ...]]] = {
         {"sensor_name": "sonar", "frame_id": "base"},
         ("/ahead/range sensor_msgs/msg/Range",),
     ),
+    "pins": (
+        "gpio_controllers/GpioCommandController",
+        {"gpios": ["valves"], "command_interfaces.valves.interfaces": ["left"]},
+        ("/pins/gpio_states control_msgs/msg/DynamicInterfaceGroupValues",),
+    ),
     "place": (
         "pose_broadcaster/PoseBroadcaster",
         {"pose_name": "tracker", "frame_id": "base"},
@@ -295,6 +301,7 @@ def test_every_type_is_tried_here_or_is_one_of_a_kind() -> None:
     same_interface = {
         FORWARD,
         "forward_command_controller/MultiInterfaceForwardCommandController",
+        "passthrough_controller/PassthroughController",
         *(f"{kind}_controllers/JointGroup{kind.title()}Controller" for kind in ("position", "velocity", "effort")),
         *(f"{kind}/GripperActionController" for kind in ("position_controllers", "effort_controllers")),
         "parallel_gripper_action_controller/GripperActionController",
@@ -314,6 +321,20 @@ def test_commands_come_by_topic(graph: Context, tmp_path: Path) -> None:  # noqa
         assert one.node.manager is not None
         states = one.node.manager.components["mock"].hardware.states
         one.cycle_until(lambda: states["shoulder/position"] == 0.5 and states["elbow/position"] == -0.5)
+
+
+def test_gpios_are_commanded_by_name(graph: Context, tmp_path: Path) -> None:  # noqa: F811
+    file = parameter_file(tmp_path, "it", gpios=["valves"], command_interfaces={"valves": {"interfaces": ["left"]}})
+    with rig(**{"it.type": "gpio_controllers/GpioCommandController", "it.params_file": file}) as one:
+        one.start("it")
+        heard: list[DynamicInterfaceGroupValues] = []
+        one.user.create_subscription(DynamicInterfaceGroupValues, "/it/gpio_states", heard.append, 10)
+        publisher = one.user.create_publisher(DynamicInterfaceGroupValues, "/it/commands", 10)
+        values = InterfaceValue(interface_names=["left"], values=[1.0])
+        publisher.publish(DynamicInterfaceGroupValues(interface_groups=["valves"], interface_values=[values]))
+        one.cycle_until(lambda: bool(heard) and list(heard[-1].interface_values[0].values) == [1.0, 0.5])
+        assert heard[-1].interface_groups == ["valves"]
+        assert heard[-1].interface_values[0].interface_names == ["left", "right"]
 
 
 def trajectory(*rows: tuple[float, list[float]]) -> JointTrajectory:

@@ -42,12 +42,7 @@ class Companions:
 
     def follow(self, simulation: Simulation) -> None:
         """Update the nodes to the current models; called on the simulation's thread."""
-        present = {
-            id(component): component
-            for name in simulation.models
-            for component in simulation.instance(name).components
-            if type(component) in _MAKERS
-        }
+        present = {id(component): component for component in simulation.components if type(component) in _MAKERS}
         for key in [key for key in self._known if key not in present]:
             self._end(key)
         for key, component in present.items():

@@ -158,8 +158,7 @@ def _pictures(simulation: Simulation) -> Iterator[str]:
     """Yield the topics for which cameras draw."""
     from daidalos.simulation.sensors.camera import Camera
 
-    for name in simulation.models:
-        for camera in simulation.instance(name).components:
-            if isinstance(camera, Camera):
-                for output in camera.outputs:
-                    yield from (topic for topic in output.topics() if topic not in output.infos)
+    for camera in simulation.components:
+        if isinstance(camera, Camera):
+            for output in camera.outputs:
+                yield from (topic for topic in output.topics() if topic not in output.infos)

@@ -29,7 +29,7 @@ _NO_SHADOW = np.zeros((0, 0), dtype=np.float32)
 
 @dataclass(frozen=True, eq=False)
 class View:
-    """View of a camera; its arrays are reused by the next `Renderer.render`.
+    """View of a camera; its arrays are reused by the next `Renderer.render` of the scene.
 
     Parameters
     ----------
@@ -71,6 +71,8 @@ class _Buffers:
     ----------
     drawn_by : Renderer or None
         Whose picture they hold.
+    pool : Pool
+        Of pictures and depths for others.
     """
 
     scene: InitVar[Scene]
@@ -85,6 +87,15 @@ class _Buffers:
         self.projected = np.zeros((len(scene.vertices), PROJECTED), dtype=np.float32)
         self.edges = np.zeros((len(scene.faces), EDGES), dtype=np.float32)
         self.flipped = np.zeros(len(scene.faces), dtype=np.bool_)
+        self.pool = Pool()
+        self._images: dict[tuple[int, int, bool], tuple[NDArray[np.float32], NDArray[np.int32]]] = {}
+
+    def image(self, shape: tuple[int, int], transparent: bool = False) -> tuple[NDArray[np.float32], NDArray[np.int32]]:
+        """Return the arrays of inverse depths and triangles of pictures of a shape."""
+        key = (*shape, transparent)
+        if key not in self._images:
+            self._images[key] = np.empty(shape, dtype=np.float32), np.empty(shape, dtype=np.int32)
+        return self._images[key]
 
 
 _buffers: WeakKeyDictionary[Scene, _Buffers] = WeakKeyDictionary()
@@ -107,11 +118,6 @@ class Renderer:
         self.pinhole = pinhole
         self.near, self.far = near, far
         self._mask = np.uint32(mask & 0xFFFFFFFF)
-        shape = (pinhole.height, pinhole.width)
-        self._inverse = np.empty(shape, dtype=np.float32)
-        self._triangles = np.empty(shape, dtype=np.int32)
-        self._pool = Pool()
-        self._glass: tuple[NDArray[np.float32], NDArray[np.int32]] | None = None
         self._scene: Scene | None = None
         self._shadow_map: ShadowMap | None = None
 
@@ -129,6 +135,7 @@ class Renderer:
         if self._scene is not scene:
             self._scene = scene
             self._buffers = _buffers.get(scene) or _buffers.setdefault(scene, _Buffers(scene))
+            self._inverse, self._triangles = self._buffers.image((self.pinhole.height, self.pinhole.width))
         self._pose = pose
         self._camera_pose = pose @ OPTICAL
         self._view = self._camera_pose.inverse.matrix[:3]
@@ -139,7 +146,7 @@ class Renderer:
         seen = scene.visible & ((scene.flags & self._mask) != 0)
         self._draw(seen & scene.opaque, self._inverse, self._triangles)
         self._transparent = seen & ~scene.opaque
-        return View(self._inverse, self._triangles, scene, self._pool)
+        return View(self._inverse, self._triangles, scene, self._buffers.pool)
 
     def paint(self, positions: Array, rotations: Array, lighting: Lighting) -> NDArray[np.uint8]:
         """Return the colours (rows, columns, 3) of the last `render`, including transparent surfaces."""
@@ -150,12 +157,10 @@ class Renderer:
         sun, lights = sort_lights(lighting)
         direction = np.array((0.0, 0.0, -1.0)) if sun is None else light_direction(*sun)
         shadow = self._shadow(scene, positions, rotations, direction, lighting, sun)
-        picture = self._pool.take((*self._triangles.shape, 3), np.uint8)
+        picture = self._buffers.pool.take((*self._triangles.shape, 3), np.uint8)
         self._shade(self._triangles, self._inverse, lighting, sun, direction, lights, shadow, picture, blend=False)
         if self._transparent.any():
-            if self._glass is None:
-                self._glass = np.empty_like(self._inverse), np.empty_like(self._triangles)
-            inverse, triangles = self._glass
+            inverse, triangles = self._buffers.image(self._triangles.shape, transparent=True)
             np.copyto(inverse, self._inverse)
             triangles.fill(NOTHING)
             self._draw(self._transparent, inverse, triangles)

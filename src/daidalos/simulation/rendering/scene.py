@@ -123,14 +123,14 @@ def make_scene(items: Iterable[Item], warn: Callable[[str], None]) -> Scene:
     vertex_starts = np.concatenate(([0], vertex_ends[:-1])).astype(np.int64)[: len(pairs)]
     face_starts = np.concatenate(([0], face_ends[:-1])).astype(np.int64)[: len(pairs)]
     alphas = np.array([part.color[3] for _, part in pairs], dtype=np.float32)
-    vertices = _stack([part.vertices for _, part in pairs], 3).astype(np.float32)
-    faces = _stack([p.faces + start for (_, p), start in zip(pairs, vertex_starts, strict=True)], 3).astype(np.int32)
+    uvs = (np.zeros((len(part.vertices), 2), dtype=np.float32) if part.uv is None else part.uv for _, part in pairs)
+    faces = (part.faces + start for (_, part), start in zip(pairs, vertex_starts, strict=True))
     return Scene(
-        vertices=vertices,
-        normals=_stack([part.normals for _, part in pairs], 3).astype(np.float32),
-        uv=_stack([np.zeros((len(p.vertices), 2)) if p.uv is None else p.uv for _, p in pairs], 2).astype(np.float32),
-        faces=faces,
-        planes=planes_of(vertices[faces].astype(np.float64)).astype(np.float32),
+        vertices=_stack((part.vertices for _, part in pairs), 3, np.float32),
+        normals=_stack((part.normals for _, part in pairs), 3, np.float32),
+        uv=_stack(uvs, 2, np.float32),
+        faces=_stack(faces, 3, np.int32),
+        planes=_stack((_planes(part) for _, part in pairs), 4, np.float32),
         face_part=np.repeat(np.arange(len(pairs), dtype=np.int32), face_ends - face_starts),
         body=np.array([item.body for item, _ in pairs], dtype=np.int64),
         pose=np.array([item.visual.pose.matrix[:3] for item, _ in pairs]).reshape(-1, 3, 4),
@@ -207,5 +207,9 @@ def _emission(visual: Visual) -> tuple[float, float, float]:
     return (0.0, 0.0, 0.0) if glow is None else (glow[0], glow[1], glow[2])
 
 
-def _stack(arrays: list[Any], width: int) -> NDArray[Any]:
-    return np.concatenate(arrays) if arrays else np.zeros((0, width))
+def _planes(part: Part) -> NDArray[np.float32]:
+    return planes_of(part.vertices.astype(np.float32)[part.faces].astype(np.float64)).astype(np.float32)
+
+
+def _stack(arrays: Iterable[NDArray[Any]], width: int, dtype: type[np.generic]) -> NDArray[Any]:
+    return np.concatenate([np.zeros((0, width), dtype=dtype), *(array.astype(dtype, copy=False) for array in arrays)])

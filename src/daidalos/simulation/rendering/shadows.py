@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import InitVar, dataclass, field
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -23,6 +23,39 @@ _SHIFT = 1e-5
 """Change of a position [m] or of an axis below which a body stands."""
 
 _NEVER = np.array((1 << 30, -1, 1 << 30, -1), dtype=np.int64)
+
+
+@dataclass(eq=False)
+class _Canvas:
+    """Map in which what moves is drawn over what stands, shared by the cameras of a scene, one after the other.
+
+    Parameters
+    ----------
+    size : int
+        Pixels a side.
+
+    Attributes
+    ----------
+    owner : ShadowMap or None
+        Whose map it holds.
+    """
+
+    size: InitVar[int]
+    owner: ShadowMap | None = field(default=None, init=False)
+    depths: NDArray[np.float32] = field(init=False)
+    coarse: NDArray[np.float32] = field(init=False)
+
+    def __post_init__(self, size: int) -> None:
+        self.depths, self.coarse = _empty_map(size)
+
+
+def _empty_map(size: int) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+    """Return infinite depths, and their blocks."""
+    blocks = (size >> BLOCK_BITS) + 1
+    return np.full((size, size), np.inf, dtype=np.float32), np.full((blocks, blocks), np.inf, dtype=np.float32)
+
+
+_canvases: WeakKeyDictionary[Scene, dict[int, _Canvas]] = WeakKeyDictionary()
 
 
 class ShadowMap:
@@ -48,11 +81,11 @@ class ShadowMap:
     """
 
     def __init__(self, size: int = 1024) -> None:
-        self.depths = np.full((size, size), np.inf, dtype=np.float32)
-        self.coarse = np.full(((size >> BLOCK_BITS) + 1, (size >> BLOCK_BITS) + 1), np.inf, dtype=np.float32)
+        self._size = size
+        self._still, self._still_coarse = _empty_map(size)
+        self.depths, self.coarse = self._still, self._still_coarse
         self.to_map = np.zeros((3, 4))
         self.texel = 1.0
-        self._still = self.depths.copy()
         self._scene: Scene | None = None
         self._placed = np.empty((0, 3, 4))
         self._scratch = np.empty((0, 3))
@@ -85,6 +118,9 @@ class ShadowMap:
         moved = self._aim(light, eye + ahead * 0.8 * reach, 1.2 * reach)
         if scene is not self._scene:
             self._scene, moved = scene, True
+            known = _canvases.setdefault(scene, {})
+            self._canvas = known.get(self._size) or known.setdefault(self._size, _Canvas(self._size))
+            self.depths, self.coarse = self._canvas.depths, self._canvas.coarse
             self._shapes = _shapes_of(scene, self.texel)
             self._placed = np.empty((len(scene.body), 3, 4))
             self._scratch = np.empty(self._shapes.vertices.shape)
@@ -95,6 +131,11 @@ class ShadowMap:
         if moved or not np.array_equal(moving, self._moving):
             self._moving = moving
             self._draw_still(scene)
+            self._canvas.owner = None
+        if self._canvas.owner is not self:
+            self._canvas.owner = self
+            self.depths[:], self.coarse[:] = self._still, self._still_coarse
+            self._dirty = _NEVER.copy()
         self._draw_moving(scene)
 
     def _find_moving(self, positions: Array, rotations: Array) -> NDArray[np.bool_]:
@@ -107,8 +148,7 @@ class ShadowMap:
 
     def _aim(self, light: Array, centre: Array, reach: float) -> bool:
         """Place the square around a position, in steps so that it rarely moves; return whether it moved."""
-        size = len(self.depths)
-        texel = 2 * reach / size
+        texel = 2 * reach / self._size
         up = np.array((0.0, 1.0, 0.0)) if abs(light[2]) > 0.9 else np.array((0.0, 0.0, 1.0))
         right = np.cross(up, light)
         right /= np.linalg.norm(right)
@@ -128,10 +168,8 @@ class ShadowMap:
     def _draw_still(self, scene: Scene) -> None:
         self._still.fill(np.inf)
         self._draw(scene, scene.casts & ~self._moving, self._still, _NEVER.copy())
-        self.depths[:] = self._still
-        size = len(self.depths)
-        coarsen(self.depths, self.coarse, np.array((0, size - 1, 0, size - 1), dtype=np.int64))
-        self._dirty = _NEVER.copy()
+        last = self._size - 1
+        coarsen(self._still, self._still_coarse, np.array((0, last, 0, last), dtype=np.int64))
 
     def _draw_moving(self, scene: Scene) -> None:
         old = self._dirty
