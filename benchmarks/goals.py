@@ -98,6 +98,8 @@ GOALS = {
     "transport.dds_small_lost": Goal(0),
     "transport.dds_graph_of_1000_topics_s": Goal(5.0),
     "transport.dds_graph_of_1000_topics_missing": Goal(0),
+    "studio_hostile.latency_p50_ms": Goal(10.0, floor="studio_hostile.latency_p50_before_ms"),
+    "studio_hostile.memory_growth_MB": Goal(256.0),
     "soak.memory_growth_mb": Goal(5.0),
     "soak.threads_left": Goal(0),
     "soak.endpoints_left": Goal(0),

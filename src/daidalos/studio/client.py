@@ -67,6 +67,7 @@ class Client:
         self._socket = socket
         self._connections = connections
         self._connection = connection
+        self._turns = turns
         self._turn = Turn(turns)
         self._asset_turn = asyncio.Lock()
         self._drained = asyncio.Event()
@@ -96,7 +97,9 @@ class Client:
                 self._turn.resume()
                 self._connection.complete()
                 if message.type is WSMsgType.TEXT:
-                    await self._receive(self._receive_text, message.data)
+                    async with self._turns.heavy(len(message.data)):
+                        self._turn.resume()
+                        await self._receive(self._receive_text, message.data)
                 elif message.type is WSMsgType.BINARY:
                     await self._receive(self._receive_binary, message.data)
                 if self.outbox.overflowed:
@@ -126,7 +129,7 @@ class Client:
     def stop(self, reason: str) -> None:
         """Close the connection with a reason, for the client's developer and the log."""
         if self._closing is None:
-            _LOGGER.warning("closed a client: %s", reason)
+            self._connections.note_closed(reason)
             self._closing = asyncio.create_task(self._close(reason))
 
     async def _close(self, reason: str) -> None:
@@ -309,21 +312,21 @@ class Client:
 
     async def _answer_asset(self, request: int, uri: str) -> None:
         async with self._asset_turn:
-            await self._wait_until_read()
-            try:
-                if self._assets is None:
-                    raise AssetError("this server has no assets")
-                frame = frames.asset_frame(request, await asyncio.to_thread(self._assets.read, uri))
-            except AssetError as error:
-                frame = frames.asset_error_frame(request, str(error))
-            self.outbox.put_reply(frame)
+            while self.outbox.reply_bytes:
+                self._drained.clear()
+                await self._drained.wait()
+            async with self._connections.room:  # of all clients, one has an asset read
+                while not self._connections.has_room():
+                    await asyncio.sleep(_ROOM_PERIOD_S)
+                self.outbox.put_reply(await self._asset_frame(request, uri))
 
-    async def _wait_until_read(self) -> None:
-        """Wait until the client has read its replies, and all clients enough of theirs."""
-        while self.outbox.reply_bytes or not self._connections.has_room():
-            self._drained.clear()
-            with contextlib.suppress(TimeoutError):
-                await asyncio.wait_for(self._drained.wait(), _ROOM_PERIOD_S)
+    async def _asset_frame(self, request: int, uri: str) -> bytes:
+        try:
+            if self._assets is None:
+                raise AssetError("this server has no assets")
+            return frames.asset_frame(request, await asyncio.to_thread(self._assets.read, uri))
+        except AssetError as error:
+            return frames.asset_error_frame(request, str(error))
 
     def _start(self, request: Coroutine[Any, Any, None]) -> None:
         if len(self._requests) >= MAX_PENDING_REQUESTS or self.outbox.overflowed:

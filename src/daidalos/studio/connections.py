@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import logging
+import time
 from collections.abc import Callable
 from typing import Protocol, cast
 
@@ -17,7 +19,10 @@ from daidalos.studio.limits import (
     SWEEP_PERIOD_S,
 )
 
+_LOGGER = logging.getLogger(__name__)
 _MANY_BYTES = 64 << 10
+_LOG_PERIOD_S = 5.0
+_LONG_S = 0.0002
 
 
 class Stream(Protocol):
@@ -72,7 +77,11 @@ class Connection(asyncio.Protocol):
             self._begun = self._loop.time()
         self.unfinished += len(data)
         self._connections.count(len(data))
+        begin = time.perf_counter()
         self.handler.data_received(data)
+        used = time.perf_counter() - begin
+        if used > _LONG_S:
+            self._connections.throttle(self, used)
 
     def eof_received(self) -> bool | None:
         """Implement `asyncio.Protocol`."""
@@ -125,11 +134,21 @@ class Connection(asyncio.Protocol):
 
 
 class Connections:
-    """All connections of a server; lives in its event loop."""
+    """All connections of a server; lives in its event loop.
+
+    Attributes
+    ----------
+    room
+        Held by who waits for `has_room`, until what there is room for is in place.
+    """
 
     def __init__(self) -> None:
+        self.room = asyncio.Lock()
         self._open: dict[asyncio.Protocol, Connection] = {}
         self._unfinished = 0
+        self._throttled = 0
+        self._closed = 0
+        self._logged = -_LOG_PERIOD_S
 
     def wrap(self, make_handler: Callable[[], asyncio.Protocol]) -> Callable[[], asyncio.Protocol]:
         """Return a function that makes the protocol of a new connection, given what makes that of HTTP."""
@@ -163,14 +182,41 @@ class Connections:
             return
         now = asyncio.get_running_loop().time()
         large = [one for one in self._open.values() if one.unfinished > _MANY_BYTES]
-        if large:
+        if len(large) > 1:
             oldest = max(large, key=lambda one: one.age(now))
             oldest.refuse("413 Content Too Large", "too many bytes of incomplete messages wait in the server")
             oldest.complete()
 
+    def throttle(self, connection: Connection, used_s: float) -> None:
+        """Read no more from a connection for a while, after its data took `used_s` seconds.
+
+        All connections with much data together take a third of the event loop's time.
+        """
+        transport = connection.transport
+        if transport is None or transport.is_closing() or not transport.is_reading():
+            return
+        self._throttled += 1
+
+        def resume() -> None:
+            self._throttled -= 1
+            # The WebSocket itself may have stopped reading meanwhile, until its messages are taken.
+            if not transport.is_closing() and not getattr(connection.handler, "_reading_paused", False):
+                transport.resume_reading()
+
+        transport.pause_reading()
+        asyncio.get_running_loop().call_later(2 * used_s * self._throttled, resume)
+
     def has_room(self) -> bool:
         """Return whether more may be kept for clients to read."""
         return sum(one.held() for one in self._open.values()) < MAX_HELD_BYTES // 2
+
+    def note_closed(self, reason: str) -> None:
+        """Log that a client was closed, and how many were since the last time."""
+        self._closed += 1
+        now = asyncio.get_running_loop().time()
+        if now - self._logged >= _LOG_PERIOD_S:
+            _LOGGER.warning("closed %d client(s), the last one because %s", self._closed, reason)
+            self._closed, self._logged = 0, now
 
     async def sweep(self) -> None:
         """Close connections that take too long or hold too much, for as long as the server runs."""

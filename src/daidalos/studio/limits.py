@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import time
+from collections.abc import AsyncIterator
 
 MAX_CONNECTIONS = 256
 """Connections that are open at once; of these that have not sent a request, the oldest makes room for a new one."""
@@ -15,13 +17,13 @@ STALL_S = 30.0
 """Time after which a client that reads nothing of what waits for it is closed."""
 SWEEP_PERIOD_S = 0.5
 """Period in which connections are checked."""
-MAX_UNFINISHED_BYTES = 96 << 20
-"""Bytes of incomplete messages of all clients; beyond, the one that began first is closed."""
-MAX_HELD_BYTES = 64 << 20
+MAX_UNFINISHED_BYTES = 48 << 20
+"""Bytes of incomplete messages of several clients; beyond, the one that began first is closed."""
+MAX_HELD_BYTES = 48 << 20
 """Bytes that wait to be sent, of all clients; beyond, the ones that read nothing for longest are closed."""
 MAX_TEXT_BYTES = 4 << 20
 """Bytes of one text frame."""
-MAX_ENTRIES = 4096
+MAX_ENTRIES = 2048
 """Entries of one list of a text frame."""
 MAX_PUBLICATIONS = 256
 """Channels that one client advertises."""
@@ -35,6 +37,8 @@ MAX_ERROR_LENGTH = 500
 """Characters of an error's text, which may repeat what a client sent."""
 MAX_REASON_BYTES = 120
 """Bytes of the reason for which a connection is closed (RFC 6455, 5.5)."""
+HEAVY_BYTES = 2 << 10
+"""Bytes of a text frame that takes long to read."""
 SLICE_S = 0.001
 """Time that one client's requests take before other clients have their turn."""
 
@@ -44,6 +48,18 @@ class Turns:
 
     def __init__(self) -> None:
         self._busy = 0
+        self._heavy = asyncio.Lock()
+
+    @contextlib.asynccontextmanager
+    async def heavy(self, size: int) -> AsyncIterator[None]:
+        """Handle a frame of `size` bytes: large ones one after the other, with as much time for others between."""
+        if size < HEAVY_BYTES:
+            yield
+            return
+        async with self._heavy:
+            begin = time.perf_counter()
+            yield
+            await asyncio.sleep(time.perf_counter() - begin)
 
     async def give(self, used_s: float) -> None:
         """Wait until others had their turn, after `used_s` seconds of work."""

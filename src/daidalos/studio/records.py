@@ -49,16 +49,21 @@ def from_json(record: type[T], value: Mapping[str, Any]) -> T:
     RecordError
         When a required key is missing, or a value has another type.
     """
-    hints = field_types(record)  # type: ignore[arg-type]
     arguments = {}
-    for field in fields(record):  # type: ignore[arg-type]
-        key = key_of(field.name)
+    for name, key, hint, is_needed in _layout(record):  # type: ignore[arg-type]
         found = value.get(key)
         if found is not None:
-            arguments[field.name] = _read(hints[field.name], found, key)
-        elif field.default is MISSING:
-            raise RecordError(f'expected "{key}" to be {_expected(hints[field.name])}')
+            arguments[name] = _read(hint, found, key)
+        elif is_needed:
+            raise RecordError(f'expected "{key}" to be {_expected(hint)}')
     return record(**arguments)
+
+
+@cache
+def _layout(record: type) -> list[tuple[str, str, Any, bool]]:
+    """Return the name, key and type of a record's fields, and whether they are required."""
+    hints = field_types(record)
+    return [(field.name, key_of(field.name), hints[field.name], field.default is MISSING) for field in fields(record)]
 
 
 @cache
@@ -79,15 +84,18 @@ def _without_none(hint: Any) -> Any:
 
 
 def _read(hint: Any, value: Any, key: str) -> Any:
-    wrong = RecordError(f'expected "{key}" to be {_expected(hint)}')
     if get_origin(hint) is tuple:
         element = get_args(hint)[0]
         if not isinstance(value, list) or not all(_fits(element, item) for item in value):
-            raise wrong
+            raise _wrong(hint, key)
         return tuple(from_json(element, item) if is_record(element) else item for item in value)
     if not _fits(hint, value):
-        raise wrong
+        raise _wrong(hint, key)
     return from_json(hint, value) if is_record(hint) else value
+
+
+def _wrong(hint: Any, key: str) -> RecordError:
+    return RecordError(f'expected "{key}" to be {_expected(hint)}')
 
 
 def is_record(hint: Any) -> TypeGuard[type[Any]]:

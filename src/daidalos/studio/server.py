@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import logging
 import socket
 import ssl
 import threading
@@ -13,6 +14,7 @@ from concurrent.futures import Future
 from pathlib import Path
 
 from aiohttp import web
+from aiohttp.http_exceptions import HttpProcessingError
 from aiohttp.typedefs import Handler
 
 from daidalos.studio import protocol
@@ -53,6 +55,15 @@ REFRESH_DELAY_S = 0.05  # a graph changes in bursts when nodes start
 TIME_PERIOD_S = 1 / 60  # a screen shows no more
 CLOSE_TIMEOUT_S = 0.3
 KEEP_ALIVE_S = 30.0
+
+
+def _is_own_fault(record: logging.LogRecord) -> bool:
+    """Return whether an error of HTTP is not the client's, who could fill the log with what is not HTTP."""
+    return not (record.exc_info and isinstance(record.exc_info[1], HttpProcessingError | ConnectionError))
+
+
+_HTTP_LOGGER = logging.getLogger(f"{__name__}.http")
+_HTTP_LOGGER.addFilter(_is_own_fault)
 
 
 class StudioServer:
@@ -247,6 +258,7 @@ class StudioServer:
             handle_signals=False,
             shutdown_timeout=CLOSE_TIMEOUT_S,
             keepalive_timeout=KEEP_ALIVE_S,
+            logger=_HTTP_LOGGER,
         )
         observing = None
         listeners: list[asyncio.Server] = []
