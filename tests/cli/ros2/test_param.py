@@ -1,11 +1,13 @@
 """What of `ros2 param` no transcript shows."""
 
+import subprocess
+
 import pytest
 import yaml
 
 from daidalos.cli.ros2.param.dump import nested
 
-from .commands import ros2
+from .commands import ROS2, ros2
 
 NODE = """
 import rclpy
@@ -54,6 +56,14 @@ def test_what_is_dumped_can_be_loaded(env, talker, tmp_path):
     assert "Set parameter start_type_description_service failed: " in refused.err
     result = ros2("param", "dump", "/lab/talker", "--output-dir", "nowhere", env=env, cwd=tmp_path)
     assert (result.status, result.err) == (1, "nowhere/lab__talker.yaml: No such file or directory\n")
+
+
+def test_a_node_that_is_starting_is_waited_for(env, beside):
+    words = [*ROS2, "param", "get", "/lab/talker", "speed"]
+    with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=env) as asking:
+        assert asking.stderr.readline() == "waiting for '/lab/talker', at most 10 s\n"
+        beside(NODE)
+        assert asking.communicate(timeout=60)[0] == "Double value is: 1.0\n"
 
 
 def test_lists_are_filtered(env, talker):

@@ -9,7 +9,7 @@ from ros2cli.services import call
 
 from daidalos.cli.ros2.completion import complete, complete_packages
 from daidalos.cli.ros2.errors import CliError
-from daidalos.cli.ros2.graph import absolute
+from daidalos.cli.ros2.graph import absolute, wait_for_name
 from daidalos.common.suggestions import did_you_mean
 from daidalos.transport.graph import EndpointKind, Graph
 
@@ -41,10 +41,10 @@ def containers(graph: Graph) -> list[str]:
 
 
 def find_container(graph: Graph, name: str) -> str:
-    """Return the full name of a container; CliError if it does not exist."""
-    full_name, known = absolute(name), containers(graph)
-    if full_name not in known:
-        raise CliError(f"Unable to find container node '{name}'{did_you_mean(full_name, known)}")
+    """Return the full name of a container; CliError if it does not come, see `wait_for_name`."""
+    full_name = absolute(name)
+    if not wait_for_name(graph, full_name, lambda: containers(graph)):
+        raise CliError(f"Unable to find container node '{name}'{did_you_mean(full_name, containers(graph))}")
     return full_name
 
 

@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+import sys
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Callable, Collection, Iterable
 
 from ros2cli.graph import NamesAndTypes, visible
 
 from daidalos.cli.ros2.errors import CliError
+from daidalos.common.suggestions import near
 from daidalos.transport.graph import EndpointInfo, EndpointKind, Graph, NodeInfo, names_and_types
 
+START_S = 10.0
+"""How long a node that was just started may take to be in the graph [s]."""
+
+MISSPELT_S = 1.0
 TOPIC_KINDS = (EndpointKind.PUBLISHER, EndpointKind.SUBSCRIPTION)
 SERVICE_KINDS = (EndpointKind.SERVICE, EndpointKind.CLIENT)
 _FEEDBACK = "/_action/feedback"
@@ -48,6 +54,30 @@ def action_parties(graph: Graph, action: str, kind: EndpointKind) -> list[Endpoi
 def nodes(graph: Graph, include_hidden: bool = True) -> list[NodeInfo]:
     """Return the nodes, ordered by full name."""
     return [node for node in graph.nodes() if include_hidden or not node.name.startswith("_")]
+
+
+def wait_for_name(graph: Graph, name: str, known: Callable[[], Collection[str]], limit_s: float | None = None) -> bool:
+    """Return whether a name is known, or becomes known while its program may still be starting.
+
+    Parameters
+    ----------
+    graph
+        Changes of this graph end the wait early.
+    name
+        The full name of a node.
+    known
+        Returns the known names.
+    limit_s
+        How long to wait [s]; None for `START_S`, which is said, or for a part of it where a near name is known, as then
+        the name is rather misspelt.
+    """
+    if name in known():
+        return True
+    if limit_s is None:
+        limit_s = MISSPELT_S if near(name, known()) else START_S
+        if limit_s == START_S:
+            print(f"waiting for '{name}', at most {START_S:g} s", file=sys.stderr, flush=True)
+    return graph.wait_for(lambda: name in known(), limit_s)
 
 
 def duplicate_names(found: Iterable[NodeInfo]) -> list[str]:

@@ -9,7 +9,7 @@ from ros2cli.services import call
 
 from daidalos.cli.ros2.completion import complete
 from daidalos.cli.ros2.errors import CliError
-from daidalos.cli.ros2.graph import absolute, nodes
+from daidalos.cli.ros2.graph import absolute, nodes, wait_for_name
 from daidalos.common.suggestions import did_you_mean
 from daidalos.transport.graph import EndpointKind, Graph
 
@@ -45,11 +45,15 @@ def managed_nodes(graph: Graph, include_hidden: bool = False) -> list[str]:
     ]
 
 
-def find_managed(graph: Graph, args: Namespace) -> str:
-    """Return the full name of a managed node; CliError if it does not exist."""
-    name, known = absolute(args.node_name), managed_nodes(graph, args.include_hidden_nodes)
-    if name not in known:
-        raise CliError(f"Node not found{did_you_mean(name, known)}")
+def find_managed(graph: Graph, args: Namespace, limit_s: float | None = None) -> str:
+    """Return the full name of a managed node; CliError if it does not come, see `wait_for_name`."""
+    name = absolute(args.node_name)
+
+    def known() -> list[str]:
+        return managed_nodes(graph, args.include_hidden_nodes)
+
+    if not wait_for_name(graph, name, known, limit_s):
+        raise CliError(f"Node not found{did_you_mean(name, known())}")
     return name
 
 

@@ -11,7 +11,7 @@ from ros2param.api import call_describe_parameters, call_get_parameters, call_li
 
 from daidalos.cli.ros2.completion import complete, complete_nodes
 from daidalos.cli.ros2.errors import CliError
-from daidalos.cli.ros2.graph import absolute, nodes
+from daidalos.cli.ros2.graph import absolute, nodes, wait_for_name
 from daidalos.common.suggestions import did_you_mean, hint_line
 
 if TYPE_CHECKING:
@@ -36,9 +36,7 @@ def complete_parameters(action: Action, node_key: str = "node_name") -> Action:
 
 def add_timeout_argument(parser: ArgumentParser) -> None:
     """Declare the argument of the discovery timeout."""
-    parser.add_argument(
-        "--timeout", metavar="N", type=float, default=0.0, help="Wait for N seconds until node becomes available"
-    )
+    parser.add_argument("--timeout", metavar="N", type=float, help="Wait for N seconds until node becomes available")
 
 
 def find_node(node: Node, args: Namespace) -> str:
@@ -49,7 +47,7 @@ def find_node(node: Node, args: Namespace) -> str:
     def known() -> list[str]:
         return [other.full_name for other in nodes(graph, args.include_hidden_nodes)]
 
-    if not graph.wait_for(lambda: name in known(), getattr(args, "timeout", 0.0)):
+    if not wait_for_name(graph, name, known, getattr(args, "timeout", None)):
         raise CliError(f"Node not found{did_you_mean(name, known())}")
     return name
 

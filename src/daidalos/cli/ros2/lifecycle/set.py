@@ -40,5 +40,5 @@ class SetVerb(Verb):
 
 def _labels(parsed_args: Namespace, **_: Any) -> list[str]:
     with direct_node(parsed_args) as node:
-        name = find_managed(node.handle.graph, parsed_args)
+        name = find_managed(node.handle.graph, parsed_args, 0.0)
         return [found.transition.label for found in transitions(node, name)]
