@@ -35,3 +35,23 @@ def test_programs_that_forget_their_node_end_well(monkeypatch, domain):
     for _ in range(40):
         done = subprocess.run([sys.executable, "-c", PROGRAM], capture_output=True, text=True, timeout=60)
         assert (done.returncode, done.stderr) == (0, "")
+
+
+DROPPED = """
+import gc, rclpy
+from rclpy.context import Context
+def drop():
+    context = Context()
+    rclpy.init(context=context)
+    rclpy.create_node('forgotten', context=context)
+drop()
+gc.collect()
+"""
+
+
+@pytest.mark.slow
+def test_programs_that_drop_their_context_end_well(monkeypatch, domain):
+    monkeypatch.setenv("ROS_DOMAIN_ID", str(domain))
+    for _ in range(10):
+        done = subprocess.run([sys.executable, "-c", DROPPED], capture_output=True, text=True, timeout=60)
+        assert (done.returncode, done.stderr) == (0, "")

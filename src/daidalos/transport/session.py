@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import _thread
 import threading
 from collections.abc import Callable
 from typing import Any
 
 from daidalos.interfaces.codec import codec_of
+from daidalos.transport.abandoned import AbandonedObjects
 from daidalos.transport.backend import Backend
 from daidalos.transport.client import Client
 from daidalos.transport.graph import EndpointInfo, EndpointKind, Graph, NodeInfo
@@ -18,8 +18,6 @@ from daidalos.transport.service import Service
 from daidalos.transport.subscription import Subscription
 
 Watcher = Callable[[bool, EndpointInfo], None]
-
-_CLOSING_S = 2.0
 
 
 def _nothing() -> None:
@@ -51,7 +49,7 @@ class Session:
         self._watchers: dict[tuple[str, EndpointKind], dict[Watcher, None]] = {}
         self._own: set[bytes] = set()
         self._closed = False
-        self._closing: list[_thread.LockType] = []  # changed without a lock, as `abandon` may interrupt its holder
+        self._abandoned = AbandonedObjects()
         self._stop_listening = self.graph.listen(self._on_graph_change)
         keep_memory()
         backend.start(self.graph)
@@ -62,7 +60,7 @@ class Session:
             closed, self._closed = self._closed, True
         if closed:
             return
-        self._wait_for_abandoned()
+        self._abandoned.finish()
         self._stop_listening()
         with self._lock:
             groups = (self._publishers, self._subscriptions, self._services, self._clients)
@@ -72,32 +70,8 @@ class Session:
         self.backend.close()
 
     def abandon(self, close: Callable[[], None]) -> None:
-        """Close something unreferenced in a thread; `close` must not refer to it.
-
-        The garbage collector finds such things on any thread, with any lock held: they are closed on another.
-        """
-        if self._closed:
-            return
-        done = _thread.allocate_lock()
-        done.acquire()
-
-        def run() -> None:
-            try:
-                close()
-            finally:
-                self._closing.remove(done)
-                done.release()
-
-        self._closing.append(done)
-        try:
-            _thread.start_new_thread(run, ())
-        except RuntimeError:  # the process ends, and all is closed anyway
-            self._closing.remove(done)
-
-    def _wait_for_abandoned(self) -> None:
-        """Wait for pending closes; a thread inside the middleware must not outlive the interpreter."""
-        for done in tuple(self._closing):
-            done.acquire(timeout=_CLOSING_S)
+        """Close something unreferenced in a thread; `close` must not refer to it."""
+        self._abandoned.close(close)
 
     def create_node(self, name: str, namespace: str, enclave: str = "/") -> tuple[NodeInfo, Callable[[], None]]:
         """Create a node; return its description and a function that removes it."""

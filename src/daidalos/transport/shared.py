@@ -3,18 +3,29 @@
 from __future__ import annotations
 
 import atexit
+import functools
 import os
 import signal
 import threading
+from importlib.util import find_spec
 
+from daidalos.transport.abandoned import AbandonedObjects
 from daidalos.transport.backend import Backend
 from daidalos.transport.environment import Environment, EnvironmentVariableError
 from daidalos.transport.session import Session
 
 _lock = threading.Lock()
 _sessions: dict[tuple[int, Environment], tuple[Session, int]] = {}
+_abandoned = AbandonedObjects()
 
-MIDDLEWARES = ("rmw_zenoh_cpp", "rmw_cyclonedds_cpp", "rmw_daidalos_inprocess")
+# The packages of the middlewares that reach other processes.
+_LIBRARIES = {"rmw_zenoh_cpp": "zenoh", "rmw_cyclonedds_cpp": "cyclonedds"}
+MIDDLEWARES = (*_LIBRARIES, "rmw_daidalos_inprocess")
+
+
+def installed_middlewares() -> list[str]:
+    """Return the names of the middlewares that reach other processes and whose libraries are installed."""
+    return [name for name, library in _LIBRARIES.items() if find_spec(library) is not None]
 
 
 def acquire(environment: Environment) -> Session:
@@ -36,11 +47,18 @@ def release(environment: Environment) -> None:
     """Release a session; the last release closes it."""
     key = (os.getpid(), environment)
     with _lock:
-        session, users = _sessions.pop(key)
+        session, users = _sessions.pop(key, (None, 0))
+        if session is None:
+            return  # the process ends, and has left the graph
         if users > 1:
             _sessions[key] = (session, users - 1)
             return
     session.close()
+
+
+def abandon(environment: Environment) -> None:
+    """Release a session in a thread, on behalf of an object that the garbage collector found."""
+    _abandoned.close(functools.partial(release, environment))
 
 
 def make_backend(environment: Environment) -> Backend:
@@ -74,6 +92,7 @@ def _close_all() -> None:
     """Leave the graph when the process ends without having done so."""
     if threading.current_thread() is threading.main_thread():
         signal.signal(signal.SIGINT, signal.SIG_IGN)  # a second Ctrl-C must not leave it half done
+    _abandoned.finish()
     with _lock:
         mine = [session for (process, _), (session, _) in _sessions.items() if process == os.getpid()]
         _sessions.clear()

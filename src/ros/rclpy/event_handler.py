@@ -55,27 +55,18 @@ class EventHandler(Waitable):
         self.callback = callback
         self.event_type = event_type
         self._rcl_hook = ReadyHook(self)
-        self._watched: list[tuple[EventSource, Callable[[Any], Any]]] = []
-        self._watch(parent_impl, event_type, callback)
-
-    def _watch(self, endpoint: TopicHandle, event_type: IntEnum, callback: Callable[[Any], Any]) -> None:
-        """Call a function at an event; each after the first has no handler of its own in the endpoint's list."""
-        self._watched.append((event_source(endpoint, event_type, self._rcl_hook), callback))
+        self._source: EventSource = event_source(parent_impl, event_type, self._rcl_hook)
 
     def _rcl_take(self) -> tuple[Callable[..., Any], tuple[Any, ...]] | None:
-        for source, callback in self._watched:
-            status = source.take()
-            if status is not None:
-                return callback, (status,)
-        return None
+        status = self._source.take()
+        return None if status is None else (self.callback, (status,))
 
     def _rcl_has_more(self) -> bool:
-        return any(source.is_ready for source, _ in self._watched)
+        return self._source.is_ready
 
     def destroy(self) -> None:
         """Call no more."""
-        for source, _ in self._watched:
-            source.close()
+        self._source.close()
 
 
 class QoSEventHandler(EventHandler):
@@ -98,19 +89,14 @@ class _EventCallbacks:
         group: CallbackGroup,
         handle: TopicHandle,
     ) -> list[EventHandler]:
-        """Return a handler for every function; one for the defaults together, whose first must be wanted always."""
-        handlers: dict[IntEnum, EventHandler] = {}
+        """Return a handler for every function, and for every default in whose place there is none."""
         chosen = {kind: callback for kind, callback in callbacks.items() if callback is not None}
         if self.use_default_callbacks:
-            first, *others = defaults
-            chosen.setdefault(first, defaults[first])
-        for kind, callback in chosen.items():
-            handlers[kind] = EventHandler(callback_group=group, callback=callback, event_type=kind, parent_impl=handle)
-        if self.use_default_callbacks:
-            for kind in others:
-                if kind not in chosen:
-                    handlers[first]._watch(handle, kind, defaults[kind])
-        return list(handlers.values())
+            chosen = defaults | chosen
+        return [
+            EventHandler(callback_group=group, callback=callback, event_type=kind, parent_impl=handle)
+            for kind, callback in chosen.items()
+        ]
 
 
 class SubscriptionEventCallbacks(_EventCallbacks):

@@ -13,6 +13,7 @@ from rclpy.context import Context
 from rclpy.exceptions import NotInitializedException
 from rclpy.impl.entities import NodeHandle
 from rclpy.impl.errors import InvalidHandle
+from rclpy.impl.errors import NodeNameNonExistentError as NodeNameNonExistentError
 from rclpy.impl.lazy_reexport import lazy_reexport
 from rclpy.impl.node_entities import NodeEntities, depth_or_profile
 from rclpy.impl.node_graph import NodeGraph

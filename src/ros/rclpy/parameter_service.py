@@ -47,17 +47,11 @@ class ParameterService:
         return response
 
     def _get_parameters_callback(self, request: Any, response: Any) -> Any:
-        from rcl_interfaces.msg import ParameterValue
-
         node = self._get_node()
-        for name in request.names:
-            try:
-                response.values.append(node.get_parameter(name).get_parameter_value())
-            except ParameterUninitializedException:
-                response.values.append(ParameterValue())
-            except ParameterNotDeclaredException:
-                response.values = []
-                return response
+        try:
+            response.values = [node.get_parameter(name).get_parameter_value() for name in request.names]
+        except (ParameterNotDeclaredException, ParameterUninitializedException):
+            response.values = []
         return response
 
     def _get_parameter_types_callback(self, request: Any, response: Any) -> Any:

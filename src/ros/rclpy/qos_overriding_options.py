@@ -112,7 +112,7 @@ def _declare_qos_parameters(
             continue  # only publishers have one
         field = policy.name.lower()
         name = f"qos_overrides.{topic_name}.{entity}.{field}"
-        parameter = _declared(node, name, _to_parameter(policy, getattr(qos, field)))
+        parameter = _declared(node, name, _get_qos_policy_parameter(qos, policy))
         try:
             setattr(result, field, _from_parameter(policy, parameter.value))
         except (KeyError, ValueError, AssertionError) as error:
@@ -138,7 +138,9 @@ def _declared(node: NodeParameters, name: str, value: Any) -> Parameter[Any]:
         return node.get_parameter(name)
 
 
-def _to_parameter(policy: QoSPolicyKind, value: Any) -> Any:
+def _get_qos_policy_parameter(qos: QoSProfile, policy: QoSPolicyKind) -> Any:
+    """Return a policy of a profile as the value of a parameter."""
+    value = getattr(qos, policy.name.lower())
     if policy in _ENUMS:
         return value.short_key
     return value.nanoseconds if policy in _DURATIONS else value

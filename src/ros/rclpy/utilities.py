@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from daidalos.transport.environment import read_environment
-from daidalos.transport.shared import MIDDLEWARES
+from daidalos.transport.shared import installed_middlewares
 from rclpy.constants import S_TO_NS
 
 if TYPE_CHECKING:
@@ -83,8 +83,8 @@ def get_rmw_implementation_identifier() -> str:
 
 
 def get_available_rmw_implementations() -> set[str]:
-    """Return the names of the middlewares that can be used."""
-    return set(MIDDLEWARES)
+    """Return the names of the middlewares that are installed and reach other processes."""
+    return set(installed_middlewares())
 
 
 def timeout_sec_to_nsec(timeout_sec: float | None) -> int:

@@ -166,7 +166,8 @@ def test_handlers_are_made_for_what_is_asked_and_the_warnings(node: Node) -> Non
     for name in ("deadline", "liveliness", "matched", "incompatible_qos"):
         counts.append(len(node.create_publisher(String, "topic", 10, event_callbacks=callbacks).event_handlers))
         setattr(callbacks, name, print)
-    assert counts == [1, 2, 3, 4]  # the warnings share one handler, or the one for incompatible QoS has the other
+    assert len(node.create_publisher(String, "topic", 10, event_callbacks=callbacks).event_handlers) == 5
+    assert counts == [2, 3, 4, 5]
     silent = SubscriptionEventCallbacks(use_default_callbacks=False)
     assert node.create_subscription(String, "topic", print, 10, event_callbacks=silent).event_handlers == []
 

@@ -7,11 +7,13 @@ import pytest
 import rclpy.logging
 from rcl_interfaces.msg import Log
 from rcl_interfaces.srv import GetLoggerLevels, SetLoggerLevels
+from rclpy.clock import ROSClock
 from rclpy.context import Context
 from rclpy.impl.log_output import OUTPUT
 from rclpy.logging import LoggingSeverity, get_logger
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy
+from rclpy.time import Time
 
 from ros.rclpy.waiting import executor_of, run_ready
 
@@ -146,3 +148,13 @@ def test_the_logger_of_a_node_that_is_gone_has_no_children(graph: Context) -> No
     gc.collect()
     with pytest.raises(RuntimeError, match="node is destroyed"):
         logger.get_child("part")
+
+
+def test_a_clock_at_zero_throttles() -> None:
+    clock = ROSClock()
+    clock._set_ros_time_is_active(True)
+    logger, logged = get_logger("tested"), []
+    for seconds in range(5):
+        clock.set_ros_time_override(Time(seconds=seconds, clock_type=clock.clock_type))
+        logged.append(logger.info("message", throttle_duration_sec=2, throttle_time_source_type=clock))
+    assert logged == [False, False, True, False, True]

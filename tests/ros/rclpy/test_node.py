@@ -3,6 +3,7 @@
 import subprocess
 import sys
 from collections.abc import Callable
+from importlib.util import find_spec
 from typing import Any
 from unittest.mock import Mock
 
@@ -31,7 +32,7 @@ from rclpy.qos import (
     qos_policy_name_from_kind,
 )
 from rclpy.topic_endpoint_info import TopicEndpointInfo, TopicEndpointTypeEnum
-from rclpy.utilities import remove_ros_args, timeout_sec_to_nsec
+from rclpy.utilities import get_available_rmw_implementations, remove_ros_args, timeout_sec_to_nsec
 from rclpy.validate_full_topic_name import validate_full_topic_name
 from rclpy.validate_namespace import validate_namespace
 from rclpy.validate_node_name import validate_node_name
@@ -313,3 +314,10 @@ def test_names_that_programs_use_are_there(statement: str) -> None:
 def test_what_is_no_module_is_missing() -> None:
     with pytest.raises(AttributeError, match="no_module"):
         _ = rclpy.no_module
+
+
+def test_middlewares_that_are_named_can_be_used() -> None:
+    available = get_available_rmw_implementations()
+    assert "rmw_zenoh_cpp" in available
+    assert ("rmw_cyclonedds_cpp" in available) == (find_spec("cyclonedds") is not None)
+    assert "rmw_daidalos_inprocess" not in available

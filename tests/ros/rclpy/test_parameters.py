@@ -361,3 +361,21 @@ def test_parameters_of_another_node(graph: Context, file: Path) -> None:
     elsewhere.write_text("elsewhere: {ros__parameters: {count: 7}}")
     assert result(client.load_parameter_file(str(elsewhere))).results[0].successful
     assert other.get_parameter("count").value == 7
+
+
+def test_what_a_callback_adds_must_be_declared(node: Node) -> None:
+    node.declare_parameter("known", 0)
+
+    def add(parameters: list[Parameter[Any]]) -> list[Parameter[Any]]:
+        return [*parameters, Parameter("unknown", value=1)]
+
+    node.add_pre_set_parameters_callback(add)
+    with pytest.raises(ParameterNotDeclaredException, match="unknown"):
+        node.set_parameters([Parameter("known", value=1)])
+    assert node.get_parameter("known").value == 0
+
+
+def test_a_static_type_needs_a_value(node: Node) -> None:
+    described = ParameterDescriptor(type=ParameterType.PARAMETER_STRING)
+    with pytest.raises(ValueError, match="declared without a value"):
+        node.declare_parameter("typed", descriptor=described)

@@ -7,7 +7,7 @@ from argparse import Action, ArgumentParser, Namespace
 from typing import TYPE_CHECKING, Any
 
 from ros2cli.node.direct import direct_node
-from ros2param.api import call_describe_parameters, call_get_parameters, call_list_parameters, call_set_parameters
+from ros2param.api import call_describe_parameters, call_list_parameters, call_set_parameters
 
 from daidalos.cli.ros2.completion import complete, complete_nodes
 from daidalos.cli.ros2.errors import CliError
@@ -55,11 +55,6 @@ def find_node(node: Node, args: Namespace) -> str:
 def list_parameters(node: Node, node_name: str, prefixes: list[str] | None = None) -> list[str]:
     """Return the names of a node's parameters, sorted."""
     return sorted(call_list_parameters(node=node, node_name=node_name, prefixes=prefixes).result.names)
-
-
-def get_parameters(node: Node, node_name: str, names: list[str]) -> list[Any]:
-    """Return the values of parameters: `rcl_interfaces/msg/ParameterValue`."""
-    return list(call_get_parameters(node=node, node_name=node_name, parameter_names=names).values)
 
 
 def set_parameters(node: Node, node_name: str, parameters: list[Any]) -> list[Any]:

@@ -128,7 +128,10 @@ class GraphParameters:
     async def _read(self, client: AsyncParameterClient, node: str, names: list[str]) -> list[Parameter]:
         if not names:
             names = list((await client.list_parameters()).result.names)
-        values = (await client.get_parameters(names)).values
+        values = list((await client.get_parameters(names)).values)
+        if len(values) != len(names) > 1:
+            # A node answers with no value at all when one of the parameters has none.
+            return [one for name in names for one in await self._read(client, node, [name])]
         return [
             Parameter(f"{node}.{name}", parameter_value_to_python(value))
             for name, value in zip(names, values, strict=False)

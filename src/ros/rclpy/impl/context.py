@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 import sys
 import threading
 import weakref
@@ -111,4 +110,4 @@ class ContextHandle(Destroyable):
     def __del__(self) -> None:
         if getattr(self, "_released", True) or sys.is_finalizing():
             return
-        self.session.abandon(functools.partial(shared.release, self.environment))
+        shared.abandon(self.environment)

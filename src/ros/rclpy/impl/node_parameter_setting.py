@@ -76,6 +76,7 @@ class NodeParameterSetting:
                     "modifying the original parameters list.",
                 )
             parameters = modified
+            self._rcl_check_declared(parameters)
         for parameter in parameters:
             descriptor = self._descriptors.get(parameter.name) or ParameterDescriptor(dynamic_typing=True)
             result = check_change(parameter, descriptor)

@@ -53,9 +53,10 @@ def initial(name: str, value: Any, descriptor: ParameterDescriptor) -> Parameter
             raise ValueError("When declaring a parameter with a type, it cannot be of dynamic typing")
         descriptor.type = int(value)
         return Parameter(name, ParameterType.NOT_SET)
-    if value is None and not descriptor.dynamic_typing and descriptor.type == ParameterType.NOT_SET:
+    if value is None and not descriptor.dynamic_typing:
         raise ValueError(
-            f"Parameter '{name}' has neither a value nor a type; give one or set dynamic_typing in its descriptor"
+            f"Parameter '{name}' is declared without a value: give one, a `Parameter.Type` in its place, or set "
+            "dynamic_typing in its descriptor"
         )
     parameter: Parameter[Any] = Parameter(name, value=value)
     if value is not None:

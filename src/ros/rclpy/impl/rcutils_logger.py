@@ -98,7 +98,8 @@ class Throttle(LoggingFilter):
             raise ValueError(
                 f"Received throttle_time_source_type of '{source}' is not a clock instance and not a ClockType"
             )
-        context["throttle_last_logged"] = None
+        # By a clock, nothing is logged in the first period after time zero, as in ROS 2.
+        context["throttle_last_logged"] = 0 if hasattr(source, "now") else None
 
     @staticmethod
     def should_log(context: dict[str, Any]) -> bool:
@@ -111,7 +112,7 @@ class Throttle(LoggingFilter):
         else:
             now = time.time_ns()
         last = context["throttle_last_logged"]
-        if last is not None and now - last < context["throttle_duration_sec"] * 1e9 and now >= last:
+        if last is not None and last <= now < last + context["throttle_duration_sec"] * 1e9:
             return False
         context["throttle_last_logged"] = now
         return True

@@ -64,6 +64,18 @@ def call_get_parameters(*, node: Any, node_name: str, parameter_names: Sequence[
     return _call(node, GetParameters, node_name, "get_parameters", request)
 
 
+def values_of(node: Any, node_name: str, parameter_names: Sequence[str]) -> list[Any]:
+    """Return the values of a node's parameters, of type NOT_SET for those without one; see `call_list_parameters`."""
+    from rcl_interfaces.msg import ParameterValue
+
+    values = list(call_get_parameters(node=node, node_name=node_name, parameter_names=parameter_names).values)
+    if len(values) == len(parameter_names):
+        return values
+    # A node answers with no value at all when one of the parameters has none.
+    answers = [call_get_parameters(node=node, node_name=node_name, parameter_names=[name]) for name in parameter_names]
+    return [answer.values[0] if answer.values else ParameterValue() for answer in answers]
+
+
 def call_describe_parameters(*, node: Any, node_name: str, parameter_names: Sequence[str] | None = None) -> Any:
     """Request the descriptions of a node's parameters; see `call_list_parameters`."""
     from rcl_interfaces.srv import DescribeParameters
@@ -124,7 +136,7 @@ def _unchanged(node: Any, node_name: str, parameters: Sequence[Parameter]) -> se
     if not names:
         return set()
     descriptors = call_describe_parameters(node=node, node_name=node_name, parameter_names=names).descriptors
-    values = call_get_parameters(node=node, node_name=node_name, parameter_names=names).values
+    values = values_of(node, node_name, names)
     return {
         one.name
         for one, descriptor, value in zip(parameters, descriptors, values, strict=False)

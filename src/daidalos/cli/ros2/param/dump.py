@@ -9,6 +9,7 @@ from typing import Any
 
 from ros2cli.node.direct import direct_node
 from ros2cli.node.strategy import add_arguments as add_graph_arguments
+from ros2param.api import values_of
 
 from daidalos.cli.ros2.errors import CliError
 from daidalos.cli.ros2.extension import Status, Verb
@@ -16,7 +17,6 @@ from daidalos.cli.ros2.parameters import (
     add_node_arguments,
     add_timeout_argument,
     find_node,
-    get_parameters,
     list_parameters,
 )
 
@@ -42,7 +42,7 @@ class DumpVerb(Verb):
         with direct_node(args) as node:
             name = find_node(node, args)
             names = list_parameters(node, name)
-            values = map(parameter_value_to_python, get_parameters(node, name, names))
+            values = map(parameter_value_to_python, values_of(node, name, names))
             tree = nested(zip(names, values, strict=True))
         text = yaml.safe_dump({name: {"ros__parameters": tree}}, default_flow_style=False)
         if args.output_dir is None:

@@ -6,6 +6,7 @@ from argparse import ArgumentParser, Namespace
 
 from ros2cli.node.direct import direct_node
 from ros2cli.node.strategy import add_arguments as add_graph_arguments
+from ros2param.api import call_get_parameters
 
 from daidalos.cli.ros2.errors import CliError
 from daidalos.cli.ros2.extension import Status, Verb
@@ -14,7 +15,6 @@ from daidalos.cli.ros2.parameters import (
     add_timeout_argument,
     complete_parameters,
     find_node,
-    get_parameters,
     suggest,
 )
 
@@ -41,7 +41,8 @@ class GetVerb(Verb):
 
         with direct_node(args) as node:
             name = find_node(node, args)
-            values = get_parameters(node, name, [args.parameter_name])
+            answer = call_get_parameters(node=node, node_name=name, parameter_names=[args.parameter_name])
+            values = answer.values
             value = parameter_value_to_python(values[0]) if values else None
             if value is None:
                 suggest(node, name, args.parameter_name)
