@@ -1,0 +1,3 @@
+"""Viewer of behaviour trees."""
+
+EXECUTABLES = {"py-trees-tree-watcher": "tree_watcher"}
