@@ -12,11 +12,11 @@ if TYPE_CHECKING:
 
 MAX_BYTES = 64 << 20
 MAX_DEPTH = 100
-"""Lists and mappings within each other; Python's recursion limit allows some hundreds."""
+"""Lists and mappings, or XML elements, within each other; Python's recursion limit allows some hundreds."""
 MAX_NODES = 1_000_000
 """Values of a document, counted as often as they occur once aliases are replaced by what they stand for."""
 
-_TOO_DEEP = f"more than {MAX_DEPTH} levels within each other"
+TOO_DEEP = f"more than {MAX_DEPTH} levels within each other"
 _LONG = 1 << 16
 """Characters from which on the reader in C is used, whose messages are terser."""
 
@@ -111,7 +111,7 @@ def parse_yaml(text: str, source: str | None = None, loader: Any = None) -> Any:
     except DocumentError:
         raise
     except RecursionError:
-        raise DocumentError(_TOO_DEEP, source) from None
+        raise DocumentError(TOO_DEEP, source) from None
     except (yaml.YAMLError, ValueError, TypeError, ArithmeticError) as error:  # such as a month 13, a list as a key
         raise DocumentError(" ".join(str(error).split()) or "is not valid YAML", source) from None
 
@@ -126,7 +126,7 @@ def _check_events(events: Iterable[Any], yaml: Any, source: str | None) -> None:
         if isinstance(event, yaml.MappingStartEvent | yaml.SequenceStartEvent):
             stack.append((event.anchor, total))
             total += 1
-            problem = _TOO_DEEP if len(stack) > MAX_DEPTH else None
+            problem = TOO_DEEP if len(stack) > MAX_DEPTH else None
         elif isinstance(event, yaml.MappingEndEvent | yaml.SequenceEndEvent):
             anchor, before = stack.pop()
             if anchor is not None:

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from xml.parsers import expat
 from xml.sax.saxutils import escape, quoteattr
 
+from daidalos.common.documents import MAX_DEPTH, TOO_DEEP
 from daidalos.common.errors import Location
 from daidalos.description.errors import DescriptionError
 from daidalos.description.markup_repair import repair
@@ -265,7 +266,7 @@ class _TreeBuilder:
         self._skipped_lines = skipped_lines
         self._stack: list[Element] = []
         self._root: Element | None = None
-        self._parser = expat.ParserCreate(encoding)
+        self._parser = expat.ParserCreate(encoding)  # which limits what entities expand to
         self._parser.buffer_text = True
         self._parser.StartElementHandler = self._start
         self._parser.EndElementHandler = self._end
@@ -274,6 +275,8 @@ class _TreeBuilder:
     def build(self, body: bytes) -> Element:
         try:
             self._parser.Parse(body, True)
+        except LookupError as problem:  # an encoding that Python does not know
+            raise DescriptionError(f"not well-formed XML: {problem}", self._source, 1) from None
         except expat.ExpatError as problem:
             reason = expat.ErrorString(problem.code)
             raise DescriptionError(
@@ -289,6 +292,8 @@ class _TreeBuilder:
             self._stack[-1].children.append(element)
         else:
             self._root = element
+        if len(self._stack) >= MAX_DEPTH:
+            raise DescriptionError(TOO_DEEP, self._source, line)
         self._stack.append(element)
 
     def _end(self, tag: str) -> None:

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 from xml.dom import expatbuilder, minidom
 from xml.parsers import expat
 
+from daidalos.common.documents import MAX_DEPTH, TOO_DEEP
 from daidalos.description.errors import DescriptionError
 from daidalos.description.markup import Element
 from daidalos.description.xacro_limits import ReadableFiles, limited
@@ -25,8 +26,6 @@ if TYPE_CHECKING:
     from daidalos.description.resolve import PackageResolver
 
 _ORIGIN = "daidalos-origin"
-_MAX_SHOWN = 400
-"""Characters of an error: one within nested macros or properties repeats every step that led to it."""
 _LOCK = threading.Lock()  # xacro keeps its state in module variables
 
 
@@ -137,16 +136,28 @@ def _parse_marked(body: bytes, file_index: int) -> minidom.Document:
     lose what is not an attribute: hence both ways of keeping it.
     """
     builder: Any = expatbuilder.ExpatBuilderNS()
-    start_element = builder.start_element_handler
+    start_element, end_element = builder.start_element_handler, builder.end_element_handler
+
+    depth = 0
 
     def start_marked(name: str, attributes: list[str]) -> None:
+        nonlocal depth
+        depth += 1
+        if depth > MAX_DEPTH:
+            raise DescriptionError(TOO_DEEP)
         start_element(name, attributes)
         node = builder.curNode
         node.daidalos_origin = f"{file_index}:{builder.getParser().CurrentLineNumber}"
         if not node.tagName.startswith("xacro:"):
             node.setAttribute(_ORIGIN, node.daidalos_origin)
 
+    def end_marked(name: str) -> None:
+        nonlocal depth
+        depth -= 1
+        end_element(name)
+
     builder.start_element_handler = start_marked
+    builder.end_element_handler = end_marked
     document: minidom.Document = builder.parseString(body)
     return document
 
@@ -172,7 +183,6 @@ def _error(problem: BaseException, xacro: Any, files: list[str]) -> DescriptionE
             words = f"{cause.strerror}: {cause.filename}"
         cause = getattr(cause, "exc", None)
     words = words[:1].lower() + words[1:] if words[:2].istitle() else words
-    words = words if len(words) <= _MAX_SHOWN else f"{words[:_MAX_SHOWN]}..."
     source, line = _innermost_origin(problem.__traceback__, files)
     stack = xacro.macrostack or []
     if isinstance(problem, RecursionError):

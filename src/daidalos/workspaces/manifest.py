@@ -48,6 +48,8 @@ def _text(path: Path) -> str:
 def _root(path: Path, text: str) -> str:
     try:
         return ElementTree.fromstring(text.encode()).tag
+    except LookupError as error:  # an encoding that Python does not know
+        raise WorkspaceError(f"not valid XML: {error}", Location(str(path), 1)) from None
     except ElementTree.ParseError as error:
         line, column = error.position
         what = str(error).partition(":")[0]

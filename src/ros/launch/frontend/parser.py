@@ -92,7 +92,7 @@ class Parser:
         from ..launch_description import LaunchDescription
 
         if entity.type_name != "launch":
-            error = RuntimeError(f"Expected 'launch' as root element, got '{entity.type_name}'")
+            error = RuntimeError(f"Expected 'launch' as root element, got '{entity.type_name[:100]}'")
             add_location(error, *getattr(entity, "location", (None, None)))
             raise error
         deprecated = entity.get_attr("deprecated", optional=True)

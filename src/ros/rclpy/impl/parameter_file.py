@@ -8,6 +8,7 @@ from typing import Any
 
 import yaml
 
+from daidalos.common.documents import DocumentError, parse_yaml, read_text
 from daidalos.common.errors import Location
 
 _INTEGER_MAX = 2**63 - 1
@@ -103,9 +104,9 @@ def parse_value(text: str) -> Any:
         When it is no such value.
     """
     try:
-        value = yaml.load(text, _Loader)
-    except yaml.YAMLError as error:
-        raise ValueError(_where(error)) from None
+        value = parse_yaml(text, loader=_Loader)
+    except DocumentError as error:
+        raise ValueError(error.described) from None
     if text.strip() and value is None and text.strip().lower() not in ("~", "null"):
         return text
     return check_value(text if isinstance(value, dict) else "" if value is None else value)
@@ -155,14 +156,12 @@ def read_file(path: str | Path) -> list[tuple[str, str, Any, Location]]:
         Naming the place in the file.
     """
     try:
-        text = Path(path).read_text(encoding="utf-8")
-        document = yaml.load(text, _Loader)
+        text = read_text(path)
+        document = parse_yaml(text, str(path), _Loader)
     except OSError as error:
         raise ParameterFileError(f"{error.strerror or error}") from None
-    except UnicodeDecodeError as error:
-        raise ParameterFileError(f"byte {error.start + 1} is not valid UTF-8") from None
-    except yaml.YAMLError as error:
-        raise ParameterFileError(_where(error)) from None
+    except DocumentError as error:
+        raise ParameterFileError(error.described) from None
     if document is None:
         return []
     if not isinstance(document, dict):
@@ -175,12 +174,6 @@ def read_file(path: str | Path) -> list[tuple[str, str, Any, Location]]:
         (node, name, value, Location(written_in or str(path), None if written_in else line))
         for node, name, value, line in found
     ]
-
-
-def _where(error: yaml.YAMLError) -> str:
-    mark = getattr(error, "problem_mark", None)
-    problem = getattr(error, "problem", None) or str(error)
-    return f"line {mark.line + 1}, column {mark.column + 1}: {problem}" if mark else str(problem)
 
 
 def _walk_nodes(tree: dict[str, Any], prefix: str, found: list[tuple[str, str, Any, int]]) -> None:

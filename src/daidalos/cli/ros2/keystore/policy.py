@@ -88,8 +88,10 @@ def _read(file: Path) -> ElementTree.Element:
         raise CliError(f"{file}: {error.strerror}") from None
     except ElementTree.ParseError as error:
         raise CliError(f"{file}:{error.position[0]}: {error}") from None
+    except LookupError as error:  # an encoding that Python does not know
+        raise CliError(f"{file}:1: {error}") from None
     if root.tag != "policy":
-        raise CliError(f"{file}: expected <policy>, found <{root.tag}>")
+        raise CliError(f"{file}: expected <policy>, found <{root.tag[:100]}>")
     return root
 
 
