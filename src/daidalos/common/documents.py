@@ -75,7 +75,7 @@ def read_yaml(path: Path | str) -> Any:
     return parse_yaml(read_text(path), str(path))
 
 
-def parse_yaml(text: str, source: str | None = None, loader: Any = None) -> Any:
+def parse_yaml(text: str, source: str | None = None, loader: Any = None, *, aliases: bool = True) -> Any:
     """Return the content of a YAML document.
 
     Parameters
@@ -85,6 +85,8 @@ def parse_yaml(text: str, source: str | None = None, loader: Any = None) -> Any:
         The file's name for errors.
     loader : yaml loader class, or function that makes one of a text, optional
         PyYAML's safe loader where None.
+    aliases : bool
+        Whether ``*name`` may stand for another value.
 
     Raises
     ------
@@ -96,7 +98,7 @@ def parse_yaml(text: str, source: str | None = None, loader: Any = None) -> Any:
     fast = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
     chosen: Any = loader or (fast if len(text) > _LONG else yaml.SafeLoader)
     try:
-        _check_events(yaml.parse(text, fast if chosen is fast else yaml.SafeLoader), yaml, source)
+        _check_events(yaml.parse(text, fast if chosen is fast else yaml.SafeLoader), yaml, source, aliases)
         return yaml.load(text, chosen)
     except yaml.reader.ReaderError as error:
         character: Any = error.character
@@ -116,7 +118,7 @@ def parse_yaml(text: str, source: str | None = None, loader: Any = None) -> Any:
         raise DocumentError(" ".join(str(error).split()) or "is not valid YAML", source) from None
 
 
-def _check_events(events: Iterable[Any], yaml: Any, source: str | None) -> None:
+def _check_events(events: Iterable[Any], yaml: Any, source: str | None, aliases: bool) -> None:
     """Check the depth of a document, and how many values it has once aliases are replaced."""
     sizes: dict[str, int] = {}
     stack: list[tuple[str | None, int]] = []
@@ -139,6 +141,8 @@ def _check_events(events: Iterable[Any], yaml: Any, source: str | None) -> None:
             total += sizes.get(event.anchor, 1)
             if any(anchor == event.anchor for anchor, _ in stack):
                 problem = f"the alias '*{event.anchor}' is within itself"
+            if not aliases:
+                problem = "aliases are not supported"
         if total > MAX_NODES:
             problem = f"expands to more than {MAX_NODES} values"
         if problem is not None:

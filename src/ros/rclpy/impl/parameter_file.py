@@ -23,16 +23,8 @@ class ParameterFileError(ValueError):
 class _Loader(yaml.SafeLoader):
     """YAML as rcl_yaml_param_parser reads it: 1e3 is a float, `on` and `yes` are booleans, dates are text.
 
-    A name that stands there twice adds to what it held. Aliases are refused, as ROS 2 does: a few lines of them can
-    stand for gigabytes.
+    A name that stands there twice adds to what it held. Aliases are refused, as ROS 2 does.
     """
-
-    def compose_node(self, parent: Any, index: Any) -> Any:
-        """Return the next node of the document; refuse an alias."""
-        if self.check_event(yaml.AliasEvent):
-            event: Any = self.peek_event()  # type: ignore[no-untyped-call]  # PyYAML's stubs lack it
-            raise yaml.MarkedYAMLError(problem="aliases are not supported", problem_mark=event.start_mark)
-        return super().compose_node(parent, index)
 
     def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
         """Return the names, which know their lines, and values of a mapping."""
@@ -104,7 +96,7 @@ def parse_value(text: str) -> Any:
         When it is no such value.
     """
     try:
-        value = parse_yaml(text, loader=_Loader)
+        value = parse_yaml(text, loader=_Loader, aliases=False)
     except DocumentError as error:
         raise ValueError(error.described) from None
     if text.strip() and value is None and text.strip().lower() not in ("~", "null"):
@@ -157,7 +149,7 @@ def read_file(path: str | Path) -> list[tuple[str, str, Any, Location]]:
     """
     try:
         text = read_text(path)
-        document = parse_yaml(text, str(path), _Loader)
+        document = parse_yaml(text, str(path), _Loader, aliases=False)
     except OSError as error:
         raise ParameterFileError(f"{error.strerror or error}") from None
     except DocumentError as error:
