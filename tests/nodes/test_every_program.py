@@ -24,6 +24,7 @@ _PACKAGES = (
     "plotjuggler",
     "rqt",
     "rqt_console",
+    "rqt_controller_manager",
     "rqt_graph",
     "rqt_gui",
     "rqt_image_view",

@@ -24,6 +24,7 @@ RVIZ = str(Path(daidalos.__file__).parent / "share/turtle_tf2_py/rviz/turtle_rvi
     [
         (("rqt_graph", "rqt_graph"), "?panel=graph", "/rqt_gui_py_node_\\d+"),
         (("rqt_console", "rqt_console"), "?panel=log", "/rqt_gui_py_node_\\d+"),
+        (("rqt_controller_manager", "rqt_controller_manager"), "?panel=controllers", "/rqt_gui_py_node_\\d+"),
         (("rqt_plot", "rqt_plot"), "?panel=plot", "/rqt_gui_py_node_\\d+"),
         (("rqt_image_view", "rqt_image_view"), "?panel=image", "/rqt_gui_py_node_\\d+"),
         (("rqt_reconfigure", "rqt_reconfigure"), "?panel=parameters", "/rqt_gui_py_node_\\d+"),

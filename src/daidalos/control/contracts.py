@@ -185,6 +185,9 @@ class Controller(Endpoint, ABC):
         """Apply parameters that changed at run time; read-only ones never change."""
         self.parameters = parameters
 
+    def select_states(self, available: Sequence[str]) -> None:
+        """Choose state interfaces among those of hardware that is configured now; called before each activation."""
+
     def assign(self, commands: LoanedInterfaces, states: LoanedInterfaces) -> None:
         """Set the interfaces, in the order of their names."""
         self.commands, self.states = commands, states

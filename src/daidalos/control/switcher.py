@@ -46,6 +46,13 @@ class Switcher:
 
     def switch(self, start: Sequence[str], stop: Sequence[str], strictness: Strictness, now_ns: int) -> Switch:
         """Plan and perform a switch; see `ControllerManager.switch`."""
+        available = [
+            name for one in self._components.values() if one.tells_states for name in one.hardware.states.names
+        ]
+        for name in start:
+            loaded = self._controllers.get(name)
+            if loaded is not None and loaded.controller is not None and loaded.state == INACTIVE:
+                loaded.controller.select_states(available)
         plan = plan_switch(self._candidates(), start, stop, strictness, self._problem_with)
         self._carry_out(plan, now_ns)
         return plan

@@ -5,10 +5,12 @@ from typing import Any
 
 import numpy as np
 import pytest
-from control_robots import alone, arm, cycle
+from control_robots import PERIOD_NS, alone, arm, cycle, from_values, manager
 
 from daidalos.common.parameters import ParameterError
 from daidalos.common.pose3 import Pose
+from daidalos.control.contracts import ControllerContext
+from daidalos.description import urdf
 from daidalos.samples.controllers import DynamicJointSample
 from daidalos.samples.sensors import JointStateSample, TransformSample
 
@@ -131,3 +133,26 @@ def test_pose() -> None:
     assert said[0].position == pytest.approx([1, 2, 3])
     states.values[6] = 0.0
     assert len(cycle(controller, 500_000_000)) == 1
+
+
+def test_all_states_are_those_of_hardware_that_is_configured_at_the_activation() -> None:
+    parts = "".join(
+        f"""<link name="{name}_link"/><joint name="{name}" type="continuous"><parent link="base"/>
+          <child link="{name}_link"/></joint><ros2_control name="{name}" type="system"><hardware>
+          <plugin>mock_components/GenericSystem</plugin></hardware><joint name="{name}">
+          <state_interface name="position"/></joint></ros2_control>"""
+        for name in ("a", "b")
+    )
+    robot = urdf.parse(f'<robot name="r"><link name="base"/>{parts}</robot>')
+    control = manager(robot, initial_states={"b": "unconfigured"})
+    name, values = "states", from_values(publish_dynamic_joint_states=False)
+    control.load(name, "joint_state_broadcaster/JointStateBroadcaster", values, ControllerContext(name))
+    control.configure(name)
+    control.switch([name])
+    assert [sample.names for _, sample in control.update(PERIOD_NS)] == [("a",)]
+    control.set_component_state("b", "active")
+    control.switch((), [name])
+    control.switch([name])
+    assert [sample.names for _, sample in control.update(2 * PERIOD_NS)] == [("a", "b")]
+    control.set_component_state("b", "unconfigured")
+    assert control.controllers[name].state == "inactive"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -59,16 +59,21 @@ class JointStateBroadcaster(Controller):
     parameters: JointStateBroadcasterParameters
 
     def configure(self) -> None:
-        """Select interfaces and joints."""
+        """Set the topics, and select interfaces and joints."""
         p = self.parameters
-        if p.joints and p.interfaces:
-            self.state_names = tuple(f"{joint}/{interface}" for joint in p.joints for interface in p.interfaces)
-        else:
-            self.state_names = self.context.state_names
         prefix = "~/" if p.use_local_topics else ""
         self._topic, self._dynamic_topic = f"{prefix}joint_states", f"{prefix}dynamic_joint_states"
         chosen = p.map_interface_to_joint_state
         self._wanted = dict(zip((chosen.position, chosen.velocity, chosen.effort), _FIELDS, strict=True))
+        self.select_states(self.context.state_names)
+
+    def select_states(self, available: Sequence[str]) -> None:
+        """Select the given interfaces and joints, or all that are available."""
+        p = self.parameters
+        if p.joints and p.interfaces:
+            self.state_names = tuple(f"{joint}/{interface}" for joint in p.joints for interface in p.interfaces)
+        else:
+            self.state_names = tuple(available)
         places: dict[str, dict[str, int]] = {}
         for place, name in enumerate(self.state_names):
             joint, _, interface = name.rpartition("/")

@@ -213,7 +213,8 @@ class ControllerManagerNode(Node):
             raise ControlError(f"a controller '{name}' is loaded already")
         node = self._make_node(name, files)
         try:
-            type_name = type_name or declare_one(node, "type", "", "Class of the controller.")
+            own_type_name = declare_one(node, "type", "", "Class of the controller.")
+            type_name = type_name or own_type_name
             if not type_name:
                 raise ControlError(
                     f"the type of controller '{name}' is not known: "

@@ -4,6 +4,7 @@ from daidalos.nodes.studio_window import parse, rqt_node_name, run_studio, studi
 
 _PANELS = {
     "rqt_console": "log",
+    "rqt_controller_manager": "controllers",
     "rqt_graph": "graph",
     "rqt_image_view": "image",
     "rqt_plot": "plot",

@@ -1,0 +1,1 @@
+"""The panel of controllers as a window of its own."""
