@@ -59,7 +59,7 @@ class _Entities:
 
     writer: int | None = None
     reader: int | None = None
-    gids: tuple[list[bytes], list[bytes]] = field(default_factory=lambda: ([], []))
+    gids: tuple[list[Any], list[Any]] = field(default_factory=lambda: ([], []))
     """Those of readers and of writers, as the node's entry lists them."""
 
 
@@ -100,7 +100,7 @@ class CycloneBackend(Backend):
         info_hash = names.write_user_data(typehash=names.discovery_type_hash())
         info_reader = self._make(names.DISCOVERY_TOPIC, info_type, _INFO_READER_QOS, info_hash, writes=False)
         info_writer = self._make(names.DISCOVERY_TOPIC, info_type, _INFO_QOS, info_hash, writes=True)
-        self._info_writer = Writer(library, info_writer, names.DISCOVERY_TOPIC, _INFO_QOS.limit)
+        self._info_writer = Writer(library, info_writer, names.DISCOVERY_TOPIC, _INFO_QOS.limit, keeps_newest=True)
         prefix = self._gid[:PREFIX]
         self._discovery = Discovery(library, self._participant, prefix, info_reader, graph, self._announce)
 
@@ -234,8 +234,8 @@ class CycloneBackend(Backend):
         entity = self._make(names.topic_of(name), type_name, qos, data, writes=writes)
         gid = self._gid_of_entity(entity)
         if writes:
-            return _Entities(writer=entity, gids=([], [gid])), gid
-        return _Entities(reader=entity, gids=([gid], [])), gid
+            return _Entities(writer=entity, gids=([], [_listed(gid)])), gid
+        return _Entities(reader=entity, gids=([_listed(gid)], [])), gid
 
     def _make_service_end(self, kind: EndpointKind, name: str, type_name: str, qos: Qos) -> tuple[_Entities, bytes]:
         """Create the reader and the writer of a service or client, marked as belonging together."""
@@ -252,8 +252,9 @@ class CycloneBackend(Backend):
         read, written = (request, response) if serves else (response, request)
         reader = self._make(read[0], read[1], qos, read[2], writes=False)
         writer = self._make(written[0], written[1], qos, written[2], writes=True)
-        gids = ([self._gid_of_entity(reader)], [self._gid_of_entity(writer)])
-        return _Entities(writer, reader, gids), gids[0][0] if serves else gids[1][0]
+        read_gid, written_gid = self._gid_of_entity(reader), self._gid_of_entity(writer)
+        gids = ([_listed(read_gid)], [_listed(written_gid)])
+        return _Entities(writer, reader, gids), read_gid if serves else written_gid
 
     def _make(self, topic: str, type_name: str, qos: Qos, user_data: bytes, *, writes: bool) -> int:
         """Create a writer or reader."""
@@ -306,20 +307,27 @@ class CycloneBackend(Backend):
 
     def _announce(self) -> None:
         """Announce all local nodes with their writers and readers."""
-        from rmw_dds_common.msg import Gid, NodeEntitiesInfo, ParticipantEntitiesInfo
+        from rmw_dds_common.msg import NodeEntitiesInfo, ParticipantEntitiesInfo
 
         with self._lock:
             entries = [
                 NodeEntitiesInfo(
                     node_namespace=node.namespace,
                     node_name=node.name,
-                    reader_gid_seq=[Gid(data=gid) for one in owned for gid in one.gids[0]],
-                    writer_gid_seq=[Gid(data=gid) for one in owned for gid in one.gids[1]],
+                    reader_gid_seq=[gid for one in owned for gid in one.gids[0]],
+                    writer_gid_seq=[gid for one in owned for gid in one.gids[1]],
                 )
                 for node, owned in self._nodes.values()
             ]
-        message = ParticipantEntitiesInfo(gid=Gid(data=self._gid), node_entities_info_seq=entries)
+        message = ParticipantEntitiesInfo(gid=_listed(self._gid), node_entities_info_seq=entries)
         self._info_writer.write(codec_of(ParticipantEntitiesInfo).parts(message))
+
+
+def _listed(gid: bytes) -> Any:
+    """Return a gid as node entries list it."""
+    from rmw_dds_common.msg import Gid
+
+    return Gid(data=gid)
 
 
 def _four_bytes(number: int) -> bytes:

@@ -25,7 +25,7 @@ from daidalos.transport.cyclonedds.library import (
     SampleInfo,
 )
 from daidalos.transport.cyclonedds.qos import read_qos, user_data_of
-from daidalos.transport.cyclonedds.reception import Reception, Sample, SampleReader
+from daidalos.transport.cyclonedds.reception import Paced, Reception, Sample, SampleReader
 from daidalos.transport.graph import EndpointInfo, EndpointKind, Graph, NodeInfo
 from daidalos.transport.qos import Qos
 
@@ -77,8 +77,8 @@ class Discovery:
         A reader of `ros_discovery_info`.
     graph
         Told of every change, on a thread of its own.
-    on_wake
-        Called on that thread after `wake`.
+    announce
+        Called on that thread after `wake`, to list the local nodes for others.
     """
 
     def __init__(
@@ -88,7 +88,7 @@ class Discovery:
         prefix: bytes,
         info_reader: int,
         graph: Graph,
-        on_wake: Callable[[], None],
+        announce: Callable[[], None],
     ) -> None:
         from rmw_dds_common.msg import ParticipantEntitiesInfo
 
@@ -100,8 +100,9 @@ class Discovery:
         self._gids: dict[int, bytes] = {}
         self._topics: dict[bytes, str] = {}
         self._dirty: set[bytes] = set()
-        self._reception = Reception(library, participant, "graph", on_wake)
-        self.wake = self._reception.wake
+        self._announcement = Paced(announce)
+        self._updating = Paced(self._update)
+        self._reception = Reception(library, participant, "graph", self._on_batch)
         taker = SampleReader(library)
         builtin = {
             BUILTIN_PARTICIPANT: self._on_participant,
@@ -112,11 +113,17 @@ class Discovery:
             reader = library.check(library.dds_create_reader(participant, topic, None, None), "watch the domain")
             self._reception.add(reader, self._taking(reader, handler))
 
-        def take_infos() -> None:
-            taker.take_all(info_reader, self._on_info)
-            self._update()
+        self._reception.add(info_reader, lambda: taker.take_all(info_reader, self._on_info))
 
-        self._reception.add(info_reader, take_infos)
+    def wake(self) -> None:
+        """List the local nodes for others soon."""
+        self._announcement.request()
+        self._reception.wake()
+
+    def _on_batch(self) -> int:
+        if self._dirty:
+            self._updating.request()
+        return min(self._announcement.run(), self._updating.run())
 
     def close(self) -> None:
         """Stop watching."""
@@ -127,9 +134,9 @@ class Discovery:
         return self._gids.get(handle)
 
     def is_discovered(self, prefix: bytes) -> bool:
-        """Return whether a participant is known with all its nodes and their endpoints."""
+        """Return whether a participant is in the graph with all its nodes and their endpoints."""
         participant = self._participants.get(prefix)
-        if participant is None or participant.nodes is None:
+        if participant is None or participant.nodes is None or prefix in self._dirty:
             return False
         return all(gid in participant.all_gids for _, _, gids in participant.nodes for gid in gids)
 
@@ -154,7 +161,6 @@ class Discovery:
                     library.dds_return_loan(reader, loan, count)
                 if count < _BATCH:
                     break
-            self._update()
 
         return take
 
@@ -244,12 +250,13 @@ class Discovery:
 
     def _update(self) -> None:
         """Update the graph with the participants that changed."""
-        dirty, self._dirty = self._dirty, set()
+        dirty = tuple(self._dirty)
         for prefix in dirty:
             participant = self._participants[prefix]
             self._show(prefix, participant)
             if participant.enclave is None and not participant.all_gids and participant.nodes is None:
                 del self._participants[prefix]
+            self._dirty.discard(prefix)
         if dirty:
             self._graph.notify()
 

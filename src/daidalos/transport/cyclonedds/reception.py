@@ -6,8 +6,9 @@ import ctypes as c
 import itertools
 import logging
 import threading
+import time
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 from daidalos.transport.cyclonedds.library import (
     ANY_STATE,
@@ -22,6 +23,10 @@ _LOGGER = logging.getLogger(__name__)
 _BATCH = 64
 _WAKE = 0
 _JOIN_S = 2.0
+_PACE = 10
+_MAX_PAUSE_NS = 500_000_000
+_AT_ONCE_NS = 1
+Result = TypeVar("Result")
 
 
 class Sample(NamedTuple):
@@ -41,15 +46,16 @@ class Reception:
         The library and the participant whose readers are waited for.
     name
         The thread's.
-    on_wake
-        Called on the thread after `wake`.
+    on_batch
+        Called on the thread after what has come was handled, and after `wake`; returns the time in nanoseconds after
+        which it is called again though nothing comes, `INFINITE` for never.
     """
 
     def __init__(
-        self, library: Library, participant: int, name: str, on_wake: Callable[[], None] = lambda: None
+        self, library: Library, participant: int, name: str, on_batch: Callable[[], int] = lambda: INFINITE
     ) -> None:
         self._library = library
-        self._on_wake = on_wake
+        self._on_batch = on_batch
         self._number = itertools.count(_WAKE + 1).__next__
         self._handlers: dict[int, Callable[[], None]] = {}
         self._numbers: dict[int, int] = {}
@@ -86,7 +92,7 @@ class Reception:
             self._library.dds_waitset_detach(self._waitset, reader)
 
     def wake(self) -> None:
-        """Call `on_wake` on the thread."""
+        """Call `on_batch` on the thread."""
         self._library.dds_set_guardcondition(self._guard, True)
 
     def close(self) -> None:
@@ -98,8 +104,9 @@ class Reception:
 
     def _run(self) -> None:
         library, numbers = self._library, (c.c_ssize_t * _BATCH)()
+        timeout = INFINITE
         while not self._closed:
-            count = library.dds_waitset_wait(self._waitset, numbers, _BATCH, INFINITE)
+            count = library.dds_waitset_wait(self._waitset, numbers, _BATCH, timeout)
             if count < 0:
                 return
             for number in numbers[:count]:
@@ -107,13 +114,53 @@ class Reception:
                     library.dds_set_guardcondition(self._guard, False)
                     if self._closed:
                         return
-                handler = self._on_wake if number == _WAKE else self._handlers.get(number)
-                if handler is None:
-                    continue  # removed meanwhile
-                try:
-                    handler()
-                except Exception:  # one bad entity must not silence all others
-                    _LOGGER.exception("receiving failed")
+                    continue
+                handler = self._handlers.get(number)
+                if handler is not None:  # else removed meanwhile
+                    _call(handler)
+            timeout = _call(self._on_batch) or INFINITE
+
+
+def _call(function: Callable[[], Result]) -> Result | None:
+    """Call a function; a failure is logged, since one bad entity must not silence all others."""
+    try:
+        return function()
+    except Exception:
+        _LOGGER.exception("receiving failed")
+        return None
+
+
+class Paced:
+    """Work that grows with what is known, done at most so often that it takes a tenth of the time.
+
+    Parameters
+    ----------
+    work
+        What is done, on the thread that calls `run`.
+    """
+
+    def __init__(self, work: Callable[[], None]) -> None:
+        self._work = work
+        self._pending = False
+        self._next_ns = 0
+
+    def request(self) -> None:
+        """Have the work done at the next `run` that is late enough; from any thread."""
+        self._pending = True
+
+    def run(self) -> int:
+        """Do the work if it is requested and due; return the nanoseconds until it is due, `INFINITE` for never."""
+        if not self._pending:
+            return INFINITE
+        begin = time.monotonic_ns()
+        if begin < self._next_ns:
+            return self._next_ns - begin
+        self._pending = False
+        used = time.thread_time_ns()  # a thread without a processor does not do much work
+        self._work()
+        used = time.thread_time_ns() - used
+        self._next_ns = time.monotonic_ns() + min(_PACE * used, _MAX_PAUSE_NS)
+        return _AT_ONCE_NS if self._pending else INFINITE
 
 
 class SampleReader:

@@ -39,6 +39,8 @@ class Writer:
         Name of the topic or service, for messages.
     limit
         Depth of the history; None keeps all samples and blocks the caller instead.
+    keeps_newest
+        Whether a sample replaces those before: the oldest is dropped from a full queue at once, and not counted.
 
     Attributes
     ----------
@@ -46,8 +48,11 @@ class Writer:
         Number of samples that were dropped.
     """
 
-    def __init__(self, library: Library, entity: int, name: str, limit: int | None) -> None:
+    def __init__(
+        self, library: Library, entity: int, name: str, limit: int | None, *, keeps_newest: bool = False
+    ) -> None:
         self._library = library
+        self._keeps_newest = keeps_newest
         self.entity = entity
         self.dropped = 0
         self._name = name
@@ -104,9 +109,12 @@ class Writer:
                 if not first:
                     return False
                 threading.Thread(target=self._empty_queue, name="dds-writer", daemon=True).start()
-            elif len(self._queue) == self._limit and not self._wait_for_room():
-                self._queue.popleft()
-                self._count_dropped()
+            elif len(self._queue) == self._limit:
+                if self._keeps_newest:
+                    self._queue.popleft()
+                elif not self._wait_for_room():
+                    self._queue.popleft()
+                    self._count_dropped()
             self._queue.append(b"".join(bytes(memoryview(part).cast("B")) for part in parts))
             return True
 
