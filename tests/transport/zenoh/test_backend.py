@@ -169,9 +169,9 @@ def settings_of(environment: Environment, **variables: str) -> Callable[[str], A
     return lambda key: json.loads(config.get_json(key))
 
 
-def test_by_default_nothing_listens_to_the_network():
+def test_by_default_nothing_listens_to_the_network_nor_to_other_users():
     get = settings_of(Environment())
-    assert get("listen/endpoints") == ["unixsock-stream/a", "tcp/localhost:0"]
+    assert get("listen/endpoints") == ["unixsock-stream/a"]
     assert get("connect/endpoints") == ["unixsock-stream/b", "tcp/localhost:7447"]
     assert get("scouting/multicast/enabled") is False
 

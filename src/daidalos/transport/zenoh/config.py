@@ -109,7 +109,9 @@ def _network_settings(environment: Environment, listen: list[str], peers: list[s
     open_to_all = reach is DiscoveryRange.SUBNET or (reach is DiscoveryRange.LOCALHOST and statics)
     return {
         "mode": "peer",
-        "listen/endpoints": [*listen, f"tcp/{_any_address()}:0" if open_to_all else "tcp/localhost:0"],
+        # On one machine nothing but a socket file listens, which other users cannot open; those who come by way of a
+        # router listen themselves, or the router passes on what is sent.
+        "listen/endpoints": [*listen, f"tcp/{_any_address()}:0"] if open_to_all else listen,
         "listen/exit_on_failure": False,
         "connect/endpoints": connect,
         "connect/exit_on_failure": False,
