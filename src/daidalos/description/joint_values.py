@@ -39,6 +39,11 @@ class JointValues:
     soft : bool
         Joints stay within the soft limits of their safety controllers.
 
+    Raises
+    ------
+    ValueError
+        When joints follow each other in a circle.
+
     Attributes
     ----------
     ranges : tuple of JointRange
@@ -60,6 +65,8 @@ class JointValues:
         self._leaders = {joint.name: joint.mimic for joint in joints if mimics and joint.mimic is not None}
         self._leaders |= {name: mimic for name, mimic in (dependents or {}).items() if name in self.names}
         self.ranges = tuple(_range(joint, zeros or {}, soft) for joint in joints if joint.name not in self._leaders)
+        for name in self.names:
+            self._followed(name)
         self.positions = {each.name: each.zero for each in self.ranges}
         self.velocities: dict[str, float] = {}
         self.efforts: dict[str, float] = {}
@@ -100,7 +107,9 @@ class JointValues:
         """Return the joint at the end of a chain of mimic joints, with the factor and the offset to it."""
         seen: set[str] = set()
         factor, offset = 1.0, 0.0
-        while name in self._leaders and name not in seen:
+        while name in self._leaders:
+            if name in seen:
+                raise ValueError(f"Found an infinite recursive mimic chain: {', '.join(sorted(seen))}")
             seen.add(name)
             mimic = self._leaders[name]
             factor, offset, name = factor * mimic.multiplier, offset + factor * mimic.offset, mimic.joint

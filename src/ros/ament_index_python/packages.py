@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import pathlib
 import re
-import sys
+import warnings
 
 from .resources import get_resource, get_resources
 from .search_paths import get_all_prefixes
@@ -54,7 +54,7 @@ def get_package_share_directory(package_name: str, print_warning: bool = True) -
     package_name
         The package.
     print_warning
-        Whether to warn on standard error when there is no such folder.
+        Whether to warn when there is no such folder.
 
     Raises
     ------
@@ -65,7 +65,7 @@ def get_package_share_directory(package_name: str, print_warning: bool = True) -
     """
     path = os.path.join(get_package_prefix(package_name), "share", package_name)
     if print_warning and not os.path.exists(path):
-        sys.stderr.write(f"WARNING: Share directory for package '{package_name}' ({path}) does not exist.\n")
+        warnings.warn(f"Share directory for package '{package_name}' ({path}) does not exist.", stacklevel=2)
     return path
 
 

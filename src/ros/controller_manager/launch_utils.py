@@ -4,18 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from launch import LaunchDescription, SomeSubstitutionsType
+from launch import LaunchDescription, SomeSubstitutionsType, Substitution
 from launch.actions import DeclareLaunchArgument
-from launch.conditions import IfCondition, UnlessCondition
-from launch.substitutions import LaunchConfiguration
+from launch.substitutions import IfElseSubstitution, LaunchConfiguration
 from launch_ros.actions import Node
 
-_Files = str | Sequence[str] | None
+_File = str | Substitution
+_Files = _File | Sequence[_File] | None
 
 
 def generate_controllers_spawner_launch_description(
     controller_names: Sequence[str],
-    controller_params_files: Sequence[str] | None = None,
+    controller_params_files: Sequence[_File] | None = None,
     extra_spawner_args: Sequence[str] | None = None,
 ) -> LaunchDescription:
     """Return what spawns controllers, and unloads them at the end where its argument ``unload_on_kill`` says so.
@@ -41,22 +41,11 @@ def generate_controllers_spawner_launch_description(
         "--controller-manager",
         manager,
         *files,
+        IfElseSubstitution(unload, "--unload-on-kill", ""),
         *(extra_spawner_args or ()),
     ]
-    once = Node(
-        package="controller_manager",
-        executable="spawner",
-        arguments=words,
-        output="screen",
-        condition=UnlessCondition(unload),
-    )
-    until_the_end = Node(
-        package="controller_manager",
-        executable="spawner",
-        arguments=[*words, "--unload-on-kill"],
-        output="screen",
-        condition=IfCondition(unload),
-    )
+    # The shell leaves out the word that is empty without `unload_on_kill`.
+    spawner = Node(package="controller_manager", executable="spawner", arguments=words, shell=True, output="screen")
     return LaunchDescription(
         [
             DeclareLaunchArgument(
@@ -65,8 +54,7 @@ def generate_controllers_spawner_launch_description(
             DeclareLaunchArgument(
                 "unload_on_kill", default_value="false", description="whether the spawner waits, and unloads them"
             ),
-            once,
-            until_the_end,
+            spawner,
         ]
     )
 
@@ -93,7 +81,7 @@ def generate_load_controller_launch_description(
     )
 
 
-def _listed(files: _Files) -> list[str]:
+def _listed(files: _Files) -> list[_File]:
     if files is None:
         return []
-    return [files] if isinstance(files, str) else list(files)
+    return [files] if isinstance(files, str | Substitution) else list(files)

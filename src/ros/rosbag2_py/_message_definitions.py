@@ -15,10 +15,11 @@ class LocalMessageDefinitionSource:
     """Source that finds definitions in the packages that are installed."""
 
     def get_full_text(self, root_topic_type: str) -> MessageDefinition:
-        """Return the definition of a type with all that it refers to; an empty one where it is not known."""
-        found = definition_of(root_topic_type)
+        """Return the definition of a type with all that it refers to; an empty, `unknown` one where it is not known."""
+        package, _, name = root_topic_type.partition("/")
+        found = definition_of(root_topic_type if "/" in name else f"{package}/msg/{name}")
         if found is None:
-            return MessageDefinition(root_topic_type)
+            return MessageDefinition(root_topic_type, "unknown")
         return MessageDefinition(root_topic_type, found.encoding, found.text)
 
 

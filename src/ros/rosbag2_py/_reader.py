@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator
 
 from daidalos.bags.message import BagMessage
@@ -26,6 +27,7 @@ class SequentialReader:
         self._filter = StorageFilter()
         self._order = ReadOrder()
         self._position: int | None = None
+        self._read_at_position: list[BagMessage] = []
         self._limits = (0, FOREVER_NS)
         self._messages: Iterator[BagMessage] = iter(())
         self._next: BagMessage | None = None
@@ -39,6 +41,7 @@ class SequentialReader:
         start, end = storage_options.start_time_ns, storage_options.end_time_ns
         self._limits = (max(start, 0), end if end >= 0 else FOREVER_NS)
         self._position = None
+        self._read_at_position = []
         self._begin()
 
     def open_uri(self, uri: str) -> None:
@@ -61,9 +64,7 @@ class SequentialReader:
     def _begin(self) -> None:
         """Read on from the present position."""
         bag = self._opened()
-        selection = self._filter.selection()
-        selection.check()
-        wanted = [name for name, topic in bag.topics.items() if selection.wants(name, topic.type)]
+        wanted = self._wanted()
         start, stop = self._limits
         reverse = self._order.reverse
         if self._position is not None:
@@ -71,6 +72,11 @@ class SequentialReader:
         by_file = self._order.sort_by == ReadOrderSortBy.File
         self._messages = bag.messages(wanted, start_ns=start, stop_ns=stop, reverse=reverse, by_file=by_file)
         self._is_ahead, self._next = False, None
+
+    def _wanted(self) -> list[str]:
+        selection = self._filter.selection()
+        selection.check()
+        return [name for name, topic in self._opened().topics.items() if selection.wants(name, topic.type)]
 
     def _ahead(self) -> BagMessage | None:
         """Return the next message without going on; None at the end."""
@@ -91,7 +97,10 @@ class SequentialReader:
         if message is None:
             raise RuntimeError("Bag is at end. No next message.")
         self._is_ahead = False
+        if message.received_ns != self._position:
+            self._read_at_position = []
         self._position = message.received_ns
+        self._read_at_position.append(message)
         return message.topic, message.data, message.received_ns
 
     def get_metadata(self) -> BagMetadata:
@@ -123,15 +132,35 @@ class SequentialReader:
         self.set_filter(StorageFilter())
 
     def _go_on(self) -> None:
-        """Read on behind what was read last."""
+        """Read on behind what was read last, with what has the same time and comes after it in the whole bag."""
+        rest: list[BagMessage] = []
         if self._position is not None:
+            rest = self._rest_at_position()
             self._position += -1 if self._order.reverse else 1
         self._begin()
+        self._messages = itertools.chain(rest, self._messages)
+
+    def _rest_at_position(self) -> list[BagMessage]:
+        if not self._read_at_position or self._order.sort_by == ReadOrderSortBy.File:
+            return []
+        time, last = self._position or 0, self._read_at_position[-1]
+        # Bounded on one side only: files are left out by the times in the metadata, which may be wrong.
+        bounds = {"stop_ns": time} if self._order.reverse else {"start_ns": time}
+        following = self._opened().messages(None, **bounds, reverse=self._order.reverse)
+        messages = itertools.takewhile(lambda message: message.received_ns == time, following)
+        repetitions = self._read_at_position.count(last)
+        for message in messages:
+            repetitions -= message == last
+            if repetitions == 0:
+                break
+        wanted = self._wanted()
+        return [message for message in messages if message.topic in wanted]
 
     def seek(self, timestamp: int) -> None:
         """Continue at the first message at or after a time [ns]; in reverse order, at the last at or before it."""
         self._opened()
         self._position = timestamp
+        self._read_at_position = []
         self._begin()
 
     def set_read_order(self, read_order: ReadOrder) -> bool:

@@ -44,6 +44,8 @@ class Recorder(Runner[RecorderNode]):
         node_name: str = NODE_NAME,
     ) -> None:
         super().__init__()
+        # Called on an object, it also ends a recording that is about to start.
+        self.cancel = self._cancelled.set  # type: ignore[method-assign]
         self._severity = severity(storage_options if isinstance(storage_options, str) else log_level)
         self._failed = False
         if storage_options is not None and not isinstance(storage_options, str) and record_options is not None:
@@ -92,7 +94,6 @@ class Recorder(Runner[RecorderNode]):
 
     def _begin(self) -> None:
         running = self._configured
-        self._cancelled.clear()
         Recorder._running.append(self)
         running.listen_to_keys("Press SPACE for pausing/resuming")
         try:
@@ -110,6 +111,7 @@ class Recorder(Runner[RecorderNode]):
             self.wait()
         finally:
             self.stop()
+            self._cancelled.clear()
 
     def wait(self, timeout_s: float | None = None) -> bool:
         """Wait until the recording is cancelled or fails; False after so many seconds."""

@@ -56,7 +56,8 @@ def _of_kind(identifier: str, kind: str, what: str) -> Any:
         # Services and actions are made of messages, such as ``package/action/Name_FeedbackMessage``.
         if issubclass(found, _KINDS[kind]):
             return found
-    raise ValueError(f"Expected the full name of a {what}, got '{identifier}'")
+    article = "an" if what[0] in "aeiou" else "a"
+    raise ValueError(f"Expected the full name of {article} {what}, got '{identifier}'")
 
 
 def get_message(identifier: str) -> Any:

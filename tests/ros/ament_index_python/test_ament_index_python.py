@@ -114,11 +114,11 @@ def test_packages(prefixes):
     assert get_package_share_path("foo") == Path(one, "share", "foo")
 
 
-def test_missing_share_folder_is_said(prefixes, capsys):
+def test_missing_share_folder_is_said(prefixes, recwarn):
     get_package_share_directory("bar", print_warning=False)
-    assert capsys.readouterr().err == ""
-    get_package_share_directory("bar")
-    assert "Share directory for package 'bar'" in capsys.readouterr().err
+    assert not recwarn
+    with pytest.warns(UserWarning, match="Share directory for package 'bar'"):
+        get_package_share_directory("bar")
 
 
 def test_unknown_packages(prefixes):

@@ -247,3 +247,40 @@ def test_what_there_is():
     assert "MSG: geometry_msgs/Vector3" in found.encoded_message_definition
     assert rosbag2_py.LocalMessageDefinitionSource().get_full_text("no/msg/Thing").encoded_message_definition == ""
     assert all(hasattr(rosbag2_py, name) for name in rosbag2_py.__all__)
+
+
+@pytest.mark.parametrize("reverse", [False, True])
+def test_a_filter_goes_on_among_messages_of_the_same_time(tmp_path, storage, reverse):
+    uri = str(tmp_path / "bag")
+    writer = SequentialWriter()
+    writer.open(StorageOptions(uri, storage), ConverterOptions("cdr", "cdr"))
+    for topic in ("/a", "/b", "/c"):
+        writer.create_topic(TopicMetadata(name=topic, type="std_msgs/msg/String", serialization_format="cdr"))
+    data = serialize_message(String())
+    for time, topics in ((1, "ab"), (2, "acbba"), (3, "c")):
+        for topic in topics:
+            writer.write(f"/{topic}", data, time)
+    writer.close()
+    reader = opened(uri, storage)
+    reader.set_read_order(ReadOrder(ReadOrderSortBy.ReceivedTimestamp, reverse=reverse))
+    whole = []
+    while reader.has_next():
+        whole.append(reader.read_next()[::2])
+    for read in range(1, len(whole)):
+        reader.seek(3 if reverse else 0)
+        before = [reader.read_next()[::2] for _ in range(read)]
+        reader.set_filter(StorageFilter(topics=["/b", "/c"]))
+        after = []
+        while reader.has_next():
+            after.append(reader.read_next()[::2])
+        assert before == whole[:read]
+        assert after == [one for one in whole[read:] if one[0] != "/a"]
+        reader.reset_filter()
+
+
+def test_definitions_of_types_without_and_unknown():
+    source = rosbag2_py.LocalMessageDefinitionSource()
+    assert source.get_full_text("no_package").encoding == "unknown"
+    short, full = (source.get_full_text(name) for name in ("std_msgs/String", "std_msgs/msg/String"))
+    assert (short.encoding, short.topic_type) == ("ros2msg", "std_msgs/String")
+    assert short.encoded_message_definition == full.encoded_message_definition

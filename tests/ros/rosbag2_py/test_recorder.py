@@ -190,6 +190,21 @@ def test_recording_until_it_is_cancelled(node, tmp_path):
     assert content(tmp_path / "bag")["/chatter"] == 1
 
 
+def test_a_recording_cancelled_before_it_starts_leaves_a_whole_bag(graph, tmp_path):
+    recorder = Recorder()
+    options = RecordOptions(all_topics=True, disable_keyboard_controls=True)
+    recorder.cancel()
+    recorder.record(StorageOptions(str(tmp_path / "first")), options)
+    assert (tmp_path / "first" / "metadata.yaml").is_file()
+    thread = threading.Thread(target=recorder.record, args=(StorageOptions(str(tmp_path / "second")), options))
+    thread.start()
+    thread.join(0.2)
+    assert thread.is_alive(), "the first call of cancel ended one recording only"
+    recorder.cancel()
+    thread.join(TIMEOUT_S)
+    assert not thread.is_alive()
+
+
 def test_options_that_make_no_sense(graph, tmp_path):
     with pytest.raises(RuntimeError, match="'xxx' is not a severity"):
         Recorder(StorageOptions(str(tmp_path / "bag")), RecordOptions(), "xxx")

@@ -89,7 +89,9 @@ def parse(text: str | bytes, source: str = "robot_description", resolve: Package
 
 
 def read_robot(root: Element, resolve: PackageResolver | None = None) -> Robot:
-    """Read a robot from its ``<robot>`` element; see `parse`."""
+    """Read a robot from its ``<robot>`` element, which may stand inside ``<urdf>``; see `parse`."""
+    if root.tag == "urdf" and (inner := root.all("robot")):
+        root = inner[0]
     if root.tag != "robot":
         raise root.error("expected <robot> as the root element of a URDF")
     warnings: list[str] = []

@@ -103,13 +103,16 @@ class JointStatePublisher(Node):
         UserError
         """
         robot = parse_description(text, source)
-        self._values = JointValues(
-            robot,
-            self._zeros,
-            mimics=self._settings.use_mimic_tags,
-            dependents=self._dependents,
-            soft=self._settings.use_smallest_joint_limits,
-        )
+        try:
+            self._values = JointValues(
+                robot,
+                self._zeros,
+                mimics=self._settings.use_mimic_tags,
+                dependents=self._dependents,
+                soft=self._settings.use_smallest_joint_limits,
+            )
+        except ValueError as error:
+            raise UserError(f"{source}: {error}") from None
 
     def _reconfigure(self, parameters: JointStatePublisherParameters) -> None:
         self._settings = parameters
