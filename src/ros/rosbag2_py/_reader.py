@@ -145,8 +145,8 @@ class SequentialReader:
             return []
         time, last = self._position or 0, self._read_at_position[-1]
         # Bounded on one side only: files are left out by the times in the metadata, which may be wrong.
-        bounds = {"stop_ns": time} if self._order.reverse else {"start_ns": time}
-        following = self._opened().messages(None, **bounds, reverse=self._order.reverse)
+        start, stop = (0, time) if self._order.reverse else (time, FOREVER_NS)
+        following = self._opened().messages(start_ns=start, stop_ns=stop, reverse=self._order.reverse)
         messages = itertools.takewhile(lambda message: message.received_ns == time, following)
         repetitions = self._read_at_position.count(last)
         for message in messages:
