@@ -207,7 +207,7 @@ def test_packages_are_listed_with_who_builds_them(built, terminal):
     assert terminal().run("colcon list").splitlines() == [
         "files_only\tsrc/files_only\t(ros.ament_cmake.daidalos)",
         "mixed\tsrc/mixed\t(ros.ament_cmake.daidalos)",
-        "py_pubsub\tsrc/py_pubsub\t(ros.ament_python)",
+        "py_pubsub\tsrc/py_pubsub\t(ros.ament_python.daidalos)",
         "tutorial_interfaces\tsrc/tutorial_interfaces\t(ros.ament_cmake.daidalos)",
     ]
 

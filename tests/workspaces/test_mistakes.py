@@ -93,3 +93,20 @@ def test_a_dependency_that_nothing_is_known_of(workspace, terminal):
         assert "pip\tno-such-library" in one.run("rosdep check --from-paths src/needy --skip-keys no_such_thing")
     finally:
         (workspace / "src" / "needy" / "package.xml").unlink()
+
+
+def test_a_setup_file_that_fails(workspace, terminal):
+    folder = packages.python_package(workspace / "src", "bad_setup", {})
+    (folder / "setup.py").write_text("from setuptools import setup\nsetup(name=package_name)\n")
+    status, printed = build(terminal, "bad_setup")
+    assert status == 1
+    assert printed.splitlines()[1:-1] == ["src/bad_setup/setup.py:2: NameError: name 'package_name' is not defined"]
+
+
+def test_a_build_among_the_sources_is_warned_of(workspace, terminal):
+    one = terminal()
+    one.run("cd src")
+    printed = one.run("colcon build --packages-select none")
+    assert f"'{workspace}/src' is a folder of sources" in printed
+    assert f"run 'colcon build' in '{workspace}'" in printed
+    assert "is a folder of sources" not in one.run(f"cd {workspace} && colcon build --packages-select none")

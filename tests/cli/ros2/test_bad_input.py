@@ -75,7 +75,7 @@ def test_mistakes_about_the_graph(env, talker):
         (
             ["param", "set", "/talker", "speed", "[1"],
             0,
-            ["Setting parameter failed", "not valid YAML: line 2, column 1"],
+            ["Setting parameter failed", "not valid YAML: line 1, column 3"],
         ),
         (["param", "load", "/talker", "missing.yaml"], 1, ["missing.yaml: No such file or directory"]),
         (["topic", "type", "/chater"], 1, ["Unknown topic '/chater'", "Did you mean '/chatter'?"]),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -16,12 +17,14 @@ from daidalos.workspaces.errors import WorkspaceError
 from daidalos.workspaces.manifest import read
 
 TYPES = {"ament_cmake": "ros.ament_cmake.daidalos", "catkin": "ros.catkin.daidalos"}
-"""Our types of packages, by the build type in package.xml."""
+"""Our types of packages without CMake, by the build type in package.xml."""
+PYTHON_TYPE = "ros.ament_python.daidalos"
+"""Our type of packages of build type ament_python."""
 _logger = colcon_logger.getChild(__name__)
 
 
 class CmakePackageIdentification(PackageIdentificationExtensionPoint):  # type: ignore[misc]
-    """Identification of packages of build type ament_cmake and of ROS 1, unless ament_cmake is installed."""
+    """Identification of packages of build type ament_python, and of ament_cmake and ROS 1 unless that is installed."""
 
     # Before the extension that knows all ROS packages.
     PRIORITY = RosPackageIdentification.PRIORITY + 10
@@ -30,6 +33,7 @@ class CmakePackageIdentification(PackageIdentificationExtensionPoint):  # type: 
         super().__init__()
         satisfies_version(PackageIdentificationExtensionPoint.EXTENSION_POINT_VERSION, "^1.0")
         _prepare_environment()
+        _warn_inside_sources()
 
     def identify(self, desc: Any) -> None:
         """Fill in name and type of a package that this extension builds."""
@@ -37,9 +41,12 @@ class CmakePackageIdentification(PackageIdentificationExtensionPoint):  # type: 
             return
         self._check_manifest(desc.path)
         package, build_type = get_package_with_build_type(str(desc.path))
-        if build_type not in TYPES or _has_ament_cmake():
+        if build_type == "ament_python":
+            desc.type = PYTHON_TYPE
+        elif build_type in TYPES and not _has_ament_cmake():
+            desc.type = TYPES[build_type]
+        else:
             return
-        desc.type = TYPES[build_type]
         desc.name = desc.name or package.name
 
     def _check_manifest(self, folder: Path) -> None:
@@ -64,6 +71,20 @@ def _prepare_environment() -> None:
     before = os.environ.get("PYTHONWARNINGS", "")
     if quiet not in before:
         os.environ["PYTHONWARNINGS"] = f"{before},{quiet}" if before else quiet
+
+
+def _warn_inside_sources() -> None:
+    """Warn of a build within the folder of the sources, whose results no other terminal would look for there."""
+    here = Path.cwd()
+    sources = here if here.name == "src" else here.parent
+    own_places = {"--build-base", "--install-base", "--base-paths"}
+    if "build" not in sys.argv[1:] or own_places.intersection(sys.argv) or sources.name != "src":
+        return
+    if here == sources or (here / "package.xml").is_file():
+        _logger.warning(
+            f"'{here}' is a folder of sources: 'build', 'install' and 'log' are made in it. "
+            f"To build the workspace run 'colcon build' in '{sources.parent}'"
+        )
 
 
 def _has_ament_cmake() -> bool:
