@@ -63,6 +63,8 @@ class Stage:
     def bind(self, instances: Iterable[VisibleModel]) -> None:
         """Update the models after a compilation."""
         self._instances = tuple(instances)
+        if self._scene is not None:
+            self._scene.shared.clear()  # which refers to the scene
         self._scene = None
 
     @property

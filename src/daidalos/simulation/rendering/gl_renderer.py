@@ -26,7 +26,7 @@ from daidalos.simulation.rendering.renderer import (
     sort_lights,
 )
 from daidalos.simulation.rendering.scene import Scene
-from daidalos.simulation.rendering.shadows import ShadowMap
+from daidalos.simulation.rendering.shadows import ShadowMaps
 
 # From the extra daidalos[egl]: type checkers do not find it everywhere.
 moderngl: Any = importlib.import_module("moderngl")
@@ -52,7 +52,6 @@ class GlRenderer:
         self._mask = np.uint32(mask & 0xFFFFFFFF)
         self._pool = Pool()
         self._scene: Scene | None = None
-        self._shadow_map: ShadowMap | None = None
         self._gl = context()
         size = (pinhole.width, pinhole.height)
         depth = self._gl.depth_renderbuffer(size)
@@ -184,11 +183,9 @@ class GlRenderer:
         self._sky["horizon"].value = tuple(self._camera_pose.matrix[2, :3].tolist())
 
     def _set_shadow(self, scene: Scene, positions: Array, rotations: Array, direction: Array) -> None:
-        if self._shadow_map is None:
-            self._shadow_map = ShadowMap()
-        shadow = self._shadow_map
         ahead = np.array(rotate(self._camera_pose.orientation, (0.0, 0.0, 1.0)))
-        shadow.update(scene, positions, rotations, direction, np.array(self._camera_pose.position), ahead, self.far)
+        eye = np.array(self._camera_pose.position)
+        shadow = scene.share(ShadowMaps).at(positions, rotations, direction, eye, ahead, self.far)
         self._fill("shadow", shadow.depths[..., None], 1)
         to_shadow = np.eye(4)
         to_shadow[:3] = shadow.to_map @ self._camera_pose.matrix

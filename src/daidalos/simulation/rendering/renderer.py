@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import InitVar, dataclass, field
 from typing import Any
-from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,7 +19,7 @@ from daidalos.simulation.rendering.pool import Pool
 from daidalos.simulation.rendering.raster import EDGES, NOTHING, PROJECTED, draw, place_parts
 from daidalos.simulation.rendering.scene import Scene
 from daidalos.simulation.rendering.shading import shade
-from daidalos.simulation.rendering.shadows import ShadowMap
+from daidalos.simulation.rendering.shadows import ShadowMap, ShadowMaps
 
 _SKY: tuple[Rgba, Rgba] = ((0.75, 0.84, 0.93, 1.0), (0.25, 0.47, 0.80, 1.0))
 _KINDS = {"point": POINT, "spot": SPOT, "directional": DIRECTIONAL}
@@ -98,9 +97,6 @@ class _Buffers:
         return self._images[key]
 
 
-_buffers: WeakKeyDictionary[Scene, _Buffers] = WeakKeyDictionary()
-
-
 class Renderer:
     """Rasterizer of one camera with its buffers.
 
@@ -119,7 +115,6 @@ class Renderer:
         self.near, self.far = near, far
         self._mask = np.uint32(mask & 0xFFFFFFFF)
         self._scene: Scene | None = None
-        self._shadow_map: ShadowMap | None = None
 
     def render(self, scene: Scene, positions: Array, rotations: Array, pose: Pose) -> View:
         """Rasterize the scene.
@@ -134,7 +129,7 @@ class Renderer:
         """
         if self._scene is not scene:
             self._scene = scene
-            self._buffers = _buffers.get(scene) or _buffers.setdefault(scene, _Buffers(scene))
+            self._buffers = scene.share(_Buffers)
             self._inverse, self._triangles = self._buffers.image((self.pinhole.height, self.pinhole.width))
         self._pose = pose
         self._camera_pose = pose @ OPTICAL
@@ -187,12 +182,9 @@ class Renderer:
     ) -> ShadowMap | None:
         if sun is None or not sun[0].cast_shadows or not lighting.shadows:
             return None
-        if self._shadow_map is None:
-            self._shadow_map = ShadowMap()
         ahead = np.array(rotate(self._camera_pose.orientation, (0.0, 0.0, 1.0)))
         eye = np.array(self._camera_pose.position)
-        self._shadow_map.update(scene, positions, rotations, direction, eye, ahead, self.far)
-        return self._shadow_map
+        return scene.share(ShadowMaps).at(positions, rotations, direction, eye, ahead, self.far)
 
     def _shade(
         self,

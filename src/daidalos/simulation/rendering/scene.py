@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +19,7 @@ from daidalos.description.visuals import Part, visual_parts
 from daidalos.simulation.rendering.textures import TextureAtlas, make_atlas
 
 Floats = NDArray[np.float32]
+T = TypeVar("T")
 
 UNLABELLED = 0
 _ALL = 0xFFFFFFFF
@@ -72,6 +73,8 @@ class Scene:
         Visibility flags; a camera sees a part when its mask has a bit in common.
     labels, owners : array (n,) of int32
     atlas : TextureAtlas
+    shared : dict
+        What the renderers of the scene share, by its class; it is theirs.
     """
 
     vertices: Floats
@@ -97,6 +100,14 @@ class Scene:
     labels: NDArray[np.int32]
     owners: NDArray[np.int32]
     atlas: TextureAtlas
+    shared: dict[Any, Any] = field(default_factory=dict)
+
+    def share(self, kind: Callable[[Scene], T]) -> T:
+        """Return the object of a class that all renderers of the scene share, made at the first call."""
+        found: T | None = self.shared.get(kind)
+        if found is None:
+            found = self.shared[kind] = kind(self)
+        return found
 
 
 def make_scene(items: Iterable[Item], warn: Callable[[str], None]) -> Scene:

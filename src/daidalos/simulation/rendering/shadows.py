@@ -1,10 +1,9 @@
-"""Shadow map of a directional light around a camera."""
+"""Shadow maps of a directional light around cameras."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import InitVar, dataclass, field
-from weakref import WeakKeyDictionary
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,53 +18,95 @@ _MAX_REACH = 16.0
 _LINGER = 30
 """Pictures after which what came to rest counts as standing."""
 
+_KEPT = 300
+"""Pictures for which a map is kept that no camera uses."""
+
 _SHIFT = 1e-5
 """Change of a position [m] or of an axis below which a body stands."""
 
 _NEVER = np.array((1 << 30, -1, 1 << 30, -1), dtype=np.int64)
 
 
-@dataclass(eq=False)
-class _Canvas:
-    """Map in which what moves is drawn over what stands, shared by the cameras of a scene, one after the other.
+class ShadowMaps:
+    """Shadow maps of a scene by the squares that they cover, each kept while a camera uses it.
+
+    Cameras whose squares are the same share one map, which is drawn once for each instant.
 
     Parameters
     ----------
+    scene : Scene
     size : int
         Pixels a side.
-
-    Attributes
-    ----------
-    owner : ShadowMap or None
-        Whose map it holds.
     """
 
-    size: InitVar[int]
-    owner: ShadowMap | None = field(default=None, init=False)
-    depths: NDArray[np.float32] = field(init=False)
-    coarse: NDArray[np.float32] = field(init=False)
+    def __init__(self, scene: Scene, size: int = 1024) -> None:
+        self._scene = scene
+        self._size = size
+        self._shapes: dict[float, Shapes] = {}
+        self._maps: dict[tuple[float, ...], ShadowMap] = {}
+        self._pictures = 0
 
-    def __post_init__(self, size: int) -> None:
-        self.depths, self.coarse = _empty_map(size)
+    def at(self, positions: Array, rotations: Array, light: Array, eye: Array, ahead: Array, far: float) -> ShadowMap:
+        """Return the map around a camera, drawn for the given poses.
+
+        Parameters
+        ----------
+        positions, rotations : array (bodies, 3) and (bodies, 9)
+            Of MuJoCo's bodies.
+        light : array (3,)
+            Unit vector in which the light shines.
+        eye, ahead : array (3,)
+            Where the camera is and where it looks.
+        far : float
+            How far it sees [m].
+        """
+        half = min(_MAX_REACH, max(far, 0.5)) / 2
+        reach = 1.2 * half
+        axes = _axes(light)
+        step = reach / 4
+        x, y = (math.floor(value / step) * step for value in (axes[:2] @ (eye + ahead * 0.8 * half)).tolist())
+        key = (x, y, reach, *light.tolist())
+        found = self._maps.pop(key, None)
+        if found is None:
+            texel = 2 * reach / self._size
+            if texel not in self._shapes:
+                self._shapes[texel] = simplify(self._scene, texel)
+            corner = (x + step / 2 - reach, y + step / 2 - reach)
+            found = ShadowMap(self._scene, self._shapes[texel], axes, corner, texel, self._size)
+        self._maps[key] = found  # the last used comes last
+        self._pictures += 1
+        found.picture = self._pictures
+        oldest = next(iter(self._maps))
+        if self._pictures - self._maps[oldest].picture > _KEPT:
+            del self._maps[oldest]
+        found.update(positions, rotations)
+        return found
 
 
-def _empty_map(size: int) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-    """Return infinite depths, and their blocks."""
-    blocks = (size >> BLOCK_BITS) + 1
-    return np.full((size, size), np.inf, dtype=np.float32), np.full((blocks, blocks), np.inf, dtype=np.float32)
-
-
-_canvases: WeakKeyDictionary[Scene, dict[int, _Canvas]] = WeakKeyDictionary()
+def _axes(light: Array) -> Array:
+    """Return the axes (3, 3) of the maps of a light, the third along it."""
+    up = np.array((0.0, 1.0, 0.0)) if abs(light[2]) > 0.9 else np.array((0.0, 0.0, 1.0))
+    right = np.cross(up, light)
+    right /= np.linalg.norm(right)
+    return np.stack((right, np.cross(light, right), light))
 
 
 class ShadowMap:
-    """Depths along a light of a square around a camera.
+    """Depths along a light of a square.
 
-    What stands is drawn again only when the square moves on or something starts or stops to move; what moves is drawn
-    over it each time.
+    What stands is drawn again only when something starts or stops to move; what moves is drawn over it each time.
 
     Parameters
     ----------
+    scene : Scene
+    shapes : Shapes
+        What casts shadows.
+    axes : array (3, 3)
+        The third along the light.
+    corner : tuple of 2 floats
+        Of the square, along the first two axes [m].
+    texel : float
+        Side of a pixel [m].
     size : int
         Pixels a side.
 
@@ -77,99 +118,59 @@ class ShadowMap:
     to_map : array (3, 4)
         From the world to pixels and depth.
     texel : float
-        Side of a pixel [m].
+    picture : int
+        Number of the last picture that used it.
     """
 
-    def __init__(self, size: int = 1024) -> None:
-        self._size = size
-        self._still, self._still_coarse = _empty_map(size)
-        self.depths, self.coarse = self._still, self._still_coarse
+    def __init__(
+        self, scene: Scene, shapes: Shapes, axes: Array, corner: tuple[float, float], texel: float, size: int
+    ) -> None:
+        self.depths = np.full((size, size), np.inf, dtype=np.float32)
+        self.coarse = np.full(((size >> BLOCK_BITS) + 1, (size >> BLOCK_BITS) + 1), np.inf, dtype=np.float32)
         self.to_map = np.zeros((3, 4))
-        self.texel = 1.0
-        self._scene: Scene | None = None
-        self._placed = np.empty((0, 3, 4))
-        self._scratch = np.empty((0, 3))
-        self._shapes = Shapes()
-        self._light = np.zeros(3)
-        self._corner = (math.nan, math.nan)
+        self.to_map[:, :3] = axes
+        self.to_map[:2] /= texel
+        self.to_map[0, 3], self.to_map[1, 3] = -corner[0] / texel, -corner[1] / texel
+        self.texel = texel
+        self.picture = 0
+        self._still = np.empty_like(self.depths)
+        self._scene = scene
+        self._shapes = shapes
+        self._placed = np.empty((len(scene.body), 3, 4))
+        self._scratch = np.empty(shapes.vertices.shape)
         self._dirty = _NEVER.copy()
-        self._poses = np.zeros((0, 12))
-        self._rest = np.zeros(0, dtype=np.int64)
+        self._drawn: Array | None = None
         self._moving = np.zeros(0, dtype=np.bool_)
 
-    def update(
-        self, scene: Scene, positions: Array, rotations: Array, light: Array, eye: Array, ahead: Array, far: float
-    ) -> None:
-        """Update the map.
-
-        Parameters
-        ----------
-        scene : Scene
-        positions, rotations : array (bodies, 3) and (bodies, 9)
-            Of MuJoCo's bodies.
-        light : array (3,)
-            Unit vector in which the light shines.
-        eye, ahead : array (3,)
-            Where the camera is and where it looks.
-        far : float
-            How far it sees [m].
-        """
-        reach = min(_MAX_REACH, max(far, 0.5)) / 2
-        moved = self._aim(light, eye + ahead * 0.8 * reach, 1.2 * reach)
-        if scene is not self._scene:
-            self._scene, moved = scene, True
-            known = _canvases.setdefault(scene, {})
-            self._canvas = known.get(self._size) or known.setdefault(self._size, _Canvas(self._size))
-            self.depths, self.coarse = self._canvas.depths, self._canvas.coarse
-            self._shapes = _shapes_of(scene, self.texel)
-            self._placed = np.empty((len(scene.body), 3, 4))
-            self._scratch = np.empty(self._shapes.vertices.shape)
-            self._poses = np.concatenate((positions, rotations), axis=1)
-            self._rest = np.full(len(positions), _LINGER)
+    def update(self, positions: Array, rotations: Array) -> None:
+        """Draw the map for poses of MuJoCo's bodies, (bodies, 3) and (bodies, 9), unless it was drawn for them."""
+        scene, poses = self._scene, np.concatenate((positions, rotations), axis=1)
+        if self._drawn is None:
+            self._poses, self._rest = poses.copy(), np.full(len(poses), _LINGER)
+        elif np.array_equal(poses, self._drawn):
+            return
         place_parts(scene.body, scene.pose, positions, rotations, self.to_map, self._placed)
-        moving = self._find_moving(positions, rotations)[scene.body]
-        if moved or not np.array_equal(moving, self._moving):
+        moving = self._find_moving(poses)[scene.body]
+        if self._drawn is None or not np.array_equal(moving, self._moving):
             self._moving = moving
             self._draw_still(scene)
-            self._canvas.owner = None
-        if self._canvas.owner is not self:
-            self._canvas.owner = self
-            self.depths[:], self.coarse[:] = self._still, self._still_coarse
-            self._dirty = _NEVER.copy()
         self._draw_moving(scene)
+        self._drawn = poses
 
-    def _find_moving(self, positions: Array, rotations: Array) -> NDArray[np.bool_]:
+    def _find_moving(self, poses: Array) -> NDArray[np.bool_]:
         """Return for each body whether it moved recently."""
-        poses = np.concatenate((positions, rotations), axis=1)
         shifted = (np.abs(poses - self._poses) > _SHIFT).any(axis=1)
         self._poses[shifted] = poses[shifted]
         self._rest = np.where(shifted, 0, self._rest + 1)
         return self._rest < _LINGER
 
-    def _aim(self, light: Array, centre: Array, reach: float) -> bool:
-        """Place the square around a position, in steps so that it rarely moves; return whether it moved."""
-        texel = 2 * reach / self._size
-        up = np.array((0.0, 1.0, 0.0)) if abs(light[2]) > 0.9 else np.array((0.0, 0.0, 1.0))
-        right = np.cross(up, light)
-        right /= np.linalg.norm(right)
-        axes = np.stack((right, np.cross(light, right), light))
-        step = reach / 4
-        x, y = (math.floor(value / step) * step for value in (axes[:2] @ centre).tolist())
-        corner = (x + step / 2 - reach, y + step / 2 - reach)
-        if corner == self._corner and texel == self.texel and np.array_equal(light, self._light):
-            return False
-        self._corner, self.texel, self._light = corner, texel, light.copy()
-        self.to_map[:, :3] = axes
-        self.to_map[:, 3] = 0.0
-        self.to_map[:2] /= texel
-        self.to_map[0, 3], self.to_map[1, 3] = -corner[0] / texel, -corner[1] / texel
-        return True
-
     def _draw_still(self, scene: Scene) -> None:
         self._still.fill(np.inf)
         self._draw(scene, scene.casts & ~self._moving, self._still, _NEVER.copy())
-        last = self._size - 1
-        coarsen(self._still, self._still_coarse, np.array((0, last, 0, last), dtype=np.int64))
+        self.depths[:] = self._still
+        last = len(self.depths) - 1
+        coarsen(self.depths, self.coarse, np.array((0, last, 0, last), dtype=np.int64))
+        self._dirty = _NEVER.copy()
 
     def _draw_moving(self, scene: Scene) -> None:
         old = self._dirty
@@ -217,17 +218,6 @@ class Shapes:
     planes: NDArray[np.float32] = field(default_factory=lambda: np.zeros((0, 4), dtype=np.float32))
     face_ranges: NDArray[np.int64] = field(default_factory=lambda: np.zeros((0, 2), dtype=np.int64))
     vertex_ranges: NDArray[np.int64] = field(default_factory=lambda: np.zeros((0, 2), dtype=np.int64))
-
-
-_shapes: WeakKeyDictionary[Scene, dict[float, Shapes]] = WeakKeyDictionary()
-
-
-def _shapes_of(scene: Scene, cell: float) -> Shapes:
-    """Return the simplified triangles of a scene, which all cameras share; see `simplify`."""
-    known = _shapes.setdefault(scene, {})
-    if cell not in known:
-        known[cell] = simplify(scene, cell)
-    return known[cell]
 
 
 def simplify(scene: Scene, cell: float) -> Shapes:
