@@ -192,3 +192,15 @@ def _check(result, status, lines):
         assert line in told
     assert "Traceback" not in told
     assert result.status == status, told
+
+
+HIDDEN = "import rclpy\nrclpy.init()\nrclpy.spin(rclpy.create_node('_hidden'))\n"
+
+
+@pytest.mark.slow
+def test_a_hidden_node_is_shown_where_hidden_ones_are_asked_for(env, beside, wait_for):
+    beside(HIDDEN)
+    wait_for("/_hidden/set_parameters")
+    _check(ros2("node", "info", "/_hidden", env=env), 1, ["Unable to find node '/_hidden'"])
+    shown = ros2("node", "info", "--include-hidden", "/_hidden", env=env)
+    assert shown.out.startswith("/_hidden\n  Subscribers:\n")

@@ -96,7 +96,7 @@ class IncludeLaunchDescription(Action):
         self.__outer_locals = {name: value for name, value in context.get_locals_as_dict().items() if name in _LOCALS}
         path = os.path.abspath(location) if os.path.isfile(location) else location
         context.extend_locals(
-            {"current_launch_file_path": path, "current_launch_file_directory": os.path.dirname(path)}
+            {"current_launch_file_path": path, "current_launch_file_directory": os.path.dirname(path) or path}
         )
         self.__check_arguments(context, description)
         return [

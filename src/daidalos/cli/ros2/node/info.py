@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from argparse import ArgumentParser, Namespace
 
 from ros2cli.graph import NamesAndTypes, visible
@@ -33,14 +34,14 @@ class InfoVerb(Verb):
         """Print the node's endpoints."""
         full_name = absolute(args.node_name)
         with graph_view(args) as graph:
-            everyone = nodes(graph)
+            everyone = nodes(graph, args.include_hidden)
             found = [node for node in everyone if node.full_name == full_name]
             sections = _sections(graph, found[0], args.include_hidden) if found else {}
         if not found:
             hint = did_you_mean(full_name, (node.full_name for node in everyone))
             return f"Unable to find node '{args.node_name}'{hint}"
         if len(found) > 1:
-            print(INFO_NONUNIQUE_WARNING_TEMPLATE.format(num_nodes=len(found), node_name=full_name))
+            print(INFO_NONUNIQUE_WARNING_TEMPLATE.format(num_nodes=len(found), node_name=full_name), file=sys.stderr)
         print(full_name)
         for title, entries in sections.items():
             print(f"  {title}:")

@@ -145,7 +145,9 @@ def _measure_one(node: Node, args: Namespace, clock: Clock, accept: Callable[[An
             printed_at = now
         elif now - printed_at >= _S:
             printed_at = now
-            print(meter.rate())
+            rate = meter.rate()
+            if rate is not None:
+                print(rate)
 
     _subscribe(node, args, args.topic_name[0], on_message, raw=accept is None)
 
