@@ -34,7 +34,7 @@ GOALS = {
     "bags.record_1_khz_lost": Goal(0),
     "bags.record_10_khz_lost": Goal(0),
     "bags.record_100_mb_per_s_lost": Goal(0),
-    "bags.kill_9_lost_s": Goal(1.2),
+    "bags.kill_9_lost_s": Goal(0.1),
     "bags.play_lost": Goal(0),
     "bags.play_late_99_percent_ms": Goal(5.0),
     "bags.info_s": Goal(0.5),

@@ -1,4 +1,8 @@
+import statistics
 import threading
+import time
+
+import pytest
 
 from daidalos.bags.cache import SnapshotBuffer, WriterThread
 from daidalos.bags.errors import BagError
@@ -28,6 +32,27 @@ def test_everything_arrives_in_order(tmp_path):
     writer.close()
     assert thread.lost.total() == 0
     assert read_independently(tmp_path / "bag") == received(messages(5000))
+
+
+@pytest.mark.timing
+def test_a_message_is_in_the_file_within_a_tenth_of_a_second(tmp_path):
+    writer = bag(tmp_path / "bag")
+    thread = WriterThread(writer, 0, fail)
+    waits = []
+    for message in messages(5):
+        begun, before = time.monotonic(), _bytes_in(tmp_path / "bag")
+        thread.write(message)
+        while _bytes_in(tmp_path / "bag") == before:
+            assert time.monotonic() - begun < 10
+            time.sleep(0.002)
+        waits.append(time.monotonic() - begun)
+    thread.close()
+    writer.close()
+    assert statistics.median(waits) < 0.1
+
+
+def _bytes_in(folder):
+    return sum(path.stat().st_size for path in folder.iterdir())
 
 
 def test_work_is_done_after_what_came_before(tmp_path):
