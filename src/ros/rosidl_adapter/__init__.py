@@ -1,0 +1,1 @@
+"""Descriptions of .msg, .srv and .action files, under rosidl's names."""
