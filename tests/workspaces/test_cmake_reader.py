@@ -120,6 +120,7 @@ def test_plugins_resources_and_hooks_are_registered(read):
         pluginlib_export_plugin_description_file(nav2_core plugins.xml)
         ament_index_register_resource(rviz_ogre_media_exports CONTENT "a;b")
         ament_environment_hooks("env/models.dsv.in")
+        ament_environment_hooks("${ament_cmake_package_templates_ENVIRONMENT_HOOK_LIBRARY_PATH}")
         """
     contents = read(body, files)
     assert [(one.type, one.content) for one in contents.resources] == [

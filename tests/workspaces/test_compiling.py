@@ -62,6 +62,11 @@ def test_what_became_of_a_target_is_a_sentence(compiler):
     )
 
 
+def test_only_the_flag_is_taken_from_a_library(compiler):
+    line = summary(planned(target("node", "a.cpp", links=["lifecycle_msgs", "-lusb"]))[1])
+    assert "needs lifecycle_msgs, usb, of which" in line
+
+
 def test_long_lists_are_cut(compiler):
     line = summary(planned(target("node", "a.cpp", links=["a", "b", "c", "d", "e"]))[1])
     assert "needs a, b, c, d and more, of which" in line

@@ -1,6 +1,7 @@
 """Python scripts of packages and the reports of their mistakes."""
 
 import os
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -86,6 +87,14 @@ def test_a_wrong_entry_point_is_named_in_one_line(folder: Path, name: str, probl
     assert len(lines) == 1
     assert lines[0].startswith(f"setup.py: the entry point '{name} = {_ENTRIES[name]}'")
     assert lines[0].endswith(problem)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="the system has no signals")
+def test_an_interrupt_is_no_mistake(folder: Path) -> None:
+    script = folder / "good"
+    script.write_text(f"#!{sys.executable}\nimport signal\nsignal.raise_signal(signal.SIGINT)\n")
+    done = _run(script)
+    assert (done.returncode, done.stderr) == (-signal.SIGINT, "")
 
 
 @pytest.mark.skipif(not Path("/proc/self/comm").exists(), reason="the system does not show processes' names in /proc")

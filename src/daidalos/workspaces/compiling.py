@@ -110,7 +110,7 @@ def _foreign(target: Target, targets: Mapping[str, Target]) -> list[str]:
     The library of the package's own messages is linked by a variable that nothing sets here.
     """
     names = [
-        link.split("::")[0].lstrip("-l") or "its own messages"
+        link.split("::")[0].removeprefix("-l") or "its own messages"
         for part in _parts(target, targets)
         for link in part.links
         if link not in targets and link not in _SYSTEM_LIBRARIES

@@ -30,6 +30,8 @@ def main() -> None:
         name.write(os.path.basename(path)[:_NAME_LENGTH])
 
     def show(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
+        if issubclass(kind, KeyboardInterrupt):
+            return  # Ctrl-C while modules are imported; the process ends by the signal
         problem = "" if tracebacks.own_frames(error) else _fault_of_entry_point(path, error)
         if problem:
             sys.stderr.write(f"{problem}\n")

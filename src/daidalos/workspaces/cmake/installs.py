@@ -223,7 +223,8 @@ def _register_resource(run: Interpreter, call: Call) -> None:
 
 def _environment_hooks(run: Interpreter, call: Call) -> None:
     build = Path(run.variables["CMAKE_BINARY_DIR"]) / "environment"
-    for name in call.values:
+    # One of ament's own hooks is named by a variable that nothing sets here, as the build writes those hooks itself.
+    for name in filter(None, call.values):
         source = run.path(name)
         if not source.is_file():
             raise WorkspaceError(f"{call.name}(): there is no file '{name}'", call.where)

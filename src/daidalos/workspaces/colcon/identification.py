@@ -20,6 +20,9 @@ TYPES = {"ament_cmake": "ros.ament_cmake.daidalos", "catkin": "ros.catkin.daidal
 """Our types of packages without CMake, by the build type in package.xml."""
 PYTHON_TYPE = "ros.ament_python.daidalos"
 """Our type of packages of build type ament_python."""
+_OLD_NEWS = ("ignore:Unknown distribution option:UserWarning", "ignore:License classifiers are deprecated")
+"""Warnings of setuptools about what the setup.py of nearly every package of ROS 2 says."""
+
 _logger = colcon_logger.getChild(__name__)
 
 
@@ -64,13 +67,11 @@ class CmakePackageIdentification(PackageIdentificationExtensionPoint):  # type: 
 def _prepare_environment() -> None:
     """Set the variables of ROS 2's setup files, for conditions in manifests and for programs of the build.
 
-    The packages of today's courses tell setuptools of their tests as an older one understood; that is no news.
+    The packages of today's courses tell setuptools of their tests and licenses as an older one understood.
     """
     complete_environment()
-    quiet = "ignore:Unknown distribution option:UserWarning"
-    before = os.environ.get("PYTHONWARNINGS", "")
-    if quiet not in before:
-        os.environ["PYTHONWARNINGS"] = f"{before},{quiet}" if before else quiet
+    wanted = os.environ.get("PYTHONWARNINGS", "").split(",")
+    os.environ["PYTHONWARNINGS"] = ",".join(filter(None, dict.fromkeys([*wanted, *_OLD_NEWS])))
 
 
 def _warn_inside_sources() -> None:
