@@ -122,6 +122,26 @@ def test_a_service_that_dies_is_replaced(new_session: Callable[[], Session]):
         assert session.graph.wait_for(lambda: not session.server_is_ready(client), TIMEOUT_S)
 
 
+@pytest.mark.parametrize("overlap", [False, True])
+def test_a_request_whose_server_died_is_answered_by_the_next(new_session: Callable[[], Session], overlap: bool):
+    session = new_session()
+    answers = Inbox()
+    client = answers.entity = session.create_client(
+        node_of(session, "me"), "/add", AddTwoInts, Qos(), lambda: answers.ready()
+    )
+    with Peer("serve").ready() as first:
+        assert session.graph.wait_for(lambda: session.server_is_ready(client), TIMEOUT_S)
+        client.send(AddTwoInts.Request(a=0, b=0))
+        assert answers.wait(1, TIMEOUT_S)
+        first.process.send_signal(signal.SIGSTOP)
+        client.send(AddTwoInts.Request(a=1, b=2))
+        if not overlap:
+            first.process.kill()
+        with Peer("serve").ready():
+            first.process.kill()
+            assert [message.sum for message, *_ in answers.wait(2, TIMEOUT_S)] == [0, 3]
+
+
 @pytest.mark.timing
 def test_a_stopped_process_does_not_stop_others(new_session: Callable[[], Session], middleware: str):
     session = new_session()

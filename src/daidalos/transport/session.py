@@ -153,6 +153,7 @@ class Session:
             self._clients.setdefault(name, set()).add(client)
             self._match_service(name)
         self.graph.add_endpoint(key, endpoint)
+        self._note_servers(client)
         return client
 
     def server_is_ready(self, client: Client) -> bool:
@@ -242,9 +243,20 @@ class Session:
                         self._note_remote_subscription(publisher, what)
                     else:
                         publisher.remove_remote_subscription(what.gid)
+            elif what.kind is EndpointKind.SERVICE and what.gid not in self._own:
+                for client in self._clients.get(what.name, ()):
+                    self._note_servers(client)
             watchers = tuple(self._watchers.get((what.name, what.kind), ()))
         for watcher in watchers:
             watcher(added, what)
+
+    def _note_servers(self, client: Client) -> None:
+        """Pass to a client the servers of other processes that have its type."""
+        mine = client.endpoint
+        others = self.graph.endpoints(EndpointKind.SERVICE, name=mine.name)
+        client.set_remote_servers(
+            frozenset(other.gid for other in others if other.gid not in self._own and _same_type(mine, other))
+        )
 
     def _on_readers_change(self, publisher: Publisher) -> None:
         """Update a publisher of which the middleware itself has gained or lost readers."""
