@@ -114,6 +114,24 @@ def test_by_default_a_node_is_seen_on_its_machine_only(tmp_path):
         assert len([line for line in far.lines if "came" in line]) == 1
 
 
+def test_by_default_another_machine_that_knows_the_address_gets_no_answer(tmp_path, middleware):
+    here = {"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
+    if middleware == "rmw_cyclonedds_cpp":
+        here["CYCLONEDDS_URI"] = ""
+    with Network(2) as network:
+        there = {"ROS_STATIC_PEERS": network.address(0)}
+        with (
+            peer(network, 0, "watch", tmp_path, **here) as near,
+            peer(network, 1, "watch", tmp_path, **there) as far,
+            peer(network, 1, "talk", tmp_path, **there),
+            peer(network, 0, "talk", tmp_path, **here),
+        ):
+            near.wait_for("came talker")
+            far.wait_for("came talker")
+            for watcher in (near, far):
+                assert len([line for line in watcher.lines if "came" in line]) == 1
+
+
 def test_a_static_peer_is_found_without_multicast(tmp_path, middleware):
     if middleware == "rmw_zenoh_cpp":
         pytest.skip("zenoh's static peers are routers")

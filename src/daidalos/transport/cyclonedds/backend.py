@@ -36,6 +36,7 @@ from daidalos.transport.cyclonedds.library import (
     TopicDescriptor,
     load,
 )
+from daidalos.transport.cyclonedds.loopback import confine, is_confined
 from daidalos.transport.cyclonedds.qos import HISTORY_KEY, dds_qos, history_text
 from daidalos.transport.cyclonedds.reception import Reception, SampleReader
 from daidalos.transport.cyclonedds.writer import Writer
@@ -364,6 +365,8 @@ def _join_domain(library: Library, environment: Environment) -> int:
                     "hundred processes are in the domain"
                 )
             entity = made if made >= 0 else None
+            if is_confined(environment):
+                confine(number)
         _domains[number] = (entity, users + 1)
     return number
 

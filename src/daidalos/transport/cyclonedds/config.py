@@ -5,12 +5,13 @@ from __future__ import annotations
 import os
 from xml.sax.saxutils import quoteattr
 
+from daidalos.transport.cyclonedds.loopback import FIRST_PORT, PORTS_PER_DOMAIN
 from daidalos.transport.environment import DiscoveryRange, Environment
 
 _LOCALHOST = "127.0.0.1"
 _MAX_PARTICIPANTS = 99
 """Highest index of a participant: how many processes of one machine find each other without multicast."""
-_FIRST_PORT, _PORTS_PER_DOMAIN, _LAST_PORT = 7400, 250, 65535
+_LAST_PORT = 65535
 _DATA_PORT_OFFSET = 11
 
 # A reliable writer waits while this much is on its way: enough to keep the wire busy, little enough that no
@@ -52,7 +53,7 @@ def _peers(environment: Environment) -> str:
 
     This machine is always among them, so that nodes of a wider range are found by those of a narrower one.
     """
-    highest = (_LAST_PORT - _FIRST_PORT - _PORTS_PER_DOMAIN * environment.domain - _DATA_PORT_OFFSET) // 2
+    highest = (_LAST_PORT - FIRST_PORT - PORTS_PER_DOMAIN * environment.domain - _DATA_PORT_OFFSET) // 2
     listed = "".join(f"<Peer address={quoteattr(peer)}/>" for peer in (_LOCALHOST, *environment.static_peers))
     return (
         "<Discovery><ParticipantIndex>auto</ParticipantIndex>"
