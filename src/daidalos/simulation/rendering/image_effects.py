@@ -49,14 +49,16 @@ def pick(ideal: Any, lookup: Any, bent: Any) -> None:
 @compiled
 def add_noise(picture: Any, noise: Any, start: Any) -> None:
     """Add values of a table, from an offset on and cyclically, to the bytes of a picture."""
-    place = start
-    size = len(noise)
-    for index in range(len(picture)):
-        value = picture[index] + noise[place]
-        picture[index] = np.uint8(min(max(value, np.float32(0.0)), np.float32(255.0)) + np.float32(0.5))
-        place += 1
-        if place == size:
-            place = 0
+    place, done = start, 0
+    while done < len(picture):
+        # Runs without wrapping, which the compiler vectorizes.
+        run = min(len(picture) - done, len(noise) - place)
+        pixels, values = picture[done : done + run], noise[place : place + run]
+        for index in range(run):
+            value = pixels[index] + values[index]
+            pixels[index] = np.uint8(min(max(value, np.float32(0.0)), np.float32(255.0)) + np.float32(0.5))
+        done += run
+        place = 0
 
 
 @compiled
