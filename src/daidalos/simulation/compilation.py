@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from dataclasses import replace
 from typing import Any
 
 import mujoco
@@ -65,6 +66,7 @@ class Compilation:
         self.forces = Forces()
         self.number = 0
         self._layout = b""
+        self._compiled_alone: Model | None = None
         self._assets = Assets(self.spec)
         self._has_subscribers = has_subscribers
         self._warn = warn
@@ -134,6 +136,9 @@ class Compilation:
         shapes = (collision.geometry for link in model.links.values() for collision in link.collisions)
         if instance.components or any(isinstance(shape, Mesh | Heightmap) for shape in shapes):
             return False
+        nameless = replace(model, name="", pose=Pose())
+        if nameless == self._compiled_alone:  # many are often alike
+            return True
         spec: Any = mujoco.MjSpec()
         set_options(spec, self._world, float(self.spec.option.timestep))
         add_model(spec, Assets(spec), model, model.name, Pose(), lambda line: None)
@@ -141,6 +146,7 @@ class Compilation:
             spec.compile()
         except ValueError as problem:
             raise SimulationError(_one_line(problem)) from None
+        self._compiled_alone = nameless
         return True
 
     def compile(self) -> None:

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
-_KEPT = 32
-"""Arrays of one shape that are kept: as many as cameras fill at one instant."""
+_KEPT = 16
+"""Arrays of one shape that are kept: about as many as cameras fill at one instant."""
 _UNUSED = 3
 """References to an array that nobody else holds: the list's, the loop's and that of the question itself."""
 
