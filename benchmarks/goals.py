@@ -103,7 +103,7 @@ GOALS = {
     "fuzz.faults": Goal(0),
     "fuzz.slowest_s": Goal(2.0),
     "fuzz.memory_growth_mb": Goal(50.0),
-    "soak.memory_growth_mb": Goal(5.0),
+    "soak.memory_growth_mb": Goal(1.0),
     "soak.threads_left": Goal(0),
     "soak.endpoints_left": Goal(0),
     "soak.errors": Goal(0),

@@ -30,7 +30,7 @@ def read(path: Path) -> Any:
         package = parse_package_string(text, str(path))
         package.evaluate_conditions({**ENVIRONMENT, **os.environ})
         package.get_build_type()
-    except (InvalidPackage, AssertionError) as error:
+    except (InvalidPackage, AssertionError, ValueError) as error:
         raise WorkspaceError(_located(path, text, str(error))) from None
     return package
 

@@ -61,7 +61,7 @@ class Entity(BaseEntity):
         return [self.__child(item) for item in items]
 
     def __child(self, item: Any) -> Entity:
-        if not isinstance(item, dict) or len(item) != 1:
+        if not isinstance(item, dict) or len(item) != 1 or not isinstance(next(iter(item)), str):
             raise RuntimeError(
                 "Subentities must be a dictionary with only one key, which is the entity type; "
                 f"got `{item}` in `{self.type_name}`"

@@ -37,7 +37,7 @@ class Parser(BaseParser):
         filename = getattr(file, "name", None)
         filename = os.fspath(filename) if isinstance(filename, str) else None
         tree = read_yaml(file.read(), filename)
-        if not isinstance(tree, dict) or len(tree) != 1:
+        if not isinstance(tree, dict) or len(tree) != 1 or not isinstance(next(iter(tree)), str):
             raise LaunchFileError(filename, None, "Expected one root element: `launch:` with a list below it")
         type_name, element = next(iter(tree.items()))
         return Entity(element, type_name), cls()

@@ -130,6 +130,40 @@ def test_tokens_that_are_none_of_ros_harm_nobody(session, stranger, domain):
     assert session.graph.wait_for(lambda: not session.graph.nodes(), TIMEOUT_S)
 
 
+GARBAGE = (
+    b"",
+    b"\0",
+    b"\0\1\0\0",
+    b"\0\1\0\0\xff\xff\xff\xff",
+    b"\0\1\0\0\6\0\0\0\xff\xfe\xfd\xfc\xfb\0",
+    b"x" * 100_000,
+)
+ATTACHMENTS = (None, b"", b"\0", bytes(33), b"\xff" * 33, b"x" * 10_000)
+
+
+def test_garbage_of_a_peer_is_lost_alone(session, stranger, domain):
+    inbox = subscribe(session, node_of(session, "me"), "/chatter", String)
+    mine = token(stranger, domain, "MP", "/chatter", TEXT)
+    held = stranger.liveliness().declare_token(mine)
+    publisher = stranger.declare_publisher(f"{domain}/chatter/{TEXT}")
+    matched = threading.Event()
+    listener = publisher.declare_matching_listener(lambda status: matched.set() if status.matching else None)
+    assert publisher.matching_status.matching or matched.wait(TIMEOUT_S)
+    for payload in GARBAGE:
+        for extra in ATTACHMENTS:
+            publisher.put(payload, attachment=extra)
+    for extra in ATTACHMENTS:
+        list(stranger.get(f"{domain}/chatter/{TEXT}", payload=b"x", attachment=extra, timeout=0.1))
+    deadline = time.monotonic() + TIMEOUT_S
+    received: list[str] = []
+    while "hello" not in received:
+        assert time.monotonic() < deadline
+        publisher.put(b"\0\1\0\0\6\0\0\0hello\0", attachment=attachment(1, gid_of(mine)))
+        received += [message.data for message, _ in inbox.wait(len(inbox.taken) + 1, 0.5)]
+    assert held
+    assert listener
+
+
 def test_a_path_that_is_too_long_for_a_socket_is_no_obstacle(domain, tmp_path, monkeypatch):
     folder = tmp_path / ("long" * 20)
     folder.mkdir()
