@@ -15,9 +15,10 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from types import ModuleType, TracebackType
 
-_signal.signal(_signal.SIGINT, _signal.SIG_DFL)
-if hasattr(_signal, "pthread_sigmask"):
-    _signal.pthread_sigmask(_signal.SIG_UNBLOCK, [_signal.SIGINT])
+if __name__ == "__main__":
+    _signal.signal(_signal.SIGINT, _signal.SIG_DFL)
+    if hasattr(_signal, "pthread_sigmask"):
+        _signal.pthread_sigmask(_signal.SIG_UNBLOCK, [_signal.SIGINT])
 
 
 MISTAKES = {
@@ -31,16 +32,23 @@ MISTAKES = {
 
 
 def main() -> None:
-    """Run a module of a package: its function `main`, which returns the exit status, or else the node of its name."""
+    """Run the module of a package that the arguments name."""
     import site
-    from importlib import import_module
 
     site.main()
-    sys.excepthook = _show
+    sys.excepthook = show
     package, module, *arguments = sys.argv[1:]
+    sys.exit(run_module(package, module, arguments))
+
+
+def run_module(package: str, module: str, arguments: list[str]) -> int:
+    """Run a module of a package: its function `main`, which returns the exit status, or else the node of its name."""
+    from importlib import import_module
+
     program = import_module(f"daidalos.nodes.{package}.{module}")
     sys.argv = [str(program.__file__), *arguments]
-    sys.exit(program.main() if hasattr(program, "main") else _run_node(program, module))
+    status: int = program.main() if hasattr(program, "main") else _run_node(program, module)
+    return status
 
 
 def _run_node(program: ModuleType, module: str) -> int:
@@ -51,7 +59,8 @@ def _run_node(program: ModuleType, module: str) -> int:
     return run(getattr(program, camel_case(module)))
 
 
-def _show(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
+def show(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
+    """Print an error that the user can correct in one line; any other as Python does."""
     if kind.__name__ in MISTAKES:
         print(error, file=sys.stderr)
     else:

@@ -57,13 +57,21 @@ def built_in_command(package: str, executable: str) -> list[str]:
     return [sys.executable, "-S", "-P", _START, package, _modules(package)[executable]]
 
 
+def built_in_program(command: Sequence[str]) -> tuple[str, str, list[str]] | None:
+    """Return the package, module and arguments of a command line of a built-in executable, None for any other."""
+    if _START not in command[:4]:
+        return None
+    package, module, *arguments = command[list(command).index(_START) + 1 :]
+    return package, module, arguments
+
+
 def reporting_command(command: Sequence[str]) -> list[str]:
     """Return a command line that reports uncaught exceptions of a package's Python script without frames of libraries.
 
     Other command lines, and scripts for another interpreter, are returned as they are.
     """
     path = Path(command[0])
-    if path.is_absolute() and path.parent in _folders(path.parent.name) and _is_script_of_this_python(path):
+    if path.is_absolute() and path.parent in _folders(path.parent.name) and is_script_of_this_python(path):
         return [sys.executable, _RUN_SCRIPT, *command]
     return list(command)
 
@@ -127,7 +135,7 @@ def _files(folder: Path) -> list[Path]:
     return [path for path in folder.iterdir() if _is_executable(path)] if folder.is_dir() else []
 
 
-def _is_script_of_this_python(path: Path) -> bool:
+def is_script_of_this_python(path: Path) -> bool:
     """Return whether a file is a Python script that the interpreter of this process would run."""
     try:
         with path.open("rb") as file:

@@ -9,7 +9,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from ._process import ChildProcess, start_process
+from . import _process
+from ._process import ChildProcess
 from .event import Event
 from .event_handler import BaseEventHandler
 from .events import Shutdown, matches_action
@@ -132,7 +133,7 @@ class ProcessRunner:
         if self._options.log_cmd:
             self._logger.info(f"process details: cmd={program.cmd}, cwd={program.cwd}, shell={self._options.shell}")
         try:
-            self._child = await start_process(
+            self._child = await _process.start_process(
                 program.cmd,
                 cwd=program.cwd,
                 env=program.env,

@@ -16,6 +16,7 @@ from daidalos.common.extensions import ExtensionError, Kind
 
 _DESCRIPTIONS = {
     "demo": "A robot that maps an arena and drives where it is sent",
+    "diff": "Compare two bags, message by message",
     "extensions": "List what can be extended, and the extensions that are there",
     "map": "Build a map from the log of a robot",
     "sim": "Simulate a world",

@@ -1,0 +1,93 @@
+"""The programs of a lock-step run: the command, the recorder, and what ends them."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, NoReturn
+
+from launch import _process
+
+from daidalos.lockstep.commands import body_of
+from daidalos.lockstep.launched import ProgramStarter
+from daidalos.lockstep.programs import Program
+from daidalos.lockstep.run import Run
+from daidalos.lockstep.scheduler import LockstepError
+
+
+def start(run: Run, command: list[str], until_s: float | None, bag: str | None) -> Program:
+    """Start a command, and with it the recorder of a bag.
+
+    Parameters
+    ----------
+    run : Run
+    command : list of str
+        The command line.
+    until_s : float, optional
+        Simulated time [s] after which the command is interrupted.
+    bag : str, optional
+        Folder of the bag to which all topics are recorded.
+
+    Raises
+    ------
+    LockstepError
+        When the command is not a program of this Python.
+    """
+    _process.start_process = ProgramStarter(run.create)
+    system: Any = os
+    system.execve = system.execvpe = _replace_program
+    system.execv = system.execvp = lambda path, argv: _replace_program(path, argv, os.environ)
+    program = _program(run, command)
+    if bag is not None:
+        _start_recorder(run, program, bag)
+    program.start()
+    if until_s is not None:
+        run.scheduler.spawn(lambda: _interrupt_at(run, program, until_s), run.programs[0], "--until")
+    return program
+
+
+def _program(run: Run, command: list[str], on_output: Callable[[int, bytes], None] | None = None) -> Program:
+    found = body_of(command, os.environ)
+    if found is None:
+        raise LockstepError(f"'{command[0]}' is not a program of this Python")
+    argv, body = found
+    return run.create(body, argv, on_output=on_output)
+
+
+def _start_recorder(run: Run, program: Program, bag: str) -> None:
+    """Record until the program ends; a recorder that fails ends the run."""
+    errors = sys.stderr
+
+    def show(fd: int, data: bytes) -> None:
+        if fd == 2:
+            errors.write(data.decode(errors="replace"))
+
+    command = ["ros2", "bag", "record", "--all", "--log-level", "warn", "--output", bag]
+    recorder = _program(run, command, show)
+
+    def check(status: int) -> None:
+        if program.status is None or status != 0:
+            run.scheduler.stop(LockstepError(f"the recording to '{bag}' ended with status {status}"))
+
+    recorder.on_exit.append(check)
+    program.on_exit.append(lambda status: recorder.send_signal(signal.SIGINT))
+    recorder.start()
+
+
+def _interrupt_at(run: Run, program: Program, until_s: float) -> None:
+    run.scheduler.sleep_until(round(1e9 * until_s))
+    program.send_signal(signal.SIGINT)
+
+
+def _replace_program(path: str, argv: Sequence[str], environ: Mapping[str, str]) -> NoReturn:
+    """Go on with another command line in place of the present program."""
+    found = body_of([path, *argv[1:]], environ)
+    if found is None:
+        raise OSError(f"in lock-step only programs of this Python run, not '{path}'")
+    sys.argv, body = found
+    if environ is not os.environ:
+        os.environ.clear()
+        os.environ.update(environ)
+    sys.exit(body())
