@@ -42,10 +42,11 @@ class Session:
         self.backend = backend
         self.graph = Graph()
         self._lock = threading.RLock()
-        self._publishers: dict[str, set[Publisher]] = {}
-        self._subscriptions: dict[str, set[Subscription]] = {}
-        self._services: dict[str, list[Service]] = {}
-        self._clients: dict[str, set[Client]] = {}
+        # In the order of their creation, which is that of deliveries; sets have none that lasts.
+        self._publishers: dict[str, dict[Publisher, None]] = {}
+        self._subscriptions: dict[str, dict[Subscription, None]] = {}
+        self._services: dict[str, dict[Service, None]] = {}
+        self._clients: dict[str, dict[Client, None]] = {}
         self._watchers: dict[tuple[str, EndpointKind], dict[Watcher, None]] = {}
         self._own: set[bytes] = set()
         self._closed = False
@@ -95,7 +96,7 @@ class Session:
         publisher.attach(remote, lambda: self._remove(key, self._publishers, publisher))
         remote.watch_readers(lambda: self._on_readers_change(publisher))
         with self._lock:
-            self._publishers.setdefault(topic, set()).add(publisher)
+            self._publishers.setdefault(topic, {})[publisher] = None
             subscriptions = self._subscriptions.get(topic, ())
             publisher.add_targets(other for other in subscriptions if _compatible(endpoint, other.endpoint))
             for other in self.graph.endpoints(EndpointKind.SUBSCRIPTION, name=topic):
@@ -110,7 +111,7 @@ class Session:
         key, endpoint = self._endpoint(EndpointKind.SUBSCRIPTION, node, topic, message_type, qos)
         subscription = Subscription(endpoint, codec_of(message_type, self.backend.wide), on_ready)
         with self._lock:
-            self._subscriptions.setdefault(topic, set()).add(subscription)
+            self._subscriptions.setdefault(topic, {})[subscription] = None
             for other in self.graph.endpoints(EndpointKind.PUBLISHER, name=topic):
                 _refuse_if_incompatible(subscription, other)
             for publisher in self._publishers.get(topic, ()):
@@ -134,7 +135,7 @@ class Session:
         remote = self.backend.declare_service(key, endpoint, service.accept)
         service.attach(remote, lambda: self._remove(key, self._services, service))
         with self._lock:
-            self._services.setdefault(name, []).append(service)
+            self._services.setdefault(name, {})[service] = None
             self._match_service(name)
         self.graph.add_endpoint(key, endpoint)
         return service
@@ -150,7 +151,7 @@ class Session:
         remote = self.backend.declare_client(key, endpoint, client.accept)
         client.attach(remote, lambda: self._remove(key, self._clients, client))
         with self._lock:
-            self._clients.setdefault(name, set()).add(client)
+            self._clients.setdefault(name, {})[client] = None
             self._match_service(name)
         self.graph.add_endpoint(key, endpoint)
         self._note_servers(client)
@@ -208,7 +209,7 @@ class Session:
         with self._lock:
             members = group.get(name)
             if members and member in members:
-                members.remove(member)
+                del members[member]
                 if not members:
                     del group[name]
             if group is self._subscriptions:

@@ -43,7 +43,7 @@ class ContextHandle(Destroyable):
         self._lock = threading.RLock()  # a signal may come while it is held
         self._ok = True
         self._released = False
-        self._nodes: weakref.WeakSet[GraphMember] = weakref.WeakSet()
+        self._nodes: weakref.WeakKeyDictionary[GraphMember, None] = weakref.WeakKeyDictionary()  # in order
         self._on_shutdown: list[weakref.ref[Callable[[], None]]] = []
 
     def ok(self) -> bool:
@@ -57,7 +57,7 @@ class ContextHandle(Destroyable):
 
     def own(self, node: GraphMember) -> None:
         """Register a node that leaves the graph with the context."""
-        self._nodes.add(node)
+        self._nodes[node] = None
 
     def get_domain_id(self) -> int:
         """Return the domain."""

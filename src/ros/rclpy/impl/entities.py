@@ -57,7 +57,7 @@ class NodeHandle(Destroyable):
         self.namespace = names.remap_namespace(self.remaps, name, names.absolute_namespace(namespace))
         self.name = names.remap_node(self.remaps, name)
         self.info, self._leave = self.session.create_node(self.name, self.namespace, shared_arguments.enclave)
-        self._members: weakref.WeakSet[EndpointHandle] = weakref.WeakSet()
+        self._members: weakref.WeakKeyDictionary[EndpointHandle, None] = weakref.WeakKeyDictionary()  # in order
         context.own(self)
 
     @property
@@ -99,7 +99,7 @@ class NodeHandle(Destroyable):
         """
         if self.context.is_released:
             raise RCLError(f"node '{self.info.full_name}' cannot make anything: its context was shut down")
-        self._members.add(handle)
+        self._members[handle] = None
 
     def retire(self) -> None:
         """Leave the graph with everything of the node, because the context ended; handles stay, and reach nobody."""

@@ -45,7 +45,7 @@ class LifecycleNodeMixin(ManagedEntity):
         self, *, enable_communication_interface: bool = True, callback_group: CallbackGroup | None = None
     ) -> None:
         self._state_machine = StateMachine()
-        self._rcl_managed_entities: set[ManagedEntity] = set()
+        self._rcl_managed_entities: dict[ManagedEntity, None] = {}
         self._rcl_transition_event_publisher: Any = None
         self._callback_group = callback_group
         for transition_name, callback in _CALLBACKS.items():
@@ -101,7 +101,7 @@ class LifecycleNodeMixin(ManagedEntity):
 
     def add_managed_entity(self, entity: ManagedEntity) -> None:
         """Add an entity that follows the node's transitions."""
-        self._rcl_managed_entities.add(entity)
+        self._rcl_managed_entities[entity] = None
 
     # What a node does at transitions: by default, its managed entities do it.
 
@@ -144,12 +144,12 @@ class LifecycleNodeMixin(ManagedEntity):
             raise TypeError("create_publisher() got an unexpected keyword argument 'publisher_class'")
         node: Any = self
         publisher: LifecyclePublisher = node.create_publisher(*args, **kwargs, publisher_class=LifecyclePublisher)
-        self._rcl_managed_entities.add(publisher)
+        self._rcl_managed_entities[publisher] = None
         return publisher
 
     def destroy_lifecycle_publisher(self, publisher: LifecyclePublisher) -> bool:
         """Destroy such a publisher; False when it is not one of the node's."""
-        self._rcl_managed_entities.discard(publisher)
+        self._rcl_managed_entities.pop(publisher, None)
         node: Any = self
         return bool(node.destroy_publisher(publisher))
 
