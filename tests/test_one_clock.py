@@ -20,6 +20,7 @@ ALLOWED = {
     "nodes/asset_folders.py": "the age of a file",
     "nodes/daidalos_demo/_measuring.py": "the computing time of other processes",
     "nodes/daidalos_demo/_robot.py": "when to ask again whether other processes are up",
+    "nodes/foxglove_bridge/_graph_parameters.py": "how long a client of the page waits for silent nodes",
     "nodes/gazebo_ros/_pacing.py": "the pace of simulated time in real time",
     "nodes/gazebo_ros/gzserver.py": "the report of how fast simulated time passes, once a second of real time",
     "nodes/gazebo_ros/spawn_entity.py": "how long a person waits for a simulator whose time may stand still",

@@ -169,7 +169,7 @@ class FromBlackboard(py_trees.behaviour.Behaviour):  # type: ignore[misc]
             self.goal_handle.cancel_goal_async().add_done_callback(self.cancel_response_callback)
 
     def cancel_response_callback(self, future: Any) -> None:
-        """Note whether the goal is canceled."""
+        """Record whether the goal is canceled."""
         canceled = bool(future.result().goals_canceling)
         self.feedback_message = "goal successfully cancelled" if canceled else "goal failed to cancel"
 
