@@ -57,6 +57,8 @@ GOALS = {
     "description.state_publisher_1000_joints_cpu_percent": Goal(10.0),
     "description.public_urdf_load_percent": Goal(98.0, at_least=True),
     "description.public_sdf_load_percent": Goal(98.0, at_least=True),
+    "loading.first_slowest_s": Goal(10.0),
+    "loading.second_slowest_s": Goal(5.0),
     "mapping.intel_translation_m": Goal(0.37, theirs="0.023 Cartographer"),
     "rclpy.serialize_String_us": Goal(1.1, theirs="2.2"),
     "rclpy.deserialize_String_us": Goal(1.35, theirs="2.7"),
