@@ -14,7 +14,7 @@ from daidalos.description.geometry import (
     Polyline,
     Sphere,
 )
-from daidalos.description.meshes import load_mesh, triangles_of
+from daidalos.description.meshes import load_mesh, read_scene, triangles_of
 from description.robots import SHARE
 
 SQUARE = ((0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0))
@@ -141,3 +141,14 @@ def test_the_turtlebots_meshes_have_their_size(name, size):
     path = SHARE / f"turtlebot3_description/meshes/{name}.dae"
     assert path.stat().st_size < 300_000
     assert np.ptp(load_mesh(Mesh(name, path)).vertices, axis=0) == pytest.approx(size, abs=1e-3)
+
+
+def test_what_trimesh_complains_of_is_one_line_with_the_file(tmp_path, caplog):
+    text = trimesh.creation.box().export(file_type="ply", encoding="ascii").decode()
+    path = tmp_path / "box.ply"
+    (tmp_path / "broken.png").write_text("nothing")
+    path.write_text(text.replace("element vertex", "comment TextureFile broken.png\nelement vertex"))
+    read_scene(path, "w.sdf:1", with_materials=True)
+    (record,) = [record for record in caplog.records if record.name == "trimesh"]
+    assert record.getMessage().startswith(f"mesh {path}: unable to load image!: cannot identify image file")
+    assert record.exc_info is None

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import logging
 import re
 from collections.abc import Callable
+from contextvars import ContextVar
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -119,6 +121,21 @@ def _read(path: Path, submesh: str, _modified: int, where: str) -> TriangleMesh:
     return TriangleMesh(np.asarray(whole.vertices, dtype=np.float64), np.asarray(whole.faces, dtype=np.int32))
 
 
+class _OneLine(logging.Filter):
+    """Filter that makes trimesh's messages one line with the file that is read, instead of a traceback."""
+
+    def filter(self, record: logging.LogRecord) -> bool:
+        reason = record.exc_info[1] if record.exc_info else None
+        words = " ".join(f"{record.getMessage()}{f': {reason}' if reason else ''}".split())
+        record.msg, record.args = f"mesh {_reading.get()}: {words}", ()
+        record.exc_info = record.exc_text = None
+        return True
+
+
+_ONE_LINE = _OneLine()
+_reading: ContextVar[Path | str] = ContextVar("reading", default="")
+
+
 def read_scene(path: Path, where: str, with_materials: bool = False) -> Any:
     """Open a mesh file as a trimesh scene, in metres.
 
@@ -134,6 +151,8 @@ def read_scene(path: Path, where: str, with_materials: bool = False) -> Any:
     kind = path.suffix.lower().lstrip(".")
     if kind not in _FORMATS:
         raise DescriptionError(f"mesh {path}: {kind or 'no'} format; known are {', '.join(_FORMATS)}", where)
+    logging.getLogger("trimesh").addFilter(_ONE_LINE)
+    _reading.set(path)
     try:
         scene = trimesh.load_scene(path, file_type=kind, skip_materials=not with_materials)
         unit = _collada_unit(path) if kind == "dae" else 1.0
