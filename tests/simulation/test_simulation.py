@@ -6,7 +6,7 @@ from daidalos.description import sdf, urdf
 from daidalos.description.errors import DescriptionError
 from daidalos.description.link import Inertial
 from daidalos.samples.commands import TwistCommand
-from daidalos.samples.sensors import ImuSample, LaserScanSample
+from daidalos.samples.sensors import ImuSample, LaserScanSample, OdometrySample
 from daidalos.simulation import Simulation
 from daidalos.simulation.errors import NameTakenError, SimulationError, UnknownNameError
 from simulation.models import arena, box, turtlebot, world
@@ -186,6 +186,52 @@ def test_a_failed_spawn_leaves_the_world_as_it_was(heading):
     assert simulation.models == ("ground_plane", "a")
     simulation.spawn(urdf.parse(fixed.format("")))
     simulation.advance(SECOND // 10)
+
+
+@pytest.mark.parametrize("moved", [False, True])
+def test_a_robot_that_is_placed_inside_another_leaves_it_slowly(moved):
+    simulation = Simulation(world())
+    for name, x in (("a", 0.0), ("b", 3.0 if moved else 0.02)):
+        simulation.spawn(turtlebot(), name, Pose((x, 0, 0)), name)
+    if moved:
+        simulation.advance(SECOND // 10)
+        simulation.set_pose("b", Pose((0.02, 0, 0)))
+    odometry = [sample for sample in simulation.advance(3 * SECOND) if isinstance(sample, OdometrySample)]
+    assert max(abs(sample.linear[0]) for sample in odometry) < 1.5
+    assert max(abs(sample.angular[2]) for sample in odometry) < 5.0
+
+
+def test_contacts_are_stiff_again_when_a_placed_thing_is_free():
+    simulation = Simulation(world(box("a"), box("b", "3 0 0.5 0 0 0")))
+    stiff = simulation.physics.model.geom_solref.copy()
+    simulation.set_pose("b", Pose((0.9, 0, 0.5)))
+    assert (simulation.physics.model.geom_solref != stiff).any()
+    fastest = 0.0
+    for _ in range(50):
+        simulation.advance(SECOND // 25)
+        fastest = max(fastest, float(np.abs(simulation.velocity("b")[0]).max()))
+    assert 0.01 < fastest < 1.0
+    gap = simulation.pose("b").position[0] - simulation.pose("a").position[0]
+    assert gap == pytest.approx(1.0, abs=0.1)
+    assert (simulation.physics.model.geom_solref == stiff).all()
+
+
+def test_heavy_things_on_light_ones_do_not_sink():
+    parts = box("light", "0 0 0.05 0 0 0", "0.1 0.1 0.1", mass=0.1), box("heavy", "0 0 0.6 0 0 0", mass=1000)
+    simulation = Simulation(world(*parts))
+    simulation.advance(2 * SECOND)
+    assert simulation.pose("heavy").position[2] == pytest.approx(0.6, abs=2e-3)
+
+
+def test_a_box_without_restitution_stays_where_it_falls():
+    """From 1 m: it leaves the ground with less than 6 % of its speed, so it rises by less than 4 mm."""
+    simulation = Simulation(world(box("a", "0 0 1.5 0 0 0")))
+    heights = []
+    for _ in range(500):
+        simulation.step(2)
+        heights.append(simulation.pose("a").position[2] - 0.5)
+    lowest = heights.index(min(heights))
+    assert max(heights[lowest:]) < 4e-3
 
 
 def test_the_same_seed_gives_the_same_run():

@@ -28,6 +28,8 @@ from daidalos.simulation.conversion.preparation import Progress
 from daidalos.simulation.errors import NameTakenError, SimulationError, UnknownNameError
 from daidalos.simulation.forces import Forces
 from daidalos.simulation.instance import Instance
+from daidalos.simulation.overlaps import PERIOD_NS as OVERLAP_PERIOD_NS
+from daidalos.simulation.overlaps import Overlaps
 from daidalos.simulation.physics import Physics
 from daidalos.simulation.schedule import Schedule
 from daidalos.simulation.stage import Stage
@@ -60,6 +62,7 @@ class Engine:
         self._schedule = Schedule()
         self._monitors: list[ContactMonitor] = []
         self._waiting: dict[str, Instance] = {}
+        self._overlaps = Overlaps()
         self._goal_ns = 0
         self.step_ns, self._substeps = physics_step(self.world.physics)
         self._compilation = Compilation(self.world, self._timestep, self._has_subscribers, self._warn)
@@ -301,6 +304,7 @@ class Engine:
         else:
             self._recompile()
             self._start(instance)
+            self._soften_overlaps([instance])
 
     def _add_waiting(self) -> None:
         """Compile the world with the models that wait for it."""
@@ -313,12 +317,18 @@ class Engine:
             self._recompile()
             names = ", ".join(waiting)
             raise SimulationError(f"{names} cannot be simulated and are removed: {problem}") from None
+        self._soften_overlaps(waiting.values())
 
     def _start(self, instance: Instance) -> None:
         instance.place_joints()
         self.physics.changed()
         for component in instance.components:
             self._begin(component)
+
+    def _soften_overlaps(self, instances: Iterable[Instance]) -> None:
+        """Make models that were placed inside others leave them slowly."""
+        names = {instance.name for instance in instances}
+        self._overlaps.soften(self.physics, {geom for geom, (name, _) in self.physics.geoms.items() if name in names})
 
     def _begin(self, component: Component) -> None:
         component.state = component.start()
@@ -348,12 +358,16 @@ class Engine:
             count = max(1, min(-(-(until_ns - self.time_ns) // substep_ns), (goal_ns - self.time_ns) // substep_ns))
             if self._monitors:
                 count = min(count, max(1, _MONITOR_PERIOD_NS // substep_ns))
+            if self._overlaps:
+                count = min(count, max(1, OVERLAP_PERIOD_NS // substep_ns))
             if self.forces.pushes:
                 change_ns = self.forces.next_change(self.time_ns)
                 count = 1 if change_ns <= self.time_ns + count * substep_ns else count
             apply_forces(self.forces, self.physics, self._compilation.instances, self.time_ns)
             self.physics.step(count)
             self.time_ns += count * substep_ns
+            if self._overlaps:
+                self._overlaps.update(self.physics)
             for monitor in self._monitors:
                 monitor.record(self.physics.data, self.time_ns)
             for component in self._schedule.due(self.time_ns):

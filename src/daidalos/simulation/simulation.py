@@ -137,6 +137,7 @@ class Simulation(Engine):
             # Static models are part of the compiled model.
             instance.build.place_base(pose)
             self._recompile()
+        self._soften_overlaps([instance])
 
     def set_velocity(self, model: str, linear: Iterable[float], angular: Iterable[float]) -> None:
         """Set a model's velocity in world axes [m/s, rad/s]."""

@@ -78,6 +78,47 @@ def test_a_second_joint_to_the_world_holds():
     assert simulation.pose("m", "b").position == pytest.approx((1, 0, 0), abs=5e-3)
 
 
+def test_joints_may_go_in_a_circle():
+    """Each link hangs on the other: one joint makes the tree, the other closes the loop."""
+    simulation = weightless(
+        link("a", 0)
+        + link("b", 1)
+        + joint("j", "revolute", "a", "b")
+        + joint("k", "revolute", "b", "a", pose="1 0 0 0 0 0")
+    )
+    simulation.physics.data.qvel[simulation.joint("m", "j").dof] = 1.0
+    simulation.advance(SECOND // 2)
+    assert simulation.joint("m", "k").position == pytest.approx(-simulation.joint("m", "j").position, abs=1e-3)
+
+
+def test_a_loaded_four_bar_linkage_stays_closed():
+    """Both ends of the loop stay together within 0.1 mm, under 200 N and with a swinging load."""
+
+    def bar(name, place, end, mass):
+        x, z = end
+        return (
+            f"<link name='{name}'><pose>{place[0]} 0 {place[1]} 0 0 0</pose><inertial><mass>{mass}</mass>"
+            f"<pose>{x / 2} 0 {z / 2} 0 0 0</pose><inertia><ixx>0.02</ixx><iyy>0.02</iyy><izz>0.02</izz></inertia>"
+            "</inertial></link>"
+        )
+
+    bars = bar("left", (0, 0), (0.2, -0.5), 1) + bar("right", (1, 0), (0, -0.6), 1)
+    bars += bar("top", (0.2, -0.5), (0.8, -0.1), 20)
+    bars += joint("jl", "revolute", "world", "left", "0 1 0") + joint("jr", "revolute", "world", "right", "0 1 0")
+    bars += joint("lt", "revolute", "left", "top", "0 1 0")
+    bars += joint("tr", "revolute", "top", "right", "0 1 0", "0 0 -0.6 0 0 0")
+    world = f"<sdf version='1.9'><world name='w'><model name='m'>{bars}</model></world></sdf>"
+    simulation = Simulation(sdf.parse(world))
+    simulation.physics.data.qvel[simulation.joint("m", "jl").dof] = 3.0
+    gaps = []
+    for _ in range(500):
+        simulation.step(2)
+        top, right = simulation.pose("m", "top"), simulation.pose("m", "right")
+        ends = top.transform((0.8, 0.0, -0.1)), right.transform((0.0, 0.0, -0.6))
+        gaps.append(math.dist(*ends))
+    assert max(gaps) < 1e-4
+
+
 def test_what_loops_goes_with_its_model():
     loop = link("a", 0) + link("b", 1) + FIXED + joint("j", "revolute", "a", "b", pose="-1 0 0 0 0 0")
     loop += "<joint name='w2' type='fixed'><parent>world</parent><child>b</child></joint>"
@@ -95,7 +136,7 @@ BALL = (
 )
 
 
-@pytest.mark.parametrize("restitution", [0.3, 0.6, 0.9])
+@pytest.mark.parametrize("restitution", [0.0, 0.1, 0.3, 0.6, 0.9])
 def test_balls_bounce_as_high_as_they_should(restitution):
     ground = "<include><uri>model://ground_plane</uri></include>"
     world = f"<sdf version='1.9'><world name='w'>{ground}{BALL.format('b', 0, restitution)}</world></sdf>"
@@ -105,7 +146,7 @@ def test_balls_bounce_as_high_as_they_should(restitution):
         simulation.advance(SECOND // 200)
         heights.append(simulation.pose("b").position[2] - 0.1)
     low = heights.index(min(heights[:120]))
-    assert max(heights[low:]) == pytest.approx(restitution**2, abs=0.08)
+    assert max(heights[low:]) == pytest.approx(restitution**2, abs=0.04)
 
 
 def test_collide_bitmasks_keep_things_apart():

@@ -71,6 +71,22 @@ def test_a_thruster_pushes_along_its_axis():
         assert simulation.velocity("m")[0] == pytest.approx((0, thrust / 2, 0), abs=0.02)
 
 
+@pytest.mark.parametrize("masses", [(1, 1), (1, 100), (100, 1)])
+def test_a_detachable_joint_is_rigid_whatever_it_holds(masses):
+    holder, held = masses
+    parameters = "<parent_link>link</parent_link><child_model>held</child_model><child_link>link</child_link>"
+    parts = with_plugin(box("holder", "0 0 3 0 0 0", mass=holder), "gz-sim-detachable-joint-system", parameters)
+    simulation = Simulation(world(parts, box("held", "0 2 3 0 0 0", mass=held)))
+    simulation.step()
+    simulation.set_velocity("held", (2, 0, 0), (0, 0, 0))
+    for _ in range(10):
+        simulation.advance(SECOND // 10)
+        place = simulation.pose("holder").inverse @ simulation.pose("held")
+        assert place.position == pytest.approx((0, 2, 0), abs=5e-3)
+    simulation.delete("held")
+    simulation.advance(SECOND // 10)
+
+
 def test_a_detachable_joint_holds_until_it_is_told_to_let_go():
     stand = box("stand", "0 0 2 0 0 0", "0.1 0.1 0.1", static=True)
     parameters = "<parent_link>link</parent_link><child_model>load</child_model><child_link>link</child_link>"

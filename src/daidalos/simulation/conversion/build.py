@@ -69,8 +69,8 @@ class _Builder:
         self._warn = warn
         self._above: dict[str, Joint] = {}
         for joint in self._model.joints.values():
-            if joint.type is not JointType.GEARBOX:
-                self._above.setdefault(joint.child, joint)
+            if joint.type is not JointType.GEARBOX and joint.child not in self._above and not self._closes_loop(joint):
+                self._above[joint.child] = joint
         self._below: dict[str, list[Joint]] = {}
         for joint in self._above.values():
             self._below.setdefault(joint.parent, []).append(joint)
@@ -78,6 +78,13 @@ class _Builder:
         self._held = [link for link in self._free if any(isinstance(c.geometry, Plane) for c in link.collisions)]
         self._solid_without_mass: set[str] = set()
         self._empty_without_mass: set[str] = set()
+
+    def _closes_loop(self, joint: Joint) -> bool:
+        """Return whether a joint's parent hangs on its child already."""
+        link: str | None = joint.parent
+        while link is not None and link != joint.child:
+            link = self._above[link].parent if link in self._above else None
+        return link == joint.child
 
     def run(self) -> None:
         self._find_weightless()
@@ -271,7 +278,7 @@ class _Builder:
         for joint in self._model.joints.values():
             if joint.type is JointType.GEARBOX:
                 self._mesh_gears(joint)
-            elif self._above[joint.child] is not joint:
+            elif self._above.get(joint.child) is not joint:
                 self._close_loop(joint)
         for joint in self._model.joints.values():
             added = self._build.joints.get(joint.name)

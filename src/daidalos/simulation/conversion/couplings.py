@@ -10,7 +10,12 @@ from daidalos.common.pose3 import Pose
 from daidalos.description.joint import Joint
 from daidalos.simulation.conversion.joints import add_joints
 
-SOLREF = (0.004, 1.0)
+SOLREF = (0.002, 1.0)
+"""Time constant [s] and damping ratio of couplings: the stiffest at steps of 1 ms."""
+
+SOLIMP = (0.9999, 0.9999)
+"""Impedance of couplings: a loop gives way by micrometres, though a light ghost closes it."""
+
 _GHOST_MASS_RATIO = 0.01
 _MIN_MASS = 1e-4
 
@@ -34,7 +39,7 @@ def couple(spec: Any, follower: str, leader: str, offset: float, multiplier: flo
         name2=leader,
     )
     coupling.data[:5] = (offset, multiplier, 0.0, 0.0, 0.0)
-    coupling.solref[:2] = SOLREF
+    coupling.solref[:2], coupling.solimp[:2] = SOLREF, SOLIMP
 
 
 def close_loop(spec: Any, parent: Any, child: Any, joint: Joint, name: str) -> list[str]:
@@ -75,7 +80,7 @@ def close_loop(spec: Any, parent: Any, child: Any, joint: Joint, name: str) -> l
         name1=sites[0].name,
         name2=sites[1].name,
     )
-    weld.solref[:2] = SOLREF
+    weld.solref[:2], weld.solimp[:2] = SOLREF, SOLIMP
     return added
 
 

@@ -11,6 +11,7 @@ from daidalos.common.pose3 import Pose
 from daidalos.description.link import Inertial, Surface
 from daidalos.description.world import Model
 from daidalos.simulation.conversion.contact import set_friction
+from daidalos.simulation.conversion.couplings import SOLIMP, SOLREF
 from daidalos.simulation.conversion.inertia import PrincipalInertia, principal_inertia
 from daidalos.simulation.errors import UnknownNameError
 
@@ -135,6 +136,19 @@ class ModelBuild:
             actuator.forcelimited = mujoco.mjtLimited.mjLIMITED_TRUE
             actuator.forcerange = [-effort, effort]
         return str(actuator.name)
+
+    def add_weld(self, link: str, key: str) -> str:
+        """Add an inactive weld of a link, whose other body is set while the world runs, and return its name."""
+        weld = self.spec.add_equality(
+            name=f"{self.scoped(link)}::{key}::weld",
+            type=mujoco.mjtEq.mjEQ_WELD,
+            objtype=mujoco.mjtObj.mjOBJ_BODY,
+            name1=self.scoped(link),
+            name2="world",
+            active=False,
+        )
+        weld.solref[:2], weld.solimp[:2] = SOLREF, SOLIMP
+        return str(weld.name)
 
     def keep_awake(self) -> None:
         """Disable sleeping of the model."""

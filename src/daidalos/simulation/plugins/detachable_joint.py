@@ -13,8 +13,9 @@ from daidalos.samples.commands import SignalCommand
 from daidalos.samples.endpoint import Subscription
 from daidalos.samples.sensors import Sample, TextSample
 from daidalos.simulation.contracts import ComponentContext, Plugin
+from daidalos.simulation.conversion.model_build import ModelBuild
 from daidalos.simulation.instance import Instance, LinkView
-from daidalos.simulation.plugins.holding import let_go, pull
+from daidalos.simulation.plugins.holding import Weld
 from daidalos.simulation.topics import absolute_topic
 
 
@@ -50,7 +51,7 @@ class DetachableJoint(Plugin):
                 (("output_topic",), "state"),
             )
         )
-        self._key = f"{context.model_name}::{description.name}"
+        self._name = description.name
 
     @property
     def publications(self) -> Mapping[str, type[Sample]]:
@@ -65,8 +66,13 @@ class DetachableJoint(Plugin):
             self.detach: Subscription(SignalCommand, lambda command: self._switch(on=False)),
         }
 
+    def prepare(self, build: ModelBuild) -> None:
+        """Add the weld that holds."""
+        self._weld = Weld(build, self.parent, f"{self._name}::{'::'.join(self.child)}")
+
     def bind(self, instance: Instance) -> None:
         """Find the holding link."""
+        self._weld.bind(instance)
         self._physics = instance.physics
         self._holder = instance.link(self.parent)
         self._same = self.child[0] in (instance.name, "__model__")
@@ -81,10 +87,10 @@ class DetachableJoint(Plugin):
         target = self._target() if state.wanted else None
         if target is None:
             state.place = None
-            let_go(self._key, self._physics.forces)
+            self._weld.release()
         else:
             state.place = state.place or self._holder.pose.inverse @ target.pose
-            pull(self._key, self._holder, target, state.place)
+            self._weld.hold(target.body, state.place)
         word = "detached" if target is None else "attached"
         if word != state.said:
             state.said = word

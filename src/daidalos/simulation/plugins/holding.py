@@ -1,56 +1,53 @@
-"""Attachment of one link to another by a stiff spring and damper."""
+"""Attachment of one link to another by a weld that is made and released while the world runs."""
 
 from __future__ import annotations
 
-import numpy as np
+import mujoco
 
-from daidalos.common.arrays import Array
 from daidalos.common.pose3 import Pose
-from daidalos.simulation.forces import Forces
-from daidalos.simulation.instance import LinkView
-
-_BANDWIDTH = 60.0
-"""Bandwidth of the holding spring [rad/s]: stiff, but well below the rate of the steps."""
+from daidalos.simulation.conversion.model_build import ModelBuild
+from daidalos.simulation.instance import Instance
+from daidalos.simulation.physics import Physics
 
 
-def pull(key: str, holder: LinkView, target: LinkView, place: Pose) -> None:
-    """Pull a link to its target pose; to be called in every step until `let_go`.
+class Weld:
+    """Constraint that keeps a link in its place in another one.
+
+    It is part of the compiled model from the start, inactive, and gets its second link when it is made.
 
     Parameters
     ----------
+    build : ModelBuild
+        Of the model that holds.
+    link : str
+        Which holds.
     key : str
-        Who holds.
-    holder, target : LinkView
-    place : Pose
-        Of the target in the holder.
+        Distinguishes the welds of a link.
     """
-    physics = holder.physics
-    model, data = physics.model, physics.data
-    held, own = target.pose, holder.pose
-    wanted = own @ place
-    error = (held.inverse @ wanted).orientation
-    turn = 2 * np.array(error[:3]) * np.sign(error[3] or 1.0)
-    linear, angular = target.velocity()
-    own_linear, own_angular = holder.velocity()
-    here, there = np.array(held.position), np.array(wanted.position)
-    mass = float(model.body_subtreemass[target.body])
-    moment = float(model.body_inertia[target.body].sum()) / 3
-    slip = own_linear + _cross(own_angular, there - np.array(own.position)) - linear
-    force = mass * (_BANDWIDTH**2 * (there - here) + 2 * _BANDWIDTH * slip - np.array(model.opt.gravity))
-    torque = moment * (_BANDWIDTH**2 * (target.rotation @ turn) + 2 * _BANDWIDTH * (own_angular - angular))
-    # The force acts at the link's origin; forces are held at centres of mass.
-    at_target, at_holder = here - data.xipos[target.body], here - data.xipos[holder.body]
-    physics.forces.hold(f"{key}/held", target.body, force, torque + _cross(at_target, force))
-    physics.forces.hold(f"{key}/own", holder.body, -force, -torque - _cross(at_holder, force))
 
+    def __init__(self, build: ModelBuild, link: str, key: str) -> None:
+        self._name = build.add_weld(link, key)
 
-def let_go(key: str, forces: Forces) -> None:
-    """Remove the forces."""
-    for part in ("held", "own"):
-        forces.release(f"{key}/{part}")
+    def bind(self, instance: Instance) -> None:
+        """Find the constraint in the compiled model, and release it."""
+        self._physics: Physics = instance.physics
+        self._id = mujoco.mj_name2id(self._physics.model, mujoco.mjtObj.mjOBJ_EQUALITY, self._name)
+        self.release()
 
+    def hold(self, body: int, place: Pose) -> None:
+        """Hold a body (its place in MuJoCo's arrays) at a pose in the holding link."""
+        model, data = self._physics.model, self._physics.data
+        if data.eq_active[self._id] and model.eq_obj2id[self._id] == body:
+            return
+        x, y, z, w = place.orientation
+        model.eq_obj2id[self._id] = body
+        # Anchor in the second body, pose of the second body in the first, and weight of rotations.
+        model.eq_data[self._id, :11] = (0.0, 0.0, 0.0, *place.position, w, x, y, z, 1.0)
+        data.eq_active[self._id] = 1
+        self._physics.wake()
 
-def _cross(first: Array, second: Array) -> Array:
-    """Return the cross product of two vectors (3,), faster than numpy's."""
-    (a, b, c), (x, y, z) = first.tolist(), second.tolist()
-    return np.array((b * z - c * y, c * x - a * z, a * y - b * x))
+    def release(self) -> None:
+        """Release what is held, if anything."""
+        if self._physics.data.eq_active[self._id]:
+            self._physics.data.eq_active[self._id] = 0
+            self._physics.wake()

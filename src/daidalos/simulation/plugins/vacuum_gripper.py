@@ -13,8 +13,9 @@ from daidalos.common.pose3 import Pose
 from daidalos.description.link import Plugin as Description
 from daidalos.samples.sensors import FlagSample, Sample
 from daidalos.simulation.contracts import ComponentContext, Plugin, Switch
+from daidalos.simulation.conversion.model_build import ModelBuild
 from daidalos.simulation.instance import Instance, LinkView
-from daidalos.simulation.plugins.holding import let_go, pull
+from daidalos.simulation.plugins.holding import Weld
 
 
 @dataclass
@@ -30,8 +31,7 @@ class Hold:
 class VacuumGripper(Plugin):
     """``libgazebo_ros_vacuum_gripper.so`` of ROS 1 and 2.
 
-    What is held hangs on a stiff spring and damper to where it was when it was gripped, and pulls back at
-    the gripper with the same force.
+    What is held is welded to where it was when it was gripped.
     """
 
     names = ("gazebo_ros_vacuum_gripper",)
@@ -48,8 +48,8 @@ class VacuumGripper(Plugin):
         topic = element.text_of("topicName", default="grasping")
         self.topic = parameters.topic(f"{topic}/grasping" if self.is_ros1 else topic)
         names = (f"{topic}/on", f"{topic}/off") if self.is_ros1 else ("switch",)
+        self._name = description.name
         self._services = tuple(parameters.topic(name) for name in names)
-        self._key = f"{context.model_name}::{description.name}"
 
     @property
     def switches(self) -> Mapping[str, Switch]:
@@ -63,8 +63,13 @@ class VacuumGripper(Plugin):
         """Switch the pump on or off."""
         self.state.on = on
 
+    def prepare(self, build: ModelBuild) -> None:
+        """Add the weld that holds."""
+        self._weld = Weld(build, self.link, self._name)
+
     def bind(self, instance: Instance) -> None:
         """Find the gripper."""
+        self._weld.bind(instance)
         self._instance = instance
         self._physics = instance.physics
         self._gripper = instance.link(self.link)
@@ -82,9 +87,9 @@ class VacuumGripper(Plugin):
             hold.held = hold.place = None
         target = self._target()
         if target is not None and hold.place is not None:
-            pull(self._key, self._gripper, target, hold.place)
+            self._weld.hold(target.body, hold.place)
         else:
-            let_go(self._key, self._physics.forces)
+            self._weld.release()
         if now_ns >= hold.due_ns:
             hold.due_ns = now_ns + 100_000_000
             yield FlagSample(now_ns, self.topic, "", target is not None)
