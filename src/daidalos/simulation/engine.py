@@ -296,6 +296,8 @@ class Engine:
             instance.place_joints()
         for monitor in self._monitors:
             monitor.bind(self.physics)
+        if self._overlaps:
+            self._overlaps.soften(self.physics, ())
 
     def _insert(self, instance: Instance) -> None:
         """Compile the world with a new model, or leave that to the next use of the world where the model is simple."""
