@@ -83,13 +83,22 @@ class Physics:
 
 @dataclass(frozen=True)
 class Scene:
-    """Visual settings of a world: background, ambient light and shadows."""
+    """Visual settings of a world.
+
+    Parameters
+    ----------
+    ambient, background : tuple of 4 floats
+        Colours, 0..1.
+    shadows, grid : bool
+    sky : bool
+        A sky that is lighter at the horizon instead of the background; so it is where the world names no background.
+    """
 
     ambient: Rgba = (0.4, 0.4, 0.4, 1.0)
     background: Rgba = (0.7, 0.7, 0.7, 1.0)
     shadows: bool = True
     grid: bool = True
-    sky: bool = False
+    sky: bool = True
 
 
 @dataclass(frozen=True)

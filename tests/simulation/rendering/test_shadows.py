@@ -8,6 +8,7 @@ from daidalos.description.link import Visual
 from daidalos.samples.sensors import ImageSample
 from daidalos.simulation import Simulation
 from daidalos.simulation.rendering.scene import Item, make_scene
+from daidalos.simulation.rendering.shading import HEMISPHERE
 from daidalos.simulation.rendering.shadows import simplify
 
 SUN = (
@@ -65,8 +66,8 @@ def test_a_point_light_lights_what_is_near_it():
         "</light>"
     )
     seen = picture(light)
-    ambient = round(255 * 0.4)
-    assert ground(seen, 1.0, 0.0) == pytest.approx(255 * 0.9, abs=2)
+    ambient = 255 * 0.4 * (1 + HEMISPHERE)
+    assert ground(seen, 1.0, 0.0) == pytest.approx(ambient + 255 * 0.5, abs=2)
     # Lambert: one metre aside of a light one metre up, the cosine is 1 / sqrt(2).
     assert ground(seen, 0.0, 0.0) == pytest.approx(ambient + 255 * 0.5 / np.sqrt(2), abs=2)
 

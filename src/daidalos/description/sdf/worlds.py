@@ -231,7 +231,7 @@ def _scene(element: Element | None) -> Scene:
         background=read_color(element, "background") or base.background,
         shadows=element.flag_of("shadows", default=base.shadows),
         grid=element.flag_of("grid", default=base.grid),
-        sky=element.first("sky") is not None,
+        sky=element.first("sky") is not None or element.first("background") is None,
     )
 
 

@@ -26,6 +26,7 @@ from daidalos.simulation.rendering.renderer import (
     sort_lights,
 )
 from daidalos.simulation.rendering.scene import Scene
+from daidalos.simulation.rendering.shading import HEMISPHERE
 from daidalos.simulation.rendering.shadows import ShadowMaps
 
 # From the extra daidalos[egl]: type checkers do not find it everywhere.
@@ -169,6 +170,8 @@ class GlRenderer:
         program["shadowed"].value = shadowed
         if shadowed:
             self._set_shadow(scene, positions, rotations, direction)
+        program["up"].value = tuple(self._camera_pose.matrix[2, :3].tolist())
+        program["hemisphere"].value = HEMISPHERE
         program["ambient"].value = tuple(map(float, lighting.ambient[:3]))
         program["sun"].value = tuple((-(self._view[:, :3] @ direction)).tolist())
         program["sun_color"].value = (0.0, 0.0, 0.0) if sun is None else tuple(light_color(sun[0]).tolist())

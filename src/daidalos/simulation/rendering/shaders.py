@@ -94,6 +94,8 @@ uniform bool shadowed;
 uniform mat4 to_shadow;
 uniform vec2 offset;
 uniform vec3 ambient;
+uniform vec3 up;
+uniform float hemisphere;
 uniform vec3 sun;
 uniform vec3 sun_color;
 out vec4 color;
@@ -169,7 +171,7 @@ void main() {
     vec3 normal = gl_FrontFacing ? seen_normal : -seen_normal;
     float lit = max(0.0, dot(normal, sun));
     if (shadowed && lit > 0.0) lit *= sunshine(normal);
-    vec3 irradiance = ambient + lit * sun_color;
+    vec3 irradiance = ambient * (1.0 + hemisphere * dot(normal, up)) + lit * sun_color;
     for (int light = 0; light < light_count; light++) irradiance += light_intensity(light, normal) * numbers(light, 7);
     vec4 material = texelFetch(parts, ivec2(3, seen_part), 0);
     vec3 glow = texelFetch(parts, ivec2(4, seen_part), 0).rgb;

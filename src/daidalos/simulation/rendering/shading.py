@@ -16,7 +16,11 @@ from daidalos.simulation.rendering.lights import light_intensity
 from daidalos.simulation.rendering.sunlight import aim_at_shadow, clear, sun_visibility
 from daidalos.simulation.rendering.textures import mip_level, sample
 
+HEMISPHERE = 0.2
+"""How much more of the ambient light comes from above than from the side, and less from below, as a share."""
+
 _RUN = 32
+_SKY_RUN = 16
 
 
 @compiled(fastmath=True)
@@ -84,6 +88,7 @@ def shade(
     horizon : array (3,)
         Up in the camera's frame.
     ambient, sun_color : array (3,) of float32
+        Ambient light is that of a surface that stands upright; see `HEMISPHERE`.
     sun : array (3,)
         Unit vector towards the parallel light, in the camera's frame.
     lights : array (l, LIGHT_SIZE)
@@ -132,6 +137,14 @@ def shade(
             g1 = max(0.0, normals[j, 0] * sx + normals[j, 1] * sy + normals[j, 2] * sz)
             g2 = max(0.0, normals[k, 0] * sx + normals[k, 1] * sy + normals[k, 2] * sz)
             lit = sunny and g0 + g1 + g2 > 0.0
+            # The same of the direction upwards, for ambient light.
+            ux = turn * (pose[0, 0] * horizon[0] + pose[1, 0] * horizon[1] + pose[2, 0] * horizon[2])
+            uy = turn * (pose[0, 1] * horizon[0] + pose[1, 1] * horizon[1] + pose[2, 1] * horizon[2])
+            uz = turn * (pose[0, 2] * horizon[0] + pose[1, 2] * horizon[1] + pose[2, 2] * horizon[2])
+            h0 = HEMISPHERE * (normals[i, 0] * ux + normals[i, 1] * uy + normals[i, 2] * uz)
+            h1 = HEMISPHERE * (normals[j, 0] * ux + normals[j, 1] * uy + normals[j, 2] * uz)
+            h2 = HEMISPHERE * (normals[k, 0] * ux + normals[k, 1] * uy + normals[k, 2] * uz)
+            level = h0 == h1 and h1 == h2
             red, green, blue = colors[part, 0], colors[part, 1], colors[part, 2]
             # The colour in the shade, and what the full sun adds.
             ar, ag, ab = red * ambient[0], green * ambient[1], blue * ambient[2]
@@ -139,15 +152,15 @@ def shade(
             gr, gg, gb = emissions[part, 0], emissions[part, 1], emissions[part, 2]
             alpha = alphas[part] if blend else np.float32(1.0)
             plain = texture_of[part] < 0 and len(lights) == 0
-            if plain and not lit:
-                put(line, start, column, ar + gr, ag + gg, ab + gb, alpha)
+            if plain and level and not lit:
+                put(line, start, column, ar + h0 * ar + gr, ag + h0 * ag + gg, ab + h0 * ab + gb, alpha)
                 continue
             casts = lit and shadowed
-            flat = plain and g0 == g1 and g1 == g2
+            flat = plain and level and g0 == g1 and g1 == g2
             if flat:
+                ar, ag, ab = ar + h0 * ar + gr, ag + h0 * ag + gg, ab + h0 * ab + gb
                 # The colour in the sun.
-                sr, sg, sb = ar + gr + g0 * sr, ag + gg + g0 * sg, ab + gb + g0 * sb
-                ar, ag, ab = ar + gr, ag + gg, ab + gb
+                sr, sg, sb = ar + g0 * sr, ag + g0 * sg, ab + g0 * sb
             if flat and not casts:
                 put(line, start, column, sr, sg, sb, alpha)
                 continue
@@ -155,6 +168,8 @@ def shade(
             e = edges[face]
             slope = np.float32(g0 * e[0] + g1 * e[3] + g2 * e[6])
             base = np.float32(g0 * (e[1] * row + e[2]) + g1 * (e[4] * row + e[5]) + g2 * (e[7] * row + e[8]))
+            rise = np.float32(h0 * e[0] + h1 * e[3] + h2 * e[6])
+            foot = np.float32(h0 * (e[1] * row + e[2]) + h1 * (e[4] * row + e[5]) + h2 * (e[7] * row + e[8]))
             if casts:
                 nx = turn * (normals[i, 0] + normals[j, 0] + normals[k, 0]) / 3
                 ny = turn * (normals[i, 1] + normals[j, 1] + normals[k, 1]) / 3
@@ -174,7 +189,7 @@ def shade(
                     paint_rich(
                         line, depths, first, last, row, face, part, dy, turn, edges, faces, normals, uv, pose, colors,
                         emissions, alpha, texture_of, texels, texture_levels, levels, fx, cx, ambient, sun_color,
-                        lights, slope, base, dark, shadow, aim,
+                        lights, slope, base, rise, foot, dark, shadow, aim,
                     )  # fmt: skip
                 elif dark:
                     shine = np.float32(1.0)
@@ -182,12 +197,17 @@ def shade(
                         # Every other pixel is asked, and its neighbour's answer taken.
                         if (x - first) & 1 == 0:
                             shine = sun_visibility(shadow, aim, x, depths[x])
-                        g = (base + slope * np.float32(x)) / depths[x] * shine
-                        put_one(line, x, ar + g * sr + gr, ag + g * sg + gg, ab + g * sb + gb, alpha)
+                        z = np.float32(1.0) / depths[x]
+                        g = (base + slope * np.float32(x)) * z * shine
+                        h = (foot + rise * np.float32(x)) * z
+                        put_one(line, x, ar + h * ar + g * sr + gr, ag + h * ag + g * sg + gg,
+                                ab + h * ab + g * sb + gb, alpha)  # fmt: skip
                 else:
                     for x in range(first, last):
-                        g = (base + slope * np.float32(x)) / depths[x]
-                        put_one(line, x, ar + g * sr + gr, ag + g * sg + gg, ab + g * sb + gb, alpha)
+                        z = np.float32(1.0) / depths[x]
+                        g, h = (base + slope * np.float32(x)) * z, (foot + rise * np.float32(x)) * z
+                        put_one(line, x, ar + h * ar + g * sr + gr, ag + h * ag + g * sg + gg,
+                                ab + h * ab + g * sb + gb, alpha)  # fmt: skip
 
 
 @compiled(fastmath=True)
@@ -220,6 +240,8 @@ def paint_rich(
     lights: Any,
     slope: Any,
     base: Any,
+    rise: Any,
+    foot: Any,
     dark: Any,
     shadow: Any,
     aim: Any,
@@ -249,7 +271,9 @@ def paint_rich(
         g = (base + slope * np.float32(x)) * z
         if dark:
             g *= sun_visibility(shadow, aim, x, depths[x])
-        red, green, blue = ambient[0] + g * sun_color[0], ambient[1] + g * sun_color[1], ambient[2] + g * sun_color[2]
+        h = 1.0 + (foot + rise * np.float32(x)) * z
+        red, green, blue = h * ambient[0], h * ambient[1], h * ambient[2]
+        red, green, blue = red + g * sun_color[0], green + g * sun_color[1], blue + g * sun_color[2]
         if len(lights) > 0:
             w0, w1, w2 = turn * (a0 * x + r0) * z, turn * (a1 * x + r1) * z, turn * (a2 * x + r2) * z
             nx = w0 * normals[i, 0] + w1 * normals[j, 0] + w2 * normals[k, 0]
@@ -270,17 +294,29 @@ def paint_rich(
 
 @compiled(fastmath=True)
 def fill_background(line: Any, start: Any, stop: Any, dy: Any, fx: Any, cx: Any, background: Any, horizon: Any) -> None:
-    """Fill the sky with one colour, or with two that blend by the height above the horizon."""
+    """Fill the sky with one colour, or with two that blend by the height above the horizon.
+
+    The blend is linear over a few pixels.
+    """
     r0, g0, b0 = background[0, 0], background[0, 1], background[0, 2]
     r1, g1, b1 = background[1, 0], background[1, 1], background[1, 2]
     if r0 == r1 and g0 == g1 and b0 == b1:
         put(line, start, stop, r0, g0, b0, np.float32(1.0))
         return
-    for x in range(start, stop):
-        dx = (x - cx) / fx
-        up = (horizon[0] * dx + horizon[1] * dy + horizon[2]) / math.sqrt(dx * dx + dy * dy + 1.0)
-        share = math.sqrt(max(0.0, up))
-        put_one(line, x, r0 + share * (r1 - r0), g0 + share * (g1 - g0), b0 + share * (b1 - b0), np.float32(1.0))
+    share = sky_share((start - cx) / fx, dy, horizon)
+    for first in range(start, stop, _SKY_RUN):
+        last = min(first + _SKY_RUN, stop)
+        step = (sky_share((last - cx) / fx, dy, horizon) - share) / np.float32(last - first)
+        for x in range(first, last):
+            put_one(line, x, r0 + share * (r1 - r0), g0 + share * (g1 - g0), b0 + share * (b1 - b0), np.float32(1.0))
+            share += step
+
+
+@compiled(fastmath=True)
+def sky_share(dx: Any, dy: Any, horizon: Any) -> Any:
+    """Return how much of the colour overhead a ray has: 0 at the horizon and below."""
+    up = (horizon[0] * dx + horizon[1] * dy + horizon[2]) / math.sqrt(dx * dx + dy * dy + 1.0)
+    return np.float32(math.sqrt(max(0.0, up)))
 
 
 @compiled(fastmath=True)
