@@ -115,10 +115,32 @@ def test_world_is_edited_while_it_runs(browser: Chromium, tmp_path: Path, monkey
         _all_is_taken_back(browser)
         assert browser.evaluate("document.querySelector('.error-text')?.textContent ?? ''") == ""
         browser.open(f"{url}?front=simulation")
-        browser.wait_for(f"{_MODELS} === '3 models' && document.querySelector('[data-panel=displays]') !== null")
+        browser.wait_for(f"{_MODELS} === '3 models'")
+        _entities_are_a_tree(browser)
         simulator.interrupt()
         browser.wait_for("document.body.textContent.includes('No simulator is running')")
         assert browser.errors == []
+
+
+def _entities_are_a_tree(browser: Chromium) -> None:
+    """Select by mouse and by keyboard, unfold and filter, in the panel beside the simulated world."""
+    names = "[...document.querySelectorAll('[data-entity]')].map((e) => e.dataset.entity)"
+    assert not browser.evaluate("document.querySelector('[data-panel=displays]')?.checkVisibility()")
+    assert browser.wait_for(f"{names}.length && {names}") == ["ground_plane", "box", "cylinder"]
+    browser.click_on("[data-entity=box]")
+    browser.wait_for(f"{_SELECTED} === 'box'")
+    browser.press("ArrowRight")
+    browser.wait_for(f"{names}.includes('box::link')")
+    browser.press("ArrowDown")
+    browser.wait_for("document.activeElement?.dataset.entity === 'box::link'")
+    assert browser.evaluate(_SELECTED) == "box", "a link's model is selected"
+    browser.press("ArrowLeft")
+    browser.press("ArrowLeft")
+    browser.wait_for(f"!{names}.includes('box::link')")
+    browser.click_on("[aria-label='Filter entities']")
+    browser.type("link")
+    browser.wait_for(f"{names}.length === 6")
+    assert browser.evaluate("document.querySelectorAll('[data-test=rtf]').length") == 1, "one real-time factor"
 
 
 def _put(browser: Chromium, shape: str, x: float, y: float, name: str) -> None:
@@ -180,7 +202,7 @@ def _every_shape_is_scaled(browser: Chromium) -> None:
 
 
 def _time_is_steered(browser: Chromium) -> None:
-    time = "document.querySelector('.bar .clock .figures').textContent"
+    time = "document.querySelector('.top-bar .clock .figures').textContent"
     browser.click_on("[data-test=play]")
     browser.wait_for(f"{_FACTOR} === 'paused'")
     before = browser.evaluate(time)

@@ -8,7 +8,7 @@ from typing import Any
 from daidalos.description.primitives import primitive
 from daidalos.nodes.gazebo_ros._entities import find_entity
 from daidalos.nodes.gazebo_ros._host import Host
-from daidalos.nodes.gazebo_ros._shapes import shape_markers
+from daidalos.nodes.gazebo_ros._shapes import model_parts, shape_markers
 from daidalos.nodes.gazebo_ros._states import color_of, pose_message, pose_of, vector_of
 from daidalos.simulation import Simulation
 from daidalos.simulation.errors import SimulationError
@@ -57,6 +57,7 @@ class EditingServices:
             for name in request.names or simulation.models:
                 model = simulation.instance(name).model
                 response.shapes += shape_markers(model, name)
+                response.models.append(model_parts(model, name))
                 links = [(f"{name}::{link}", link) for link in model.links]
                 for entity, link in [(name, None), *links]:
                     response.entities.append(entity)

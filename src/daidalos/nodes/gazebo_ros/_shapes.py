@@ -1,4 +1,4 @@
-"""Markers of models' visuals."""
+"""Markers of models' visuals, and the names of their parts."""
 
 from __future__ import annotations
 
@@ -55,6 +55,30 @@ def shape_markers(model: Robot | Model, name: str) -> list[Any]:
                 marker.header.frame_id = f"{name}::{link.name}"
                 markers.append(marker)
     return markers
+
+
+def model_parts(model: Model, name: str) -> Any:
+    """Return the joints, sensors and plugins of a model as ``daidalos_msgs/msg/ModelParts``.
+
+    Parameters
+    ----------
+    model : Model
+    name : str
+        The model's in the simulation.
+    """
+    from daidalos_msgs.msg import ModelParts
+
+    sensors = [(f"{key}::{each.name}", each.type) for key, link in model.links.items() for each in link.sensors]
+    sensors += [(f"{key}::{each.name}", each.type) for key, joint in model.joints.items() for each in joint.sensors]
+    return ModelParts(
+        name=name,
+        is_static=model.static,
+        joints=list(model.joints),
+        joint_types=[str(joint.type) for joint in model.joints.values()],
+        sensors=[sensor for sensor, _ in sensors],
+        sensor_types=[kind for _, kind in sensors],
+        plugins=[plugin.name for plugin in model.plugins],
+    )
 
 
 def _seen(link: Link) -> Iterable[Visual]:

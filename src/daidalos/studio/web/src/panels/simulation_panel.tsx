@@ -4,7 +4,6 @@ import { useEffect, useRef } from "preact/hooks";
 import type { Studio } from "../app/studio";
 import { attachEditor } from "../app/test_hooks";
 import { theme } from "../app/theme";
-import { formatTime } from "../ros/time";
 import { Choice, NumberField } from "../ui/editors";
 import { Empty } from "../ui/empty";
 import { Icon, type IconName } from "../ui/icons";
@@ -14,6 +13,7 @@ import "../styles/simulation.css";
 
 import { describePose, Editor, type Mode, type Shape } from "./simulation/editor";
 import { resourceAt, SIMULATOR_TYPE, Simulator, type Resource } from "./simulation/simulator";
+import { openRoom, type Room as Tools } from "./simulation/room";
 import { Stage } from "./simulation/stage";
 
 const SPEEDS: readonly (readonly [string, string])[] = [
@@ -61,12 +61,6 @@ function SimulationPanel({ studio, visible }: PanelProps) {
   return <Room key={name} studio={studio} name={name} isVisible={visible.value} />;
 }
 
-interface Tools {
-  simulator: Simulator;
-  stage: Stage;
-  editor: Editor;
-}
-
 function Room({ studio, name, isVisible }: { studio: Studio; name: string; isVisible: boolean }) {
   const container = useRef<HTMLDivElement>(null);
   const tools = useSignal<Tools | undefined>(undefined);
@@ -77,9 +71,10 @@ function Room({ studio, name, isVisible }: { studio: Studio; name: string; isVis
     }
     try {
       const [made, dispose] = open(studio, name, container.current as HTMLDivElement);
-      tools.value = made;
+      openRoom.value = tools.value = made;
       return () => {
         tools.value = undefined;
+        openRoom.value = openRoom.peek() === made ? undefined : openRoom.peek();
         dispose();
       };
     } catch (error) {
@@ -89,7 +84,7 @@ function Room({ studio, name, isVisible }: { studio: Studio; name: string; isVis
   }, [isVisible]);
   return (
     <div class="column">
-      {tools.value && <TimeBar studio={studio} tools={tools.value} />}
+      {tools.value && <TimeBar tools={tools.value} />}
       <div class="scene simulation">
         <div class="scene-canvas" ref={container} data-test="simulation" />
         {tools.value && <EditBar tools={tools.value} />}
@@ -151,11 +146,9 @@ function open(studio: Studio, name: string, container: HTMLDivElement): [Tools, 
   return [{ simulator, stage, editor }, () => stops.forEach((stop) => stop())];
 }
 
-function TimeBar({ studio, tools: { simulator, editor } }: { studio: Studio; tools: Tools }) {
+function TimeBar({ tools: { simulator, editor } }: { tools: Tools }) {
   const steps = useSignal("10");
   const isPlaying = simulator.isPlaying.value;
-  const factor = simulator.factor.value;
-  const { time } = studio.reading.value;
   return (
     <div class="bar wrap">
       <button
@@ -191,19 +184,6 @@ function TimeBar({ studio, tools: { simulator, editor } }: { studio: Studio; too
       >
         <Icon name="reset" /> Reset
       </button>
-      <span class="stretch" />
-      <span class="clock">
-        <span class="clock-field" title="Simulated time">
-          <span class="faint">Time</span>
-          <span class="figures">{time === undefined ? "–" : formatTime(time)}</span>
-        </span>
-        <span class="clock-field" title="Real-time factor: simulated seconds per second">
-          <span class="faint">RTF</span>
-          <span class="figures" data-test="rtf">
-            {isPlaying === false ? "paused" : factor === undefined ? "–" : `${factor.toFixed(2)}×`}
-          </span>
-        </span>
-      </span>
     </div>
   );
 }

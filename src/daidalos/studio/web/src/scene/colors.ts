@@ -40,38 +40,6 @@ export function rawPalette(): Palette {
   return palette;
 }
 
-/** A floor plan in the page's colours: free cells are muted, occupied ones have high contrast, unknown ones are transparent. */
-export function planPalette(dark: boolean): Palette {
-  const palette = illegalValues();
-  const free = dark ? [58, 67, 81] : [255, 255, 255];
-  const wall = dark ? [214, 222, 232] : [38, 46, 58];
-  for (let value = 0; value <= 100; value++) {
-    const share = value / 100;
-    const [r, g, b] = [0, 1, 2].map((i) => Math.round((free[i] ?? 0) + share * ((wall[i] ?? 0) - (free[i] ?? 0))));
-    set(palette, value, [r ?? 0, g ?? 0, b ?? 0, 255]);
-  }
-  set(palette, UNKNOWN, [0, 0, 0, 0]);
-  return palette;
-}
-
-/** Costs as a warm glow that lets the map through: for a view that stays on all day. */
-export function glowPalette(): Palette {
-  const palette = illegalValues();
-  for (let value = 0; value <= 98; value++) {
-    const share = value / 98;
-    set(palette, value, [
-      Math.round(70 + 170 * share),
-      Math.round(110 - 20 * share),
-      Math.round(210 - 130 * share),
-      Math.round(200 * share ** 1.2),
-    ]);
-  }
-  set(palette, 99, [244, 104, 84, 225]);
-  set(palette, 100, [255, 112, 96, 255]);
-  set(palette, UNKNOWN, [0, 0, 0, 0]);
-  return palette;
-}
-
 /** Values that no occupancy grid should hold: green above 100, red to yellow for negative ones. */
 function illegalValues(): Palette {
   const palette = new Uint8Array(1024);

@@ -6,6 +6,8 @@ export const Layer = {
   COSTMAP: -40,
   GRID: -30,
   SHADOW: -20,
+  VEIL: 5,
+  BODY: 6,
   LINE: 10,
   OUTLINE: 11,
   LINK: 20,

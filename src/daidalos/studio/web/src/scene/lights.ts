@@ -1,6 +1,7 @@
 // Light that shapes the robot, and a soft shadow that puts it on the ground.
 import { DirectionalLight, Group, HemisphereLight, Mesh, PlaneGeometry, ShadowMaterial, type Vector3 } from "three";
 import { Layer } from "./layers";
+import type { Look } from "./looks";
 
 /** The shadow is drawn only near what the camera follows: software renderers pay for every pixel of it. */
 const SHADOW_RADIUS_M = 2.5;
@@ -22,7 +23,6 @@ export class Lights {
   constructor() {
     this.sky.position.set(0, 0, 1);
     this.fill.position.set(-3, 2, 1.5);
-    this.theme = "dark";
     const { shadow } = this.sun;
     shadow.mapSize.set(1024, 1024);
     shadow.normalBias = 0.01;
@@ -39,10 +39,10 @@ export class Lights {
     this.ground.visible = on;
   }
 
-  set theme(theme: "dark" | "light") {
-    const dark = theme === "dark";
-    this.shade.opacity = dark ? 0.42 : 0.26;
-    [this.sun.intensity, this.sky.intensity, this.fill.intensity] = dark ? [2.3, 2.1, 0.9] : [2.1, 1.9, 0.55];
+  set look({ sun, sky, fill, bounce, shade }: Look) {
+    this.shade.opacity = shade;
+    [this.sun.intensity, this.sky.intensity, this.fill.intensity] = [sun, sky, fill];
+    this.sky.groundColor.set(bounce);
   }
 
   /** Keep the shadow under what is looked at, and as wide as may be seen from a distance in metres. */

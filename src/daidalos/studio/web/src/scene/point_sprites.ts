@@ -1,11 +1,13 @@
 // Points as round dots: sized in metres or in pixels, coloured one by one.
 import {
+  Box3,
   BufferAttribute,
   BufferGeometry,
   DynamicDrawUsage,
   Points,
   ShaderMaterial,
   Vector2,
+  Vector3,
   type WebGLRenderer,
 } from "three";
 
@@ -32,6 +34,8 @@ const FRAGMENT = /* glsl */ `
     gl_FragColor = vec4(tint, alpha);
   }`;
 
+/** A box around more points than that is taken from as many of them. */
+const MAX_SAMPLES = 2000;
 const BUFFER_SIZE = new Vector2();
 
 export interface PointStyle {
@@ -111,6 +115,19 @@ export class PointSprites extends Points<BufferGeometry, ShaderMaterial> {
         attribute.needsUpdate = true;
       }
     }
+  }
+
+  /** The box around what is shown, in the scene. */
+  bounds(): Box3 {
+    const box = new Box3();
+    const positions = this.geometry.getAttribute("position") as BufferAttribute | undefined;
+    const point = new Vector3();
+    const step = Math.max(1, Math.floor(this.shown / MAX_SAMPLES));
+    this.updateWorldMatrix(true, false);
+    for (let i = 0; positions && i < this.shown; i += step) {
+      box.expandByPoint(point.fromBufferAttribute(positions, i).applyMatrix4(this.matrixWorld));
+    }
+    return box;
   }
 
   private uniform(name: string, value: number | boolean): void {

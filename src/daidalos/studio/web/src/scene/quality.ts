@@ -8,7 +8,7 @@ const EARLY_FRAMES = 600;
 /** In software every frame takes the processor from the robot's programs: fewer must do. */
 const LEVELS = [
   { share: 1, shadows: true, period: 1 / 30, late: 1 / 22 },
-  { share: 1, shadows: false, period: 1 / 30, late: 1 / 15 },
+  { share: 1, shadows: false, period: 1 / 24, late: 1 / 12 },
   { share: 0.75, shadows: false, period: 1 / 20, late: 1 / 11 },
   { share: 0.75, shadows: false, period: 1 / 12, late: Infinity },
 ] as const;

@@ -61,7 +61,8 @@ const MARGIN_PX = 7;
 /** Text that faces the camera. */
 export class Label extends Sprite {
   private shown = "";
-  private ratio = 1;
+  /** Its width, in heights. */
+  ratio = 1;
 
   constructor(
     text: string,
@@ -73,6 +74,10 @@ export class Label extends Sprite {
     this.userData.sharesGeometry = true; // all sprites have one
     this.center.set(-0.04, -0.2);
     this.write(text);
+  }
+
+  get text(): string {
+    return this.shown;
   }
 
   write(text: string, color = this.color, halo = this.halo): void {

@@ -1,12 +1,13 @@
 // The cameras and how the mouse moves them: RViz's orbit view and its top-down orthographic view.
 import { MOUSE, OrthographicCamera, PerspectiveCamera, TOUCH, Vector3, type Camera } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
+import type { Outlook } from "./backdrop";
 import type { View as ViewState } from "../generated/arrangement";
 
 export type { ViewState };
 export type ViewKind = ViewState["kind"];
 
-export const HOME: ViewState = { kind: "orbit", focus: [0, 0, 0], distance: 6.5, yaw: -2.3, pitch: 0.8 };
+export const HOME: ViewState = { kind: "orbit", focus: [0, 0, 0], distance: 6.5, yaw: -2.3, pitch: 0.62 };
 
 export const FIELD_OF_VIEW_DEG = 45;
 const NEAR_M = 0.02;
@@ -14,7 +15,7 @@ const FAR_M = 2000;
 
 export class View {
   onChange: () => void = () => undefined;
-  /** Whether the user has moved the view with the mouse. */
+  /** Whether the user has used the mouse in the view. */
   isMoved = false;
   private readonly perspective = new PerspectiveCamera(FIELD_OF_VIEW_DEG, 1, NEAR_M, FAR_M);
   private readonly orthographic = new OrthographicCamera(-1, 1, 1, -1, -FAR_M, FAR_M);
@@ -43,8 +44,10 @@ export class View {
       controls.zoomToCursor = true;
       controls.zoomSpeed = 1.2;
       controls.addEventListener("change", () => this.onChange());
-      controls.addEventListener("start", () => (this.isMoved = true));
     }
+    // Any press, also with a tool: what the user aims at must not move away.
+    element.addEventListener("pointerdown", () => (this.isMoved = true), { capture: true });
+    element.addEventListener("wheel", () => (this.isMoved = true), { capture: true, passive: true });
     this.restore(HOME);
   }
 
@@ -65,6 +68,18 @@ export class View {
     return this.kindNow === "orbit"
       ? this.perspective.position.distanceTo(this.orbit.target)
       : 1 / this.orthographic.zoom;
+  }
+
+  /** What it sees of the horizon; undefined from straight above. */
+  get outlook(): Outlook | undefined {
+    return this.kindNow === "top"
+      ? undefined
+      : {
+          pitch: Math.PI / 2 - this.orbit.getPolarAngle(),
+          half: (FIELD_OF_VIEW_DEG * Math.PI) / 360,
+          height: this.perspective.position.z,
+          reach: this.reach,
+        };
   }
 
   /** Metres that one pixel spans at a point. */

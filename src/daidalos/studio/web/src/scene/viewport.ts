@@ -10,8 +10,9 @@ import {
   WebGLRenderer,
   PCFShadowMap,
 } from "three";
-import { beginsFine } from "./graphics";
+import { gradientOf } from "./backdrop";
 import { Lights } from "./lights";
+import { DAYLIGHT, type Look } from "./looks";
 import { Quality } from "./quality";
 import { View } from "./view";
 
@@ -21,6 +22,8 @@ export class Viewport {
   readonly scene = new Scene();
   readonly view: View;
   readonly lights = new Lights();
+  private lookNow = DAYLIGHT;
+  private background = "";
   readonly canvas: HTMLCanvasElement;
   readonly quality = new Quality();
   private readonly renderer: WebGLRenderer;
@@ -30,9 +33,9 @@ export class Viewport {
   private dirty = true;
   private size = new Vector2(1, 1);
 
-  constructor(container: HTMLElement) {
-    // Transparent: the background is the style sheet's gradient, which costs nothing here.
-    this.renderer = new WebGLRenderer({ antialias: beginsFine, alpha: true, powerPreference: "high-performance" });
+  constructor(private readonly container: HTMLElement) {
+    // Transparent: sky and ground are the container's background, which costs nothing here.
+    this.renderer = new WebGLRenderer({ antialias: true, alpha: true, powerPreference: "high-performance" });
     this.renderer.setClearColor(new Color(0), 0);
     this.renderer.shadowMap.type = PCFShadowMap;
     this.canvas = this.renderer.domElement;
@@ -45,12 +48,23 @@ export class Viewport {
     this.applyQuality();
   }
 
+  /** Sky, ground and light. */
+  set look(look: Look) {
+    this.lights.look = look;
+    this.lookNow = look;
+    this.invalidate();
+  }
+
   get width(): number {
     return this.size.x;
   }
 
   get height(): number {
     return this.size.y;
+  }
+
+  get aspect(): number {
+    return this.size.x / this.size.y;
   }
 
   /** Something looks different now. */
@@ -131,6 +145,13 @@ export class Viewport {
     return this.raycaster.ray;
   }
 
+  private drawBackground(): void {
+    const background = gradientOf(this.lookNow, this.view.outlook);
+    if (background !== this.background) {
+      this.background = this.container.style.background = background;
+    }
+  }
+
   private applyQuality(): void {
     this.renderer.setPixelRatio(this.quality.pixelRatio);
     this.renderer.shadowMap.enabled = this.quality.shadows;
@@ -141,6 +162,7 @@ export class Viewport {
   private render(): void {
     this.dirty = false;
     this.drawn++;
+    this.drawBackground();
     this.renderer.render(this.scene, this.view.camera);
   }
 }

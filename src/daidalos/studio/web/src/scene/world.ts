@@ -8,6 +8,9 @@ import { DisplayManager } from "../displays/manager";
 import type { FrameInfo } from "../displays/display";
 import { Transform } from "../tf/buffer";
 import { Toolbox } from "../tools/toolbox";
+import { FirstView } from "./first_view";
+import { frameView } from "./framing";
+import { DAYLIGHT, DUSK } from "./looks";
 import { HOME, type ViewKind, type ViewState } from "./view";
 import { Viewport } from "./viewport";
 
@@ -28,10 +31,11 @@ export class World {
   private readonly overlay = new Group();
   private readonly manager: DisplayManager;
   private readonly stops: (() => void)[] = [];
+  private readonly first: FirstView;
   private readonly followedAt = new Vector3();
   private followedNow = "";
-  /** The fixed frame in which the view was centred on the robot automatically. */
-  private foundIn = "";
+  /** The fixed frame of the first view. */
+  private framedIn = "";
   private savedAt = 0;
   private savedView = "";
 
@@ -60,6 +64,7 @@ export class World {
       },
       this.content,
     );
+    this.first = new FirstView(viewport.view, () => this.manager.bounds());
     this.toolbox = new Toolbox(viewport, {
       overlay: this.overlay,
       fixedFrame: () => studio.fixedFrame.current.value,
@@ -81,8 +86,7 @@ export class World {
         }
       }),
       effect(() => {
-        viewport.lights.theme = theme.value;
-        viewport.invalidate();
+        viewport.look = theme.value === "dark" ? DUSK : DAYLIGHT;
       }),
       studio.onFrame((page) => {
         if (visible()) {
@@ -97,10 +101,16 @@ export class World {
     this.viewKind.value = kind;
   }
 
-  /** Restore the initial view of the robot, or of the origin where there is none. */
+  /** Restore the view of all there is, or of the origin where there is nothing. */
   home(): void {
-    const at = this.robotAt();
-    this.viewport.view.restore({ ...HOME, kind: this.viewKind.value, focus: at ? [at.x, at.y, 0] : [0, 0, 0] });
+    const { all, robot } = this.manager.bounds();
+    const view = all.isEmpty() ? HOME : frameView(all, robot, this.viewport.aspect);
+    this.viewport.view.restore({ ...view, kind: this.viewKind.value });
+  }
+
+  /** Whether the view no longer changes by itself. */
+  get isSettled(): boolean {
+    return this.first.isSettled;
   }
 
   follow(frame: string): void {
@@ -140,10 +150,16 @@ export class World {
       time: this.drawingTime(),
       page,
       view: this.viewport.view,
+      width: this.viewport.width,
       height: this.viewport.height,
     };
     this.manager.update(info);
     this.followRobot();
+    if (this.framedIn !== info.fixed) {
+      this.framedIn = info.fixed;
+      this.first.restart();
+    }
+    this.first.update(page, this.viewport.aspect);
     this.viewport.frame(page);
     this.keepView(page);
   }
@@ -161,11 +177,6 @@ export class World {
     const robot = this.robotAt();
     if (robot) {
       this.viewport.lights.follow(robot);
-      const fixed = this.studio.fixedFrame.current.value;
-      if (this.foundIn !== fixed && !this.viewport.view.isMoved) {
-        this.foundIn = fixed;
-        this.home();
-      }
     }
     const frame = followed.value;
     const at = frame ? this.poseOf(frame)?.position : undefined;

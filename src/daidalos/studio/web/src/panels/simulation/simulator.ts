@@ -37,8 +37,6 @@ export interface Resource {
 
 export class Simulator {
   readonly isPlaying = signal<boolean | undefined>(undefined);
-  /** Simulated seconds per second, as the simulator measures it. */
-  readonly factor = signal<number | undefined>(undefined);
   readonly spawnables = signal<Resource[]>([]);
 
   constructor(
@@ -55,8 +53,7 @@ export class Simulator {
     const stops = [
       this.session.subscribe<EntityStates>(`${this.name}/model_states`, KEEP, states),
       this.session.subscribe<EntityStates>(`${this.name}/link_states`, KEEP, states),
-      this.session.subscribe<PerformanceMetrics>("/performance_metrics", KEEP, (metrics) => {
-        this.factor.value = metrics.real_time_factor;
+      this.session.subscribe<PerformanceMetrics>("/performance_metrics", KEEP, () => {
         void this.readState();
         tick();
       }),

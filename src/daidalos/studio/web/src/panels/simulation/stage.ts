@@ -18,9 +18,11 @@ import GRID from "../../displays/types/grid";
 import { markerObject } from "../../displays/marker_shapes";
 import type { Pose } from "../../generated/geometry_msgs";
 import type { Marker } from "../../generated/visualization_msgs";
-import { HOME } from "../../scene/view";
+import { FirstView, type Content } from "../../scene/first_view";
+import { DAYLIGHT } from "../../scene/looks";
 import { Viewport } from "../../scene/viewport";
-import type { GetShapes_Response } from "../../generated/daidalos_msgs";
+import type { GetShapes_Response, ModelParts } from "../../generated/daidalos_msgs";
+import { entityTree, type Entity } from "./entity_tree";
 import type { EntityStates } from "./simulator";
 
 /** A flatter and larger shape is the ground, which the grid represents. */
@@ -30,7 +32,6 @@ const GROUND_THICKNESS_M = 0.05;
 const STILL = 1e-5;
 const FRAME_COLOR = 0xe2a355;
 const GHOST_OPACITY = 0.45;
-const NEAREST_M = 3.5;
 
 interface Shown {
   name: string;
@@ -47,6 +48,8 @@ export class Stage {
   readonly viewport: Viewport;
   readonly selected = signal("");
   readonly names = signal<readonly string[]>([]);
+  /** Models with their links, joints and sensors. */
+  readonly entities = signal<readonly Entity[]>([]);
   /** The pose of the selected model. */
   readonly reading = signal<Pose | undefined>(undefined);
   private readonly models = new Map<string, Shown>();
@@ -55,10 +58,11 @@ export class Stage {
     new EdgesGeometry(new BoxGeometry()),
     new LineBasicMaterial({ color: FRAME_COLOR }),
   );
+  private parts: readonly ModelParts[] = [];
   private ghost: Object3D | undefined;
   /** Of the selected model. */
   radius = 0;
-  private isViewSet = false;
+  private readonly first: FirstView;
   private isFramed = false;
 
   constructor(
@@ -66,14 +70,16 @@ export class Stage {
     private readonly context: Omit<DisplayContext, "invalidate">,
   ) {
     this.viewport = new Viewport(container);
+    this.first = new FirstView(this.viewport.view, () => this.content());
     const grid = GRID.create({ ...context, invalidate: this.viewport.invalidate }, GRID.defaults);
+    this.viewport.look = DAYLIGHT;
     this.frame.visible = false;
     this.frame.matrixAutoUpdate = false;
     this.viewport.scene.add(grid.object, this.frame);
   }
 
   /** Show the simulator's models. */
-  show({ shapes, entities, poses }: GetShapes_Response): void {
+  show({ shapes, entities, poses, models: parts }: GetShapes_Response): void {
     const models = new Map<string, Marker[]>();
     for (const name of entities.filter((each) => !each.includes("::"))) {
       models.set(name, []);
@@ -97,11 +103,12 @@ export class Stage {
       }
     }
     this.names.value = [...models.keys()];
+    this.parts = parts;
+    this.entities.value = entityTree(entities, parts);
     if (!models.has(this.selected.value)) {
       this.select("");
     }
     this.place({ name: entities, pose: poses });
-    this.look();
   }
 
   /** Set the poses of links; false where there are unknown ones. */
@@ -131,6 +138,16 @@ export class Stage {
   select(name: string): void {
     this.selected.value = name;
     this.touch();
+  }
+
+  /** Centre the view on a model or a link. */
+  focusOn(entity: string): void {
+    const [model = "", link] = entity.split("::");
+    const shown = this.models.get(model);
+    const box = shown ? new Box3().setFromObject((link && shown.links.get(link)) || shown.holder) : new Box3();
+    if (!box.isEmpty()) {
+      this.viewport.view.lookAt(box.getCenter(new Vector3()));
+    }
   }
 
   /** The last pose of a model from the simulator. */
@@ -230,6 +247,7 @@ export class Stage {
       this.reading.value = this.models.has(this.selected.value) ? this.poses.get(this.selected.value) : undefined;
     }
     const { view } = this.viewport;
+    this.first.update(page, this.viewport.aspect);
     this.viewport.lights.follow(view.focus, view.reach);
     this.viewport.frame(page);
   }
@@ -308,24 +326,23 @@ export class Stage {
     this.touch();
   }
 
-  /** Set the view to all models, once. */
-  private look(): void {
+  /** The box around all models, and around the first that can move and has joints: the robot. */
+  private content(): Content {
+    const boxOf = (shown: Shown | undefined) => (shown ? new Box3().setFromObject(shown.holder) : new Box3());
     const all = new Box3();
-    for (const { holder } of this.models.values()) {
-      all.union(new Box3().setFromObject(holder));
+    for (const shown of this.models.values()) {
+      all.union(boxOf(shown));
     }
-    // Meshes are loaded after their models.
-    const isEmpty = [...this.models.values()].every(({ links }) => links.size === 0);
-    if (!this.isViewSet && (isEmpty || !all.isEmpty())) {
-      this.isViewSet = true;
-      const centre = isEmpty ? new Vector3() : all.getCenter(new Vector3());
-      const size = isEmpty ? new Vector3() : all.getSize(new Vector3());
-      const distance = Math.max(NEAREST_M, 1.15 * size.length());
-      this.viewport.view.restore({ ...HOME, focus: [centre.x, centre.y, 0], distance });
+    if (all.isEmpty() && this.models.size) {
+      all.copy(BARE_WORLD);
     }
+    const robot = this.parts.find(({ is_static, joints }) => !is_static && joints.length > 0)?.name ?? "";
+    return { all, robot: boxOf(this.models.get(robot)) };
   }
 }
 
+/** What is shown of a world that has nothing but its ground. */
+const BARE_WORLD = new Box3(new Vector3(-1.5, -1.5, 0), new Vector3(1.5, 1.5, 0));
 const UP = new Vector3(0, 0, 1);
 const FRAME_MARGIN_M = 0.01;
 
